@@ -1,0 +1,130 @@
+#include "app/scene/errors.hpp"
+#include "app/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+namespace fascia::app {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Prescribed directions of a frame's translation or rotation, orthonormal.
+struct Directions {
+  std::vector<Vec3d> axis;
+  std::vector<int> motion;  ///< −1: held
+};
+
+struct Held {
+  Directions translation, rotation;
+};
+
+/// The prescribed value along a direction at a factor.
+double value(const Simulation& s, int motion, bool rotation, const Vec3d& X, const Vec3d& direction, double factor) {
+  if (motion < 0) return 0;
+  const PrescribedMotion& m = s.model.motions[at(motion)];
+  return dot(direction, rotation ? m.axis * (m.angle * factor) : m.displacement(X, factor));
+}
+
+/// Adds a direction; one that is already there must ask for the same.
+void add_direction(const Simulation& s, Directions& d, const Vec3d& direction, int motion, bool rotation, const Vec3d& X,
+                   const Constraint& constraint) {
+  const double scale = rotation ? 1.0 : s.model.length;
+  const auto moves = [&](int m, const Vec3d& axis) {
+    return std::abs(value(s, m, rotation, X, axis, 1.0)) + std::abs(value(s, m, rotation, X, axis, 0.37)) > 1e-12 * scale;
+  };
+  if (!moves(motion, direction)) motion = -1;
+  Vec3d rest = direction;
+  bool oblique_motion = false;
+  double difference = 0;
+  for (const double factor : {0.37, 1.0}) {
+    double known = 0;
+    for (std::size_t k = 0; k < d.axis.size(); ++k)
+      known += dot(direction, d.axis[k]) * value(s, d.motion[k], rotation, X, d.axis[k], factor);
+    difference = std::max(difference, std::abs(known - value(s, motion, rotation, X, direction, factor)));
+  }
+  for (std::size_t k = 0; k < d.axis.size(); ++k) {
+    const double overlap = dot(direction, d.axis[k]);
+    rest -= d.axis[k] * overlap;
+    oblique_motion = oblique_motion || (std::abs(overlap) > 1e-9 && (motion >= 0 || d.motion[k] >= 0));
+  }
+  if (norm(rest) < 1e-6) {
+    if (difference > 1e-9 * scale)
+      throw SceneError({{constraint.place, fmt::format("prescribes another value than an earlier constraint on the same axis "
+                                                       "of the frame at ({:.6g}, {:.6g}, {:.6g}); name each axis once",
+                                                       X[0], X[1], X[2])}});
+    return;
+  }
+  if (oblique_motion)
+    throw SceneError({{constraint.place, fmt::format("moves the frame at ({:.6g}, {:.6g}, {:.6g}) along an axis that is neither "
+                                                     "parallel nor perpendicular to that of another constraint; use one set of axes",
+                                                     X[0], X[1], X[2])}});
+  d.axis.push_back(normalized(rest));
+  d.motion.push_back(motion);
+}
+
+/// Rows: the prescribed directions, completed to an orthonormal basis.
+Mat3d completed(const Directions& d) {
+  std::vector<Vec3d> rows = d.axis;
+  for (int k = 0; k < 3 && rows.size() < 3; ++k) {
+    Vec3d e;
+    e[k] = 1;
+    for (const Vec3d& r : rows) e -= r * dot(r, e);
+    if (norm(e) > 0.5) rows.push_back(normalized(e));
+  }
+  return transpose(Mat3d::from_columns(rows[0], rows[1], rows[2]));
+}
+
+int add_motion(Simulation& s, const Constraint& c) {
+  if (!c.motion) return -1;
+  s.schedules.push_back(c.schedule);
+  PrescribedMotion m;
+  m.schedule = static_cast<int>(s.schedules.size()) - 1;
+  m.translation = c.motion->translate;
+  m.axis = normalized(c.motion->axis);
+  m.center = c.motion->center;
+  m.angle = c.motion->angle;
+  s.model.motions.push_back(m);
+  return static_cast<int>(s.model.motions.size()) - 1;
+}
+
+bool moves_positions_only(const Constraint& c) {
+  return c.motion && !(c.fixed[3] || c.fixed[4] || c.fixed[5]);
+}
+
+}  // namespace
+
+void add_constraints(Simulation& s) {
+  std::map<int, Held> held;
+  for (const Constraint& c : s.scene.constraints) {
+    const int motion = add_motion(s, c);
+    const int body = body_index(s, c.body);
+    for (const int node : select_nodes(s, body, c.where)) {
+      const Vec3d& X = s.model.rest_position[at(node)];
+      for (int k = 0; k < 3; ++k) {
+        if (c.fixed[at(k)]) add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
+        if (c.fixed[at(3 + k)]) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
+      }
+    }
+    if (moves_positions_only(c))
+      s.warnings.push_back(fmt::format("{}: prescribes positions without rotations, which leaves the displacement between "
+                                       "frames free (the force comes out too small); add \"rx\", \"ry\", \"rz\" to axes",
+                                       c.place.key));
+  }
+  for (const auto& [node, h] : held) {
+    FrameConstraint c;
+    c.node = node;
+    c.translations = static_cast<int>(h.translation.axis.size());
+    c.rotations = static_cast<int>(h.rotation.axis.size());
+    c.translation_axes = c.translations == 0 ? Mat3d::identity() : completed(h.translation);
+    c.rotation_axes = c.rotations == 0 ? Mat3d::identity() : completed(h.rotation);
+    for (int k = 0; k < c.translations; ++k) c.translation_motion[at(k)] = h.translation.motion[at(k)];
+    for (int k = 0; k < c.rotations; ++k) c.rotation_motion[at(k)] = h.rotation.motion[at(k)];
+    s.model.constraints.push_back(c);
+  }
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,134 @@
+#include "app/regions.hpp"
+#include "app/scene/errors.hpp"
+#include "app/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace fascia::app {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// A point that takes a share of a total load.
+struct Share {
+  Attachment attachment;
+  double part = 0;
+};
+
+int new_schedule(Simulation& s, const Schedule& schedule) {
+  s.schedules.push_back(schedule);
+  return static_cast<int>(s.schedules.size()) - 1;
+}
+
+void add_gravity(Simulation& s) {
+  const Vec3d& g = s.scene.world.gravity;
+  if (squared_norm(g) == 0) return;
+  DeadLoad load;
+  load.schedule = new_schedule(s, s.scene.world.schedule);
+  for (int i = 0; i < s.model.node_count(); ++i) {
+    const FrameInertia& inertia = s.model.inertia[at(i)];
+    load.nodes.push_back({i, g * inertia.mass, outer(g, inertia.first), {}});
+  }
+  s.gravity_load = static_cast<int>(s.model.loads.size());
+  s.model.loads.push_back(std::move(load));
+}
+
+/// Faces of the body's surface whose three vertices are selected; three points each, exact for quadratic weights.
+std::vector<Share> surface_shares(const MeshlessBody& body, const Region& region) {
+  const TriangleMesh& surface = body.surface();
+  const std::vector<char> all(surface.points.size(), 1);
+  const std::vector<bool> chosen = select(region, surface.points, all);
+  std::vector<Share> shares;
+  for (const auto& t : surface.triangles) {
+    if (!(chosen[at(t[0])] && chosen[at(t[1])] && chosen[at(t[2])])) continue;
+    const Vec3d &a = surface.points[at(t[0])], &b = surface.points[at(t[1])], &c = surface.points[at(t[2])];
+    const double area = 0.5 * norm(cross(b - a, c - a));
+    for (const Vec3d& X : {(a * 4.0 + b + c) * (1.0 / 6), (a + b * 4.0 + c) * (1.0 / 6), (a + b + c * 4.0) * (1.0 / 6)})
+      shares.push_back({body.attach(X), area / 3});
+  }
+  return shares;
+}
+
+std::vector<Share> volume_shares(const MeshlessBody& body, const Region& region) {
+  std::vector<Vec3d> positions;
+  for (const BodyPoint& p : body.points()) positions.push_back(p.X);
+  const std::vector<bool> chosen = select(region, positions, {});
+  std::vector<Share> shares;
+  for (std::size_t q = 0; q < positions.size(); ++q)
+    if (chosen[q]) shares.push_back({body.attach(positions[q]), body.points()[q].volume});
+  return shares;
+}
+
+/// By area where the region asks for the boundary or holds faces but no material point, else by volume. Parts add to 1.
+std::vector<Share> shares_of(const SimulatedBody& body, const Load& load) {
+  std::vector<Share> shares;
+  if (!names_boundary(*load.where)) shares = volume_shares(body.meshless, *load.where);
+  if (shares.empty()) shares = surface_shares(body.meshless, *load.where);
+  if (shares.empty())
+    throw SceneError({{load.where->place, fmt::format("the region holds no material and no face of body \"{}\"; enlarge it",
+                                                      body.name)}});
+  double total = 0;
+  for (const Share& share : shares) total += share.part;
+  for (Share& share : shares) share.part /= total;
+  return shares;
+}
+
+/// J^T of a force and a torque at material points, summed by frame; or followers, one a point.
+void add_shares(Simulation& s, const std::vector<Share>& shares, const Vec3d& force, const Vec3d& torque, bool follower,
+                int schedule) {
+  std::map<int, NodeLoad> by_node;
+  for (const Share& share : shares) {
+    const Attachment& a = share.attachment;
+    FollowerLoad f{schedule, force * share.part, torque * share.part, a.nodes, {}, {}};
+    for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+      const Influence& i = a.influences[k];
+      f.w.push_back(i.w);
+      f.b.push_back(i.b);
+      NodeLoad& n = by_node[a.nodes[k]];
+      n.node = a.nodes[k];
+      n.force += f.force * i.w;
+      n.couple += outer(f.force, i.b);
+      n.torque += f.torque * i.w;
+    }
+    if (follower) s.model.followers.push_back(std::move(f));
+  }
+  if (follower) return;
+  DeadLoad load;
+  load.schedule = schedule;
+  for (const auto& [node, n] : by_node) load.nodes.push_back(n);
+  s.model.loads.push_back(std::move(load));
+}
+
+void add_node_forces(Simulation& s, int body, const Load& load, int schedule) {
+  DeadLoad dead;
+  dead.schedule = schedule;
+  for (const int node : select_nodes(s, body, *load.where)) {
+    if (load.follower) s.model.followers.push_back({schedule, *load.force_per_node, {}, {node}, {1.0}, {Vec3d{}}});
+    else dead.nodes.push_back({node, *load.force_per_node, {}, {}});
+  }
+  if (!load.follower) s.model.loads.push_back(std::move(dead));
+}
+
+}  // namespace
+
+void add_loads(Simulation& s) {
+  add_gravity(s);
+  for (const Load& load : s.scene.loads) {
+    const int body = body_index(s, load.body), schedule = new_schedule(s, load.schedule);
+    const SimulatedBody& b = s.bodies[at(body)];
+    if (load.total_force || load.total_torque)
+      add_shares(s, shares_of(b, load), load.total_force.value_or(Vec3d{}), load.total_torque.value_or(Vec3d{}),
+                 load.follower, schedule);
+    if (load.force_per_node) add_node_forces(s, body, load, schedule);
+    if (load.at) {
+      const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
+      add_shares(s, {{b.meshless.attach(X), 1.0}}, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{}), load.follower,
+                 schedule);
+    }
+  }
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,70 @@
+#include "app/run_scene.hpp"
+#include "app/scene/errors.hpp"
+#include "core/model/errors.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <iostream>
+#include <new>
+
+namespace {
+
+using namespace fascia::app;
+
+void add_scene_options(CLI::App& command, RunOptions& options) {
+  command.add_option("scene", options.scene, "scene file (TOML)")->required();
+  command.add_option("--set", options.overrides, "override a key: --set key.path=value (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--backend", options.backend, "cpu, cuda or auto")->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+}
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"fascia: simulator of connective tissue and the organs that it ties together", "fascia"};
+  app.set_version_flag("--version", std::string("fascia ") + FASCIA_VERSION);
+  app.require_subcommand(1);
+  RunOptions options;
+  CLI::App* run = app.add_subcommand("run", "simulate a scene and write its results");
+  add_scene_options(*run, options);
+  run->add_option("--output", options.output, "directory of the results");
+  run->add_option("--threads", options.threads, "number of threads, 0 for all")->check(CLI::NonNegativeNumber);
+  run->add_flag("--quiet", options.quiet, "no progress and no summary");
+  run->add_flag("--json", options.json, "print summary.json, and nothing else, on standard output");
+  run->add_flag("-v,--verbose", options.verbose, "a line for each step");
+  CLI::App* check = app.add_subcommand("check", "read and validate a scene, and say what would be simulated");
+  add_scene_options(*check, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e, std::cout, std::cerr);
+    return code == 0 ? kDone : kWrongInput;
+  }
+  return run->parsed() ? run_scene(options) : check_scene(options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const SceneError& e) {
+    for (const Diagnostic& d : e.diagnostics()) fmt::print(stderr, "{}\n", d.text());
+    return kWrongInput;
+  } catch (const fascia::InputError& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return kWrongInput;
+  } catch (const fascia::FileError& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return kFileProblem;
+  } catch (const BackendError& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return kNoBackend;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "out of memory; use a smaller grid, or linear = {{ kind = \"cg\" }}\n");
+    return kWrongInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "fascia: {}\n", e.what());
+    return 1;
+  }
+}

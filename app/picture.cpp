@@ -1,0 +1,66 @@
+#include "app/picture.hpp"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+extern char** environ;
+
+namespace fascia::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+int run(const std::vector<std::string>& arguments) {
+  std::vector<char*> argv;
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  pid_t pid = 0;
+  if (posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ) != 0) return 127;
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+/// The last saved .vtu of each body.
+std::vector<std::string> last_states(const Simulation& s, const fs::path& directory) {
+  std::vector<std::string> files;
+  for (const SimulatedBody& b : s.bodies) {
+    std::string last;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+      const std::string file = entry.path().filename().string();
+      if (file.size() == b.name.size() + 10 && file.starts_with(b.name + "_") && file.ends_with(".vtu"))
+        last = std::max(last, entry.path().string());
+    }
+    if (!last.empty()) files.push_back(last);
+  }
+  return files;
+}
+
+}  // namespace
+
+void make_picture(const Simulation& s, const fs::path& directory, const std::string& name) {
+  const Picture& p = *s.scene.output.picture;
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "fascia-picture";
+  if (!fs::exists(program)) {
+    fmt::print(stderr, "no picture: {} was not built (it needs VTK's rendering)\n", program.string());
+    return;
+  }
+  std::vector<std::string> command;
+  if (std::getenv("DISPLAY") == nullptr) command = {"xvfb-run", "-a"};
+  command.push_back(program.string());
+  for (const std::string& file : last_states(s, directory)) command.push_back(file);
+  command.push_back((directory / (name + ".png")).string());
+  command.insert(command.end(), {"--view", fmt::format("{},{},{}", p.view[0], p.view[1], p.view[2]), "--size",
+                                 fmt::format("{}x{}", p.size[0], p.size[1]), "--field", p.field});
+  if (run(command) != 0)
+    fmt::print(stderr, "no picture: \"{}\" failed; a display, or xvfb-run (Debian: xvfb, xauth), is needed\n", command.front());
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,80 @@
+#include "app/scene/errors.hpp"
+#include "app/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace fascia::app {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+const BodyPoint& nearest_point(const MeshlessBody& body, const Vec3d& X) {
+  const BodyPoint* best = nullptr;
+  double least = std::numeric_limits<double>::max();
+  for (const BodyPoint& p : body.points()) {
+    const double distance = squared_norm(p.X - X);
+    if (distance >= least) continue;
+    least = distance;
+    best = &p;
+  }
+  return *best;
+}
+
+bool over_time_only(Quantity q) { return q == Quantity::velocity || q == Quantity::kinetic_energy; }
+
+}  // namespace
+
+Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place) {
+  const MeshlessBody& b = s.bodies[at(body)].meshless;
+  const double distance = b.distance(X);
+  if (distance <= 1e-9 * b.size()) return X;
+  if (distance > 1e-3 * b.size())
+    throw SceneError({{place, fmt::format("({:.6g}, {:.6g}, {:.6g}) lies {:.4g} m outside body \"{}\"; give a point of its rest shape",
+                                          X[0], X[1], X[2], distance, s.bodies[at(body)].name)}});
+  s.warnings.push_back(fmt::format("{}: lies {:.3g} m outside the body and was taken as on it", place.key, distance));
+  return X;
+}
+
+void resolve_probes(Simulation& s) {
+  for (const Probe& probe : s.scene.probes) {
+    ResolvedProbe r;
+    r.probe = &probe;
+    if (probe.body) r.body = body_index(s, *probe.body);
+    else if (s.bodies.size() == 1) r.body = 0;
+    for (const Vec3d& X0 : probe.at) {
+      ProbePoint p;
+      p.X = place_on_body(s, r.body, X0, probe.at_place);
+      const MeshlessBody& body = s.bodies[at(r.body)].meshless;
+      p.field = body.attach(p.X);
+      p.volumetric = body.attach_volumetric(p.field);
+      const BodyPoint& material = nearest_point(body, p.X);
+      p.lambda = material.lambda;
+      p.mu = material.mu;
+      r.points.push_back(std::move(p));
+    }
+    if (probe.where) {
+      r.nodes = select_nodes(s, r.body, *probe.where);
+    } else {
+      const int first = r.body >= 0 ? s.bodies[at(r.body)].meshless.first_frame() : 0;
+      const int count = r.body >= 0 ? s.bodies[at(r.body)].meshless.frame_count() : s.model.node_count();
+      for (int i = first; i < first + count; ++i) r.nodes.push_back(i);
+    }
+    if (probe.about) {
+      r.about = *probe.about;
+    } else {
+      for (const int node : r.nodes) r.about += s.model.rest_position[at(node)] * (1.0 / static_cast<double>(r.nodes.size()));
+    }
+    if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))
+      s.warnings.push_back(fmt::format("{}: is zero in a static solve", probe.place.key));
+    const bool modes = s.scene.solver.kind == SolverKind::modes, frequency = probe.quantity == Quantity::frequency;
+    if (frequency && !modes) throw SceneError({{probe.place, "quantity \"frequency\" needs solver.kind = \"modes\""}});
+    if (modes && !frequency && probe.quantity != Quantity::mass && probe.quantity != Quantity::volume)
+      throw SceneError({{probe.place, "solver.kind = \"modes\" knows frequency, mass and volume only"}});
+    s.probes.push_back(std::move(r));
+  }
+}
+
+}  // namespace fascia::app

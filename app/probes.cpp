@@ -1,0 +1,278 @@
+#include "app/probes.hpp"
+
+#include "core/math/rotation.hpp"
+#include "core/physics/inertia.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::app {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+enum class Shape { scalar, vector, matrix };
+
+struct QuantityInfo {
+  Quantity quantity;
+  const char* name;
+  const char* unit;
+  Shape shape;
+};
+
+constexpr QuantityInfo kQuantities[] = {
+    {Quantity::displacement, "displacement", "m", Shape::vector},
+    {Quantity::position, "position", "m", Shape::vector},
+    {Quantity::rotation, "rotation", "rad", Shape::vector},
+    {Quantity::velocity, "velocity", "m/s", Shape::vector},
+    {Quantity::strain, "strain", "1", Shape::matrix},
+    {Quantity::stress, "stress", "Pa", Shape::matrix},
+    {Quantity::force, "force", "N", Shape::vector},
+    {Quantity::moment, "moment", "N m", Shape::vector},
+    {Quantity::volume, "volume", "m3", Shape::scalar},
+    {Quantity::mass, "mass", "kg", Shape::scalar},
+    {Quantity::energy, "energy", "J", Shape::scalar},
+    {Quantity::kinetic_energy, "kinetic_energy", "J", Shape::scalar},
+    {Quantity::total_energy, "total_energy", "J", Shape::scalar},
+    {Quantity::momentum, "momentum", "kg m/s", Shape::vector},
+    {Quantity::angular_momentum, "angular_momentum", "kg m2/s", Shape::vector},
+    {Quantity::max_displacement, "max_displacement", "m", Shape::scalar},
+    {Quantity::mean_displacement, "mean_displacement", "m", Shape::vector},
+    {Quantity::frequency, "frequency", "Hz", Shape::scalar},
+};
+
+const QuantityInfo& info(Quantity q) {
+  return *std::find_if(std::begin(kQuantities), std::end(kQuantities), [&](const QuantityInfo& i) { return i.quantity == q; });
+}
+
+void push(std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); }
+void push(std::vector<double>& out, const Mat3d& m) {
+  for (int i = 0; i < 3; ++i) push(out, m.row(i));
+}
+
+Mat3d displacement_gradient(const Attachment& a, const State& state) { return field_at(a, state).H; }
+
+void push_point_value(std::vector<double>& out, Quantity q, const ProbePoint& p, const State& state) {
+  const FieldValue f = field_at(p.field, state);
+  switch (q) {
+    case Quantity::displacement: push(out, f.u); break;
+    case Quantity::position: push(out, p.X + f.u); break;
+    case Quantity::rotation: push(out, rotation_vector(polar_increment(f.D))); break;
+    case Quantity::velocity: {
+      Vec3d v;
+      for (std::size_t k = 0; k < p.field.nodes.size(); ++k)
+        v += state.v[at(p.field.nodes[k])] * p.field.influences[k].w + state.Q_dot[at(p.field.nodes[k])] * p.field.influences[k].b;
+      push(out, v);
+      break;
+    }
+    case Quantity::strain: push(out, green_strain(f.H)); break;
+    default: push(out, cauchy_stress(f.H, displacement_gradient(p.volumetric, state), p.lambda, p.mu)); break;
+  }
+}
+
+/// Deformed volume: Σ v det F over the integration points of a body (or all).
+double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  double volume = 0;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
+    for (const BodyPoint& p : s.bodies[b].meshless.points()) {
+      const Mat3d H = displacement_gradient(s.bodies[b].meshless.attach(p), state);
+      volume += p.volume * determinant(Mat3d::identity() + H);
+    }
+  }
+  return volume;
+}
+
+struct Energies {
+  double elastic = 0, stabilization = 0, kinetic = 0, potential = 0;
+};
+
+Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
+  Energies e;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
+    const MeshlessBody& body = s.bodies[b].meshless;
+    for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
+      e.elastic += snap.system->executor().group_elastic()[at(g)];
+      e.stabilization += snap.system->executor().group_drilling()[at(g)];
+    }
+  }
+  for (const int i : probe.nodes)
+    e.kinetic += 0.5 * inertia_product(s.model.inertia[at(i)], snap.state->v[at(i)], snap.state->Q_dot[at(i)]);
+  const std::vector<double> factors = s.factors(snap.state->time);
+  std::vector<char> chosen(at(s.model.node_count()), 0);
+  for (const int i : probe.nodes) chosen[at(i)] = 1;
+  for (const DeadLoad& load : s.model.loads)
+    for (const NodeLoad& n : load.nodes)
+      if (chosen[at(n.node)] != 0)
+        e.potential -= factors[at(load.schedule)] *
+                       (dot(n.force, snap.state->u[at(n.node)]) + contract(n.couple, snap.state->D[at(n.node)]));
+  return e;
+}
+
+Momentum momentum(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  Momentum sum;
+  const Vec3d about = probe.probe->about.value_or(Vec3d{});
+  for (const int i : probe.nodes) {
+    const Momentum m = momentum_of(s.model.inertia[at(i)], s.model.rest_position[at(i)] + state.u[at(i)],
+                                   Mat3d::identity() + state.D[at(i)], state.v[at(i)], state.Q_dot[at(i)], about);
+    sum.linear += m.linear;
+    sum.angular += m.angular;
+  }
+  return sum;
+}
+
+/// Force and moment that supports (or, where nothing is held, loads) exert on the nodes.
+void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap, Vec3d& force, Vec3d& moment) {
+  std::vector<char> chosen(at(s.model.node_count()), 0);
+  for (const int i : probe.nodes) chosen[at(i)] = 1;
+  const auto add = [&](int node, const Vec3d& f, const Vec3d& torque) {
+    const Vec3d x = s.model.rest_position[at(node)] + snap.state->u[at(node)];
+    force += f;
+    moment += torque + cross(x - probe.about, f);
+  };
+  bool held = false;
+  const std::span<const double> gradient = snap.system->gradient();
+  for (const FrameConstraint& c : s.model.constraints) {
+    if (chosen[at(c.node)] == 0) continue;
+    held = true;
+    Vec3d f, t;
+    const double* g = gradient.data() + 6 * c.node;
+    for (int k = 0; k < c.translations; ++k) {
+      const Vec3d a = c.translation_axes.row(k);
+      f += a * dot(a, Vec3d{{g[0], g[1], g[2]}});
+    }
+    for (int k = 0; k < c.rotations; ++k) {
+      const Vec3d a = c.rotation_axes.row(k);
+      t += a * dot(a, Vec3d{{g[3], g[4], g[5]}});
+    }
+    add(c.node, f, t);
+  }
+  if (held) return;
+  const std::vector<double> factors = s.factors(snap.state->time);
+  for (std::size_t l = 0; l < s.model.loads.size(); ++l) {
+    if (static_cast<int>(l) == s.gravity_load) continue;
+    const DeadLoad& load = s.model.loads[l];
+    for (const NodeLoad& n : load.nodes) {
+      if (chosen[at(n.node)] == 0) continue;
+      const Mat3d Q = Mat3d::identity() + snap.state->D[at(n.node)];
+      const double factor = factors[at(load.schedule)];
+      add(n.node, n.force * factor, (axl(Q * transpose(n.couple)) + n.torque) * factor);
+    }
+  }
+}
+
+}  // namespace
+
+FieldValue field_at(const Attachment& a, const State& state) {
+  FieldValue f;
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    const Influence& i = a.influences[k];
+    const Vec3d& u = state.u[at(a.nodes[k])];
+    const Mat3d& D = state.D[at(a.nodes[k])];
+    f.u += u * i.w + D * i.b;
+    f.D += D * i.w;
+    f.H += outer(u, i.g) + D * i.B;
+  }
+  return f;
+}
+
+Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, double lambda, double mu) {
+  const Mat3d F = Mat3d::identity() + H, Fv = Mat3d::identity() + H_volumetric;
+  const Mat3d shear = green_strain(H) * (2 * mu);
+  const Mat3d pressure = Mat3d::diagonal(lambda * trace(green_strain(H_volumetric)));
+  return times_transpose(F * shear, F) * (1 / determinant(F)) + times_transpose(Fv * pressure, Fv) * (1 / determinant(Fv));
+}
+
+std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
+  std::vector<double> out;
+  const Quantity q = probe.probe->quantity;
+  const State& state = *snap.state;
+  if (!probe.points.empty()) {
+    for (const ProbePoint& p : probe.points) push_point_value(out, q, p, state);
+    return out;
+  }
+  switch (q) {
+    case Quantity::force:
+    case Quantity::moment: {
+      Vec3d force, moment;
+      support_force(s, probe, snap, force, moment);
+      push(out, q == Quantity::force ? force : moment);
+      break;
+    }
+    case Quantity::volume: out.push_back(deformed_volume(s, probe, state)); break;
+    case Quantity::mass: {
+      double mass = 0;
+      for (const int i : probe.nodes) mass += s.model.inertia[at(i)].mass;
+      out.push_back(mass);
+      break;
+    }
+    case Quantity::energy: out.push_back(energies(s, probe, snap).elastic); break;
+    case Quantity::kinetic_energy: out.push_back(energies(s, probe, snap).kinetic); break;
+    case Quantity::total_energy: {
+      const Energies e = energies(s, probe, snap);
+      out.push_back(e.elastic + e.stabilization + e.kinetic + e.potential);
+      break;
+    }
+    case Quantity::momentum: push(out, momentum(s, probe, state).linear); break;
+    case Quantity::angular_momentum: push(out, momentum(s, probe, state).angular); break;
+    case Quantity::max_displacement: {
+      double largest = 0;
+      for (const int i : probe.nodes) largest = std::max(largest, norm(state.u[at(i)]));
+      out.push_back(largest);
+      break;
+    }
+    case Quantity::mean_displacement: {
+      Vec3d mean;
+      for (const int i : probe.nodes) mean += state.u[at(i)] * (1.0 / static_cast<double>(probe.nodes.size()));
+      push(out, mean);
+      break;
+    }
+    default: out.push_back(snap.frequency); break;
+  }
+  return out;
+}
+
+std::string probe_unit(Quantity quantity) { return info(quantity).unit; }
+std::string quantity_name(Quantity quantity) { return info(quantity).name; }
+
+nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values) {
+  const Shape shape = info(probe.probe->quantity).shape;
+  const std::size_t size = shape == Shape::scalar ? 1 : shape == Shape::vector ? 3 : 9;
+  const auto one = [&](std::size_t i) -> nlohmann::json {
+    if (shape == Shape::scalar) return values[i];
+    nlohmann::json rows = nlohmann::json::array();
+    for (std::size_t k = 0; k < size; k += 3) {
+      const nlohmann::json row = {values[i + k], values[i + k + 1], values[i + k + 2]};
+      if (shape == Shape::vector) return row;
+      rows.push_back(row);
+    }
+    return rows;
+  };
+  const bool list = probe.probe->at_is_list || values.size() > size;
+  if (!list) return one(0);
+  nlohmann::json all = nlohmann::json::array();
+  for (std::size_t i = 0; i < values.size(); i += size) all.push_back(one(i));
+  return all;
+}
+
+std::vector<std::string> probe_columns(const ResolvedProbe& probe) {
+  const Shape shape = info(probe.probe->quantity).shape;
+  const char* axes[3] = {"x", "y", "z"};
+  std::vector<std::string> parts;
+  if (shape == Shape::scalar) parts = {""};
+  if (shape == Shape::vector)
+    for (const char* a : axes) parts.push_back(std::string(".") + a);
+  if (shape == Shape::matrix)
+    for (const char* a : axes)
+      for (const char* b : axes) parts.push_back(std::string(".") + a + b);
+  std::vector<std::string> columns;
+  const std::size_t points = std::max<std::size_t>(1, probe.points.size());
+  for (std::size_t i = 0; i < points; ++i)
+    for (const std::string& part : parts)
+      columns.push_back(probe.probe->name + (probe.probe->at_is_list ? "[" + std::to_string(i) + "]" : "") + part);
+  return columns;
+}
+
+}  // namespace fascia::app

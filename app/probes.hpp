@@ -1,0 +1,38 @@
+#pragma once
+
+#include "app/simulation.hpp"
+#include "core/solver/mechanical_system.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+/// A state with the forces that belong to it.
+struct Snapshot {
+  const State* state = nullptr;
+  MechanicalSystem* system = nullptr;  ///< evaluated at the state
+  double frequency = 0;                ///< of a mode [Hz]
+};
+
+/// Value of a probe as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).
+std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe, const Snapshot& at);
+nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values);
+std::string probe_unit(Quantity quantity);
+std::string quantity_name(Quantity quantity);
+/// Column names of a probe in probes.csv: tip.x, tip.y, ...
+std::vector<std::string> probe_columns(const ResolvedProbe& probe);
+
+/// Displacement, rotation and displacement gradient of the field at an attachment.
+struct FieldValue {
+  Vec3d u{};
+  Mat3d D{}, H{};  ///< blended rotation − I, F − I
+};
+FieldValue field_at(const Attachment& attachment, const State& state);
+
+/// Cauchy stress at a point, from F there and the volumetric strain at its stand-in.
+Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, double lambda, double mu);
+
+}  // namespace fascia::app

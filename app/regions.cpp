@@ -1,0 +1,126 @@
+#include "app/regions.hpp"
+
+#include "app/scene/errors.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace fascia::app {
+
+namespace {
+
+template <class... Handlers>
+struct Overloaded : Handlers... {
+  using Handlers::operator()...;
+};
+template <class... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
+
+/// Rounding must not decide whether a frame on the face of a box is inside.
+double tolerance(double size) { return 1e-9 * size; }
+
+bool in_box(const BoxRegion& b, const Vec3d& X) {
+  for (int a = 0; a < 3; ++a) {
+    const double t = tolerance(b.max[a] - b.min[a]);
+    if (X[a] < b.min[a] - t || X[a] > b.max[a] + t) return false;
+  }
+  return true;
+}
+
+bool in_cylinder(const CylinderRegion& c, const Vec3d& X) {
+  const Vec3d axis = c.to - c.from, d = X - c.from;
+  const double length = norm(axis), along = dot(d, axis) / length;
+  const double radius = norm(d - axis * (along / length));
+  return along >= -tolerance(length) && along <= length + tolerance(length) && radius <= c.radius * (1 + 1e-9);
+}
+
+int nearest_point(const Vec3d& target, std::span<const Vec3d> points) {
+  int best = -1;
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = squared_norm(points[i] - target);
+    if (distance < least * (1 - 1e-12)) {
+      least = distance;
+      best = static_cast<int>(i);
+    }
+  }
+  return best;
+}
+
+[[noreturn]] void fail(const Region& region, const std::string& message) {
+  throw SceneError({{region.place, message}});
+}
+
+}  // namespace
+
+std::vector<bool> select(const Region& region, std::span<const Vec3d> points, std::span<const char> on_boundary) {
+  std::vector<bool> chosen(points.size(), false);
+  const auto by_position = [&](const auto& test) {
+    for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = test(points[i]);
+  };
+  const auto combine = [&](const std::vector<Region>& parts, bool all) {
+    chosen.assign(points.size(), all);
+    for (const Region& part : parts) {
+      const std::vector<bool> other = select(part, points, on_boundary);
+      for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = all ? chosen[i] && other[i] : chosen[i] || other[i];
+    }
+  };
+  std::visit(
+      Overloaded{
+          [&](const AllRegion&) { chosen.assign(points.size(), true); },
+          [&](const BoundaryRegion&) {
+            if (on_boundary.empty()) fail(region, "boundary cannot be asked for here; use a box, sphere or cylinder");
+            for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = on_boundary[i] != 0;
+          },
+          [&](const BoxRegion& b) { by_position([&](const Vec3d& X) { return in_box(b, X); }); },
+          [&](const SphereRegion& s) {
+            by_position([&](const Vec3d& X) { return norm(X - s.center) <= s.radius * (1 + 1e-9); });
+          },
+          [&](const CylinderRegion& c) { by_position([&](const Vec3d& X) { return in_cylinder(c, X); }); },
+          [&](const HalfspaceRegion& h) { by_position([&](const Vec3d& X) { return dot(X - h.point, h.normal) <= 0; }); },
+          [&](const NearestRegion& n) {
+            if (const int i = nearest_point(n.point, points); i >= 0) chosen[static_cast<std::size_t>(i)] = true;
+          },
+          [&](const GroupRegion&) {
+            fail(region, "a meshless body has no mesh groups; select by box, sphere, cylinder or halfspace");
+          },
+          [&](const IdsRegion& ids) {
+            for (const int id : ids.ids) {
+              if (id < 0 || static_cast<std::size_t>(id) >= points.size())
+                fail(region, "no node " + std::to_string(id) + "; must be 0 to " + std::to_string(points.size() - 1));
+              chosen[static_cast<std::size_t>(id)] = true;
+            }
+          },
+          [&](const AllOfRegion& r) { combine(r.parts, true); },
+          [&](const AnyOfRegion& r) { combine(r.parts, false); },
+          [&](const NotRegion& r) {
+            chosen = select(*r.part, points, on_boundary);
+            chosen.flip();
+          },
+      },
+      region.shape);
+  return chosen;
+}
+
+bool contains(const Region& region, const Vec3d& X) {
+  const bool shape = !std::holds_alternative<NearestRegion>(region.shape) && !std::holds_alternative<IdsRegion>(region.shape);
+  if (!shape) fail(region, "nearest and ids select frames, not material; use a box, sphere, cylinder or halfspace");
+  if (const auto* all = std::get_if<AllOfRegion>(&region.shape))
+    return std::all_of(all->parts.begin(), all->parts.end(), [&](const Region& r) { return contains(r, X); });
+  if (const auto* any = std::get_if<AnyOfRegion>(&region.shape))
+    return std::any_of(any->parts.begin(), any->parts.end(), [&](const Region& r) { return contains(r, X); });
+  if (const auto* inner = std::get_if<NotRegion>(&region.shape)) return !contains(*inner->part, X);
+  return select(region, std::span(&X, 1), {})[0];
+}
+
+bool names_boundary(const Region& region) {
+  if (std::holds_alternative<BoundaryRegion>(region.shape)) return true;
+  if (const auto* all = std::get_if<AllOfRegion>(&region.shape))
+    return std::any_of(all->parts.begin(), all->parts.end(), names_boundary);
+  if (const auto* any = std::get_if<AnyOfRegion>(&region.shape))
+    return std::any_of(any->parts.begin(), any->parts.end(), names_boundary);
+  if (const auto* inner = std::get_if<NotRegion>(&region.shape)) return names_boundary(*inner->part);
+  return false;
+}
+
+}  // namespace fascia::app

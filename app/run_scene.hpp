@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+struct RunOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;
+  std::optional<std::filesystem::path> output;
+  std::optional<std::string> backend;
+  std::optional<int> threads;
+  bool quiet = false, json = false, verbose = false;
+};
+
+enum ExitStatus { kDone = 0, kWrongInput = 2, kNotConverged = 3, kFileProblem = 4, kNoBackend = 5, kInterrupted = 130 };
+
+/// A backend that is not there. Exit status 5.
+class BackendError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Simulates a scene and writes its results. Errors of input and files are exceptions (main.cpp).
+int run_scene(const RunOptions& options);
+
+/// Reads and checks a scene, and says what would be simulated; writes nothing.
+int check_scene(const RunOptions& options);
+
+}  // namespace fascia::app

@@ -1,0 +1,88 @@
+#include "app/scene/parse.hpp"
+
+#include "app/scene/overrides.hpp"
+#include "app/scene/readers.hpp"
+#include "app/scene/validate.hpp"
+#include "core/model/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace fascia::app {
+namespace {
+
+constexpr std::size_t max_file_size = std::size_t{16} << 20;
+
+/// At most a little more than the largest size of a scene.
+std::string read_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw FileError(fmt::format("{}: is a directory; must be a scene file", path.string()));
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
+  std::string text;
+  std::array<char, 65536> part;
+  while (text.size() <= max_file_size && (file.read(part.data(), part.size()), file.gcount() > 0))
+    text.append(part.data(), static_cast<std::size_t>(file.gcount()));
+  if (file.bad()) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+  return text;
+}
+
+Value parse_document(std::string_view text, Diagnostics& diagnostics) {
+  if (text.size() > max_file_size) {
+    diagnostics.add(Position{}, "toml", "the file is larger than 16 MiB; must be a scene, which is small");
+    diagnostics.throw_if_any();
+  }
+  try {
+    return parse_toml(text);
+  } catch (const SyntaxError& error) {
+    diagnostics.add(error.position, "toml", one_line(error.message) + "; must be TOML 1.0");
+    diagnostics.throw_if_any();
+    throw;
+  }
+}
+
+Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
+  Scene scene;
+  scene.path = path;
+  scene.title = table.text("title").value_or("");
+  scene.world = read_world(table);
+  const Materials materials = read_materials(table);
+  std::vector<std::string> bodies;
+  for (const TableReader& body : table.tables("bodies")) {
+    bodies.push_back(body.name());
+    if (body.usable()) scene.bodies.push_back(read_body(body, materials, path.parent_path()));
+  }
+  for (const TableReader& constraint : table.tables("constraints"))
+    scene.constraints.push_back(read_constraint(constraint, bodies));
+  for (const TableReader& load : table.tables("loads")) scene.loads.push_back(read_load(load, bodies));
+  scene.solver = read_solver(table);
+  const std::optional<SolverKind> kind = read_solver_kind(table);
+  for (const TableReader& probe : table.tables("probes")) scene.probes.push_back(read_probe(probe, bodies, kind));
+  scene.output = read_output(table, path.stem().string(), kind);
+  return scene;
+}
+
+}  // namespace
+
+Scene parse_scene_text(std::string_view text, const std::filesystem::path& path,
+                       const std::vector<std::string>& overrides) {
+  Diagnostics diagnostics(path.string());
+  Value document = parse_document(text, diagnostics);
+  for (const std::string& change : overrides) apply_override(document, change, diagnostics);
+  validate(document, scene_schema(), diagnostics);
+  Scene scene = read_scene(TableReader(&document, "", diagnostics), path);
+  diagnostics.throw_if_any();
+  return scene;
+}
+
+Scene parse_scene_file(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  return parse_scene_text(read_file(path), path, overrides);
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,96 @@
+#include "app/scene/readers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::app {
+namespace {
+
+void read_newton(const TableReader& newton, Solver& solver) {
+  solver.newton_max_iterations = newton.integer("max_iterations").value_or(solver.newton_max_iterations);
+  solver.newton_tolerance = newton.number("tolerance").value_or(solver.newton_tolerance);
+  if (newton.text("on_limit") == "continue") solver.on_limit = OnLimit::proceed;
+}
+
+PreconditionerKind preconditioner_of(const std::string& name) {
+  if (name == "none") return PreconditionerKind::none;
+  if (name == "jacobi") return PreconditionerKind::jacobi;
+  if (name == "block-jacobi") return PreconditionerKind::block_jacobi;
+  if (name == "cholesky") return PreconditionerKind::cholesky;
+  return PreconditionerKind::automatic;
+}
+
+void read_linear(const TableReader& linear, Solver& solver) {
+  const std::string kind = linear.text("kind").value_or("auto");
+  if (kind == "cg") solver.linear = LinearKind::cg;
+  if (kind == "cholesky") solver.linear = LinearKind::cholesky;
+  solver.preconditioner = preconditioner_of(linear.text("preconditioner").value_or("auto"));
+  solver.linear_max_iterations = linear.integer("max_iterations").value_or(solver.linear_max_iterations);
+  solver.linear_tolerance = linear.number("tolerance").value_or(solver.linear_tolerance);
+}
+
+/// Steps of a duration, rounded up; a rounding error of the division adds none.
+int steps_of(const TableReader& table, double duration, double time_step) {
+  const double steps = std::ceil(duration / time_step * (1 - 1e-12));
+  if (steps <= 1e9) return std::max(1, static_cast<int>(steps));
+  table.error("duration", fmt::format("takes {:.3g} steps of {} s; must take at most 1e9", steps, time_step));
+  return 1;
+}
+
+void read_time(const TableReader& table, Solver& solver) {
+  if (!table.has("time_step")) table.error("time_step", "is missing; must be a time in s above 0");
+  if (!table.has("duration") && !table.has("steps"))
+    table.error("duration", "is missing; must be a time in s above 0, or give steps");
+  solver.time_step = table.number("time_step").value_or(0);
+  solver.steps = table.integer("steps").value_or(1);
+  const auto duration = table.number("duration");
+  if (duration && solver.time_step > 0) solver.steps = steps_of(table, *duration, solver.time_step);
+}
+
+/// Keys that only some kinds use.
+void check_kind(const TableReader& table, const Solver& solver) {
+  const std::string unused = fmt::format("is not used by kind = \"{}\"", table.text("kind").value_or("static"));
+  if (solver.kind != SolverKind::implicit_euler) table.refuse({"time_step", "duration", "steps"}, unused);
+  if (solver.kind != SolverKind::statics) table.refuse({"load_steps", "control"}, unused);
+  if (solver.kind != SolverKind::modes) table.refuse({"count"}, unused);
+}
+
+}  // namespace
+
+World read_world(const TableReader& scene) {
+  const TableReader world = scene.table("world");
+  return {world.vector("gravity").value_or(Vec3d{}), read_schedule(world)};
+}
+
+std::optional<SolverKind> read_solver_kind(const TableReader& scene) {
+  const TableReader solver = scene.table("solver");
+  const bool wrong = (scene.has("solver") && !solver.exists()) || (solver.has("kind") && !solver.value("kind"));
+  if (wrong) return std::nullopt;
+  const std::string kind = solver.text("kind").value_or("static");
+  if (kind == "implicit-euler") return SolverKind::implicit_euler;
+  if (kind == "modes") return SolverKind::modes;
+  return SolverKind::statics;
+}
+
+Solver read_solver(const TableReader& scene) {
+  const TableReader table = scene.table("solver");
+  Solver solver;
+  solver.place = table.place();
+  const std::optional<SolverKind> kind = read_solver_kind(scene);
+  solver.kind = kind.value_or(SolverKind::statics);
+  if (kind) check_kind(table, solver);
+  if (solver.kind == SolverKind::implicit_euler) read_time(table, solver);
+  if (const Value* load_steps = table.value("load_steps"); load_steps && !load_steps->as_string())
+    solver.load_steps = *table.integer("load_steps");
+  solver.modes = table.integer("count").value_or(solver.modes);
+  read_newton(table.table("newton"), solver);
+  read_linear(table.table("linear"), solver);
+  solver.full_tangent = table.text("tangent").value_or("full") == "full";
+  solver.backend = table.text("backend").value_or("auto");
+  solver.threads = table.integer("threads").value_or(0);
+  return solver;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "app/scene/table_reader.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+/// From tables that fit the schema to the structs of a scene. Each adds what it finds wrong to the reader's
+/// diagnostics.
+namespace fascia::app {
+
+/// The region of a key; everything where the key is missing or wrong.
+Region read_region(const TableReader& table, std::string_view key);
+
+/// The keys `over` and `profile` of a table.
+Schedule read_schedule(const TableReader& table);
+
+Material read_material(const TableReader& table);
+
+/// Named materials, by name. Materials with errors are there too.
+using Materials = std::map<std::string, Material>;
+Materials read_materials(const TableReader& scene);
+
+/// @param folder  to which paths in the scene are relative
+Body read_body(const TableReader& table, const Materials& materials, const std::filesystem::path& folder);
+Domain read_domain(const TableReader& table, const std::filesystem::path& folder);
+
+Constraint read_constraint(const TableReader& table, const std::vector<std::string>& bodies);
+Load read_load(const TableReader& table, const std::vector<std::string>& bodies);
+World read_world(const TableReader& scene);
+Solver read_solver(const TableReader& scene);
+
+/// The kind of the solver; none where it is wrong.
+std::optional<SolverKind> read_solver_kind(const TableReader& scene);
+
+/// @param kind  of the solver; without it what depends on it is not checked
+Probe read_probe(const TableReader& table, const std::vector<std::string>& bodies, std::optional<SolverKind> kind);
+
+/// @param scene_name  names the default directory
+Output read_output(const TableReader& scene, const std::string& scene_name, std::optional<SolverKind> kind);
+
+/// The body that a table's key `body` names; empty where it names none, which is reported.
+std::string read_body_name(const TableReader& table, const std::vector<std::string>& bodies);
+
+}  // namespace fascia::app

@@ -1,0 +1,220 @@
+#pragma once
+
+#include "core/math/mat3.hpp"
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// The scene as the user wrote it, checked key by key, in SI units. The parser makes it; the builder turns it into a model.
+namespace fascia::app {
+
+/// Where in a scene file (or on the command line) something was said.
+struct Place {
+  std::string file;  ///< as the user named it; "--set" for an override
+  int line = 0, column = 0;
+  std::string key;  ///< full path, for example constraints[0].where.box.min
+};
+
+// ------------------------------------------------------------------------------------------------ regions
+struct Region;
+struct AllRegion {};
+struct BoundaryRegion {};
+struct BoxRegion { Vec3d min, max; };
+struct SphereRegion { Vec3d center; double radius = 0; };
+struct CylinderRegion { Vec3d from, to; double radius = 0; };
+struct HalfspaceRegion { Vec3d point, normal; };
+struct NearestRegion { Vec3d point; };
+struct GroupRegion { std::string name; };
+struct IdsRegion { std::vector<int> ids; };
+struct AllOfRegion { std::vector<Region> parts; };
+struct AnyOfRegion { std::vector<Region> parts; };
+struct NotRegion { std::shared_ptr<const Region> part; };
+
+struct Region {
+  Place place;
+  std::variant<AllRegion, BoundaryRegion, BoxRegion, SphereRegion, CylinderRegion, HalfspaceRegion, NearestRegion,
+               GroupRegion, IdsRegion, AllOfRegion, AnyOfRegion, NotRegion>
+      shape;
+};
+
+// ------------------------------------------------------------------------------------------------ time
+struct LinearProfile {};
+struct SmoothProfile {};
+struct TableProfile { std::vector<std::array<double, 2>> points; };  ///< (time [s], factor [-]), times ascending
+struct SineProfile { double period = 1; };
+
+/// A factor over time: `over` [s] (0: at once) and `profile`.
+struct Schedule {
+  double over = 0;
+  bool has_over = false;
+  std::variant<LinearProfile, SmoothProfile, TableProfile, SineProfile> profile;
+};
+
+// ------------------------------------------------------------------------------------------------ bodies
+struct Material {
+  Place place;
+  std::string name;  ///< empty for an inline table
+  double lambda = 0, mu = 0;                            ///< [Pa]
+  double mass_damping = 0, stiffness_damping = 0;       ///< [1/s], [s]
+  double poisson() const { return lambda / (2 * (lambda + mu)); }
+  double young() const { return mu * (3 * lambda + 2 * mu) / (lambda + mu); }
+};
+struct MaterialUse {
+  Region where;      ///< AllRegion where none was given
+  Material material;
+};
+
+struct BoxDomain { Vec3d min, max; };
+struct CylinderDomain { Vec3d from, to; double radius = 0; };
+struct EllipsoidDomain { Vec3d center, radii; };
+struct FileDomain { std::filesystem::path path; };  ///< already resolved against the scene's folder
+using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain>;
+
+/// x → R(axis, angle) (scale x) + translate
+struct Transform {
+  Vec3d translate{};
+  Vec3d axis{{0, 0, 1}};
+  double angle = 0;  ///< [rad]
+  double scale = 1;
+};
+
+struct InitialMotion {
+  Vec3d velocity{}, angular_velocity{};
+  std::optional<Vec3d> about;  ///< default: the body's mass centre
+};
+
+enum class WeightKind { trilinear, linear };
+enum class Blend { automatic, half, full };
+enum class Integration { automatic, full, selective };
+
+struct Body {
+  Place place;  ///< of the table [bodies.NAME]
+  std::string name;
+  Domain domain;
+  Place domain_place;
+  Transform transform;
+  std::vector<MaterialUse> materials;  ///< first match wins
+  std::optional<double> mass, density;  ///< exactly one [kg], [kg/m³]
+  std::array<int, 3> grid{};
+  Place grid_place;
+  std::optional<std::array<int, 3>> per_cell;
+  Place points_place;
+  WeightKind weights = WeightKind::trilinear;
+  Blend blend = Blend::automatic;
+  double drilling = 0.1;
+  Integration integration = Integration::automatic;
+  InitialMotion initial;
+};
+
+// ------------------------------------------------------------------------------------------------ constraints, loads
+struct Motion {
+  Vec3d translate{};
+  Vec3d axis{{0, 0, 1}};
+  double angle = 0;  ///< [rad], continuous: may exceed 2π
+  Vec3d center{};
+};
+
+struct Constraint {
+  Place place;
+  std::string body;
+  Region where;
+  std::array<bool, 6> fixed{};   ///< x y z rx ry rz along `axes`
+  Mat3d axes = Mat3d::identity();  ///< rows: orthonormal directions
+  std::optional<Motion> motion;  ///< none: held where it is
+  Schedule schedule;
+};
+
+struct Load {
+  Place place;
+  std::string body;
+  std::optional<Region> where;  ///< with total_force, total_torque, force_per_node
+  std::optional<Vec3d> at;      ///< with force, torque
+  Place at_place;
+  std::optional<Vec3d> total_force, total_torque, force_per_node, force, torque;  ///< [N], [N m]
+  bool follower = false;
+  Schedule schedule;
+};
+
+struct World {
+  Vec3d gravity{};
+  Schedule schedule;
+};
+
+// ------------------------------------------------------------------------------------------------ solver
+enum class SolverKind { statics, implicit_euler, modes };
+enum class LinearKind { automatic, cg, cholesky };
+enum class PreconditionerKind { automatic, none, jacobi, block_jacobi, cholesky };
+enum class OnLimit { stop, proceed };
+
+struct Solver {
+  Place place;
+  SolverKind kind = SolverKind::statics;
+  double time_step = 0;  ///< [s]
+  int steps = 0;         ///< dynamic kinds: from `steps`, or duration / time_step rounded up
+  int load_steps = 0;    ///< 0: automatic
+  int modes = 10;
+  int newton_max_iterations = 50;
+  double newton_tolerance = 1e-8;
+  OnLimit on_limit = OnLimit::stop;
+  LinearKind linear = LinearKind::automatic;
+  PreconditionerKind preconditioner = PreconditionerKind::automatic;
+  int linear_max_iterations = 1000;
+  double linear_tolerance = 1e-6;
+  bool full_tangent = true;
+  std::string backend = "auto";  ///< "auto", "cpu", "cuda"
+  int threads = 0;
+};
+
+// ------------------------------------------------------------------------------------------------ results
+enum class Quantity {
+  displacement, position, rotation, velocity, strain, stress,  // at points
+  force, moment,                                               // on constrained or loaded nodes
+  volume, mass, energy, kinetic_energy, total_energy, momentum, angular_momentum, max_displacement, mean_displacement,
+  frequency
+};
+
+struct Probe {
+  Place place;
+  std::string name;
+  std::optional<std::string> body;
+  Quantity quantity = Quantity::displacement;
+  std::vector<Vec3d> at;
+  Place at_place;
+  bool at_is_list = false;  ///< `at` was a list of points: the value is a list
+  std::optional<Region> where;
+  std::optional<Vec3d> about;
+};
+
+struct Picture {
+  Vec3d view{{1, 1, 1}};
+  std::array<int, 2> size{1200, 800};
+  std::string field = "von_mises";
+};
+
+struct Output {
+  Place place;
+  std::filesystem::path directory;
+  double every = 0;     ///< [s]; 0: not given
+  int every_steps = 0;  ///< 0: not given
+  std::vector<std::string> fields;
+  std::optional<Picture> picture;
+};
+
+struct Scene {
+  std::filesystem::path path;
+  std::string title;
+  World world;
+  std::vector<Body> bodies;  ///< in the order of the file
+  std::vector<Constraint> constraints;
+  std::vector<Load> loads;
+  Solver solver;
+  std::vector<Probe> probes;  ///< in the order of the file
+  Output output;
+};
+
+}  // namespace fascia::app

@@ -1,0 +1,166 @@
+#include "app/scene/schema.hpp"
+
+namespace fascia::app {
+namespace {
+
+constexpr const char* not_for_meshless = "is not used by a meshless body";
+
+Shape region() { return reference("region", region_schema); }
+
+Shape frames_schema() {
+  return table(
+      {key("grid", array(integer(between(2, 1000)), 3, 3),
+           "Frames along x, y and z of the domain's bounding box, its faces included."),
+       key("poisson_disk", number("m", above(0)), "Scattered frames with this spacing.").not_yet(),
+       key("count", integer(between(1, 10000000)), "About this many scattered frames.").not_yet(),
+       key("positions", array(vector3("m"), 1), "Frames where you want them.").not_yet(),
+       key("rotations", array(vector3("rad")), "Rotation vectors of `positions`.").not_yet(),
+       key("file", text(), "Frames from a CSV file.").not_yet(),
+       key("seed", integer(between(0, 2147483647)), "Seed of scattered frames.").not_yet(),
+       key("kind",
+           choice({{"rigid", "6 degrees of freedom a frame."}, {"affine", "12 degrees of freedom a frame.", false}}),
+           "Kind of frame.")
+           .defaults("\"rigid\""),
+       key("share",
+           array(
+               table({key("body", text("the name of a body"), "The other body."), key("where", region(), "Its nodes."),
+                      key("rotations", boolean(), "Give vertices a rotation.")})),
+           "Nodes of other bodies that are frames of this one too.")
+           .not_yet()},
+      {{{"grid", "poisson_disk", "count", "positions", "file"}}});
+}
+
+Shape points_schema() {
+  return table(
+      {key("per_cell", array(integer(between(1, 10)), 3, 3),
+           "Gauss points along x, y and z of each cell of the frame grid. Not with `weights.kind = \"linear\"`.")
+           .defaults("[2, 2, 2]; 3 in a direction that has a single cell"),
+       key("poisson_disk", number("m", above(0)), "Scattered points with this spacing.").not_yet(),
+       key("count", integer(between(1, 100000000)), "About this many scattered points.").not_yet(),
+       key("file", text(), "Points from a CSV file.").not_yet(),
+       key("seed", integer(between(0, 2147483647)), "Seed of scattered points.").not_yet(),
+       key("integration",
+           choice({{"auto", "Chosen from Poisson's ratio."},
+                   {"full", "Everything at every point."},
+                   {"selective", "The volumetric part at fewer points, against locking."}}),
+           "Integration of the volumetric part.")
+           .defaults("\"auto\""),
+       key("through", integer(between(1, 10)), "Points through the thickness of a sheet.").not_yet()},
+      {{{"per_cell", "poisson_disk", "count", "file"}, false}});
+}
+
+Shape weights_schema() {
+  return table({key("kind",
+                    choice({{"trilinear", "Of the 8 frames of a grid cell."},
+                            {"linear", "The grid's cells cut into 6 tetrahedra: 4 neighbours, 4 points each."},
+                            {"mls", "Moving least squares.", false},
+                            {"shepard", "Shepard's.", false},
+                            {"wendland", "Wendland's.", false},
+                            {"cubic-spline", "Cubic splines.", false}}),
+                    "Weight functions; always a partition of unity.")
+                    .defaults("\"trilinear\""),
+                key("neighbours", integer(between(1, 1000)), "Frames that a point follows.").not_yet(),
+                key("radius", number("m", above(0)), "Reach of a frame.").not_yet(),
+                key("blend",
+                    choice({{"auto", "`half` where the weights reproduce linear fields."},
+                            {"half", "Half blend."},
+                            {"full", "Equation 3 of the 2014 paper."}}),
+                    "How much of a frame's rotation a point follows.")
+                    .defaults("\"auto\""),
+                key("drilling", number("1", at_least(0)),
+                    "Stiffness, relative to mu, that ties a frame's rotation to the material's; 0: none.")
+                    .defaults("0.1")});
+}
+
+Shape material() { return reference("material", material_schema); }
+
+Shape body_material() {
+  const Shape part =
+      table({key("where", region(), "Points that take this material.").defaults("\"all\""),
+             key("use", one_of({text("the name of a material"), material()}), "Name of a material, or an inline table.")
+                 .needed()});
+  return one_of({text("the name of a material"), material(), array(part, 1)});
+}
+
+Shape initial_schema() {
+  return table({key("velocity", vector3("m/s"), "Velocity of the point `about`.").defaults("[0, 0, 0]"),
+                key("angular_velocity", vector3("rad/s"), "Angular velocity.").defaults("[0, 0, 0]"),
+                key("about", vector3("m"), "Point that the rotation leaves where it is.").defaults("the mass centre")});
+}
+
+Shape transform_schema() {
+  const Shape rotate = table(
+      {key("axis", vector3("1"), "Axis through the origin.").needed(), key("angle", number("rad"), "Angle.").needed()});
+  return table({key("translate", vector3("m"), "Added last.").defaults("[0, 0, 0]"),
+                key("rotate", rotate, "Applied after `scale`."),
+                key("scale", number("1", above(0)), "Factor about the origin, applied first.").defaults("1")});
+}
+
+Shape body_schema() {
+  return table(
+      {key("model",
+           choice({{"meshless", "Frames and integration points."},
+                   {"tetrahedra", "Finite elements.", false},
+                   {"hexahedra", "Finite elements.", false},
+                   {"shell", "Thin wall.", false},
+                   {"rigid", "One frame that carries a surface.", false}}),
+           "How the body is discretised.")
+           .needed(),
+       key("domain", domain_schema(), "The space that the body fills.").needed(),
+       key("mass", number("kg", above(0)), "Mass of the whole body."),
+       key("density", number("kg/m3", above(0)), "Mass of a volume."),
+       key("material", body_material(), "Name, inline table, or a list of which the first that selects a point counts.")
+           .needed(),
+       key("frames", frames_schema(), "The frames.").needed(),
+       key("points", points_schema(), "The integration points."),
+       key("weights", weights_schema(), "The weight functions."), key("initial", initial_schema(), "Motion at time 0."),
+       key("transform", transform_schema(), "Moves the domain before anything is built."),
+       key("thickness",
+           one_of({number("m", above(0)), array(table({key("where", region(), "Part."),
+                                                       key("value", number("m", above(0)), "Its thickness.")}))}),
+           "Thickness of a surface domain.")
+           .not_yet(),
+       key("radius", number("m", above(0)), "Radius of a line domain.").not_yet(),
+       key("inertia", array(vector3("kg m2"), 3, 3), "Inertia of a rigid body.").not_yet(),
+       key("formulation", choice({{"st-venant-kirchhoff", ""}, {"corotational", ""}, {"linear", ""}}),
+           "Strain of finite elements.")
+           .refused(not_for_meshless),
+       key("order", integer(between(1, 2)), "Order of finite elements.").refused(not_for_meshless),
+       key("incompressibility", number("Pa", above(0)), "Volume penalty of tetrahedra.").refused(not_for_meshless),
+       key("locking", choice({{"none", ""}, {"f-bar", ""}}), "Remedy against locking of tetrahedra.")
+           .refused(not_for_meshless),
+       key("fluid", table({}), "What fills a closed shell.").refused(not_for_meshless)},
+      {{{"mass", "density"}}}, "model");
+}
+
+}  // namespace
+
+const Shape& material_schema() {
+  static const Shape material = table(
+      {key("law",
+           choice({{"st-venant-kirchhoff", "Linear between Green-Lagrange strain and second Piola-Kirchhoff stress."},
+                   {"neo-hookean", "Neo-Hooke.", false}}),
+           "Elastic law.")
+           .defaults("\"st-venant-kirchhoff\""),
+       key("young", number("Pa", above(0)), "Young's modulus."),
+       key("poisson", number("1", inside(-1, 0.5)), "Poisson's ratio; goes with `young`."),
+       key("lame",
+           table({key("lambda", number("Pa"), "First parameter; 3 lambda + 2 mu > 0.").needed(),
+                  key("mu", number("Pa", above(0)), "Shear modulus.").needed()}),
+           "Lamé's parameters."),
+       key("damping",
+           table({key("mass", number("1/s", at_least(0)), "On velocities.").defaults("0"),
+                  key("stiffness", number("s", at_least(0)), "On the rate of strain.").defaults("0")}),
+           "Viscous damping.")},
+      {{{"young", "lame"}}});
+  return material;
+}
+
+Key materials_schema() { return key("materials", named_tables(material(), false), "Materials, which bodies name."); }
+
+Key bodies_schema() {
+  return key("bodies", named_tables(body_schema(), true, 1), "What is simulated. Names: letters, digits, _ and -.")
+      .needed();
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,74 @@
+#include "app/scene/schema.hpp"
+
+namespace fascia::app {
+namespace {
+
+std::vector<Choice> quantities() {
+  return {{"displacement", "At points [m]."},
+          {"position", "At points [m]."},
+          {"rotation", "At points: the rotation vector [rad]."},
+          {"velocity", "At points [m/s]."},
+          {"strain", "At points: Green-Lagrange, 3 x 3 by rows."},
+          {"stress", "At points: Cauchy, 3 x 3 by rows [Pa]."},
+          {"force", "Of the constraint or load on the nodes in `where` [N]."},
+          {"moment", "Likewise, about `about` [N m]."},
+          {"volume", "[m3]"},
+          {"mass", "[kg]"},
+          {"energy", "Elastic energy without stabilisation [J]."},
+          {"kinetic_energy", "[J]"},
+          {"total_energy", "With stabilisation, kinetic energy and the potential of gravity and dead loads [J]."},
+          {"momentum", "[kg m/s]"},
+          {"angular_momentum", "About `about` [kg m2/s]."},
+          {"max_displacement", "Of the nodes [m]."},
+          {"mean_displacement", "Of the nodes [m]."},
+          {"frequency", "Of `solver.kind = \"modes\"` [1/s]."},
+          {"fluid_volume", "Of a closed shell.", false}};
+}
+
+Shape probe_schema() {
+  return table(
+      {key("quantity", choice(quantities()), "What is measured.").needed(),
+       key("body", text("the name of a body"), "The body; without it the whole scene, where that makes sense."),
+       key("at", one_of({vector3("m"), array(vector3("m"), 1)}),
+           "Material points by their rest position; a list of points gives a list of values."),
+       key("where", reference("region", region_schema), "Nodes of the body."),
+       key("about", vector3("m"), "Point that moments and angular momenta refer to.").defaults("[0, 0, 0]")});
+}
+
+Shape picture_schema() {
+  return table(
+      {key("view", vector3("1"), "Direction from the body to the eye.").defaults("[1, 1, 1]"),
+       key("size", array(integer(between(1, 16384)), 2, 2), "Width and height in pixels.").defaults("[1200, 800]"),
+       key("field", choice(field_choices()), "Field that gives the colours.").defaults("\"von_mises\"")});
+}
+
+}  // namespace
+
+std::vector<Choice> field_choices() {
+  return {{"displacement", "[m]"},       {"rotation", "Rotation vector [rad]."},
+          {"strain", "Green-Lagrange."}, {"stress", "Cauchy [Pa]."},
+          {"von_mises", "[Pa]"},         {"energy_density", "[J/m3]"}};
+}
+
+Key probes_schema() {
+  return key("probes", named_tables(probe_schema(), true), "What is measured. Names: letters, digits, _ and -.");
+}
+
+Key output_schema() {
+  return key(
+      "output",
+      table({key("directory", text("a path"),
+                 "Where the results go; relative to the directory that the program runs in, not to the scene file.")
+                 .defaults("results/SCENE-NAME"),
+             key("every", number("s", above(0)),
+                 "Simulated time between saved states; not for `solver.kind = \"static\"`.")
+                 .defaults("25 frames a simulated second; static: only the end"),
+             key("every_steps", integer(between(1, 1e9)), "Steps between saved states."),
+             key("fields", array(choice(field_choices())), "Fields in the files.").defaults("all"),
+             key("format", choice({{"vtu", "VTK XML, with a .pvd."}}), "File format.").defaults("\"vtu\""),
+             key("picture", picture_schema(), "A PNG of the end state.").defaults("none")},
+            {{{"every", "every_steps"}, false}}),
+      "What is written.");
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,91 @@
+#include "app/scene/schema.hpp"
+
+namespace fascia::app {
+namespace {
+
+constexpr double many = 1e9;
+
+Shape newton_schema() {
+  return table(
+      {key("max_iterations", integer(between(1, many)), "Iterations of a step.").defaults("50"),
+       key("tolerance", number("1", inside(0, 1)), "Residual relative to the largest of load, inertia and reactions.")
+           .defaults("1e-8"),
+       key("on_limit",
+           choice(
+               {{"stop", "Cut the step, then stop with status 3."}, {"continue", "Go on with the residual reached."}}),
+           "What happens at `max_iterations`.")
+           .defaults("\"stop\"")});
+}
+
+Shape linear_schema() {
+  return table(
+      {key("kind",
+           choice({{"auto", "Chosen by size."}, {"cg", "Conjugate gradients."}, {"cholesky", "Sparse factorisation."}}),
+           "Linear solver.")
+           .defaults("\"auto\""),
+       key("preconditioner",
+           choice({{"auto", "Chosen by size."},
+                   {"none", "None."},
+                   {"jacobi", "Diagonal."},
+                   {"block-jacobi", "A block for each frame."},
+                   {"cholesky", "An older factorisation."}}),
+           "Preconditioner of conjugate gradients.")
+           .defaults("\"auto\""),
+       key("max_iterations", integer(between(1, many)), "Iterations of conjugate gradients.").defaults("1000"),
+       key("tolerance", number("1", inside(0, 1)), "Relative residual of conjugate gradients.").defaults("1e-6")});
+}
+
+std::vector<Choice> kinds() {
+  return {{"static", "Equilibrium."},
+          {"implicit-euler", "Dynamics, damped."},
+          {"modes", "Natural frequencies."},
+          {"bdf2", "Dynamics, second order.", false},
+          {"newmark", "Dynamics, second order.", false},
+          {"midpoint", "Dynamics, second order.", false},
+          {"explicit", "Central differences.", false}};
+}
+
+}  // namespace
+
+Key world_schema() {
+  return key("world",
+             table({key("gravity", vector3("m/s2"), "Acceleration of free fall.").defaults("[0, 0, 0]"), over_key(),
+                    profile_key()}),
+             "The surroundings.");
+}
+
+Key solver_schema() {
+  return key(
+      "solver",
+      table(
+          {key("kind", choice(kinds()), "What is computed.").defaults("\"static\""),
+           key("time_step", one_of({number("s", above(0)), choice({{"auto", "Of explicit dynamics.", false}})}),
+               "Of dynamics, where it is needed."),
+           key("duration", number("s", above(0)), "Of dynamics; or `steps`."),
+           key("steps", integer(between(1, many)), "Of dynamics; or `duration`."),
+           key("count", integer(between(1, 10000)), "Of `kind = \"modes\"`: how many.").defaults("10"),
+           key("load_steps", one_of({choice({{"auto", "As few as converge."}}), integer(between(1, many))}),
+               "Of `kind = \"static\"`.")
+               .defaults("\"auto\""),
+           key("control",
+               choice({{"load", "The load factor grows."}, {"displacement", "", false}, {"arc-length", "", false}}),
+               "Of `kind = \"static\"`.")
+               .defaults("\"load\""),
+           key("newton", newton_schema(), "The non-linear solver."),
+           key("linear", linear_schema(), "The linear solver."),
+           key("tangent", choice({{"full", "With the geometric stiffness."}, {"material", "Without it."}}),
+               "Stiffness of Newton's method.")
+               .defaults("\"full\""),
+           key("precision", choice({{"double", "64 bits."}, {"single", "32 bits.", false}, {"mixed", "Both.", false}}),
+               "Arithmetic.")
+               .defaults("\"double\""),
+           key("backend",
+               choice({{"auto", "The best there is."}, {"cpu", "The processor."}, {"cuda", "An NVIDIA GPU."}}),
+               "Where it is computed.")
+               .defaults("\"auto\""),
+           key("threads", integer(between(0, 4096)), "Threads of the processor; 0: all.").defaults("0")},
+          {{{"duration", "steps"}, false}}, "kind"),
+      "How it is computed.");
+}
+
+}  // namespace fascia::app

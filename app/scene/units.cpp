@@ -1,0 +1,187 @@
+#include "app/scene/units.hpp"
+
+#include "app/scene/diagnostics.hpp"
+#include "core/model/errors.hpp"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace fascia::app {
+namespace {
+
+struct Dimension {
+  const char *unit, *noun, *example;
+};
+
+/// Units of SI that scenes use, the kind of quantity, and a sample with another unit.
+constexpr std::array<Dimension, 22> dimensions{{
+    {"m", "a length", "5 mm"},
+    {"s", "a time", "10 ms"},
+    {"kg", "a mass", "200 g"},
+    {"rad", "an angle", "90 degree"},
+    {"Pa", "a pressure", "40 kPa"},
+    {"N", "a force", "5 mN"},
+    {"N m", "a torque", "3 N mm"},
+    {"m/s", "a velocity", "5 mm/s"},
+    {"m/s2", "an acceleration", "981 cm/s2"},
+    {"1/s", "a rate", "2 Hz"},
+    {"rad/s", "an angular velocity", "10 degree/s"},
+    {"kg/m3", "a density", "1 g/cm3"},
+    {"N/m", "a stiffness", "5 N/mm"},
+    {"m2", "an area", "4 cm2"},
+    {"m3", "a volume", "1 l"},
+    {"Pa s", "a viscosity", "1 mPa s"},
+    {"kg m2", "a moment of inertia", "5 g cm2"},
+    {"W", "a power", "5 mW"},
+    {"kg m/s", "a momentum", "5 N s"},
+    {"1/m", "a curvature", "2 1/mm"},
+    {"K", "a temperature", "300 K"},
+    {"A", "an electric current", "5 mA"},
+}};
+
+const Dimension* find_dimension(std::string_view unit) {
+  for (const Dimension& d : dimensions)
+    if (unit == d.unit) return &d;
+  return nullptr;
+}
+
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+
+/// UDUNITS' database. Its parser keeps global state, hence the lock.
+class Database {
+ public:
+  static Database& instance() {
+    static Database database;
+    return database;
+  }
+
+  std::mutex mutex;
+
+  Unit parse(const std::string& text) const { return Unit(ut_parse(system_.get(), text.c_str(), UT_UTF8)); }
+
+ private:
+  Database() {
+    ut_set_error_message_handler(ut_ignore);
+    system_.reset(ut_read_xml(nullptr));
+    if (!system_) throw FileError("cannot read the units database of UDUNITS-2 (package libudunits2-data)");
+    if (const Unit degree = parse("degree")) ut_map_name_to_unit("deg", UT_ASCII, degree.get());
+  }
+
+  struct FreeSystem {
+    void operator()(ut_system* system) const { ut_free_system(system); }
+  };
+  std::unique_ptr<ut_system, FreeSystem> system_;
+};
+
+/// In base units, for example "0.001 kg"; empty where that is impossible.
+std::string definition(const Unit& unit) {
+  std::array<char, 160> text{};
+  const int length = ut_format(unit.get(), text.data(), text.size(), UT_ASCII | UT_DEFINITION);
+  return length < 0 || length >= static_cast<int>(text.size()) ? "" : std::string(text.data());
+}
+
+bool is_angle(const Unit& unit) {
+  const std::string text = definition(unit);
+  return text == "rad" || text.ends_with(" rad");
+}
+
+/// Not by ut_are_convertible: to it, seconds and hertz are the same.
+bool same_dimension(const Unit& unit, const Unit& expected) {
+  if (ut_is_dimensionless(expected.get()))
+    return ut_is_dimensionless(unit.get()) && is_angle(unit) == is_angle(expected);
+  const Unit ratio(ut_divide(unit.get(), expected.get()));
+  return ratio && ut_is_dimensionless(ratio.get()) != 0;
+}
+
+/// The kind of quantity of a unit: "a mass", or its base units.
+std::string kind_of(const Database& database, const Unit& unit) {
+  for (const Dimension& d : dimensions)
+    if (same_dimension(unit, database.parse(d.unit))) return d.noun;
+  return ut_is_dimensionless(unit.get()) ? "a pure number" : "in " + definition(unit);
+}
+
+std::string wanted(std::string_view si_unit) {
+  const Dimension* d = find_dimension(si_unit);
+  if (!d) return fmt::format("must be {}", dimension_in_words(si_unit));
+  return fmt::format("must be {}, such as \"{}\"", dimension_in_words(si_unit), d->example);
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+struct Split {
+  double number;
+  std::string_view number_text, unit;
+};
+
+/// "-5 mm" → −5 and "mm"; nothing where the text does not start with a finite number.
+std::optional<Split> split(std::string_view text) {
+  text = trimmed(text);
+  const std::size_t sign = text.starts_with('+') && !text.starts_with("+-") ? 1 : 0;
+  double number = 0;
+  const char* begin = text.data() + sign;
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
+  if (error != std::errc{} || !std::isfinite(number)) return std::nullopt;
+  const auto length = static_cast<std::size_t>(end - text.data());
+  return Split{number, text.substr(0, length), trimmed(text.substr(length))};
+}
+
+Unit parse_unit(const Database& database, std::string_view text) {
+  const bool second_number = text.find_first_of("0123456789.+-") == 0 && !text.starts_with("1/");
+  if (second_number || text.size() > 64) return nullptr;
+  Unit unit = database.parse(std::string(text));
+  const bool is_date = unit && definition(unit).find('@') != std::string::npos;
+  return is_date ? nullptr : std::move(unit);
+}
+
+std::optional<double> convert(double number, const Unit& from, const Unit& to) {
+  cv_converter* converter = ut_get_converter(from.get(), to.get());
+  if (!converter) return std::nullopt;
+  const double value = cv_convert_double(converter, number);
+  cv_free(converter);
+  return value;
+}
+
+}  // namespace
+
+std::string dimension_in_words(std::string_view si_unit) {
+  if (si_unit == "1") return "a number";
+  const Dimension* d = find_dimension(si_unit);
+  return fmt::format("{} in {}", d ? d->noun : "a quantity", si_unit);
+}
+
+std::variant<double, UnitError> parse_quantity(std::string_view text, std::string_view si_unit) {
+  const std::string shown = in_quotes(text);
+  const std::optional<Split> parts = split(text);
+  if (!parts) return UnitError{fmt::format("{} is no number with a unit; {}", shown, wanted(si_unit))};
+  if (parts->unit.empty()) {
+    const Dimension* d = find_dimension(si_unit);
+    const std::string example = d ? fmt::format(" (SI) or, with a unit, \"{}\"", d->example) : "";
+    return UnitError{fmt::format("{} has no unit; write {}{}", shown, parts->number_text, example)};
+  }
+  Database& database = Database::instance();
+  const std::lock_guard lock(database.mutex);
+  const Unit unit = parse_unit(database, parts->unit);
+  if (!unit) return UnitError{fmt::format("{} is no known unit; {}", in_quotes(parts->unit), wanted(si_unit))};
+  const Unit expected = database.parse(std::string(si_unit));
+  if (!same_dimension(unit, expected))
+    return UnitError{fmt::format("{} is {}; {}", shown, kind_of(database, unit), wanted(si_unit))};
+  const std::optional<double> value = convert(parts->number, unit, expected);
+  if (!value || !std::isfinite(*value)) return UnitError{fmt::format("{} is too large; {}", shown, wanted(si_unit))};
+  return *value;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,33 @@
+#include "app/schedule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fascia::app {
+
+namespace {
+
+double interpolate(const TableProfile& table, double t) {
+  const auto& points = table.points;
+  if (t <= points.front()[0]) return points.front()[1];
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (t > points[i][0]) continue;
+    const double s = (t - points[i - 1][0]) / (points[i][0] - points[i - 1][0]);
+    return points[i - 1][1] + s * (points[i][1] - points[i - 1][1]);
+  }
+  return points.back()[1];
+}
+
+}  // namespace
+
+double schedule_factor(const Schedule& schedule, double time, bool statics) {
+  if (const auto* table = std::get_if<TableProfile>(&schedule.profile)) return interpolate(*table, time);
+  if (const auto* sine = std::get_if<SineProfile>(&schedule.profile))
+    return std::sin(2 * std::numbers::pi * time / sine->period);
+  const double over = statics ? 1.0 : schedule.over;
+  const double s = over > 0 ? std::clamp(time / over, 0.0, 1.0) : 1.0;
+  return std::holds_alternative<SmoothProfile>(schedule.profile) ? s * s * (3 - 2 * s) : s;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,187 @@
+#include "app/simulation.hpp"
+
+#include "app/domains.hpp"
+#include "app/regions.hpp"
+#include "app/scene/errors.hpp"
+#include "app/schedule.hpp"
+#include "core/math/rotation.hpp"
+#include "core/model/errors.hpp"
+#include "core/physics/inertia.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace fascia::app {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+double available_memory() {
+  std::ifstream info("/proc/meminfo");
+  std::string key, unit;
+  double kilobytes = 0;
+  while (info >> key >> kilobytes >> unit)
+    if (key == "MemAvailable:") return kilobytes * 1024;
+  return 1e18;
+}
+
+void check_memory(const Scene& scene) {
+  const double need = estimated_memory(scene), have = available_memory();
+  if (need <= have && need < 2e11) return;
+  const auto largest = std::max_element(scene.bodies.begin(), scene.bodies.end(), [](const Body& a, const Body& b) {
+    return 1.0 * a.grid[0] * a.grid[1] * a.grid[2] < 1.0 * b.grid[0] * b.grid[1] * b.grid[2];
+  });
+  throw SceneError({{largest->grid_place,
+                     fmt::format("{} x {} x {} frames need about {:.3g} GB, {:.3g} GB are free; use a smaller grid",
+                                 largest->grid[0], largest->grid[1], largest->grid[2], need / 1e9, have / 1e9)}});
+}
+
+/// A single-material spec, or a choice by region.
+std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body) {
+  return [&body](const Vec3d& X) {
+    for (const MaterialUse& use : body.materials)
+      if (contains(use.where, X))
+        return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
+                                 use.material.stiffness_damping};
+    throw SceneError({{body.place, fmt::format("no material at ({}, {}, {}); let the last entry of material have no where",
+                                               X[0], X[1], X[2])}});
+  };
+}
+
+void check_material_regions(const Body& body, const MeshlessBody& built) {
+  for (const MaterialUse& use : body.materials) {
+    const auto& points = built.points();
+    if (!std::any_of(points.begin(), points.end(), [&](const BodyPoint& p) { return contains(use.where, p.X); }))
+      throw SceneError({{use.where.place, "the region holds no integration point of the body; enlarge it"}});
+  }
+}
+
+MeshlessSpec spec_of(const Body& body, PlacedDomain&& domain) {
+  MeshlessSpec spec;
+  spec.domain = std::move(domain.solid);
+  spec.grid = body.grid;
+  spec.per_cell = body.per_cell;
+  spec.weights = body.weights == WeightKind::linear ? GridWeightKind::linear : GridWeightKind::trilinear;
+  spec.half_blend = body.blend != Blend::full;
+  spec.drilling = body.drilling;
+  spec.integration = body.integration == Integration::automatic ? IntegrationKind::automatic
+                     : body.integration == Integration::full    ? IntegrationKind::full
+                                                                : IntegrationKind::selective;
+  spec.density = body.density ? *body.density : *body.mass / spec.domain.volume;
+  spec.rotation = domain.rotation;
+  spec.translation = domain.translation;
+  spec.material = material_of(body);
+  return spec;
+}
+
+void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& built) {
+  const int first = built.meshless.first_frame(), count = built.meshless.frame_count();
+  Vec3d center{};
+  double mass = 0;
+  for (int i = first; i < first + count; ++i) {
+    mass += s.model.inertia[at(i)].mass;
+    center += s.model.rest_position[at(i)] * s.model.inertia[at(i)].mass + s.model.inertia[at(i)].first;
+  }
+  const Vec3d about = body.initial.about.value_or(center * (1 / mass)), w = body.initial.angular_velocity;
+  for (int i = first; i < first + count; ++i) {
+    s.initial.v[at(i)] = body.initial.velocity + cross(w, s.model.rest_position[at(i)] - about);
+    s.initial.Q_dot[at(i)] = skew(w);
+  }
+}
+
+void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
+  try {
+    PlacedDomain domain = make_domain(body);
+    std::vector<std::string> messages = domain.messages;
+    MeshlessBody built(spec_of(body, std::move(domain)), s.model, points);
+    check_material_regions(body, built);
+    messages.insert(messages.end(), built.messages().begin(), built.messages().end());
+    for (const std::string& m : messages) s.warnings.push_back("bodies." + body.name + ": " + m);
+    std::vector<Vec3d> frames(s.model.rest_position.begin() + built.first_frame(), s.model.rest_position.end());
+    std::vector<char> boundary = built.frames_on_boundary();
+    s.bodies.push_back({body.name, std::move(built), std::move(frames), std::move(boundary)});
+  } catch (const InputError& e) {
+    throw SceneError({{body.domain_place, e.what()}});
+  }
+}
+
+}  // namespace
+
+double estimated_memory(const Scene& scene) {
+  double bytes = 0;
+  for (const Body& b : scene.bodies) {
+    const double frames = 1.0 * b.grid[0] * b.grid[1] * b.grid[2];
+    double points = 1;
+    for (std::size_t a = 0; a < 3; ++a)
+      points *= 1.0 * (b.grid[a] - 1) * (b.per_cell ? (*b.per_cell)[a] : (b.grid[a] == 2 ? 3 : 2));
+    // Per point: shapes of 8 frames, stress and strain, results. Per frame: 27 blocks of the matrix and the fill of a
+    // factor (grows with the smaller section), vectors.
+    const double section = std::cbrt(frames);
+    bytes += points * 1400 + frames * (27 * 300 + 36 * 8 * 6 * section + 1000);
+  }
+  return bytes;
+}
+
+std::vector<double> Simulation::factors(double time) const {
+  std::vector<double> f;
+  for (const Schedule& s : schedules) f.push_back(schedule_factor(s, time, scene.solver.kind == SolverKind::statics));
+  return f;
+}
+
+int body_index(const Simulation& s, const std::string& name) {
+  const auto found = std::find_if(s.bodies.begin(), s.bodies.end(), [&](const SimulatedBody& b) { return b.name == name; });
+  return static_cast<int>(found - s.bodies.begin());
+}
+
+std::vector<int> select_nodes(const Simulation& s, int body, const Region& region) {
+  const SimulatedBody& b = s.bodies[at(body)];
+  const std::vector<bool> chosen = select(region, b.frames, b.frame_on_boundary);
+  std::vector<int> nodes;
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    if (chosen[i]) nodes.push_back(b.meshless.first_frame() + static_cast<int>(i));
+  if (nodes.empty()) {
+    const Vec3d lo = b.meshless.surface().points.front();
+    Vec3d low = lo, high = lo;
+    for (const Vec3d& p : b.frames)
+      for (int a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], p[a]);
+        high[a] = std::max(high[a], p[a]);
+      }
+    throw SceneError({{region.place, fmt::format("the region selects no frame of body \"{}\"; its frames lie between ({:.6g}, "
+                                                 "{:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
+                                                 b.name, low[0], low[1], low[2], high[0], high[1], high[2])}});
+  }
+  return nodes;
+}
+
+Simulation build_simulation(Scene scene) {
+  check_memory(scene);
+  Simulation s;
+  s.scene = std::move(scene);
+  PointSetBuilder points;
+  s.bodies.reserve(s.scene.bodies.size());
+  for (const Body& body : s.scene.bodies) {
+    const int group = points.group_count();
+    add_body(s, body, points);
+    s.bodies.back().meshless.first_group = group;
+    s.bodies.back().meshless.group_count = points.group_count() - group;
+  }
+  s.model.points = std::move(points).finish(s.model.node_count());
+  if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
+  double volume = 0;
+  for (const SimulatedBody& b : s.bodies) volume += b.meshless.volume();
+  s.model.length = std::cbrt(volume / s.model.node_count());
+  s.initial = State::at_rest(s.model);
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
+  add_constraints(s);
+  add_loads(s);
+  if (s.scene.solver.kind == SolverKind::statics) check_support(s);
+  resolve_probes(s);
+  return s;
+}
+
+}  // namespace fascia::app

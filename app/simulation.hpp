@@ -1,0 +1,72 @@
+#pragma once
+
+#include "app/scene/scene.hpp"
+#include "core/model/model.hpp"
+#include "meshless/body.hpp"
+
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+/// A body of the scene in the model.
+struct SimulatedBody {
+  std::string name;
+  MeshlessBody meshless;
+  std::vector<Vec3d> frames;        ///< rest positions [m]
+  std::vector<char> frame_on_boundary;
+};
+
+/// Where a probe's point is attached: the field there, and the point whose volumetric strain stands for it.
+struct ProbePoint {
+  Vec3d X{};
+  Attachment field, volumetric;
+  double lambda = 0, mu = 0;  ///< of the nearest integration point [Pa]
+};
+
+/// A probe with what it selects resolved.
+struct ResolvedProbe {
+  const Probe* probe = nullptr;
+  int body = -1;                   ///< −1: the whole scene
+  std::vector<ProbePoint> points;
+  std::vector<int> nodes;          ///< of the model, by `where`
+  Vec3d about{};                   ///< for moments
+};
+
+/// A scene ready to run.
+struct Simulation {
+  Scene scene;
+  Model model;
+  std::vector<SimulatedBody> bodies;
+  std::vector<Schedule> schedules;   ///< index = DeadLoad::schedule and so on
+  std::vector<ResolvedProbe> probes;
+  State initial;
+  std::vector<std::string> warnings;
+  int gravity_load = -1;             ///< index of gravity in Model::loads
+
+  /// Factors of all schedules at a time.
+  std::vector<double> factors(double time) const;
+};
+
+/// Rough memory of a scene [bytes], known before anything is allocated.
+double estimated_memory(const Scene& scene);
+
+/// Turns a scene into a model.
+/// @throws SceneError  what only the geometry shows: a region that selects nothing, contradicting constraints, a static
+///                     problem that nothing holds, more memory than there is
+/// @throws FileError, InputError  meshes
+Simulation build_simulation(Scene scene);
+
+// Parts of build_simulation, in files of their own.
+void add_constraints(Simulation& simulation);  ///< constraints.cpp
+void add_loads(Simulation& simulation);        ///< loads.cpp
+void check_support(const Simulation& simulation);  ///< support.cpp
+void resolve_probes(Simulation& simulation);   ///< probe_setup.cpp
+int body_index(const Simulation& simulation, const std::string& name);
+/// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.
+/// @throws SceneError further away
+Vec3d place_on_body(Simulation& simulation, int body, const Vec3d& X, const Place& place);
+/// Model nodes of a body that a region selects. @throws SceneError where it selects none
+std::vector<int> select_nodes(const Simulation& simulation, int body, const Region& region);
+
+}  // namespace fascia::app

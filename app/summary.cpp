@@ -1,0 +1,83 @@
+#include "app/results.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::app {
+
+namespace {
+
+double percentile(std::vector<double> values, double part) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const auto last = static_cast<double>(values.size() - 1);
+  return values[static_cast<std::size_t>(std::ceil(part * last))];
+}
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+const char* status_name(RunStatus status) {
+  switch (status) {
+    case RunStatus::converged: return "converged";
+    case RunStatus::diverged: return "diverged";
+    default: return "not-converged";
+  }
+}
+
+/// JSON has no NaN: a number that is not finite is a bug caught before, and would read null here.
+double finite(double v) { return std::isfinite(v) ? v : 0.0; }
+
+}  // namespace
+
+nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
+                               const std::vector<nlohmann::json>& probe_values, double stabilization_energy) {
+  nlohmann::ordered_json j;
+  j["fascia"] = FASCIA_VERSION;
+  j["scene"] = s.scene.path.filename().string();
+  if (!s.scene.title.empty()) j["title"] = s.scene.title;
+  j["status"] = status_name(run.status);
+  j["message"] = run.message;
+  j["backend"] = "cpu";
+  j["precision"] = "double";
+  j["threads"] = threads;
+  j["bodies"] = nlohmann::ordered_json::object();
+  for (const SimulatedBody& b : s.bodies) {
+    j["bodies"][b.name] = {{"model", "meshless"},
+                           {"frames", b.meshless.frame_count()},
+                           {"points", b.meshless.points().size()},
+                           {"cells", 0},
+                           {"volume", b.meshless.volume()},
+                           {"mass", b.meshless.mass()}};
+  }
+  j["couplings"] = nlohmann::ordered_json::object();
+  j["dofs"] = s.model.dof_count() - s.model.constrained_dof_count();
+  j["steps"] = run.steps;
+  j["simulated_time"] = s.scene.solver.kind == SolverKind::implicit_euler ? run.time : 0.0;
+  j["newton_iterations"] = run.newton_iterations;
+  j["linear_iterations"] = run.linear_iterations;
+  j["residual"] = finite(run.residual);
+  j["residual_floor"] = finite(run.residual_floor);
+  j["stabilization_energy"] = finite(stabilization_energy);
+  j["seconds"] = {{"setup", times.setup},
+                  {"solve", times.solve},
+                  {"output", times.output},
+                  {"step_median", percentile(times.steps, 0.5)},
+                  {"step_p99", percentile(times.steps, 0.99)},
+                  {"step_max", percentile(times.steps, 1.0)}};
+  j["peak_memory_bytes"] = peak_memory_bytes();
+  j["warnings"] = s.warnings;
+  j["probes"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < s.probes.size(); ++i) {
+    const Probe& p = *s.probes[i].probe;
+    j["probes"][p.name] = {{"quantity", quantity_name(p.quantity)}, {"unit", probe_unit(p.quantity)}, {"value", probe_values[i]}};
+  }
+  return j;
+}
+
+}  // namespace fascia::app

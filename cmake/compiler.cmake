@@ -1,0 +1,32 @@
+# Warnings, tuning and sanitizers of every target: link to fascia_flags.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+add_library(fascia_flags INTERFACE)
+target_include_directories(fascia_flags INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(fascia_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 warns inside its own headers: AVX-512 (bug 105593), std::string (bugs 105329, 105651).
+  target_compile_options(fascia_flags INTERFACE -Wno-psabi -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow)
+endif()
+if(FASCIA_NATIVE)
+  target_compile_options(fascia_flags INTERFACE -march=native)
+endif()
+if(FASCIA_SANITIZE)
+  target_compile_options(fascia_flags INTERFACE -fsanitize=${FASCIA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(fascia_flags INTERFACE -fsanitize=${FASCIA_SANITIZE})
+endif()
+find_package(Threads REQUIRED)
+target_link_libraries(fascia_flags INTERFACE Threads::Threads)
+
+# Adds a library of the project: fascia_library(NAME sources... LINK targets...).
+function(fascia_library name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PUBLIC fascia_flags ${ARG_LINK})
+endfunction()

@@ -1,0 +1,21 @@
+# Every third-party library, as an imported target without its own warnings.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(VTK 9.1 REQUIRED
+  COMPONENTS CommonCore CommonDataModel IOXML IOLegacy IOGeometry IOPLY
+  OPTIONAL_COMPONENTS FiltersCore FiltersSources IOImage RenderingAnnotation RenderingFreeType RenderingOpenGL2)
+
+find_path(UDUNITS2_INCLUDE udunits2.h REQUIRED)
+find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
+add_library(udunits2 INTERFACE)
+target_include_directories(udunits2 SYSTEM INTERFACE ${UDUNITS2_INCLUDE})
+target_link_libraries(udunits2 INTERFACE ${UDUNITS2_LIBRARY})
+
+if(FASCIA_WITH_CHOLMOD)
+  find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+  find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+  add_library(cholmod INTERFACE)
+  target_include_directories(cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE})
+  target_link_libraries(cholmod INTERFACE ${CHOLMOD_LIBRARY} ${CMAKE_DL_LIBS})
+endif()

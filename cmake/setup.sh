@@ -1,0 +1,104 @@
+# shellcheck shell=bash
+# Shell functions shared by ./run and ./check: packages and builds. Sourced, with `root` set to the folder of the project.
+
+say() { printf 'fascia: %s\n' "$*" >&2; }
+
+# Packages of packages.txt that are needed for $1 (run or check), one a line.
+packages_for() {
+  local needed_by package proof
+  while read -r needed_by package proof _; do
+    case "$needed_by" in
+      run) echo "$package $proof" ;;
+      check) [ "$1" = run ] || echo "$package $proof" ;;
+    esac
+  done <"${root:?}/cmake/packages.txt"
+}
+
+# Those of them that this system lacks. A tool on the PATH counts, wherever it came from.
+missing_packages() {
+  local package proof
+  packages_for "$1" | while read -r package proof; do
+    if [ "$proof" != - ] && command -v "$proof" >/dev/null 2>&1; then continue; fi
+    dpkg-query -W -f '${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || echo "$package"
+  done
+}
+
+# Runs a command as root: directly, or through sudo, which may ask for the password.
+as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    "$@"
+  elif [ -t 0 ] && [ -z "${CI:-}" ]; then
+    sudo "$@"
+  else
+    sudo -n "$@"
+  fi
+}
+
+# True when apt knows a version of every package that is still to be had.
+apt_knows() {
+  local package
+  for package in "$@"; do
+    LC_ALL=C apt-cache policy "$package" 2>/dev/null | grep -q 'Candidate: [0-9]' || return 1
+  done
+}
+
+# Installs what $1 (run or check) needs and this system lacks; says what and why. $2: log file.
+install_missing() {
+  local missing log=$2
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    command -v cmake >/dev/null && return 0 # not Debian: the configuration says what is missing
+    say "this is no Debian system; please install the counterparts of these Debian packages, then call again:"
+    grep -v '^#' "$root/cmake/packages.txt" >&2
+    return 1
+  fi
+  missing=$(missing_packages "$1" | tr '\n' ' ')
+  [ -n "$missing" ] || return 0
+
+  say "installing with apt-get what is missing (up to 520 MB to fetch; cmake/packages.txt says what each is for): $missing"
+  if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
+    say "that needs root and there is no sudo; as root: apt-get install --no-install-recommends $missing"
+    return 1
+  fi
+  # shellcheck disable=SC2086 # a list of words
+  apt_install $missing >>"$log" 2>&1 || { show_log "installing packages" "$log"; return 1; }
+}
+
+# Installs packages; refreshes the package lists where they are missing or name versions that are gone.
+apt_install() {
+  local install="env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends"
+  # Slim images of Debian lack this folder, and Java, which libvtk9-dev wants, cannot be installed without it.
+  [ -d /usr/share/man/man1 ] || as_root mkdir -p /usr/share/man/man1
+  # shellcheck disable=SC2086 # a command of several words
+  { apt_knows "$@" && as_root $install "$@"; } || { as_root apt-get -q update && as_root $install "$@"; }
+}
+
+# The end of a log of a step that failed.
+show_log() {
+  say "$1 failed; the end of $2:"
+  tail -n 40 "$2" >&2
+}
+
+# True when build/$1 holds a configured build of this very folder (not one that was moved or copied here).
+is_configured() {
+  local dir="$root/build/$1"
+  { [ -f "$dir/build.ninja" ] || [ -f "$dir/Makefile" ]; } &&
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$dir/CMakeCache.txt" 2>/dev/null
+}
+
+# Configures build/$1 by the preset $2; further arguments go to cmake.
+configure() {
+  local dir="$root/build/$1" preset=$2 generator=()
+  if ! is_configured "$1"; then
+    rm -rf "$dir/CMakeCache.txt" "$dir/CMakeFiles"
+    if command -v ninja >/dev/null; then generator=(-G Ninja); fi
+  fi
+  (cd "$root" && cmake --preset "$preset" -B "$dir" "${generator[@]}" "${@:3}")
+}
+
+# Builds in build/release (further arguments go to the build) and notes when, for ./run: a source saved from here on is
+# newer than this build.
+build_release() {
+  local started
+  started=$(mktemp "$root/build/started.XXXXXX")
+  cmake --build "$root/build/release" "$@" && mv "$started" "$root/build/release/.up_to_date" || { rm -f "$started"; return 1; }
+}

@@ -1,0 +1,56 @@
+#include "core/cpu/thread_pool.hpp"
+
+#include <algorithm>
+
+namespace fascia {
+
+ThreadPool::ThreadPool(int threads) {
+  const int count = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  for (int i = 1; i < count; ++i) workers_.emplace_back([this] { worker_loop(); });
+}
+
+ThreadPool::~ThreadPool() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  start_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void ThreadPool::run(int chunks, const void* work, Call call) {
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = work;
+    call_ = call;
+    chunks_ = chunks;
+    next_.store(0, std::memory_order_relaxed);
+    busy_ = static_cast<int>(workers_.size());
+    ++generation_;
+  }
+  start_.notify_all();
+  take_chunks();
+  std::unique_lock lock(mutex_);
+  finished_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void ThreadPool::take_chunks() {
+  for (int c = next_.fetch_add(1); c < chunks_; c = next_.fetch_add(1)) call_(work_, c);
+}
+
+void ThreadPool::worker_loop() {
+  int seen = 0;
+  while (true) {
+    {
+      std::unique_lock lock(mutex_);
+      start_.wait(lock, [&] { return stop_ || generation_ != seen; });
+      if (stop_) return;
+      seen = generation_;
+    }
+    take_chunks();
+    const std::lock_guard lock(mutex_);
+    if (--busy_ == 0) finished_.notify_one();
+  }
+}
+
+}  // namespace fascia

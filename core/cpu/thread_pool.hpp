@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace fascia {
+
+/// Threads that share the fixed chunks of a loop. Which thread takes a chunk varies, what a chunk computes does not.
+class ThreadPool {
+ public:
+  /// @param threads  0: as many as the machine has
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int size() const { return static_cast<int>(workers_.size()) + 1; }
+
+  /// Calls work(chunk) for each chunk in [0, chunks), in any order, and returns when all are done.
+  /// `work` must not throw and must not call for_chunks itself.
+  template <class Work>
+  void for_chunks(int chunks, const Work& work) {
+    if (chunks <= 1 || workers_.empty()) {
+      for (int c = 0; c < chunks; ++c) work(c);
+      return;
+    }
+    run(chunks, &work, [](const void* w, int c) { (*static_cast<const Work*>(w))(c); });
+  }
+
+  /// Calls work(begin, end) for consecutive ranges of at most `grain` items.
+  template <class Work>
+  void for_ranges(int items, int grain, const Work& work) {
+    for_chunks((items + grain - 1) / grain, [&](int c) {
+      const int begin = c * grain;
+      work(begin, begin + grain < items ? begin + grain : items);
+    });
+  }
+
+ private:
+  using Call = void (*)(const void*, int);
+  void run(int chunks, const void* work, Call call);
+  void take_chunks();
+  void worker_loop();
+
+  std::vector<std::thread> workers_;
+  std::mutex mutex_;
+  std::condition_variable start_, finished_;
+  int generation_ = 0, busy_ = 0, chunks_ = 0;
+  bool stop_ = false;
+  const void* work_ = nullptr;
+  Call call_ = nullptr;
+  std::atomic<int> next_{0};
+};
+
+}  // namespace fascia

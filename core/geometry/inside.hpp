@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/geometry/mesh.hpp"
+#include "core/geometry/triangle_tree.hpp"
+
+namespace fascia {
+
+/// Which points lie in a closed surface, and how far from it.
+///
+/// A ray along +x meets the triangles whose projection on the (y, z) plane holds the point. Each edge is compared with
+/// the point once and for all, from its lower to its higher vertex, so that its two triangles always agree: a ray
+/// passes neither between two triangles nor through an edge twice, whatever the rounding.
+class InsideTest {
+ public:
+  /// @param closed  outward-oriented; it is copied
+  explicit InsideTest(const TriangleMesh& closed);
+
+  /// Points of the surface itself, to rounding, count as either.
+  bool contains(const Vec3d& x) const { return winding_number(x) > 0; }
+
+  /// How often the surface surrounds the point: 1 inside of an outward surface, −1 inside of an inward one.
+  int winding_number(const Vec3d& x) const;
+
+  /// Distance to the surface [m], not signed; `nearest` receives the surface's nearest point.
+  double distance(const Vec3d& x, Vec3d* nearest = nullptr) const { return tree_.distance(x, nearest); }
+
+ private:
+  int bin(int axis, double coordinate) const;
+  template <class Act>
+  void for_each_bin(const std::array<int, 3>& triangle, Act&& act) const;
+  void fill_bins();
+  int crossing(const std::array<int, 3>& triangle, const Vec3d& x) const;
+
+  TriangleMesh mesh_;
+  TriangleTree tree_;
+  Vec3d low_{}, high_{};
+  std::array<int, 2> bins_{1, 1};     ///< along y, z
+  std::vector<std::size_t> begin_;    ///< of each bin in members_
+  std::vector<int> members_;          ///< triangles by bin
+};
+
+}  // namespace fascia

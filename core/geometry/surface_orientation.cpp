@@ -1,0 +1,211 @@
+#include "core/geometry/inside.hpp"
+#include "core/geometry/surface_parts.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+namespace fascia::surface_parts {
+namespace {
+
+/// An edge of a triangle, under the name that both its triangles give it.
+struct Edge {
+  int low = 0, high = 0;
+  int triangle = 0;
+  bool forward = true;  ///< the triangle runs from low to high
+  bool same_as(const Edge& b) const { return low == b.low && high == b.high; }
+};
+
+std::vector<Edge> sorted_edges(const std::vector<Triangle>& triangles) {
+  std::vector<Edge> edges;
+  edges.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t n = 0; n < 3; ++n) {
+      const int a = triangles[t].nodes[n], b = triangles[t].nodes[(n + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), a < b});
+    }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    if (a.low != b.low) return a.low < b.low;
+    if (a.high != b.high) return a.high < b.high;
+    return a.triangle < b.triangle;
+  });
+  return edges;
+}
+
+std::string name_of(const Solid& solid, const Edge& edge) {
+  return "nodes " + std::to_string(solid.point_file_number[static_cast<std::size_t>(edge.low)]) + " and " +
+         std::to_string(solid.point_file_number[static_cast<std::size_t>(edge.high)]);
+}
+
+/// For each triangle its neighbours, and whether they run along the common edge in the same direction.
+struct Neighbours {
+  struct Link {
+    int triangle = -1;
+    bool same_direction = false;
+  };
+  std::vector<std::array<Link, 3>> of;
+
+  Neighbours(const std::vector<Triangle>& triangles, const std::vector<Edge>& edges) : of(triangles.size()) {
+    std::vector<std::size_t> filled(triangles.size(), 0);
+    const auto link = [&](const Edge& from, const Edge& to) {
+      const auto t = static_cast<std::size_t>(from.triangle);
+      of[t][filled[t]++] = {to.triangle, from.forward == to.forward};
+    };
+    for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {
+      link(edges[e], edges[e + 1]);
+      link(edges[e + 1], edges[e]);
+    }
+  }
+};
+
+/// Components of a surface whose edges have two triangles each, and which triangles must turn to agree with the first of
+/// their component.
+struct Components {
+  std::vector<int> of;     ///< component of each triangle
+  std::vector<bool> turn;  ///< of each triangle
+  int count = 0;
+  bool orientable = true;
+  int twisted = -1;  ///< a triangle that must turn and must not, where not orientable
+
+  explicit Components(const Neighbours& neighbours) : of(neighbours.of.size(), -1), turn(neighbours.of.size(), false) {
+    for (std::size_t t = 0; t < of.size(); ++t)
+      if (of[t] < 0) walk(neighbours, static_cast<int>(t), count++);
+  }
+
+ private:
+  void walk(const Neighbours& neighbours, int start, int component) {
+    std::vector<int> open{start};
+    of[static_cast<std::size_t>(start)] = component;
+    while (!open.empty()) {
+      const auto t = static_cast<std::size_t>(open.back());
+      open.pop_back();
+      for (const Neighbours::Link& link : neighbours.of[t]) {
+        const auto other = static_cast<std::size_t>(link.triangle);
+        const bool must_turn = turn[t] != link.same_direction;
+        if (of[other] < 0) {
+          of[other] = component;
+          turn[other] = must_turn;
+          open.push_back(link.triangle);
+        } else if (turn[other] != must_turn) {
+          orientable = false;
+          twisted = link.triangle;
+        }
+      }
+    }
+  }
+};
+
+[[noreturn]] void fail_mixed(const Solid& solid, const std::vector<Triangle>& triangles, const Components& components) {
+  if (!components.orientable)
+    fail(solid, "its surface has one side only (at triangle " +
+                    std::to_string(triangles[static_cast<std::size_t>(components.twisted)].file_number) +
+                    "); give the closed surface of a solid");
+  std::vector<std::size_t> size(static_cast<std::size_t>(components.count)), turned(size);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto c = static_cast<std::size_t>(components.of[t]);
+    ++size[c];
+    turned[c] += components.turn[t] ? 1u : 0u;
+  }
+  std::size_t first = triangles.size(), count = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto c = static_cast<std::size_t>(components.of[t]);
+    const bool minority_turns = 2 * turned[c] <= size[c];
+    if (turned[c] == 0 || components.turn[t] != minority_turns) continue;
+    first = std::min(first, t);
+    ++count;
+  }
+  fail(solid, "triangle " + std::to_string(triangles[first].file_number) + " is oriented against its neighbours, as are " +
+                  std::to_string(count - 1) + " more of " + std::to_string(triangles.size()) +
+                  " triangles; orient all of them outward");
+}
+
+/// One closed component: whether it is outward, and what a test of points needs.
+struct Component {
+  std::vector<Triangle> triangles;
+  Vec3d low, high;
+  bool outward = true;
+};
+
+std::vector<Component> split(const Solid& solid, const std::vector<Triangle>& triangles, const Components& components) {
+  std::vector<Component> result(static_cast<std::size_t>(components.count));
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    result[static_cast<std::size_t>(components.of[t])].triangles.push_back(triangles[t]);
+  for (Component& component : result) {
+    component.low = component.high = solid.points[static_cast<std::size_t>(component.triangles[0].nodes[0])];
+    for (const Triangle& t : component.triangles)
+      for (const int node : t.nodes)
+        for (int c = 0; c < 3; ++c) {
+          component.low[c] = std::min(component.low[c], solid.points[static_cast<std::size_t>(node)][c]);
+          component.high[c] = std::max(component.high[c], solid.points[static_cast<std::size_t>(node)][c]);
+        }
+    component.outward = enclosed_volume(solid.points, component.triangles) > 0;
+  }
+  return result;
+}
+
+bool within(const Component& inner, const Component& outer) {
+  for (int c = 0; c < 3; ++c)
+    if (inner.low[c] < outer.low[c] || inner.high[c] > outer.high[c]) return false;
+  return true;
+}
+
+/// For each component, in how many others it lies.
+std::vector<int> nesting_depths(const Solid& solid, const std::vector<Component>& components) {
+  std::vector<int> depth(components.size(), 0);
+  for (std::size_t outer = 0; outer < components.size(); ++outer) {
+    std::optional<InsideTest> test;
+    for (std::size_t inner = 0; inner < components.size(); ++inner) {
+      if (inner == outer || !within(components[inner], components[outer])) continue;
+      if (!test) test.emplace(compact(solid, components[outer].triangles));
+      const Vec3d& x = solid.points[static_cast<std::size_t>(components[inner].triangles[0].nodes[0])];
+      if (test->winding_number(x) != 0) ++depth[inner];
+    }
+  }
+  return depth;
+}
+
+}  // namespace
+
+void check_closed(const Solid& solid, const std::vector<Triangle>& triangles) {
+  const std::vector<Edge> edges = sorted_edges(triangles);
+  std::size_t open = 0, first_open = 0;
+  bool consistent = true;
+  for (std::size_t e = edges.size(), begin = e; e > 0; e = begin) {
+    for (begin = e; begin > 0 && edges[begin - 1].same_as(edges[e - 1]);) --begin;
+    if (e - begin > 2)
+      fail(solid, "the edge between " + name_of(solid, edges[begin]) + " belongs to " + std::to_string(e - begin) +
+                      " triangles of the surface; must be 2: separate the parts that touch there");
+    if (e - begin == 1) {
+      ++open;
+      first_open = begin;
+    } else if (edges[begin].forward == edges[begin + 1].forward) {
+      consistent = false;
+    }
+  }
+  if (open > 0)
+    fail(solid, "its surface is open: " + std::to_string(open) + " edges have one triangle only, the first between " +
+                    name_of(solid, edges[first_open]) + "; close the holes or give a volume mesh");
+  if (!consistent) fail_mixed(solid, triangles, Components(Neighbours(triangles, edges)));
+}
+
+void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
+  const Components numbering(Neighbours(triangles, sorted_edges(triangles)));
+  const std::vector<Component> components = split(solid, triangles, numbering);
+  const std::vector<int> depth = nesting_depths(solid, components);
+  std::size_t wrong = 0, first_wrong = 0;
+  for (std::size_t c = components.size(); c-- > 0;)
+    if (components[c].outward != (depth[c] % 2 == 0)) {
+      ++wrong;
+      first_wrong = c;
+    }
+  if (wrong == 0) return;
+  if (wrong < components.size())
+    fail(solid, "the closed part with triangle " + std::to_string(components[first_wrong].triangles[0].file_number) +
+                    " is oriented against the others (" + std::to_string(wrong) + " of " +
+                    std::to_string(components.size()) + " parts); orient outer surfaces outward and those of cavities " +
+                    "inward");
+  for (Triangle& t : triangles) std::swap(t.nodes[1], t.nodes[2]);
+  messages.push_back(solid.file + ": all " + std::to_string(triangles.size()) + " triangles face inward; turned over");
+}
+
+}  // namespace fascia::surface_parts

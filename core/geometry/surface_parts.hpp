@@ -1,0 +1,59 @@
+#pragma once
+
+#include "core/geometry/surface.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// The steps of closed_surface(); for surface*.cpp only.
+namespace fascia::surface_parts {
+
+/// A cell whose points are numbered in the welded, compact numbering.
+struct Cell {
+  CellType type = CellType::triangle;
+  std::array<int, 8> nodes{};
+  std::int64_t file_number = 0;
+  int group = -1;
+};
+
+/// A triangle and the cell of the file that it came from.
+struct Triangle {
+  std::array<int, 3> nodes{};
+  std::int64_t file_number = 0;
+};
+
+/// The cells that bound or fill the solid, on welded points.
+struct Solid {
+  std::string file;
+  std::vector<Vec3d> points;
+  std::vector<std::int64_t> point_file_number;
+  std::vector<Cell> cells;
+  double diagonal = 0;  ///< of the bounding box [m]
+};
+
+/// "FILE: " + message
+[[noreturn]] void fail(const Solid& solid, const std::string& message);
+
+/// The cells' faces that no other cell has, outward. Turns the solid over where all cells are inverted.
+/// @throws InputError  flat cells, a mixture of orientations, repeated or overlapping cells
+std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::string>& messages);
+
+/// Triangles of a surface mesh, quadrilaterals split at the node of the lowest index.
+/// @throws InputError  flat or repeated triangles
+std::vector<Triangle> triangles_of_cells(const Solid& solid);
+
+/// @throws InputError  open, non-manifold or inconsistently oriented edges
+void check_closed(const Solid& solid, const std::vector<Triangle>& triangles);
+
+/// Turns a surface outward: every component outward, or inward where it bounds a cavity.
+/// @throws InputError  some components the right way, some not
+void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages);
+
+/// Volume by the divergence theorem, about the mean of the points [m³].
+double enclosed_volume(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles);
+
+/// The triangles on their own points, in the order of the solid's.
+TriangleMesh compact(const Solid& solid, const std::vector<Triangle>& triangles);
+
+}  // namespace fascia::surface_parts

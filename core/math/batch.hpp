@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+
+namespace fascia {
+
+/// The register type of W doubles.
+template <int W>
+struct BatchRegister;
+template <>
+struct BatchRegister<2> {
+  using Type = double __attribute__((vector_size(16)));
+};
+template <>
+struct BatchRegister<4> {
+  using Type = double __attribute__((vector_size(32)));
+};
+template <>
+struct BatchRegister<8> {
+  using Type = double __attribute__((vector_size(64)));
+};
+
+/// W doubles that are computed together (SIMD), as a scalar for Vec3 and Mat3.
+template <int W>
+struct Batch {
+  using Register = typename BatchRegister<W>::Type;
+  Register v{};
+
+  Batch() = default;
+  Batch(double s) : v(Register{} + s) {}  // NOLINT: a batch of equal numbers reads like the number
+  static Batch of(const Register& r) {
+    Batch b;
+    b.v = r;
+    return b;
+  }
+
+  static Batch load(const double* aligned) { return of(*reinterpret_cast<const Register*>(aligned)); }
+  void store(double* aligned) const { *reinterpret_cast<Register*>(aligned) = v; }
+
+  Batch& operator+=(const Batch& b) {
+    v += b.v;
+    return *this;
+  }
+  Batch& operator-=(const Batch& b) {
+    v -= b.v;
+    return *this;
+  }
+  Batch& operator*=(const Batch& b) {
+    v *= b.v;
+    return *this;
+  }
+  friend Batch operator+(const Batch& a, const Batch& b) { return of(a.v + b.v); }
+  friend Batch operator-(const Batch& a, const Batch& b) { return of(a.v - b.v); }
+  friend Batch operator*(const Batch& a, const Batch& b) { return of(a.v * b.v); }
+  friend Batch operator/(const Batch& a, const Batch& b) { return of(a.v / b.v); }
+  friend Batch operator-(const Batch& a) { return of(-a.v); }
+};
+
+/// Sum over the lanes, always in the same order.
+template <int W>
+double lane_sum(const Batch<W>& a) {
+  if constexpr (W == 2) {
+    return a.v[0] + a.v[1];
+  } else {
+    Batch<W / 2> low, high;
+    for (int i = 0; i < W / 2; ++i) {
+      low.v[i] = a.v[i];
+      high.v[i] = a.v[i + W / 2];
+    }
+    return lane_sum(low + high);
+  }
+}
+
+#if defined(__AVX512F__)
+inline constexpr int kBatchWidth = 8;
+#elif defined(__AVX__)
+inline constexpr int kBatchWidth = 4;
+#else
+inline constexpr int kBatchWidth = 2;
+#endif
+
+/// The batch that this processor computes fastest.
+using Lanes = Batch<kBatchWidth>;
+
+}  // namespace fascia

@@ -1,0 +1,36 @@
+#include "core/model/model.hpp"
+
+#include "core/math/rotation.hpp"
+
+#include <algorithm>
+
+namespace fascia {
+
+Vec3d PrescribedMotion::displacement(const Vec3d& X, double factor) const {
+  return rotation_increment(axis * (angle * factor)) * (X - center) + translation * factor;
+}
+
+int Model::constrained_dof_count() const {
+  int count = 0;
+  for (const FrameConstraint& c : constraints) count += c.translations + c.rotations;
+  return count;
+}
+
+bool Model::loads_are_conservative() const {
+  const auto has_torque = [](const DeadLoad& load) {
+    return std::any_of(load.nodes.begin(), load.nodes.end(), [](const NodeLoad& n) { return squared_norm(n.torque) > 0; });
+  };
+  return followers.empty() && std::none_of(loads.begin(), loads.end(), has_torque);
+}
+
+State State::at_rest(const Model& model) {
+  const auto n = static_cast<std::size_t>(model.node_count());
+  State state;
+  state.u.resize(n);
+  state.D.resize(n);
+  state.v.resize(n);
+  state.Q_dot.resize(n);
+  return state;
+}
+
+}  // namespace fascia

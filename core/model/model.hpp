@@ -1,0 +1,98 @@
+#pragma once
+
+#include "core/math/mat3.hpp"
+#include "core/model/point_set.hpp"
+
+#include <array>
+#include <vector>
+
+namespace fascia {
+
+/// Block-lumped inertia of a frame about its origin, in rest axes; the 6×6 block follows from it and from Q.
+struct FrameInertia {
+  double mass = 0;     ///< m = Σ m_q w [kg]
+  Vec3d first{};       ///< c = Σ m_q w d, d = X_q − X_i [kg m]
+  Mat3d second{};      ///< S = Σ m_q w d dᵀ [kg m²]
+
+  FrameInertia& operator+=(const FrameInertia& o) {
+    mass += o.mass;
+    first += o.first;
+    second += o.second;
+    return *this;
+  }
+};
+
+/// Force and moment state on a frame: energy −(force · u + couple : D); torque keeps its direction in space.
+struct NodeLoad {
+  int node = 0;
+  Vec3d force{};   ///< Σ w f [N]
+  Mat3d couple{};  ///< Σ f bᵀ [N m]
+  Vec3d torque{};  ///< [N m]
+};
+
+/// A load whose directions stay fixed in space; scaled by its schedule's factor.
+struct DeadLoad {
+  int schedule = 0;  ///< index into LoadState::factors
+  std::vector<NodeLoad> nodes;
+};
+
+/// A force and a torque at a material point that turn with the blended rotation Σ w Q there.
+struct FollowerLoad {
+  int schedule = 0;
+  Vec3d force{}, torque{};  ///< at rest [N], [N m]
+  std::vector<int> nodes;
+  std::vector<double> w;
+  std::vector<Vec3d> b;
+};
+
+/// What holds a frame: the first `translations` rows of `translation_axes` (and likewise rotations) are prescribed.
+struct FrameConstraint {
+  int node = 0;
+  Mat3d translation_axes = Mat3d::identity();
+  Mat3d rotation_axes = Mat3d::identity();
+  int translations = 0, rotations = 0;
+  std::array<int, 3> translation_motion{-1, -1, -1};  ///< index into Model::motions, −1: held
+  std::array<int, 3> rotation_motion{-1, -1, -1};
+};
+
+/// x → centre + R(axis, s·angle)(x − centre) + s·translation, with s the factor of its schedule.
+struct PrescribedMotion {
+  int schedule = 0;
+  Vec3d translation{}, axis{{0, 0, 1}}, center{};
+  double angle = 0;  ///< [rad], may exceed 2π
+
+  Vec3d displacement(const Vec3d& X, double factor) const;
+};
+
+/// Everything about a scene that does not move.
+struct Model {
+  std::vector<Vec3d> rest_position;       ///< of the frames [m]
+  std::vector<Mat3d> rest_orientation;    ///< of the frames
+  std::vector<FrameInertia> inertia;
+  std::vector<FrameInertia> mass_damping;  ///< inertia weighted with α [.../s]; empty where nothing is damped
+  PointSet points;
+  std::vector<DeadLoad> loads;
+  std::vector<FollowerLoad> followers;
+  std::vector<PrescribedMotion> motions;
+  std::vector<FrameConstraint> constraints;  ///< at most one a frame, ascending
+  double length = 1;                         ///< mean frame spacing: makes torques and forces comparable [m]
+
+  int node_count() const { return static_cast<int>(rest_position.size()); }
+  int dof_count() const { return 6 * node_count(); }
+  int constrained_dof_count() const;
+  /// Loads have a potential: no torque that keeps its direction in space, no follower.
+  bool loads_are_conservative() const;
+};
+
+/// Where everything is, and how fast. Rotations as D = Q − I, with Q = R R_restᵀ.
+struct State {
+  std::vector<Vec3d> u;  ///< displacement [m]
+  std::vector<Mat3d> D;  ///< Q − I
+  std::vector<Vec3d> v;     ///< du/dt [m/s]
+  std::vector<Mat3d> Q_dot;  ///< dQ/dt [1/s]
+  double time = 0;           ///< [s]; in statics the load factor
+
+  static State at_rest(const Model& model);
+};
+
+}  // namespace fascia

@@ -1,0 +1,93 @@
+#include "core/model/point_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fascia {
+
+void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const PointSample> points, double length) {
+  for (std::size_t first = 0; first < points.size(); first += kGroupSize)
+    add_group(nodes, points.subspan(first, std::min<std::size_t>(kGroupSize, points.size() - first)), length);
+}
+
+void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const PointSample> points, double length) {
+  const std::size_t first_shape = set_.shape.size(), first_material = set_.material.size();
+  set_.shape.resize(first_shape + nodes.size() * 13 * kGroupSize);
+  set_.material.resize(first_material + 6 * kGroupSize);
+  for (std::size_t lane = 0; lane < kGroupSize; ++lane) {
+    const bool used = lane < points.size();
+    const PointSample& p = points[std::min(lane, points.size() - 1)];
+    double squared_gradient = 0;
+    for (std::size_t slot = 0; slot < nodes.size(); ++slot) {
+      const Influence& influence = p.influences[slot];
+      double* row = set_.shape.data() + first_shape + slot * 13 * kGroupSize + lane;
+      row[0] = influence.w;
+      for (std::size_t k = 0; k < 3; ++k) row[(1 + k) * kGroupSize] = influence.g[static_cast<int>(k)];
+      for (std::size_t k = 0; k < 9; ++k)
+        row[(4 + k) * kGroupSize] = influence.B(static_cast<int>(k / 3), static_cast<int>(k % 3));
+      squared_gradient += squared_norm(influence.g) + contract(influence.B, influence.B) / (length * length);
+    }
+    double* material = set_.material.data() + first_material + lane;
+    material[kVolume * kGroupSize] = used ? p.volume : 0.0;
+    material[kLambda * kGroupSize] = p.lambda;
+    material[kMu * kGroupSize] = p.mu;
+    material[kDrilling * kGroupSize] = p.drilling;
+    material[kStiffnessDamping * kGroupSize] = p.stiffness_damping;
+    material[kGradientNorm * kGroupSize] = std::sqrt(squared_gradient);
+    set_.damped = set_.damped || p.stiffness_damping > 0;
+    set_.lane_point.push_back(used ? set_.point_count++ : -1);
+  }
+  set_.slot_node.insert(set_.slot_node.end(), nodes.begin(), nodes.end());
+  set_.slot_begin.push_back(set_.slot_count());
+}
+
+namespace {
+
+void transpose_incidence(PointSet& set) {
+  std::vector<int>& begin = set.node_slot_begin;
+  begin.assign(static_cast<std::size_t>(set.node_count) + 1, 0);
+  for (const int node : set.slot_node) ++begin[static_cast<std::size_t>(node) + 1];
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+  set.node_slot.resize(set.slot_node.size());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (int slot = 0; slot < set.slot_count(); ++slot) {
+    const auto node = static_cast<std::size_t>(set.slot_node[static_cast<std::size_t>(slot)]);
+    set.node_slot[static_cast<std::size_t>(next[node]++)] = slot;
+  }
+}
+
+/// Greedy colouring: the lowest colour that no group with a common frame has.
+void color_groups(PointSet& set) {
+  const int groups = set.group_count();
+  std::vector<int> color(static_cast<std::size_t>(groups), -1);
+  std::vector<std::vector<bool>> taken;  // colour → frame is taken
+  for (int group = 0; group < groups; ++group) {
+    const auto nodes = set.nodes(group);
+    std::size_t c = 0;
+    const auto blocked = [&](std::size_t candidate) {
+      return std::any_of(nodes.begin(), nodes.end(),
+                         [&](int node) { return taken[candidate][static_cast<std::size_t>(node)]; });
+    };
+    while (c < taken.size() && blocked(c)) ++c;
+    if (c == taken.size()) taken.emplace_back(static_cast<std::size_t>(set.node_count), false);
+    for (const int node : nodes) taken[c][static_cast<std::size_t>(node)] = true;
+    color[static_cast<std::size_t>(group)] = static_cast<int>(c);
+  }
+  for (int c = 0; c < static_cast<int>(taken.size()); ++c) {
+    for (int group = 0; group < groups; ++group)
+      if (color[static_cast<std::size_t>(group)] == c) set.color_group.push_back(group);
+    set.color_begin.push_back(static_cast<int>(set.color_group.size()));
+  }
+}
+
+}  // namespace
+
+PointSet PointSetBuilder::finish(int node_count) && {
+  set_.node_count = node_count;
+  transpose_incidence(set_);
+  color_groups(set_);
+  return std::move(set_);
+}
+
+}  // namespace fascia

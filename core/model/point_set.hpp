@@ -1,0 +1,88 @@
+#pragma once
+
+#include "core/math/mat3.hpp"
+#include "core/model/aligned.hpp"
+
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Points of a group: they share their frames and are computed together.
+inline constexpr int kGroupSize = 8;
+
+/// Most frames that a group may have.
+inline constexpr int kMaxSlots = 64;
+
+/// How one frame moves a material point (docs/notation.md). With displacement u and D = Q − I of the frame,
+///   displacement of the point = Σ w u + D b,   F − I = Σ u gᵀ + D B.
+struct Influence {
+  double w = 0;  ///< weight [-]
+  Vec3d g{};     ///< ∇w [1/m]
+  Vec3d b{};     ///< ψ, the frame's lever [m]
+  Mat3d B{};     ///< ∇ψ [-]
+};
+
+/// An integration point as a builder describes it.
+struct PointSample {
+  Vec3d X{};                        ///< rest position [m]
+  double volume = 0;                ///< [m³]
+  double lambda = 0, mu = 0;        ///< Lamé [Pa]
+  double drilling = 0;              ///< γ [Pa]
+  double stiffness_damping = 0;     ///< β [s]
+  std::vector<Influence> influences;  ///< one for each node of its group
+};
+
+/// All integration points of a model, in groups of eight that share their frames (array of structures of arrays).
+/// Unused lanes repeat the group's last point with volume 0.
+struct PointSet {
+  int node_count = 0;
+  std::vector<int> slot_begin{0};  ///< (groups + 1): a slot is one frame of one group
+  std::vector<int> slot_node;      ///< (slots)
+  std::vector<int> lane_point;     ///< (groups × 8): running number of the point, −1 in unused lanes
+  int point_count = 0;
+  bool damped = false;             ///< any stiffness damping
+
+  AlignedVector<double> shape;     ///< (slots × 13 × 8): w, g (3), B (9, by rows)
+  AlignedVector<double> material;  ///< (groups × 6 × 8): volume, λ, μ, γ, β, gradient norm
+
+  std::vector<int> node_slot_begin;  ///< (nodes + 1), transposed incidence
+  std::vector<int> node_slot;        ///< slots of each node, ascending
+
+  std::vector<int> color_begin{0};   ///< groups of one colour share no frame
+  std::vector<int> color_group;
+
+  int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
+  int slot_count() const { return static_cast<int>(slot_node.size()); }
+  std::span<const int> nodes(int group) const {
+    const auto begin = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(group)]);
+    const auto end = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(group) + 1]);
+    return std::span(slot_node).subspan(begin, end - begin);
+  }
+  const double* shape_of_slot(int slot) const { return shape.data() + static_cast<std::size_t>(slot) * 13 * kGroupSize; }
+  const double* material_of_group(int group) const {
+    return material.data() + static_cast<std::size_t>(group) * 6 * kGroupSize;
+  }
+};
+
+/// Rows of PointSet::material.
+enum MaterialRow { kVolume, kLambda, kMu, kDrilling, kStiffnessDamping, kGradientNorm };
+
+/// Collects groups and closes the set: transposed incidence and colours.
+class PointSetBuilder {
+ public:
+  /// Adds points that share `nodes`; they are cut into groups of eight. Each point's F at rest must be I
+  /// (Σ w = 1, Σ X gᵀ + B = I), which is checked by the caller's weights.
+  /// @param length  converts B's rows to those of g in the rounding estimate [m]
+  void add_points(std::span<const int> nodes, std::span<const PointSample> points, double length);
+
+  int group_count() const { return set_.group_count(); }
+
+  PointSet finish(int node_count) &&;
+
+ private:
+  void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length);
+  PointSet set_;
+};
+
+}  // namespace fascia

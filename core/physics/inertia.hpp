@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/model/model.hpp"
+
+/// Block-lumped inertia of a frame in the 4×4 pose form: a motion (a, A) of (origin, axes) has
+/// |(a, A)|² = m a·a + 2 a·(A c) + tr(A S Aᵀ), exact for every rigid motion of the body.
+namespace fascia {
+
+inline double inertia_product(const FrameInertia& i, const Vec3d& a, const Mat3d& A) {
+  return i.mass * squared_norm(a) + 2 * dot(a, A * i.first) + contract(A * i.second, A);
+}
+
+/// Half the gradient of the square above, with respect to a and A.
+struct InertiaForce {
+  Vec3d force{};
+  Mat3d moment{};
+};
+inline InertiaForce inertia_force(const FrameInertia& i, const Vec3d& a, const Mat3d& A) {
+  return {a * i.mass + A * i.first, outer(a, i.first) + A * i.second};
+}
+
+struct Momentum {
+  Vec3d linear{}, angular{};  ///< [kg m/s], [kg m²/s] about `about`
+  double kinetic_energy = 0;  ///< [J]
+  double mass = 0;
+  Vec3d first_moment{};       ///< Σ m x [kg m]
+};
+
+/// Momentum of one frame. @param x  present position of its origin, Q its rotation
+inline Momentum momentum_of(const FrameInertia& i, const Vec3d& x, const Mat3d& Q, const Vec3d& v, const Mat3d& Q_dot,
+                            const Vec3d& about) {
+  const Vec3d arm = Q * i.first, arm_dot = Q_dot * i.first, r = x - about;
+  return {v * i.mass + arm_dot,
+          cross(r, v * i.mass + arm_dot) + cross(arm, v) + axl(times_transpose(Q * i.second, Q_dot)),
+          0.5 * inertia_product(i, v, Q_dot), i.mass, x * i.mass + arm};
+}
+
+}  // namespace fascia

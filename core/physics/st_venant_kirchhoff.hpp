@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/math/mat3.hpp"
+
+namespace fascia {
+
+/// λ and μ of a Young modulus [Pa] and a Poisson ratio in (−1, ½).
+struct Lame {
+  double lambda = 0, mu = 0;  ///< [Pa]
+  static constexpr Lame from_young(double young, double poisson) {
+    return {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))};
+  }
+};
+
+/// Green-Lagrange strain E = (FᵀF − I)/2 of F = I + H, without the cancellation that FᵀF − I has for small H.
+template <class T>
+FASCIA_HD constexpr Mat3<T> green_strain(const Mat3<T>& H) {
+  return sym(H) + transpose_times(H, H) * T(0.5);
+}
+
+/// St Venant-Kirchhoff: ψ = λ/2 (tr E)² + μ E:E  [J/m³].
+template <class T>
+struct StVenantKirchhoff {
+  T lambda, mu;  ///< [Pa]
+
+  /// Second Piola-Kirchhoff stress S = λ tr(E) I + 2μ E  [Pa]; linear, so it also maps dE to dS.
+  FASCIA_HD constexpr Mat3<T> second_piola(const Mat3<T>& E) const {
+    return Mat3<T>::diagonal(lambda * trace(E)) + E * (T(2) * mu);
+  }
+  /// ψ [J/m³]
+  FASCIA_HD constexpr T energy_density(const Mat3<T>& E) const {
+    const T t = trace(E);
+    return T(0.5) * lambda * t * t + mu * contract(E, E);
+  }
+};
+
+}  // namespace fascia

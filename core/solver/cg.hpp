@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace fascia {
+
+struct CgOptions {
+  int max_iterations = 1000;
+  double tolerance = 1e-6;  ///< on |r|_M⁻¹ relative to the right-hand side's
+};
+
+enum class CgStatus { converged, limit, negative_curvature, not_finite };
+
+struct CgReport {
+  CgStatus status = CgStatus::converged;
+  int iterations = 0;
+  double relative_residual = 0;
+};
+
+/// Preconditioned conjugate gradients for A x = b from x = 0.
+///
+/// At a direction of negative curvature it stops with the x reached, which is a descent direction (truncated Newton,
+/// Steihaug 1983); at the first iteration with M⁻¹ b.
+///
+/// @param apply         apply(p, Ap)
+/// @param precondition  precondition(r, z)
+/// @param space         dot, axpy, xpay and zeros, as in CpuVectors
+template <class Space, class Apply, class Precondition>
+CgReport conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
+                             const typename Space::Vector& b, typename Space::Vector& x, const CgOptions& options) {
+  using Vector = typename Space::Vector;
+  CgReport report;
+  Vector r = b, z = space.zeros(b.size()), p = z, Ap = z;
+  x = z;
+  precondition(r, z);
+  double rz = space.dot(r, z);
+  const double rz_start = rz;
+  if (!std::isfinite(rz)) return {CgStatus::not_finite, 0, 0};
+  if (rz <= 0) return report;
+  p = z;
+  for (; report.iterations < options.max_iterations; ++report.iterations) {
+    apply(p, Ap);
+    const double curvature = space.dot(p, Ap);
+    if (!std::isfinite(curvature)) return {CgStatus::not_finite, report.iterations, std::sqrt(rz / rz_start)};
+    if (curvature <= 0) {
+      if (report.iterations == 0) x = p;
+      return {CgStatus::negative_curvature, report.iterations, std::sqrt(rz / rz_start)};
+    }
+    const double alpha = rz / curvature;
+    space.axpy(alpha, p, x);
+    space.axpy(-alpha, Ap, r);
+    precondition(r, z);
+    const double rz_next = space.dot(r, z);
+    if (rz_next <= options.tolerance * options.tolerance * rz_start) {
+      ++report.iterations;
+      rz = rz_next;
+      report.relative_residual = std::sqrt(std::max(rz, 0.0) / rz_start);
+      return report;
+    }
+    space.xpay(z, rz_next / rz, p);
+    rz = rz_next;
+  }
+  report.status = CgStatus::limit;
+  report.relative_residual = std::sqrt(rz / rz_start);
+  return report;
+}
+
+}  // namespace fascia

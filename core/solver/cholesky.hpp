@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/solver/block_matrix.hpp"
+#include "core/solver/dof_filter.hpp"
+
+#include <memory>
+#include <span>
+
+namespace fascia {
+
+/// Cholesky factorisation of a block matrix restricted to its free degrees of freedom. The pattern is analysed once;
+/// each factorize() reuses it.
+class BlockCholesky {
+ public:
+  BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter);
+  ~BlockCholesky();
+  BlockCholesky(BlockCholesky&&) noexcept;
+  BlockCholesky& operator=(BlockCholesky&&) noexcept;
+
+  double factor_flops() const;  ///< of one factorisation, as analysed
+  double factor_bytes() const;
+
+  /// False where the matrix is not positive definite.
+  /// @param shift  added to the diagonal, relative to the diagonal of `shift_from`: K + shift · diag
+  bool factorize(const BlockMatrix& matrix, double shift = 0, const BlockMatrix* shift_from = nullptr);
+
+  /// Solves in constraint axes; prescribed entries of `x` are set to zero.
+  void solve(std::span<const double> b, std::span<double> x) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fascia

@@ -1,0 +1,92 @@
+#include "core/solver/cholesky.hpp"
+#include "core/solver/free_matrix.hpp"
+
+#include <cholmod.h>
+#include <dlfcn.h>
+
+#include <new>
+#include <stdexcept>
+
+namespace fascia {
+
+namespace {
+
+/// BLAS threads would share our cores and change results; OpenBLAS is asked to keep to one.
+void hold_blas_to_one_thread() {
+  using SetThreads = void (*)(int);
+  if (void* set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) reinterpret_cast<SetThreads>(set)(1);
+}
+
+}  // namespace
+
+struct BlockCholesky::Impl {
+  FreeMatrix matrix;
+  const DofFilter& filter;
+  cholmod_common common{};
+  cholmod_sparse sparse{};
+  cholmod_factor* factor = nullptr;
+  // Reused by every solve.
+  cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
+
+  Impl(const BlockMatrix& pattern, const DofFilter& f) : matrix(pattern, f), filter(f) {
+    hold_blas_to_one_thread();
+    cholmod_start(&common);
+    common.print = 0;
+    common.quick_return_if_not_posdef = 1;
+    const auto n = static_cast<std::size_t>(matrix.size);
+    sparse.nrow = sparse.ncol = n;
+    sparse.nzmax = matrix.row.size();
+    sparse.p = matrix.column_begin.data();
+    sparse.i = matrix.row.data();
+    sparse.x = matrix.value.data();
+    sparse.stype = -1;
+    sparse.itype = CHOLMOD_INT;
+    sparse.xtype = CHOLMOD_REAL;
+    sparse.dtype = CHOLMOD_DOUBLE;
+    sparse.sorted = 1;
+    sparse.packed = 1;
+    factor = cholmod_analyze(&sparse, &common);
+    rhs = cholmod_zeros(n, 1, CHOLMOD_REAL, &common);
+    if (factor == nullptr || rhs == nullptr) throw std::bad_alloc();
+  }
+  ~Impl() {
+    cholmod_free_dense(&rhs, &common);
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&work_y, &common);
+    cholmod_free_dense(&work_e, &common);
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+};
+
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter)
+    : impl_(std::make_unique<Impl>(pattern, filter)) {}
+BlockCholesky::~BlockCholesky() = default;
+BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
+BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
+
+double BlockCholesky::factor_flops() const { return impl_->common.fl; }
+double BlockCholesky::factor_bytes() const { return impl_->common.lnz * 8; }
+
+bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
+  Impl& m = *impl_;
+  m.matrix.fill(matrix, m.filter, shift, shift_from);
+  cholmod_factorize(&m.sparse, m.factor, &m.common);
+  if (m.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  return m.common.status == CHOLMOD_OK && m.factor->minor == m.factor->n;
+}
+
+void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const {
+  Impl& m = *impl_;
+  auto* rhs = static_cast<double*>(m.rhs->x);
+  for (std::size_t i = 0; i < b.size(); ++i)
+    if (m.matrix.number[i] >= 0) rhs[m.matrix.number[i]] = b[i];
+  if (cholmod_solve2(CHOLMOD_A, m.factor, m.rhs, nullptr, &m.solution, nullptr, &m.work_y, &m.work_e, &m.common) == 0)
+    throw std::bad_alloc();
+  const auto* solution = static_cast<const double*>(m.solution->x);
+  for (std::size_t i = 0; i < b.size(); ++i) x[i] = m.matrix.number[i] >= 0 ? solution[m.matrix.number[i]] : 0.0;
+}
+
+}  // namespace fascia

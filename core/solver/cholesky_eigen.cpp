@@ -1,0 +1,53 @@
+#include "core/solver/cholesky.hpp"
+#include "core/solver/free_matrix.hpp"
+
+#include <Eigen/SparseCholesky>
+
+namespace fascia {
+
+/// The build without SuiteSparse: slower on large models, same results to rounding.
+struct BlockCholesky::Impl {
+  using Sparse = Eigen::Map<const Eigen::SparseMatrix<double>>;
+  FreeMatrix matrix;
+  const DofFilter& filter;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> llt;
+  Eigen::VectorXd rhs;
+
+  Impl(const BlockMatrix& pattern, const DofFilter& f) : matrix(pattern, f), filter(f), rhs(matrix.size) {
+    llt.analyzePattern(view());
+  }
+  Sparse view() const {
+    return {matrix.size, matrix.size, static_cast<Eigen::Index>(matrix.row.size()), matrix.column_begin.data(),
+            matrix.row.data(), matrix.value.data()};
+  }
+};
+
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter)
+    : impl_(std::make_unique<Impl>(pattern, filter)) {}
+BlockCholesky::~BlockCholesky() = default;
+BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
+BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
+
+// Eigen does not tell the fill before it factorises: an estimate of a banded factor.
+double BlockCholesky::factor_bytes() const { return 8.0 * 20.0 * static_cast<double>(impl_->matrix.row.size()); }
+double BlockCholesky::factor_flops() const {
+  const double column = factor_bytes() / 8.0 / std::max(1, impl_->matrix.size);
+  return column * column * impl_->matrix.size;
+}
+
+bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
+  Impl& m = *impl_;
+  m.matrix.fill(matrix, m.filter, shift, shift_from);
+  m.llt.factorize(m.view());
+  return m.llt.info() == Eigen::Success;
+}
+
+void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const {
+  Impl& m = *impl_;
+  for (std::size_t i = 0; i < b.size(); ++i)
+    if (m.matrix.number[i] >= 0) m.rhs[m.matrix.number[i]] = b[i];
+  const Eigen::VectorXd solution = m.llt.solve(m.rhs);
+  for (std::size_t i = 0; i < b.size(); ++i) x[i] = m.matrix.number[i] >= 0 ? solution[m.matrix.number[i]] : 0.0;
+}
+
+}  // namespace fascia

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/solver/block_matrix.hpp"
+
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Coordinates in which prescribed degrees of freedom are single numbers: each constrained frame's increments are turned
+/// into its constraint's axes; the first `translations` (3 + first `rotations`) of its six are prescribed.
+class DofFilter {
+ public:
+  explicit DofFilter(const Model& model);
+
+  bool is_fixed(std::size_t dof) const { return fixed_[dof]; }
+  int free_count() const { return free_count_; }
+  std::size_t size() const { return fixed_.size(); }
+
+  void to_local(std::span<double> v) const;   ///< world → constraint axes
+  void to_global(std::span<double> v) const;  ///< constraint axes → world
+  void clear_fixed(std::span<double> local) const;
+
+  /// The block of a row and a column in constraint axes: T_row K T_colᵀ.
+  void rotate_block(int row, int column, const double* in, double* out) const;
+
+ private:
+  struct Turn {
+    int node;
+    Mat3d translation, rotation;
+  };
+  std::vector<Turn> turns_;
+  std::vector<int> turn_of_node_;  ///< −1: none
+  std::vector<bool> fixed_;
+  int free_count_ = 0;
+};
+
+}  // namespace fascia

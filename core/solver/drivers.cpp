@@ -1,0 +1,156 @@
+#include "core/solver/drivers.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+namespace fascia {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Boundary rotations are spread over steps of at most this angle: their linear prediction still holds there [rad].
+constexpr double kRotationPerStep = 0.35;
+
+std::string sentence(const NewtonReport& r, const SolverSettings& settings) {
+  std::ostringstream out;
+  switch (r.status) {
+    case NewtonStatus::converged: return "";
+    case NewtonStatus::limit:
+      out << "Newton stopped after " << r.iterations << " iterations, residual " << r.last.relative() << " > "
+          << settings.tolerance;
+      break;
+    case NewtonStatus::stalled:
+      out << "Newton found no better state along its direction, residual " << r.last.relative() << " > " << settings.tolerance;
+      break;
+    case NewtonStatus::not_finite: out << "the forces are not finite"; break;
+    case NewtonStatus::linear_failure: out << "the linear system could not be solved"; break;
+  }
+  if (!r.trouble.empty()) out << "; " << r.trouble;
+  return out.str();
+}
+
+void count(RunReport& run, const NewtonReport& newton) {
+  run.newton_iterations += newton.iterations;
+  run.linear_iterations += newton.linear_iterations;
+}
+
+bool acceptable(const NewtonReport& newton, const SolverSettings& settings) {
+  if (newton.status == NewtonStatus::converged) return true;
+  const bool usable = newton.status == NewtonStatus::limit || newton.status == NewtonStatus::stalled;
+  return settings.proceed_on_limit && usable && newton.last.finite();
+}
+
+void accept(RunReport& run, const NewtonReport& newton, double time) {
+  ++run.steps;
+  run.time = time;
+  run.residual = std::max(run.residual, newton.last.relative());
+  run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor());
+}
+
+RunStatus failure_status(const NewtonReport& newton) {
+  return newton.status == NewtonStatus::not_finite ? RunStatus::diverged : RunStatus::not_converged;
+}
+
+}  // namespace
+
+RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                      const StaticsSettings& statics, const StepObserver& observe) {
+  constexpr double kSmallest = 1.0 / 1024;
+  RunReport run;
+  const double longest = statics.load_steps > 0 ? 1.0 / statics.load_steps : 1.0;
+  double reached = 0, increment = longest;
+  system.set_factors(factors(0));
+  state.time = 0;
+  while (reached < 1) {
+    const Clock::time_point start = Clock::now();
+    double target = reached + increment > 1 - 1e-9 ? 1.0 : reached + increment;
+    system.set_factors(factors(reached));
+    system.begin_step(state, 0);
+    system.set_factors(factors(target));
+    if (const double turn = system.prescribed_rotation(); turn > kRotationPerStep && target - reached > kSmallest) {
+      increment = (target - reached) / std::ceil(turn / kRotationPerStep);
+      target = reached + increment;
+      system.set_factors(factors(target));
+    }
+    Newton newton(system, settings);
+    const NewtonReport report = newton.solve();
+    count(run, report);
+    if (!acceptable(report, settings)) {
+      increment = 0.5 * (target - reached);
+      if (increment >= kSmallest) continue;
+      std::ostringstream message;
+      message << "load step " << run.steps + 1 << " (load factor " << target << "): " << sentence(report, settings)
+              << "; try more load_steps, a stiffer material or smaller loads, or implicit-euler with damping";
+      run.message = message.str();
+      run.status = failure_status(report);
+      run.residual = report.last.finite() ? report.last.relative() : 0.0;
+      return run;
+    }
+    state = system.finish_step(target);
+    accept(run, report, target);
+    reached = target;
+    increment = std::min(longest, 2 * increment);
+    if (observe && !observe({run.steps, reached, reached, report, seconds_since(start)}, state, system)) {
+      if (reached < 1) run.status = RunStatus::interrupted;
+      return run;
+    }
+  }
+  return run;
+}
+
+namespace {
+
+/// Advances by dt, in halves where Newton fails.
+NewtonReport advance(MechanicalSystem& system, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                     double end, double dt, int depth, RunReport& run) {
+  system.set_factors(factors(state.time));
+  system.begin_step(state, dt);
+  system.set_factors(factors(end));
+  Newton newton(system, settings);
+  NewtonReport report = newton.solve();
+  count(run, report);
+  if (acceptable(report, settings)) {
+    state = system.finish_step(end);
+    return report;
+  }
+  if (depth == 0) return report;
+  const double middle = end - 0.5 * dt;
+  report = advance(system, state, factors, settings, middle, 0.5 * dt, depth - 1, run);
+  if (!acceptable(report, settings)) return report;
+  return advance(system, state, factors, settings, end, 0.5 * dt, depth - 1, run);
+}
+
+}  // namespace
+
+RunReport run_implicit_euler(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                             const SolverSettings& settings, const DynamicsSettings& dynamics, const StepObserver& observe) {
+  RunReport run;
+  for (int step = 1; step <= dynamics.steps; ++step) {
+    const Clock::time_point start = Clock::now();
+    const double end = step * dynamics.time_step;
+    const NewtonReport report = advance(system, state, factors, settings, end, dynamics.time_step, 8, run);
+    if (!acceptable(report, settings)) {
+      std::ostringstream message;
+      message << "step " << step << " (t = " << end << " s): " << sentence(report, settings)
+              << "; try a smaller time_step, damping, or newton.on_limit = \"continue\"";
+      run.message = message.str();
+      run.status = failure_status(report);
+      run.residual = report.last.finite() ? report.last.relative() : 0.0;
+      return run;
+    }
+    accept(run, report, end);
+    const double progress = static_cast<double>(step) / dynamics.steps;
+    if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {
+      if (step < dynamics.steps) run.status = RunStatus::interrupted;
+      return run;
+    }
+  }
+  return run;
+}
+
+}  // namespace fascia

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/solver/mechanical_system.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fascia {
+
+enum class RunStatus { converged, not_converged, diverged, interrupted };
+
+/// What a driver tells after each accepted step.
+struct StepInfo {
+  int step = 0;            ///< counted from 1
+  double time = 0;         ///< [s]; in statics the load factor
+  double progress = 0;     ///< part of the whole [0, 1]
+  NewtonReport newton;
+  double seconds = 0;      ///< of this step
+};
+
+/// Called with the state and the system (whose gradient belongs to it); returns false to stop (Ctrl-C).
+using StepObserver = std::function<bool(const StepInfo&, const State&, MechanicalSystem&)>;
+/// Factors of all schedules at a time [s] (statics: at a load factor).
+using FactorFunction = std::function<std::vector<double>(double)>;
+
+struct RunReport {
+  RunStatus status = RunStatus::converged;
+  int steps = 0, newton_iterations = 0, linear_iterations = 0;
+  double residual = 0, residual_floor = 0;  ///< largest of the steps, relative
+  double time = 0;
+  std::string message;  ///< one sentence on what went wrong, where, and what to try
+};
+
+struct StaticsSettings {
+  int load_steps = 0;  ///< 0: as few as converge
+};
+
+/// Equilibrium under loads and boundary motions that grow with the load factor from 0 to 1. A load step that does not
+/// converge is cut in half, down to 1/1024.
+RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                      const StaticsSettings& statics, const StepObserver& observe);
+
+struct DynamicsSettings {
+  double time_step = 0;  ///< [s]
+  int steps = 0;
+};
+
+/// Implicit Euler. A time step that does not converge is taken in halves, down to 1/256.
+RunReport run_implicit_euler(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                             const SolverSettings& settings, const DynamicsSettings& dynamics, const StepObserver& observe);
+
+}  // namespace fascia

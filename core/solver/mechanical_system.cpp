@@ -1,0 +1,310 @@
+#include "core/solver/mechanical_system.hpp"
+
+#include "core/math/rotation.hpp"
+#include "core/physics/inertia.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Adds the force and, through L, the torque of a frame.
+void add(std::span<double> gradient, int node, const Vec3d& force, const Vec3d& torque) {
+  for (int k = 0; k < 3; ++k) {
+    gradient[at(6 * node + k)] += force[k];
+    gradient[at(6 * node + 3 + k)] += torque[k];
+  }
+}
+
+void add_rotation_block(Block6& block, const Mat3d& rr) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) block[at(6 * (3 + i) + 3 + j)] += rr(i, j);
+}
+
+Mat3d rotation_tangent(const Mat3d& L) { return sym(L) - Mat3d::diagonal(trace(L)); }
+
+}  // namespace
+
+MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings)
+    : model_(model),
+      settings_(settings),
+      filter_(model),
+      executor_(model.points, pool),
+      tangent_(model, executor_, filter_, settings),
+      conservative_(model.loads_are_conservative()),
+      state_(State::at_rest(model)) {
+  const auto n = at(model.dof_count());
+  gradient_.resize(n);
+  load_.resize(n);
+  inertia_.resize(n);
+  direction_.resize(n);
+  work_.resize(n);
+  factors_ = start_factors_ = zero_factors(model);
+}
+
+std::vector<double> zero_factors(const Model& model) {
+  int schedules = 0;
+  for (const DeadLoad& l : model.loads) schedules = std::max(schedules, l.schedule + 1);
+  for (const FollowerLoad& l : model.followers) schedules = std::max(schedules, l.schedule + 1);
+  for (const PrescribedMotion& m : model.motions) schedules = std::max(schedules, m.schedule + 1);
+  return std::vector<double>(at(schedules), 0.0);
+}
+
+void MechanicalSystem::begin_step(const State& start, double dt) {
+  start_ = start;
+  dt_ = dt;
+  start_factors_ = factors_;
+  increment_.du.assign(start.u.size(), Vec3d{});
+  increment_.Ds.assign(start.u.size(), Mat3d{});
+  increment_.turned.assign(model_.constraints.size(), {0, 0, 0});
+  if (model_.points.damped && dt > 0) {
+    history_.inverse_step = 1 / dt;
+    executor_.store_strain(start, history_);
+  }
+  rebuild_state();
+}
+
+void MechanicalSystem::set_factors(std::span<const double> factors) { factors_.assign(factors.begin(), factors.end()); }
+
+void MechanicalSystem::rebuild_state() {
+  state_.u.resize(start_.u.size());
+  state_.D.resize(start_.u.size());
+  for (std::size_t i = 0; i < start_.u.size(); ++i) {
+    state_.u[i] = start_.u[i] + increment_.du[i];
+    state_.D[i] = compose_increments(increment_.Ds[i], start_.D[i]);
+  }
+}
+
+State MechanicalSystem::finish_step(double end_time) const {
+  State end = state_;
+  end.time = end_time;
+  end.v.assign(end.u.size(), Vec3d{});
+  end.Q_dot.assign(end.u.size(), Mat3d{});
+  for (std::size_t i = 0; i < end.u.size(); ++i) {
+    end.D[i] = orthonormalized_increment(end.D[i]);
+    if (dt_ <= 0) continue;
+    end.v[i] = increment_.du[i] * (1 / dt_);
+    end.Q_dot[i] = (increment_.Ds[i] + increment_.Ds[i] * start_.D[i]) * (1 / dt_);
+  }
+  return end;
+}
+
+void MechanicalSystem::add_loads() {
+  std::fill(load_.begin(), load_.end(), 0.0);
+  load_energy_ = 0;
+  for (const DeadLoad& load : model_.loads) {
+    const double s = factors_[at(load.schedule)];
+    for (const NodeLoad& n : load.nodes) {
+      const Mat3d& D = state_.D[at(n.node)];
+      load_energy_ -= s * (dot(n.force, state_.u[at(n.node)]) + contract(n.couple, D));
+      const Mat3d L = n.couple + times_transpose(n.couple, D);  // couple Qᵀ
+      add(load_, n.node, n.force * s, (axl(transpose(L)) + n.torque) * s);
+    }
+  }
+  for (const FollowerLoad& load : model_.followers) {
+    const double s = factors_[at(load.schedule)];
+    Mat3d Qbar = Mat3d::identity();
+    for (std::size_t k = 0; k < load.nodes.size(); ++k) Qbar += state_.D[at(load.nodes[k])] * load.w[k];
+    const Vec3d force = Qbar * load.force * s, torque = Qbar * load.torque * s;
+    for (std::size_t k = 0; k < load.nodes.size(); ++k) {
+      const Vec3d arm = load.b[k] + state_.D[at(load.nodes[k])] * load.b[k];
+      add(load_, load.nodes[k], force * load.w[k], cross(arm, force) + torque * load.w[k]);
+    }
+  }
+}
+
+/// 1/(2 dt²) |motion − dt velocity|² + α/(2 dt) |motion|², in the pose form of inertia.hpp.
+void MechanicalSystem::add_inertia() {
+  std::fill(inertia_.begin(), inertia_.end(), 0.0);
+  inertia_energy_ = 0;
+  if (dt_ <= 0) return;
+  const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
+  for (int i = 0; i < model_.node_count(); ++i) {
+    const Mat3d Q0 = Mat3d::identity() + start_.D[at(i)];
+    const Mat3d motion = increment_.Ds[at(i)] * Q0, Q = Q0 + motion;
+    const Vec3d a = increment_.du[at(i)] - start_.v[at(i)] * dt_;
+    const Mat3d A = motion - start_.Q_dot[at(i)] * dt_;
+    InertiaForce f = inertia_force(model_.inertia[at(i)], a, A);
+    inertia_energy_ += 0.5 * scale * inertia_product(model_.inertia[at(i)], a, A);
+    Vec3d force = f.force * scale;
+    Mat3d moment = f.moment * scale;
+    if (!model_.mass_damping.empty()) {
+      const FrameInertia& damping = model_.mass_damping[at(i)];
+      f = inertia_force(damping, increment_.du[at(i)], motion);
+      inertia_energy_ += 0.5 * damping_scale * inertia_product(damping, increment_.du[at(i)], motion);
+      force += f.force * damping_scale;
+      moment += f.moment * damping_scale;
+    }
+    add(inertia_, i, force, axl(Q * transpose(moment)));
+  }
+}
+
+void MechanicalSystem::add_node_blocks(Linearization& lin) const {
+  const bool full = lin.tangent == Tangent::full;
+  if (full) {
+    for (const DeadLoad& load : model_.loads)
+      for (const NodeLoad& n : load.nodes)
+        add_rotation_block(lin.node_blocks[at(n.node)],
+                           rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) * -factors_[at(load.schedule)]);
+  }
+  if (dt_ <= 0) return;
+  const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
+  for (int i = 0; i < model_.node_count(); ++i) {
+    const Mat3d& Q = lin.Q[at(i)];
+    FrameInertia total = model_.inertia[at(i)];
+    InertiaForce f;
+    const Mat3d Q0 = Mat3d::identity() + start_.D[at(i)], motion = increment_.Ds[at(i)] * Q0;
+    if (full) {
+      f = inertia_force(total, increment_.du[at(i)] - start_.v[at(i)] * dt_, motion - start_.Q_dot[at(i)] * dt_);
+      f.moment *= scale;
+    }
+    total.mass *= scale;
+    total.first *= scale;
+    total.second *= scale;
+    if (!model_.mass_damping.empty()) {
+      FrameInertia damping = model_.mass_damping[at(i)];
+      if (full) f.moment += inertia_force(damping, increment_.du[at(i)], motion).moment * damping_scale;
+      damping.mass *= damping_scale;
+      damping.first *= damping_scale;
+      damping.second *= damping_scale;
+      total += damping;
+    }
+    Block6& block = lin.node_blocks[at(i)];
+    const Mat3d second = times_transpose(Q * total.second, Q), lever = skew(Q * total.first);
+    for (int r = 0; r < 3; ++r) {
+      block[at(7 * r)] += total.mass;
+      for (int c = 0; c < 3; ++c) {
+        block[at(6 * r + 3 + c)] -= lever(r, c);
+        block[at(6 * (3 + r) + c)] += lever(r, c);
+      }
+    }
+    add_rotation_block(block, Mat3d::diagonal(trace(second)) - second);
+    if (full) add_rotation_block(block, rotation_tangent(times_transpose(f.moment, Q)));
+  }
+}
+
+/// |v| with torques divided by the model's length, over the free (or the prescribed) degrees of freedom.
+double MechanicalSystem::scaled_norm(std::span<const double> global, bool fixed_only) const {
+  std::vector<double>& local = work_;
+  std::copy(global.begin(), global.end(), local.begin());
+  filter_.to_local(local);
+  double sum = 0;
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    if (filter_.is_fixed(i) != fixed_only) continue;
+    const double value = i % 6 < 3 ? local[i] : local[i] / model_.length;
+    sum += value * value;
+  }
+  return std::sqrt(sum);
+}
+
+Evaluation MechanicalSystem::evaluate() {
+  internal_ = executor_.gradient(state_, history_, model_.length, gradient_);
+  add_loads();
+  add_inertia();
+  for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] += inertia_[i] - load_[i];
+  Evaluation e;
+  e.energy = internal_.total() + load_energy_ + inertia_energy_;
+  e.residual = scaled_norm(gradient_, false);
+  e.reference = std::max({std::hypot(scaled_norm(load_, false), scaled_norm(load_, true)), scaled_norm(inertia_, false),
+                          scaled_norm(gradient_, true)});
+  // 4: sums of a few terms of the estimated size in each entry.
+  e.floor = 4 * internal_.rounding;
+  return e;
+}
+
+void MechanicalSystem::prescribed_increments(std::span<double> local) const {
+  std::fill(local.begin(), local.end(), 0.0);
+  for (std::size_t k = 0; k < model_.constraints.size(); ++k) {
+    const FrameConstraint& c = model_.constraints[k];
+    const Vec3d& X = model_.rest_position[at(c.node)];
+    const auto factor = [&](int motion) { return factors_[at(model_.motions[at(motion)].schedule)]; };
+    for (int a = 0; a < c.translations; ++a) {
+      const int motion = c.translation_motion[at(a)];
+      const Vec3d target = motion < 0 ? Vec3d{} : model_.motions[at(motion)].displacement(X, factor(motion));
+      local[at(6 * c.node + a)] = dot(c.translation_axes.row(a), target - state_.u[at(c.node)]);
+    }
+    for (int a = 0; a < c.rotations; ++a) {
+      const int motion = c.rotation_motion[at(a)];
+      if (motion < 0) continue;
+      const PrescribedMotion& m = model_.motions[at(motion)];
+      const double turn = m.angle * (factor(motion) - start_factors_[at(m.schedule)]);
+      local[at(6 * c.node + 3 + a)] = dot(c.rotation_axes.row(a), m.axis) * turn - increment_.turned[k][at(a)];
+    }
+  }
+}
+
+bool MechanicalSystem::has_prescribed_increment() const {
+  std::vector<double>& local = work_;
+  prescribed_increments(local);
+  double largest_u = 0;
+  for (const Vec3d& u : state_.u) largest_u = std::max(largest_u, std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]));
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    const double scale = i % 6 < 3 ? largest_u : 1.0;
+    if (std::abs(local[i]) > 1e-14 * scale) return true;
+  }
+  return false;
+}
+
+double MechanicalSystem::prescribed_rotation() const {
+  std::vector<double> local(gradient_.size());
+  prescribed_increments(local);
+  double largest = 0;
+  for (std::size_t i = 0; i < local.size(); i += 6)
+    largest = std::max(largest, std::hypot(local[i + 3], local[i + 4], local[i + 5]));
+  return largest;
+}
+
+DirectionReport MechanicalSystem::direction() {
+  executor_.linearize(state_, history_, settings_.tangent, lin_);
+  add_node_blocks(lin_);
+  std::vector<double> rhs(gradient_.size()), prescribed;
+  for (std::size_t i = 0; i < rhs.size(); ++i) rhs[i] = -gradient_[i];
+  filter_.to_local(rhs);
+  if (has_prescribed_increment()) prescribed = work_;
+  Linearization fallback;
+  const TangentReport solved = tangent_.solve(lin_, prescribed, rhs, direction_, [&]() -> const Linearization& {
+    executor_.linearize(state_, history_, Tangent::material, fallback);
+    add_node_blocks(fallback);
+    return fallback;
+  });
+  DirectionReport report;
+  report.usable = solved.usable;
+  report.linear_iterations = solved.iterations;
+  report.trouble = solved.trouble;
+  filter_.to_global(direction_);
+  for (std::size_t i = 0; i < direction_.size(); i += 6) {
+    for (std::size_t k = 0; k < 6; ++k) report.slope += gradient_[i + k] * direction_[i + k];
+    report.largest_rotation =
+        std::max(report.largest_rotation, std::hypot(direction_[i + 3], direction_[i + 4], direction_[i + 5]));
+  }
+  return report;
+}
+
+void MechanicalSystem::apply(double step) {
+  for (int i = 0; i < model_.node_count(); ++i) {
+    const double* d = direction_.data() + 6 * i;
+    increment_.du[at(i)] += Vec3d{{d[0], d[1], d[2]}} * step;
+    increment_.Ds[at(i)] =
+        compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}} * step), increment_.Ds[at(i)]);
+  }
+  for (std::size_t k = 0; k < model_.constraints.size(); ++k) {
+    const FrameConstraint& c = model_.constraints[k];
+    const double* d = direction_.data() + 6 * c.node + 3;
+    for (int a = 0; a < c.rotations; ++a)
+      increment_.turned[k][at(a)] += step * dot(c.rotation_axes.row(a), Vec3d{{d[0], d[1], d[2]}});
+  }
+  rebuild_state();
+}
+
+void MechanicalSystem::save() { saved_ = increment_; }
+
+void MechanicalSystem::restore() {
+  increment_ = saved_;
+  rebuild_state();
+}
+
+}  // namespace fascia

@@ -1,0 +1,150 @@
+#include "core/solver/modes.hpp"
+
+#include "core/cpu/executor.hpp"
+#include "core/solver/cholesky.hpp"
+#include "core/solver/dof_filter.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace fascia {
+
+namespace {
+
+using Dense = Eigen::MatrixXd;
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+Matrix6 mass_block(const FrameInertia& inertia) {
+  Matrix6 m = Matrix6::Zero();
+  const Mat3d lever = skew(inertia.first), second = Mat3d::diagonal(trace(inertia.second)) - inertia.second;
+  for (int i = 0; i < 3; ++i) {
+    m(i, i) = inertia.mass;
+    for (int j = 0; j < 3; ++j) {
+      m(i, 3 + j) = -lever(i, j);
+      m(3 + i, j) = lever(i, j);
+      m(3 + i, 3 + j) = second(i, j);
+    }
+  }
+  return m;
+}
+
+/// K and M in constraint axes, on all degrees of freedom; prescribed ones stay zero.
+class Problem {
+ public:
+  Problem(const Model& model, ThreadPool& pool) : pool_(pool), filter_(model), K_(model.points) {
+    CpuExecutor executor(model.points, pool);
+    const State rest = State::at_rest(model);
+    std::vector<double> gradient(static_cast<std::size_t>(model.dof_count()));
+    executor.gradient(rest, {}, model.length, gradient);
+    Linearization lin;
+    executor.linearize(rest, {}, Tangent::full, lin);
+    executor.assemble(lin, K_);
+    for (const FrameInertia& inertia : model.inertia) mass_.push_back(mass_block(inertia));
+  }
+
+  const DofFilter& filter() const { return filter_; }
+
+  /// A factor of K + s M; the smallest s that the factorisation accepts.
+  BlockCholesky factorize(double& s) {
+    BlockCholesky factor(K_, filter_);
+    double stiffness = 0, mass = 0;
+    for (int i = 0; i < K_.rows(); ++i) {
+      stiffness += K_.block(K_.diagonal(i))[0];
+      mass += mass_[static_cast<std::size_t>(i)](0, 0);
+    }
+    const bool supported = filter_.free_count() < static_cast<int>(filter_.size());
+    s = supported ? 0.0 : 1e-6 * stiffness / mass;
+    for (int attempt = 0; attempt < 12; ++attempt) {
+      BlockMatrix shifted = K_;
+      for (int i = 0; i < K_.rows() && s > 0; ++i)
+        Eigen::Map<Matrix6>(shifted.block(shifted.diagonal(i))) += s * mass_[static_cast<std::size_t>(i)];
+      if (factor.factorize(shifted)) return factor;
+      s = std::max(10 * s, 1e-6 * stiffness / mass);
+    }
+    return factor;
+  }
+
+  void multiply_stiffness(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    multiply(x, y, [this](const std::vector<double>& in, std::vector<double>& out) { K_.multiply(pool_, in, out); });
+  }
+  void multiply_mass(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    multiply(x, y, [this](const std::vector<double>& in, std::vector<double>& out) {
+      for (std::size_t i = 0; i < mass_.size(); ++i)
+        Eigen::Map<Vector6>(out.data() + 6 * i) = mass_[i] * Eigen::Map<const Vector6>(in.data() + 6 * i);
+    });
+  }
+
+ private:
+  template <class Product>
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y, const Product& product) const {
+    std::vector<double> global(x.data(), x.data() + x.size()), out(global.size());
+    filter_.to_global(global);
+    product(global, out);
+    filter_.to_local(out);
+    filter_.clear_fixed(out);
+    y = Eigen::Map<const Eigen::VectorXd>(out.data(), x.size());
+  }
+
+  ThreadPool& pool_;
+  DofFilter filter_;
+  BlockMatrix K_;
+  std::vector<Matrix6, Eigen::aligned_allocator<Matrix6>> mass_;
+};
+
+}  // namespace
+
+Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
+  Problem problem(model, pool);
+  const auto n = static_cast<Eigen::Index>(model.dof_count());
+  const int free = problem.filter().free_count();
+  const int wanted = std::min(count, free), block = std::min(free, std::max(2 * wanted, wanted + 8));
+  double shift = 0;
+  const BlockCholesky factor = problem.factorize(shift);
+
+  std::mt19937 random(1);
+  Dense X(n, block), KX(n, block), MX(n, block);
+  for (Eigen::Index i = 0; i < X.size(); ++i) X.data()[i] = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(block), column;
+  Modes modes;
+  modes.converged = false;
+  for (modes.iterations = 0; modes.iterations < 200 && !modes.converged; ++modes.iterations) {
+    for (int k = 0; k < block; ++k) {
+      problem.multiply_mass(X.col(k), column);
+      factor.solve({column.data(), static_cast<std::size_t>(n)}, {X.col(k).data(), static_cast<std::size_t>(n)});
+    }
+    X = Eigen::HouseholderQR<Dense>(X).householderQ() * Dense::Identity(n, block);
+    for (int k = 0; k < block; ++k) {
+      problem.multiply_stiffness(X.col(k), column);
+      KX.col(k) = column;
+      problem.multiply_mass(X.col(k), column);
+      MX.col(k) = column;
+    }
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Dense> ritz(X.transpose() * KX, X.transpose() * MX);
+    const Eigen::VectorXd next = ritz.eigenvalues();
+    X = X * ritz.eigenvectors();
+    const double scale = std::abs(next[wanted - 1]) + 1e-300;
+    modes.converged = true;
+    for (int k = 0; k < wanted; ++k)
+      modes.converged = modes.converged && std::abs(next[k] - values[k]) <= 1e-10 * std::max(std::abs(next[k]), 1e-6 * scale);
+    values = next;
+  }
+  for (int k = 0; k < wanted; ++k) {
+    modes.frequency.push_back(std::sqrt(std::max(0.0, values[k])) / (2 * std::numbers::pi));
+    std::vector<double> shape(X.col(k).data(), X.col(k).data() + n);
+    problem.filter().to_global(shape);
+    double largest = 0;
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      if (i % 6 < 3 && std::abs(shape[i]) > std::abs(largest) * (1 + 1e-6)) largest = shape[i];
+    if (largest < 0)
+      for (double& v : shape) v = -v;
+    modes.shape.push_back(std::move(shape));
+  }
+  return modes;
+}
+
+}  // namespace fascia

@@ -1,0 +1,156 @@
+#include "core/solver/tangent_solver.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia {
+
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Up to here a factorisation is always worth it (measured: docs/manual.md, "Which linear solver").
+constexpr int kDirectDofs = 15000;
+/// Beyond: only where its work stays below that of the CG iterations that a bulky body of this size needs.
+constexpr double kFlopsPerNonzero = 2000;
+
+}  // namespace
+
+TangentSolver::TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter,
+                             const SolverSettings& settings)
+    : model_(model), executor_(executor), filter_(filter), settings_(settings), vectors_(executor.pool()) {}
+
+BlockMatrix& TangentSolver::matrix() {
+  if (!matrix_) matrix_.emplace(model_.points);
+  return *matrix_;
+}
+
+BlockCholesky& TangentSolver::factor() {
+  if (!cholesky_) cholesky_.emplace(matrix(), filter_);
+  return *cholesky_;
+}
+
+bool TangentSolver::direct() {
+  if (direct_) return *direct_;
+  if (settings_.linear != LinearMethod::automatic) direct_ = settings_.linear == LinearMethod::cholesky;
+  else if (filter_.free_count() <= kDirectDofs) direct_ = true;
+  else direct_ = factor().factor_flops() < kFlopsPerNonzero * 36.0 * static_cast<double>(matrix().block_count());
+  if (!*direct_ && settings_.preconditioner != Preconditioner::cholesky) cholesky_.reset();
+  return *direct_;
+}
+
+void TangentSolver::apply_matrix(std::span<const double> local, std::span<double> out) {
+  std::copy(local.begin(), local.end(), work_.begin());
+  filter_.to_global(work_);
+  matrix().multiply(executor_.pool(), work_, out);
+  filter_.to_local(out);
+}
+
+TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed, std::span<const double> b,
+                                   std::span<double> x, const std::function<const Linearization&()>& relinearize) {
+  const std::size_t n = b.size();
+  work_.resize(n);
+  executor_.assemble(lin, matrix());
+  rhs_.assign(b.begin(), b.end());
+  if (!prescribed.empty()) {
+    solution_.resize(n);
+    apply_matrix(prescribed, solution_);
+    for (std::size_t i = 0; i < n; ++i) rhs_[i] -= solution_[i];
+  }
+  filter_.clear_fixed(rhs_);
+  TangentReport report;
+  if (filter_.free_count() == 0) {
+    std::fill(x.begin(), x.end(), 0.0);
+  } else if (direct()) {
+    if (!factor().factorize(matrix()) && !factorize_with_shifts(relinearize, report)) return report;
+    factor().solve(rhs_, x);
+  } else {
+    report = solve_cg(rhs_, x);
+  }
+  if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))
+    return {false, report.iterations, "the linear solver returned a number that is not finite"};
+  if (!prescribed.empty())
+    for (std::size_t i = 0; i < n; ++i)
+      if (filter_.is_fixed(i)) x[i] = prescribed[i];
+  return report;
+}
+
+bool TangentSolver::factorize_with_shifts(const std::function<const Linearization&()>& relinearize, TangentReport& report) {
+  report.trouble = "the tangent was not positive definite (buckling, or parts that nothing holds); it was shifted";
+  if (!material_matrix_) material_matrix_.emplace(model_.points);
+  executor_.assemble(relinearize(), *material_matrix_);
+  for (shift_ = std::max(1e-3, 0.1 * shift_); shift_ < 1e3; shift_ *= 4)
+    if (factor().factorize(matrix(), shift_, &*material_matrix_)) return true;
+  report.usable = false;
+  report.trouble = "the tangent stays indefinite under every shift";
+  return false;
+}
+
+void TangentSolver::build_block_jacobi() {
+  const bool blocks = settings_.preconditioner != Preconditioner::jacobi;
+  inverse_blocks_.resize(at(model_.node_count()) * 36);
+  executor_.pool().for_ranges(model_.node_count(), 128, [&](int begin, int end) {
+    for (int node = begin; node < end; ++node) {
+      double turned[36];
+      filter_.rotate_block(node, node, matrix_->block(matrix_->diagonal(node)), turned);
+      Matrix6 block = Eigen::Map<Matrix6>(turned);
+      for (int i = 0; i < 6; ++i) {
+        if (!filter_.is_fixed(at(6 * node + i))) continue;
+        block.row(i).setZero();
+        block.col(i).setZero();
+        block(i, i) = 1;
+      }
+      Matrix6 inverse = Matrix6::Zero();
+      if (blocks) {
+        const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(block);
+        // Keeps the preconditioner positive where the tangent is not.
+        const double least = 1e-12 * eigen.eigenvalues().cwiseAbs().maxCoeff();
+        const Eigen::Matrix<double, 6, 1> values = eigen.eigenvalues().cwiseAbs().cwiseMax(least).cwiseInverse();
+        inverse = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+      } else {
+        for (int i = 0; i < 6; ++i) inverse(i, i) = block(i, i) != 0 ? 1.0 / std::abs(block(i, i)) : 1.0;
+      }
+      Eigen::Map<Matrix6>(inverse_blocks_.data() + at(node) * 36) = inverse;
+    }
+  });
+}
+
+TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<double> x) {
+  const Preconditioner kind = settings_.preconditioner;
+  const auto apply = [&](const std::vector<double>& p, std::vector<double>& Ap) {
+    apply_matrix(p, Ap);
+    filter_.clear_fixed(Ap);
+  };
+  const CpuVectors::Vector rhs(b.begin(), b.end());
+  CpuVectors::Vector result;
+  CgReport cg;
+  if (kind == Preconditioner::none) {
+    cg = conjugate_gradients(vectors_, apply, [](const auto& r, auto& z) { z = r; }, rhs, result, settings_.cg);
+  } else if (kind == Preconditioner::cholesky) {
+    if (!factor_is_preconditioner_) factor_is_preconditioner_ = factor().factorize(matrix());
+    if (!factor_is_preconditioner_) return {false, 0, "the tangent is not positive definite: no Cholesky preconditioner"};
+    cg = conjugate_gradients(vectors_, apply, [&](const auto& r, auto& z) { factor().solve(r, z); }, rhs, result, settings_.cg);
+    if (cg.iterations > 30) factor_is_preconditioner_ = false;  // out of date: renewed next time
+  } else {
+    build_block_jacobi();
+    const auto precondition = [&](const std::vector<double>& r, std::vector<double>& z) {
+      executor_.pool().for_ranges(model_.node_count(), 512, [&](int begin, int end) {
+        for (int node = begin; node < end; ++node)
+          Eigen::Map<Eigen::Matrix<double, 6, 1>>(z.data() + 6 * node) =
+              Eigen::Map<const Matrix6>(inverse_blocks_.data() + at(node) * 36) *
+              Eigen::Map<const Eigen::Matrix<double, 6, 1>>(r.data() + 6 * node);
+      });
+    };
+    cg = conjugate_gradients(vectors_, apply, precondition, rhs, result, settings_.cg);
+  }
+  std::copy(result.begin(), result.end(), x.begin());
+  TangentReport report{true, cg.iterations, ""};
+  if (cg.status == CgStatus::negative_curvature) report.trouble = "CG met negative curvature";
+  if (cg.status == CgStatus::not_finite) report = {false, cg.iterations, "CG met a number that is not finite"};
+  return report;
+}
+
+}  // namespace fascia

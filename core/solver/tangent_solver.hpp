@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/cpu/executor.hpp"
+#include "core/solver/cholesky.hpp"
+#include "core/solver/dof_filter.hpp"
+#include "core/solver/settings.hpp"
+#include "core/solver/vectors.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace fascia {
+
+struct TangentReport {
+  bool usable = true;
+  int iterations = 0;
+  std::string trouble;
+};
+
+/// Solves K x = b on the free degrees of freedom, directly or by CG, and finds a descent direction where K is not
+/// positive definite. Vectors are in constraint axes.
+class TangentSolver {
+ public:
+  TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter, const SolverSettings& settings);
+
+  /// @param relinearize  fills a linearisation with the positive semidefinite tangent at the same state; called only
+  ///                     where the full tangent fails
+  TangentReport solve(const Linearization& at, std::span<const double> prescribed, std::span<const double> b,
+                      std::span<double> x, const std::function<const Linearization&()>& relinearize);
+
+  /// Cholesky is used, and not CG.
+  bool direct();
+  BlockMatrix& matrix();
+  BlockCholesky& factor();
+
+ private:
+  bool factorize_with_shifts(const std::function<const Linearization&()>& relinearize, TangentReport& report);
+  TangentReport solve_cg(std::span<const double> b, std::span<double> x);
+  void build_block_jacobi();
+  void apply_matrix(std::span<const double> local, std::span<double> out);
+
+  const Model& model_;
+  CpuExecutor& executor_;
+  const DofFilter& filter_;
+  SolverSettings settings_;
+  CpuVectors vectors_;
+  std::optional<BlockMatrix> matrix_, material_matrix_;
+  std::optional<BlockCholesky> cholesky_;
+  std::optional<bool> direct_;
+  bool factor_is_preconditioner_ = false;
+  double shift_ = 0;  ///< of the last factorisation that needed one
+  std::vector<double> inverse_blocks_, work_, rhs_, solution_;
+};
+
+}  // namespace fascia

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/cpu/thread_pool.hpp"
+
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Vectors of one number a degree of freedom, on the processor. Sums run in fixed chunks, so that they do not depend on
+/// the number of threads. The CG is a template on such a space.
+class CpuVectors {
+ public:
+  using Vector = std::vector<double>;
+  explicit CpuVectors(ThreadPool& pool) : pool_(&pool) {}
+
+  Vector zeros(std::size_t n) const { return Vector(n, 0.0); }
+  double dot(std::span<const double> a, std::span<const double> b) const;
+  /// y += s x
+  void axpy(double s, std::span<const double> x, std::span<double> y) const;
+  /// y = x + s y
+  void xpay(std::span<const double> x, double s, std::span<double> y) const;
+
+ private:
+  ThreadPool* pool_;
+};
+
+}  // namespace fascia

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/geometry/mesh.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace fascia::io {
+
+/// Reads a Gmsh mesh, 2.2 or 4.1, ASCII or binary.
+///
+/// Linear cells of every kind; cells of higher order keep their corners, and the nodes between are left out. A cell that
+/// belongs to several physical groups appears once for each, as Gmsh 2.2 itself writes it.
+///
+/// @param text  the whole file
+/// @param name  the file's name, for messages
+/// @throws InputError  "NAME:LINE: what is wrong; remedy" (binary: "NAME: byte OFFSET: ...")
+Mesh parse_gmsh(std::string_view text, const std::string& name);
+
+}  // namespace fascia::io

@@ -1,0 +1,143 @@
+#include "io/result_writer.hpp"
+
+#include "core/model/errors.hpp"
+#include "io/files.hpp"
+#include "io/vtk_errors.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+
+namespace fascia::io {
+namespace {
+
+/// Sizes and indices are the caller's business: a mismatch is a bug, not input.
+void check_sizes(const VisualMesh& mesh) {
+  const auto n_points = static_cast<int>(mesh.points.size());
+  const auto valid = [&](int node) { return node >= 0 && node < n_points; };
+  bool right = mesh.part.empty() || mesh.part.size() == mesh.triangles.size() + mesh.vertices.size();
+  for (const auto& triangle : mesh.triangles)
+    for (const int node : triangle) right = right && valid(node);
+  for (const int node : mesh.vertices) right = right && valid(node);
+  for (const FieldArray& field : mesh.point_fields)
+    right = right && field.components > 0 &&
+            field.values.size() == mesh.points.size() * static_cast<std::size_t>(field.components);
+  if (!right) throw std::logic_error("write_vtu: arrays and indices do not fit the points and cells");
+}
+
+void check_finite(const std::filesystem::path& file, const VisualMesh& mesh) {
+  const auto fail = [&](const std::string& name, std::size_t point) {
+    throw InputError(fmt::format("{}: \"{}\" is not finite at point {}; the state that it shows is wrong", file.string(),
+                                 name, point));
+  };
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    for (const double x : mesh.points[p].v)
+      if (!std::isfinite(x)) fail("points", p);
+  for (const FieldArray& field : mesh.point_fields)
+    for (std::size_t i = 0; i < field.values.size(); ++i)
+      if (!std::isfinite(field.values[i])) fail(field.name, i / static_cast<std::size_t>(field.components));
+}
+
+void add_points(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) points->SetPoint(static_cast<vtkIdType>(p), mesh.points[p].v);
+  grid.SetPoints(points);
+}
+
+void add_cells(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkUnsignedCharArray> types;
+  for (const auto& triangle : mesh.triangles) {
+    cells->InsertNextCell({triangle[0], triangle[1], triangle[2]});
+    types->InsertNextValue(VTK_TRIANGLE);
+  }
+  for (const int vertex : mesh.vertices) {
+    cells->InsertNextCell({vertex});
+    types->InsertNextValue(VTK_VERTEX);
+  }
+  grid.SetCells(types, cells);
+}
+
+void add_fields(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
+  for (const FieldArray& field : mesh.point_fields) {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(field.name.c_str());
+    array->SetNumberOfComponents(field.components);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
+    for (std::size_t i = 0; i < field.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), field.values[i]);
+    grid.GetPointData()->AddArray(array);
+  }
+  if (mesh.part.empty()) return;
+  vtkNew<vtkIntArray> part;
+  part->SetName("part");
+  for (const int p : mesh.part) part->InsertNextValue(p);
+  grid.GetCellData()->AddArray(part);
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
+    }
+  return result;
+}
+
+}  // namespace
+
+void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
+  check_sizes(mesh);
+  check_finite(file, mesh);
+  vtkNew<vtkUnstructuredGrid> grid;
+  add_points(*grid, mesh);
+  add_cells(*grid, mesh);
+  add_fields(*grid, mesh);
+
+  // Into memory first: one place then checks that the whole file reaches the disk.
+  VtkErrors errors;
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetInputData(grid);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  writer->WriteToOutputStringOn();
+  if (writer->Write() == 0 || !errors.first().empty())
+    throw FileError(fmt::format("{}: cannot be written: {}", file.string(), errors.first()));
+  write_file(file, writer->GetOutputString());
+}
+
+void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& entries) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+  std::vector<std::string> bodies;
+  for (const PvdEntry& entry : entries) {
+    if (!std::isfinite(entry.time)) throw InputError(fmt::format("{}: a time is not finite", file.string()));
+    std::size_t part = 0;
+    while (part < bodies.size() && bodies[part] != entry.body) ++part;
+    if (part == bodies.size()) bodies.push_back(entry.body);
+    text += fmt::format("    <DataSet timestep=\"{}\" group=\"\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", entry.time,
+                        part, escaped(entry.body), escaped(entry.file));
+  }
+  write_file(file, text + "  </Collection>\n</VTKFile>\n");
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) { write_file(file, text); }
+
+}  // namespace fascia::io

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/math/vec3.hpp"
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fascia::io {
+
+/// A named array on points: `components` values a point.
+struct FieldArray {
+  std::string name;
+  int components = 1;
+  std::vector<double> values;
+};
+
+/// What one .vtu holds: triangles first, then single points ("vertices").
+struct VisualMesh {
+  std::vector<Vec3d> points;
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<int> vertices;            ///< point indices, one vertex cell each
+  std::vector<FieldArray> point_fields;
+  std::vector<int> part;                ///< cell array "part", one a cell (triangles, then vertices); may be empty
+};
+
+/// Writes an unstructured grid (XML, appended and compressed).
+/// @throws FileError   where it cannot be written in whole
+/// @throws InputError  where a value is not finite (names the array)
+void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh);
+
+struct PvdEntry {
+  double time = 0;
+  std::string body;  ///< part name
+  std::string file;  ///< relative to the .pvd
+};
+
+/// Writes a ParaView collection. @throws FileError
+void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& entries);
+
+/// Writes a whole text file, or throws FileError.
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+/// A directory of results that appears whole or not at all: everything is written into a hidden sibling, which
+/// commit() puts in the place of an older result. Without commit() the older result stays as it was.
+class ResultDirectory {
+ public:
+  /// Creates the hidden sibling.
+  /// @throws FileError  where it cannot be made, or where `target` exists and is no result of this program
+  ///                    (a directory that is empty or holds a summary.json with a "fascia" key is)
+  explicit ResultDirectory(std::filesystem::path target);
+  ~ResultDirectory();
+  ResultDirectory(const ResultDirectory&) = delete;
+  ResultDirectory& operator=(const ResultDirectory&) = delete;
+
+  const std::filesystem::path& path() const { return work_; }  ///< write here
+  void commit();                                               ///< @throws FileError; the older result is then still there
+
+ private:
+  std::filesystem::path target_, work_;
+  bool done_ = false;
+};
+
+}  // namespace fascia::io

@@ -1,0 +1,43 @@
+#include "io/text_numbers.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+namespace fascia::io {
+namespace {
+
+std::string_view without_plus(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  return word;
+}
+
+}  // namespace
+
+std::optional<std::int64_t> to_integer(std::string_view word) {
+  word = without_plus(word);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<double> to_number(std::string_view word) {
+  word = without_plus(word);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error == std::errc::invalid_argument || end != word.data() + word.size()) return std::nullopt;
+  // Too small for a double is zero, too large is not finite: strtod tells the two apart.
+  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
+  if (!std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string quoted(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  std::string result = "\"";
+  for (const char c : word.substr(0, longest)) result += c >= ' ' && c <= '~' ? c : '?';
+  return result + (word.size() > longest ? "...\"" : "\"");
+}
+
+}  // namespace fascia::io

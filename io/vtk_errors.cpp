@@ -1,0 +1,61 @@
+#include "io/vtk_errors.hpp"
+
+#include <vtkLogger.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+
+#include <cctype>
+
+namespace fascia::io {
+namespace {
+
+/// Keeps the first error or warning and drops all else: a warning tells of data that a reader left out.
+class FirstErrorWindow : public vtkOutputWindow {
+ public:
+  static FirstErrorWindow* New();
+  vtkTypeMacro(FirstErrorWindow, vtkOutputWindow)
+
+  void DisplayText(const char*) override {}
+  void DisplayErrorText(const char* text) override { keep(text); }
+  void DisplayWarningText(const char* text) override { keep(text); }
+  void DisplayGenericWarningText(const char* text) override { keep(text); }
+  void DisplayDebugText(const char*) override {}
+
+  const std::string& first() const { return first_; }
+
+ private:
+  void keep(const char* text) {
+    if (first_.empty()) first_ = text;
+  }
+
+  std::string first_;
+};
+
+vtkStandardNewMacro(FirstErrorWindow);
+
+}  // namespace
+
+VtkErrors::VtkErrors() : former_(vtkOutputWindow::GetInstance()), window_(vtkSmartPointer<FirstErrorWindow>::New()) {
+  vtkOutputWindow::SetInstance(window_);
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+}
+
+VtkErrors::~VtkErrors() { vtkOutputWindow::SetInstance(former_); }
+
+std::string VtkErrors::first() const {
+  const std::string& text = static_cast<const FirstErrorWindow*>(window_.Get())->first();
+  // "ERROR: In FILE, line N\nCLASS (ADDRESS): what happened"
+  std::size_t begin = text.find("): ");
+  begin = begin == std::string::npos ? 0 : begin + 3;
+  std::string line;
+  for (const char c : text.substr(begin)) {
+    const bool blank = std::isspace(static_cast<unsigned char>(c)) != 0;
+    if (blank && (line.empty() || line.back() == ' ')) continue;
+    line += blank ? ' ' : (c >= ' ' && c <= '~' ? c : '?');
+    if (line.size() >= 200) break;
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+}  // namespace fascia::io

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/geometry/mesh.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace fascia::io {
+
+/// Reads a mesh with VTK. The path must be readable.
+/// @param ending  ".vtk", ".vtu", ".vtp", ".stl", ".obj" or ".ply"
+/// @throws InputError  where the content is wrong; VTK itself prints nothing
+Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending);
+
+}  // namespace fascia::io

@@ -1,0 +1,145 @@
+#include "tests/robustness/scene_runs.hpp"
+
+#include <regex>
+
+// Wrong scenes: every error on a line of its own with its place, status 2, nothing written.
+namespace {
+
+using namespace fascia::test;
+
+struct WrongScene {
+  const char* name;
+  const char* from;  ///< text of the cantilever that is replaced
+  const char* to;
+  const char* key;   ///< full path that the error names
+  const char* says;  ///< a part of the message
+};
+
+void PrintTo(const WrongScene& wrong, std::ostream* out) { *out << wrong.name; }
+
+const WrongScene kWrongScenes[] = {
+    {"poisson_too_large", "poisson = 0.3", "poisson = 0.6", "materials.soft.poisson", "0.6"},
+    {"young_negative", "\"100 kPa\"", "-1.0", "materials.soft.young", "-1"},
+    {"young_zero", "\"100 kPa\"", "0", "materials.soft.young", "0"},
+    {"young_nan", "\"100 kPa\"", "nan", "materials.soft.young", "nan"},
+    {"young_infinite", "\"100 kPa\"", "inf", "materials.soft.young", "inf"},
+    {"unit_of_wrong_dimension", "\"100 kPa\"", "\"100 m\"", "materials.soft.young", "100 m"},
+    {"unit_unknown", "\"100 kPa\"", "\"100 kPaa\"", "materials.soft.young", "kPaa"},
+    {"wrong_type", "\"100 kPa\"", "[1, 2]", "materials.soft.young", ""},
+    {"unknown_key_with_hint", "poisson = 0.3", "poison = 0.3", "materials.soft.poison", "poisson"},
+    {"missing_key", "poisson = 0.3", "", "materials.soft", "poisson"},
+    {"missing_mass", "density  = 1000", "", "bodies.beam", "density"},
+    {"mass_and_density", "density  = 1000", "density = 1000\nmass = 1", "bodies.beam", "mass"},
+    {"material_unknown", "material = \"soft\"", "material = \"sotf\"", "bodies.beam.material", "soft"},
+    {"model_later", "\"meshless\"", "\"shell\"", "bodies.beam.model", "not supported yet"},
+    {"model_unknown", "\"meshless\"", "\"mesh-less\"", "bodies.beam.model", "meshless"},
+    {"grid_too_small", "grid = [3, 2, 2]", "grid = [1, 2, 2]", "bodies.beam.frames.grid", ""},
+    {"grid_of_two_numbers", "grid = [3, 2, 2]", "grid = [3, 2]", "bodies.beam.frames.grid", "3"},
+    {"grid_of_fractions", "grid = [3, 2, 2]", "grid = [3.5, 2, 2]", "bodies.beam.frames.grid", "3.5"},
+    {"grid_too_large_for_memory", "grid = [3, 2, 2]", "grid = [100000, 20000, 20000]", "bodies.beam.frames.grid", "B"},
+    {"box_turned_round", "min = [0, 0, 0], max = [1, 0.2, 0.2]", "min = [1, 0, 0], max = [0, 0.2, 0.2]",
+     "bodies.beam.domain.box", ""},
+    {"region_selects_nothing", "min = [-0.01, -1, -1], max = [0.01, 1, 1]", "min = [7, 7, 7], max = [8, 8, 8]",
+     "constraints[0].where", ""},
+    {"constraint_on_no_body", "body  = \"beam\"", "body  = \"bean\"", "constraints[0].body", "beam"},
+    {"fix_unknown_axis", "fix   = \"all\"", "fix = [\"x\", \"q\"]", "constraints[0].fix", "q"},
+    {"probe_outside", "at = [1, 0.1, 0.1]", "at = [2, 0.1, 0.1]", "probes.tip.at", "1"},
+    {"solver_unknown", "kind = \"static\"", "kind = \"statik\"", "solver.kind", "static"},
+    {"time_step_missing", "kind = \"static\"", "kind = \"implicit-euler\"\nsteps = 3", "solver", "time_step"},
+    {"free_body", "fix   = \"all\"", "fix   = [\"x\"]", "bodies.beam", "free"}};
+
+class BadScene : public SceneRuns, public ::testing::WithParamInterface<WrongScene> {};
+
+/// The lines of `text` that are "FILE:LINE:COLUMN: key.path: message".
+std::vector<std::string> error_lines(const std::string& text) {
+  const std::regex form(R"re([^:]*scene\.toml:\d+:\d+: [A-Za-z0-9_.\[\]-]+: .+)re");
+  std::vector<std::string> errors;
+  for (const std::string& line : lines_of(text)) {
+    if (std::regex_match(line, form)) errors.push_back(line);
+  }
+  return errors;
+}
+
+TEST_P(BadScene, IsRefusedWithItsPlace) {
+  const WrongScene& wrong = GetParam();
+  write("scene.toml", with(kCantilever, wrong.from, wrong.to));
+  const auto before = snapshot();
+  for (const char* command : {"run", "check"}) {
+    const ProgramResult result = fascia({command, "scene.toml"});
+    EXPECT_EQ(result.status, 2) << command;
+    const auto errors = error_lines(result.err);
+    ASSERT_FALSE(errors.empty()) << result.err;
+    EXPECT_EQ(errors.size(), lines_of(result.err).size()) << "one line an error: " << result.err;
+    bool found = false;
+    for (const std::string& error : errors) {
+      const std::size_t key = error.find(std::string(": ") + wrong.key);
+      found = found || (key != std::string::npos && error.find(wrong.says, key + 2) != std::string::npos);
+    }
+    EXPECT_TRUE(found) << "no error on " << wrong.key << " that says '" << wrong.says << "':\n" << result.err;
+  }
+  EXPECT_EQ(snapshot(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, BadScene, ::testing::ValuesIn(kWrongScenes),
+                         [](const auto& instance) { return instance.param.name; });
+
+using BadScenes = SceneRuns;
+
+TEST_F(BadScenes, AllErrorsAreReportedInOneGo) {
+  std::string text = with(kCantilever, "poisson = 0.3", "poisson = 0.6");
+  text = with(text, "fix   = \"all\"", "fixed = \"all\"");
+  text = with(text, "quantity = \"mass\"", "quantity = \"masses\"");
+  write("scene.toml", text);
+  const ProgramResult result = fascia({"run", "scene.toml"});
+  EXPECT_EQ(result.status, 2);
+  for (const char* key : {"materials.soft.poisson", "constraints[0].fixed", "probes.weight.quantity"}) {
+    EXPECT_NE(result.err.find(std::string(": ") + key + ": "), std::string::npos) << key << "\n" << result.err;
+  }
+  const std::string place = "scene.toml:" + place_of(text, "0.6") + ": materials.soft.poisson: ";
+  EXPECT_NE(result.err.find(place), std::string::npos) << place << "\n" << result.err;
+}
+
+TEST_F(BadScenes, TextThatIsNoTomlIsRefusedWithItsPlace) {
+  const std::string scene = kCantilever;
+  const std::vector<std::string> texts = {"gravity = = 3\n",
+                                          "[world\n",
+                                          scene.substr(0, scene.find("[0, -1, 0]") + 5),
+                                          std::string("\x7f"
+                                                      "ELF\x02\x01\x01\0\0\xff\xfe",
+                                                      12),
+                                          std::string(5000, '['),
+                                          scene + scene};
+  for (const std::string& text : texts) {
+    write("scene.toml", text);
+    const auto before = snapshot();
+    const ProgramResult result = fascia({"run", "scene.toml"});
+    EXPECT_EQ(result.status, 2) << text.substr(0, 40);
+    EXPECT_TRUE(result.err.starts_with("scene.toml:")) << result.err;
+    EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+    EXPECT_EQ(snapshot(), before);
+  }
+}
+
+TEST_F(BadScenes, EmptySceneIsRefused) {
+  write("scene.toml", "");
+  const ProgramResult result = fascia({"run", "scene.toml"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err, "");
+}
+
+TEST_F(BadScenes, BodyWithoutSupportIsNamedWithItsFreeMotion) {
+  write("scene.toml", with(kCantilever, "fix   = \"all\"", "fix   = [\"x\"]"));
+  const ProgramResult result = fascia({"run", "scene.toml"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("beam"), std::string::npos) << result.err;
+  EXPECT_TRUE(std::regex_search(result.err, std::regex("translation|translate|move|motion"))) << result.err;
+}
+
+TEST_F(BadScenes, GridTooLargeIsRefusedAtOnce) {
+  write("scene.toml", with(kCantilever, "grid = [3, 2, 2]", "grid = [100000, 20000, 20000]"));
+  ProgramOptions options;
+  options.timeout = std::chrono::seconds(10);
+  EXPECT_EQ(fascia({"run", "scene.toml"}, options).status, 2);
+}
+
+}  // namespace

@@ -1,0 +1,150 @@
+#include "tests/robustness/scene_runs.hpp"
+
+#include <regex>
+#include <set>
+
+// What a result directory holds, and that an older result is lost only to a complete new one.
+namespace {
+
+using namespace fascia::test;
+namespace fs = std::filesystem;
+
+class Results : public SceneRuns {
+ protected:
+  void SetUp() override {
+    SceneRuns::SetUp();
+    write("scene.toml", kCantilever);
+    write("dynamics.toml", dynamic_scene());
+  }
+  void make_result() const { ASSERT_EQ(fascia({"run", "scene.toml", "--output", "out"}).status, 0); }
+
+  /// The same call under a limit on the size of each file written, as a disk that fills up.
+  ProgramResult fascia_on_a_full_disk(const std::string& arguments) const {
+    ProgramOptions options;
+    options.directory = folder_;
+    options.environment = {"PROGRAM=" FASCIA_EXECUTABLE};
+    return run_program({"sh", "-c", "trap '' XFSZ; ulimit -f 1; exec \"$PROGRAM\" " + arguments}, options);
+  }
+};
+
+TEST_F(Results, StaticRunHasOneRowOfProbes) {
+  make_result();
+  const auto rows = lines_of(read_text(folder_ / "out/probes.csv"));
+  ASSERT_GE(rows.size(), 2u);
+  EXPECT_EQ(rows[0], "time,tip.x,tip.y,tip.z,weight");
+  EXPECT_EQ(std::stod(rows.back()), 1.0) << "load factor as time";
+  const auto tip = summary("out").at("probes").at("tip").at("value");
+  double time = 0, x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(rows.back().c_str(), "%lf,%lf,%lf,%lf", &time, &x, &y, &z), 4);
+  EXPECT_DOUBLE_EQ(x, tip.at(0).get<double>());
+  EXPECT_DOUBLE_EQ(y, tip.at(1).get<double>());
+  EXPECT_DOUBLE_EQ(z, tip.at(2).get<double>());
+}
+
+TEST_F(Results, DynamicRunStartsWithTheRowOfTimeZero) {
+  ASSERT_EQ(fascia({"run", "dynamics.toml", "--output", "out"}).status, 0);
+  const auto rows = lines_of(read_text(folder_ / "out/probes.csv"));
+  ASSERT_EQ(rows.size(), 7u) << "header, time 0, and five saved times";
+  EXPECT_TRUE(rows[1].starts_with("0,0,0,0,")) << rows[1];
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    EXPECT_NEAR(std::stod(rows[row]), 0.02 * static_cast<double>(row - 1), 1e-12);
+  }
+  EXPECT_EQ(summary("out").at("steps"), 10);
+  EXPECT_NEAR(summary("out").at("simulated_time").get<double>(), 0.1, 1e-12);
+}
+
+TEST_F(Results, CollectionListsEveryFileAndNoOther) {
+  ASSERT_EQ(fascia({"run", "dynamics.toml", "--output", "out"}).status, 0);
+  std::set<std::string> on_disk, listed;
+  fs::path collection;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out")) {
+    if (entry.path().extension() == ".pvd") collection = entry.path();
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out")) {
+    if (entry.path().extension() == ".vtu") on_disk.insert(fs::relative(entry.path(), folder_ / "out").string());
+  }
+  ASSERT_EQ(collection.filename(), "dynamics.pvd");
+  const std::string text = read_text(collection);
+  const std::regex file(R"re(file="([^"]*)")re");
+  for (auto match = std::sregex_iterator(text.begin(), text.end(), file); match != std::sregex_iterator(); ++match) {
+    listed.insert((*match)[1]);
+  }
+  EXPECT_EQ(listed.size(), 6u) << "one body at six times";
+  EXPECT_EQ(listed, on_disk);
+}
+
+TEST_F(Results, HoldNoNumberThatIsNotFinite) {
+  make_result();
+  const std::regex not_finite(R"re((^|[^a-z])-?(nan|inf|null)([^a-z]|$))re", std::regex::icase);
+  EXPECT_FALSE(std::regex_search(read_text(folder_ / "out/summary.json"), not_finite));
+  EXPECT_FALSE(std::regex_search(read_text(folder_ / "out/probes.csv"), not_finite));
+}
+
+TEST_F(Results, DefaultDirectoryCarriesTheNameOfTheScene) {
+  ASSERT_EQ(fascia({"run", "scene.toml"}).status, 0);
+  EXPECT_EQ(summary("results/scene").at("status"), "converged");
+}
+
+TEST_F(Results, NewResultReplacesTheOldOneAsAWhole) {
+  ASSERT_EQ(fascia({"run", "dynamics.toml", "--output", "out"}).status, 0);
+  make_result();
+  EXPECT_EQ(summary("out").at("scene"), "scene.toml");
+  for (const auto& [name, text] : snapshot()) EXPECT_EQ(name.find("out/dynamics"), std::string::npos) << name;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "two scenes and the result, nothing left behind";
+}
+
+TEST_F(Results, OldResultOutlivesAWrongScene) {
+  make_result();
+  const auto before = snapshot();
+  EXPECT_EQ(fascia({"run", "scene.toml", "--output", "out", "--set", "materials.soft.young=-1"}).status, 2);
+  EXPECT_EQ(fascia({"run", "scene.toml", "--output", "out", "--set", "probes.tip.at=[9, 0, 0]"}).status, 2);
+  EXPECT_EQ(fascia({"run", "scene.toml", "--output", "out", "--backend", "cuda"}).status, 5);
+  EXPECT_EQ(fascia({"run", "absent.toml", "--output", "out"}).status, 4);
+  EXPECT_EQ(snapshot(), before);
+}
+
+TEST_F(Results, OldResultOutlivesAFullDisk) {
+  make_result();
+  const auto before = snapshot();
+  const ProgramResult result = fascia_on_a_full_disk("run dynamics.toml --output out");
+  EXPECT_EQ(result.status, 4) << result.err;
+  EXPECT_FALSE(lines_of(result.err).empty());
+  EXPECT_EQ(snapshot(), before);
+}
+
+TEST_F(Results, FullDiskLeavesNothingBehind) {
+  const auto before = snapshot();
+  EXPECT_EQ(fascia_on_a_full_disk("run scene.toml --output out").status, 4);
+  EXPECT_EQ(snapshot(), before);
+}
+
+TEST_F(Results, FolderThatIsNoResultIsKept) {
+  write("thesis/chapter.txt", "years of work");
+  write("almost/summary.json", "{ \"author\": \"somebody else\" }");
+  write("plain_file", "text");
+  const auto before = snapshot();
+  for (const char* output : {"thesis", "almost", "plain_file", "."}) {
+    const ProgramResult result = fascia({"run", "scene.toml", "--output", output});
+    EXPECT_EQ(result.status, 4) << output;
+    EXPECT_NE(result.err.find(output), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(snapshot(), before);
+}
+
+TEST_F(Results, EmptyFolderIsFilled) {
+  fs::create_directory(folder_ / "out");
+  make_result();
+  EXPECT_EQ(summary("out").at("status"), "converged");
+}
+
+TEST_F(Results, FolderThatCannotBeMadeIsNamed) {
+  write("plain_file", "text");
+  for (const char* output : {"plain_file/out", "/proc/fascia/out"}) {
+    const ProgramResult result = fascia({"run", "scene.toml", "--output", output});
+    EXPECT_EQ(result.status, 4) << output;
+    EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+    EXPECT_NE(result.err.find(output), std::string::npos) << result.err;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "app/scene/errors.hpp"
+#include "app/scene/parse.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fascia::app::test {
+
+/// The start of a scene that is right; what a test adds follows.
+inline constexpr std::string_view beam = R"([materials.soft]
+young = "40 kPa"
+poisson = 0.3
+[bodies.beam]
+model = "meshless"
+domain = { box = { min = [0, 0, 0], max = [4, 1, 1] } }
+mass = "5 kg"
+material = "soft"
+frames = { grid = [5, 2, 2] }
+)";
+inline constexpr int beam_lines = 9;
+
+inline Scene parse(std::string_view text, const std::vector<std::string>& overrides = {}) {
+  return parse_scene_text(text, "a.toml", overrides);
+}
+
+/// The beam and more.
+inline Scene parse_beam(std::string_view more, const std::vector<std::string>& overrides = {}) {
+  return parse(std::string(beam) + std::string(more), overrides);
+}
+
+/// All messages of a scene that is wrong; empty for one that is right.
+inline std::string errors_of(std::string_view text, const std::vector<std::string>& overrides = {}) {
+  try {
+    parse(text, overrides);
+    return "";
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+}
+
+/// The messages of the beam and more, which starts at line 10.
+inline std::string errors_of_beam(std::string_view more, const std::vector<std::string>& overrides = {}) {
+  return errors_of(std::string(beam) + std::string(more), overrides);
+}
+
+/// The beam with one line replaced.
+inline std::string beam_with(std::string_view line, std::string_view by) {
+  std::string text(beam);
+  text.replace(text.find(line), line.size(), by);
+  return text;
+}
+
+}  // namespace fascia::app::test

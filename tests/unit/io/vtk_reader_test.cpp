@@ -1,0 +1,123 @@
+#include "core/geometry/surface.hpp"
+#include "io/mesh_reader.hpp"
+#include "tests/unit/io/mesh_samples.hpp"
+#include "tests/unit/io/vtk_samples.hpp"
+
+namespace fascia::io {
+namespace {
+
+using samples::input_error;
+using samples::TemporaryDirectory;
+
+TEST(VtkReader, every_format) {
+  const TemporaryDirectory directory;
+  for (const samples::VtkSample& sample : samples::vtk_samples) {
+    SCOPED_TRACE(sample.file);
+    const ClosedSurface s = closed_surface(read_mesh(directory.write(sample.file, sample.text)));
+    EXPECT_NEAR(s.volume, 1. / 6, 1e-15);
+    EXPECT_EQ(s.mesh.points.size(), 4u);
+    EXPECT_EQ(s.mesh.triangles.size(), 4u);
+  }
+}
+
+/// A legacy file of one cell on the points of the unit cube.
+std::string one_cell(int type, const std::string& nodes, int count) {
+  return "# vtk DataFile Version 3.0\nsample\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n"
+         "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 1 " +
+         std::to_string(count + 1) + "\n" + std::to_string(count) + " " + nodes + "\nCELL_TYPES 1\n" +
+         std::to_string(type) + "\n";
+}
+
+double volume_of(const TemporaryDirectory& directory, const std::string& text) {
+  const ClosedSurface s = closed_surface(read_mesh(directory.write("a.vtk", text)));
+  for (const std::string& message : s.messages) EXPECT_EQ(message.find("turned over"), std::string::npos) << message;
+  return s.volume;
+}
+
+TEST(VtkReader, kinds_of_cells_have_their_orientation) {
+  const TemporaryDirectory directory;
+  EXPECT_NEAR(volume_of(directory, one_cell(12, "0 1 2 3 4 5 6 7", 8)), 1, 1e-15);
+  EXPECT_NEAR(volume_of(directory, one_cell(11, "0 1 3 2 4 5 7 6", 8)), 1, 1e-15);
+  EXPECT_NEAR(volume_of(directory, one_cell(13, "0 2 1 4 6 5", 6)), 0.5, 1e-15);
+  EXPECT_NEAR(volume_of(directory, one_cell(14, "0 1 2 3 4", 5)), 1. / 3, 1e-15);
+}
+
+TEST(VtkReader, polygons_and_strips_become_triangles) {
+  const TemporaryDirectory directory;
+  const std::string text =
+      "# vtk DataFile Version 3.0\nsample\nASCII\nDATASET POLYDATA\nPOINTS 12 double\n"
+      "0 0 0 2 0 0 3 1 0 2 2 0 0 2 0 1 1 0  0 0 1 2 0 1 3 1 1 2 2 1 0 2 1 1 1 1\n"
+      "POLYGONS 2 14\n6 0 5 4 3 2 1\n6 6 7 8 9 10 11\n"
+      "TRIANGLE_STRIPS 1 15\n14 6 0 7 1 8 2 9 3 10 4 11 5 6 0\n";
+  const Mesh mesh = read_mesh(directory.write("a.vtk", text));
+  const ClosedSurface s = closed_surface(mesh);
+  EXPECT_EQ(s.mesh.triangles.size(), 4u + 4u + 12u);
+  EXPECT_NEAR(s.volume, 4, 1e-14);
+}
+
+TEST(VtkReader, quadratic_cells_keep_their_corners) {
+  const TemporaryDirectory directory;
+  const std::string text =
+      "# vtk DataFile Version 3.0\nsample\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 double\n"
+      "0 0 0 1 0 0 0 1 0 0 0 1 .5 0 0 .5 .5 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5\n"
+      "CELLS 1 11\n10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n24\n";
+  EXPECT_EQ(read_mesh(directory.write("a.vtk", text)).points.size(), 4u);
+  EXPECT_NEAR(volume_of(directory, text), 1. / 6, 1e-15);
+}
+
+TEST(VtkReader, wrong_cells_are_named) {
+  const TemporaryDirectory directory;
+  const auto error = [&](const std::string& text) {
+    return input_error([&] { read_mesh(directory.write("a.vtk", text)); });
+  };
+  EXPECT_NE(error(one_cell(10, "0 1 2 9", 4)).find("cell 0 uses node 9, but the mesh has 8 nodes"), std::string::npos);
+  EXPECT_NE(error(one_cell(10, "0 1 2 -1", 4)).find("cell 0 uses node -1"), std::string::npos);
+  EXPECT_NE(error(one_cell(10, "0 1 2", 3)).find("cell 0 has 3 nodes; must have 4"), std::string::npos);
+  EXPECT_NE(error(one_cell(41, "0 1 2 3", 4)).find("type 41, which is not supported"), std::string::npos);
+  EXPECT_NE(error("# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 double\n0 0 0\n").find("no cells"),
+            std::string::npos);
+  EXPECT_NE(error("# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\n"
+                  "SPACING 1 1 1\n")
+                .find("must hold an unstructured grid or polygonal data"),
+            std::string::npos);
+}
+
+TEST(VtkReader, obj_keeps_the_numbers_of_the_file) {
+  const TemporaryDirectory directory;
+  // Open at the edge between vertices 2 and 3; texture coordinates differ from corner to corner.
+  const auto file = directory.write("a.obj",
+                                    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                                    "f 1/1 2/2 4/3\nf 2/3 3/1 4/2\nf 1/2 4/1 3/3\n");
+  const Mesh mesh = read_mesh(file);
+  EXPECT_EQ(mesh.points.size(), 4u);
+  const std::string e = input_error([&] { closed_surface(mesh); });
+  EXPECT_NE(e.find("open: 3 edges have one triangle only, the first between nodes 1 and 2"), std::string::npos) << e;
+}
+
+TEST(ObjReader, relative_indices_and_continued_lines) {
+  const TemporaryDirectory directory;
+  const auto file = directory.write("a.obj",
+                                    "o thing\nv 0 0 0 1\nv 1 0 0\nv 0 1 0\nf -3 -1 -2\nv 0 0 1\ng side\nusemtl none\ns off\n"
+                                    "f -4 -3 -1\nf 2 \\\n3 4\nf 1 4 3 # the last\nl 1 2\n");
+  EXPECT_NEAR(closed_surface(read_mesh(file)).volume, 1. / 6, 1e-15);
+}
+
+TEST(ObjReader, errors_name_the_line) {
+  const TemporaryDirectory directory;
+  const auto error = [&](const std::string& text) {
+    const auto file = directory.write("a.obj", text);
+    return input_error([&] { read_mesh(file); }).substr(file.string().size());
+  };
+  EXPECT_EQ(error("v 0 0\n"), ":1: expected a coordinate, found the end of the line; must be a finite number");
+  EXPECT_EQ(error("v 0 0 nan\n"), ":1: expected a coordinate, found \"nan\"; must be a finite number");
+  EXPECT_EQ(error("v 0 0 0\nf 1 1\n"), ":2: a face has 2 vertices; must have at least 3");
+  EXPECT_EQ(error("v 0 0 0\n\nf 1 2 1\n"), ":3: a face uses vertex 2, but there are 1 up to here; correct the face");
+  EXPECT_EQ(error("v 0 0 0\nf 1 1 0\n"), ":2: a face uses vertex 0, but there are 1 up to here; correct the face");
+  EXPECT_EQ(error("v 0 0 0\nf 1 1 -2\n"), ":2: a face uses vertex -2, but there are 1 up to here; correct the face");
+  EXPECT_EQ(error("v 0 0 0\nf 1 1 x\n"), ":2: expected a vertex number, found \"x\"; must be a whole number");
+  EXPECT_EQ(error("v 0 0 0\nfoo 1\n"), ":2: \"foo\" is no statement of an OBJ file; write the file again");
+  EXPECT_NE(error("v 0 0 0\n").find("has no cells"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fascia::io
