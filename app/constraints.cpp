@@ -1,5 +1,7 @@
 #include "app/scene/errors.hpp"
+
 #include "app/simulation.hpp"
+#include "core/math/index.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +11,6 @@
 namespace fascia::app {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Prescribed directions of a frame's translation or rotation, orthonormal.
 struct Directions {
@@ -30,11 +30,12 @@ double value(const Simulation& s, int motion, bool rotation, const Vec3d& X, con
 }
 
 /// Adds a direction; one that is already there must ask for the same.
-void add_direction(const Simulation& s, Directions& d, const Vec3d& direction, int motion, bool rotation, const Vec3d& X,
-                   const Constraint& constraint) {
+void add_direction(const Simulation& s, Directions& d, const Vec3d& direction, int motion, bool rotation,
+                   const Vec3d& X, const Constraint& constraint) {
   const double scale = rotation ? 1.0 : s.model.length;
   const auto moves = [&](int m, const Vec3d& axis) {
-    return std::abs(value(s, m, rotation, X, axis, 1.0)) + std::abs(value(s, m, rotation, X, axis, 0.37)) > 1e-12 * scale;
+    return std::abs(value(s, m, rotation, X, axis, 1.0)) + std::abs(value(s, m, rotation, X, axis, 0.37)) >
+           1e-12 * scale;
   };
   if (!moves(motion, direction)) motion = -1;
   Vec3d rest = direction;
@@ -53,15 +54,17 @@ void add_direction(const Simulation& s, Directions& d, const Vec3d& direction, i
   }
   if (norm(rest) < 1e-6) {
     if (difference > 1e-9 * scale)
-      throw SceneError({{constraint.place, fmt::format("prescribes another value than an earlier constraint on the same axis "
-                                                       "of the frame at ({:.6g}, {:.6g}, {:.6g}); name each axis once",
-                                                       X[0], X[1], X[2])}});
+      throw SceneError(
+          {{constraint.place, fmt::format("prescribes another value than an earlier constraint on the same axis "
+                                          "of the frame at ({:.6g}, {:.6g}, {:.6g}); name each axis once",
+                                          X[0], X[1], X[2])}});
     return;
   }
   if (oblique_motion)
-    throw SceneError({{constraint.place, fmt::format("moves the frame at ({:.6g}, {:.6g}, {:.6g}) along an axis that is neither "
-                                                     "parallel nor perpendicular to that of another constraint; use one set of axes",
-                                                     X[0], X[1], X[2])}});
+    throw SceneError(
+        {{constraint.place, fmt::format("moves the frame at ({:.6g}, {:.6g}, {:.6g}) along an axis that is neither "
+                                        "parallel nor perpendicular to that of another constraint; use one set of axes",
+                                        X[0], X[1], X[2])}});
   d.axis.push_back(normalized(rest));
   d.motion.push_back(motion);
 }
@@ -91,9 +94,7 @@ int add_motion(Simulation& s, const Constraint& c) {
   return static_cast<int>(s.model.motions.size()) - 1;
 }
 
-bool moves_positions_only(const Constraint& c) {
-  return c.motion && !(c.fixed[3] || c.fixed[4] || c.fixed[5]);
-}
+bool moves_positions_only(const Constraint& c) { return c.motion && !(c.fixed[3] || c.fixed[4] || c.fixed[5]); }
 
 }  // namespace
 
@@ -110,9 +111,10 @@ void add_constraints(Simulation& s) {
       }
     }
     if (moves_positions_only(c))
-      s.warnings.push_back(fmt::format("{}: prescribes positions without rotations, which leaves the displacement between "
-                                       "frames free (the force comes out too small); add \"rx\", \"ry\", \"rz\" to axes",
-                                       c.place.key));
+      s.warnings.push_back(
+          fmt::format("{}: prescribes positions without rotations, which leaves the displacement between "
+                      "frames free (the force comes out too small); add \"rx\", \"ry\", \"rz\" to axes",
+                      c.place.key));
   }
   for (const auto& [node, h] : held) {
     FrameConstraint c;

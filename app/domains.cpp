@@ -101,9 +101,11 @@ PlacedDomain make_domain(const Body& body) {
   if (const auto* box = std::get_if<BoxDomain>(&body.domain)) placed.solid = make_box(*box, scale, body.grid);
   if (const auto* cylinder = std::get_if<CylinderDomain>(&body.domain))
     placed.solid = make_cylinder(*cylinder, scale, body.grid);
-  if (const auto* ellipsoid = std::get_if<EllipsoidDomain>(&body.domain)) placed.solid = make_ellipsoid(*ellipsoid, scale);
+  if (const auto* ellipsoid = std::get_if<EllipsoidDomain>(&body.domain))
+    placed.solid = make_ellipsoid(*ellipsoid, scale);
   if (const auto* file = std::get_if<FileDomain>(&body.domain)) placed.solid = make_file(*file, scale, placed.messages);
-  if (body.transform.angle != 0) placed.rotation = rotation_about(normalized(body.transform.axis), body.transform.angle);
+  if (body.transform.angle != 0)
+    placed.rotation = rotation_about(normalized(body.transform.axis), body.transform.angle);
   placed.translation = body.transform.translate;
   return placed;
 }

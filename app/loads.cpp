@@ -1,6 +1,7 @@
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/simulation.hpp"
+#include "core/math/index.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +10,6 @@
 namespace fascia::app {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A point that takes a share of a total load.
 struct Share {
@@ -68,8 +67,8 @@ std::vector<Share> shares_of(const SimulatedBody& body, const Load& load) {
   if (!names_boundary(*load.where)) shares = volume_shares(body.meshless, *load.where);
   if (shares.empty()) shares = surface_shares(body.meshless, *load.where);
   if (shares.empty())
-    throw SceneError({{load.where->place, fmt::format("the region holds no material and no face of body \"{}\"; enlarge it",
-                                                      body.name)}});
+    throw SceneError({{load.where->place,
+                       fmt::format("the region holds no material and no face of body \"{}\"; enlarge it", body.name)}});
   double total = 0;
   for (const Share& share : shares) total += share.part;
   for (Share& share : shares) share.part /= total;
@@ -106,8 +105,10 @@ void add_node_forces(Simulation& s, int body, const Load& load, int schedule) {
   DeadLoad dead;
   dead.schedule = schedule;
   for (const int node : select_nodes(s, body, *load.where)) {
-    if (load.follower) s.model.followers.push_back({schedule, *load.force_per_node, {}, {node}, {1.0}, {Vec3d{}}});
-    else dead.nodes.push_back({node, *load.force_per_node, {}, {}});
+    if (load.follower)
+      s.model.followers.push_back({schedule, *load.force_per_node, {}, {node}, {1.0}, {Vec3d{}}});
+    else
+      dead.nodes.push_back({node, *load.force_per_node, {}, {}});
   }
   if (!load.follower) s.model.loads.push_back(std::move(dead));
 }
@@ -125,8 +126,8 @@ void add_loads(Simulation& s) {
     if (load.force_per_node) add_node_forces(s, body, load, schedule);
     if (load.at) {
       const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
-      add_shares(s, {{b.meshless.attach(X), 1.0}}, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{}), load.follower,
-                 schedule);
+      add_shares(s, {{b.meshless.attach(X), 1.0}}, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{}),
+                 load.follower, schedule);
     }
   }
 }

@@ -2,8 +2,8 @@
 #include "app/scene/errors.hpp"
 #include "core/model/errors.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <iostream>
 #include <new>

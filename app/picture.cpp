@@ -60,7 +60,8 @@ void make_picture(const Simulation& s, const fs::path& directory, const std::str
   command.insert(command.end(), {"--view", fmt::format("{},{},{}", p.view[0], p.view[1], p.view[2]), "--size",
                                  fmt::format("{}x{}", p.size[0], p.size[1]), "--field", p.field});
   if (run(command) != 0)
-    fmt::print(stderr, "no picture: \"{}\" failed; a display, or xvfb-run (Debian: xvfb, xauth), is needed\n", command.front());
+    fmt::print(stderr, "no picture: \"{}\" failed; a display, or xvfb-run (Debian: xvfb, xauth), is needed\n",
+               command.front());
 }
 
 }  // namespace fascia::app

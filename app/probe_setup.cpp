@@ -1,5 +1,7 @@
 #include "app/scene/errors.hpp"
+
 #include "app/simulation.hpp"
+#include "core/math/index.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +10,6 @@
 namespace fascia::app {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 const BodyPoint& nearest_point(const MeshlessBody& body, const Vec3d& X) {
   const BodyPoint* best = nullptr;
@@ -32,8 +32,10 @@ Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place)
   const double distance = b.distance(X);
   if (distance <= 1e-9 * b.size()) return X;
   if (distance > 1e-3 * b.size())
-    throw SceneError({{place, fmt::format("({:.6g}, {:.6g}, {:.6g}) lies {:.4g} m outside body \"{}\"; give a point of its rest shape",
-                                          X[0], X[1], X[2], distance, s.bodies[at(body)].name)}});
+    throw SceneError(
+        {{place,
+          fmt::format("({:.6g}, {:.6g}, {:.6g}) lies {:.4g} m outside body \"{}\"; give a point of its rest shape",
+                      X[0], X[1], X[2], distance, s.bodies[at(body)].name)}});
   s.warnings.push_back(fmt::format("{}: lies {:.3g} m outside the body and was taken as on it", place.key, distance));
   return X;
 }
@@ -42,8 +44,10 @@ void resolve_probes(Simulation& s) {
   for (const Probe& probe : s.scene.probes) {
     ResolvedProbe r;
     r.probe = &probe;
-    if (probe.body) r.body = body_index(s, *probe.body);
-    else if (s.bodies.size() == 1) r.body = 0;
+    if (probe.body)
+      r.body = body_index(s, *probe.body);
+    else if (s.bodies.size() == 1)
+      r.body = 0;
     for (const Vec3d& X0 : probe.at) {
       ProbePoint p;
       p.X = place_on_body(s, r.body, X0, probe.at_place);
@@ -62,11 +66,7 @@ void resolve_probes(Simulation& s) {
       const int count = r.body >= 0 ? s.bodies[at(r.body)].meshless.frame_count() : s.model.node_count();
       for (int i = first; i < first + count; ++i) r.nodes.push_back(i);
     }
-    if (probe.about) {
-      r.about = *probe.about;
-    } else {
-      for (const int node : r.nodes) r.about += s.model.rest_position[at(node)] * (1.0 / static_cast<double>(r.nodes.size()));
-    }
+    r.about = probe.about.value_or(Vec3d{});
     if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))
       s.warnings.push_back(fmt::format("{}: is zero in a static solve", probe.place.key));
     const bool modes = s.scene.solver.kind == SolverKind::modes, frequency = probe.quantity == Quantity::frequency;

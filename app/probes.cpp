@@ -1,5 +1,6 @@
 #include "app/probes.hpp"
 
+#include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 
@@ -9,8 +10,6 @@
 namespace fascia::app {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 enum class Shape { scalar, vector, matrix };
 
@@ -43,7 +42,8 @@ constexpr QuantityInfo kQuantities[] = {
 };
 
 const QuantityInfo& info(Quantity q) {
-  return *std::find_if(std::begin(kQuantities), std::end(kQuantities), [&](const QuantityInfo& i) { return i.quantity == q; });
+  return *std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                       [&](const QuantityInfo& i) { return i.quantity == q; });
 }
 
 void push(std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); }
@@ -56,18 +56,29 @@ Mat3d displacement_gradient(const Attachment& a, const State& state) { return fi
 void push_point_value(std::vector<double>& out, Quantity q, const ProbePoint& p, const State& state) {
   const FieldValue f = field_at(p.field, state);
   switch (q) {
-    case Quantity::displacement: push(out, f.u); break;
-    case Quantity::position: push(out, p.X + f.u); break;
-    case Quantity::rotation: push(out, rotation_vector(polar_increment(f.D))); break;
+    case Quantity::displacement:
+      push(out, f.u);
+      break;
+    case Quantity::position:
+      push(out, p.X + f.u);
+      break;
+    case Quantity::rotation:
+      push(out, rotation_vector(polar_increment(f.D)));
+      break;
     case Quantity::velocity: {
       Vec3d v;
       for (std::size_t k = 0; k < p.field.nodes.size(); ++k)
-        v += state.v[at(p.field.nodes[k])] * p.field.influences[k].w + state.Q_dot[at(p.field.nodes[k])] * p.field.influences[k].b;
+        v += state.v[at(p.field.nodes[k])] * p.field.influences[k].w +
+             state.Q_dot[at(p.field.nodes[k])] * p.field.influences[k].b;
       push(out, v);
       break;
     }
-    case Quantity::strain: push(out, green_strain(f.H)); break;
-    default: push(out, cauchy_stress(f.H, displacement_gradient(p.volumetric, state), p.lambda, p.mu)); break;
+    case Quantity::strain:
+      push(out, green_strain(f.H));
+      break;
+    default:
+      push(out, cauchy_stress(f.H, displacement_gradient(p.volumetric, state), p.lambda, p.mu));
+      break;
   }
 }
 
@@ -113,10 +124,9 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
 
 Momentum momentum(const Simulation& s, const ResolvedProbe& probe, const State& state) {
   Momentum sum;
-  const Vec3d about = probe.probe->about.value_or(Vec3d{});
   for (const int i : probe.nodes) {
     const Momentum m = momentum_of(s.model.inertia[at(i)], s.model.rest_position[at(i)] + state.u[at(i)],
-                                   Mat3d::identity() + state.D[at(i)], state.v[at(i)], state.Q_dot[at(i)], about);
+                                   Mat3d::identity() + state.D[at(i)], state.v[at(i)], state.Q_dot[at(i)], probe.about);
     sum.linear += m.linear;
     sum.angular += m.angular;
   }
@@ -182,7 +192,8 @@ Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, double lambda, do
   const Mat3d F = Mat3d::identity() + H, Fv = Mat3d::identity() + H_volumetric;
   const Mat3d shear = green_strain(H) * (2 * mu);
   const Mat3d pressure = Mat3d::diagonal(lambda * trace(green_strain(H_volumetric)));
-  return times_transpose(F * shear, F) * (1 / determinant(F)) + times_transpose(Fv * pressure, Fv) * (1 / determinant(Fv));
+  return times_transpose(F * shear, F) * (1 / determinant(F)) +
+         times_transpose(Fv * pressure, Fv) * (1 / determinant(Fv));
 }
 
 std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
@@ -201,22 +212,32 @@ std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe
       push(out, q == Quantity::force ? force : moment);
       break;
     }
-    case Quantity::volume: out.push_back(deformed_volume(s, probe, state)); break;
+    case Quantity::volume:
+      out.push_back(deformed_volume(s, probe, state));
+      break;
     case Quantity::mass: {
       double mass = 0;
       for (const int i : probe.nodes) mass += s.model.inertia[at(i)].mass;
       out.push_back(mass);
       break;
     }
-    case Quantity::energy: out.push_back(energies(s, probe, snap).elastic); break;
-    case Quantity::kinetic_energy: out.push_back(energies(s, probe, snap).kinetic); break;
+    case Quantity::energy:
+      out.push_back(energies(s, probe, snap).elastic);
+      break;
+    case Quantity::kinetic_energy:
+      out.push_back(energies(s, probe, snap).kinetic);
+      break;
     case Quantity::total_energy: {
       const Energies e = energies(s, probe, snap);
       out.push_back(e.elastic + e.stabilization + e.kinetic + e.potential);
       break;
     }
-    case Quantity::momentum: push(out, momentum(s, probe, state).linear); break;
-    case Quantity::angular_momentum: push(out, momentum(s, probe, state).angular); break;
+    case Quantity::momentum:
+      push(out, momentum(s, probe, state).linear);
+      break;
+    case Quantity::angular_momentum:
+      push(out, momentum(s, probe, state).angular);
+      break;
     case Quantity::max_displacement: {
       double largest = 0;
       for (const int i : probe.nodes) largest = std::max(largest, norm(state.u[at(i)]));
@@ -229,7 +250,9 @@ std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe
       push(out, mean);
       break;
     }
-    default: out.push_back(snap.frequency); break;
+    default:
+      out.push_back(snap.frequency);
+      break;
   }
   return out;
 }

@@ -65,45 +65,49 @@ std::vector<bool> select(const Region& region, std::span<const Vec3d> points, st
       for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = all ? chosen[i] && other[i] : chosen[i] || other[i];
     }
   };
-  std::visit(
-      Overloaded{
-          [&](const AllRegion&) { chosen.assign(points.size(), true); },
-          [&](const BoundaryRegion&) {
-            if (on_boundary.empty()) fail(region, "boundary cannot be asked for here; use a box, sphere or cylinder");
-            for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = on_boundary[i] != 0;
-          },
-          [&](const BoxRegion& b) { by_position([&](const Vec3d& X) { return in_box(b, X); }); },
-          [&](const SphereRegion& s) {
-            by_position([&](const Vec3d& X) { return norm(X - s.center) <= s.radius * (1 + 1e-9); });
-          },
-          [&](const CylinderRegion& c) { by_position([&](const Vec3d& X) { return in_cylinder(c, X); }); },
-          [&](const HalfspaceRegion& h) { by_position([&](const Vec3d& X) { return dot(X - h.point, h.normal) <= 0; }); },
-          [&](const NearestRegion& n) {
-            if (const int i = nearest_point(n.point, points); i >= 0) chosen[static_cast<std::size_t>(i)] = true;
-          },
-          [&](const GroupRegion&) {
-            fail(region, "a meshless body has no mesh groups; select by box, sphere, cylinder or halfspace");
-          },
-          [&](const IdsRegion& ids) {
-            for (const int id : ids.ids) {
-              if (id < 0 || static_cast<std::size_t>(id) >= points.size())
-                fail(region, "no node " + std::to_string(id) + "; must be 0 to " + std::to_string(points.size() - 1));
-              chosen[static_cast<std::size_t>(id)] = true;
-            }
-          },
-          [&](const AllOfRegion& r) { combine(r.parts, true); },
-          [&](const AnyOfRegion& r) { combine(r.parts, false); },
-          [&](const NotRegion& r) {
-            chosen = select(*r.part, points, on_boundary);
-            chosen.flip();
-          },
-      },
-      region.shape);
+  std::visit(Overloaded{
+                 [&](const AllRegion&) { chosen.assign(points.size(), true); },
+                 [&](const BoundaryRegion&) {
+                   if (on_boundary.empty())
+                     fail(region, "boundary cannot be asked for here; use a box, sphere or cylinder");
+                   for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = on_boundary[i] != 0;
+                 },
+                 [&](const BoxRegion& b) { by_position([&](const Vec3d& X) { return in_box(b, X); }); },
+                 [&](const SphereRegion& s) {
+                   by_position([&](const Vec3d& X) { return norm(X - s.center) <= s.radius * (1 + 1e-9); });
+                 },
+                 [&](const CylinderRegion& c) { by_position([&](const Vec3d& X) { return in_cylinder(c, X); }); },
+                 [&](const HalfspaceRegion& h) {
+                   by_position([&](const Vec3d& X) { return dot(X - h.point, h.normal) <= 0; });
+                 },
+                 [&](const NearestRegion& n) {
+                   if (const int i = nearest_point(n.point, points); i >= 0) chosen[static_cast<std::size_t>(i)] = true;
+                 },
+                 [&](const GroupRegion&) {
+                   fail(region, "a meshless body has no mesh groups; select by box, sphere, cylinder or halfspace");
+                 },
+                 [&](const IdsRegion& ids) {
+                   for (const int id : ids.ids) {
+                     if (id < 0 || static_cast<std::size_t>(id) >= points.size())
+                       fail(region,
+                            "no node " + std::to_string(id) + "; must be 0 to " + std::to_string(points.size() - 1));
+                     chosen[static_cast<std::size_t>(id)] = true;
+                   }
+                 },
+                 [&](const AllOfRegion& r) { combine(r.parts, true); },
+                 [&](const AnyOfRegion& r) { combine(r.parts, false); },
+                 [&](const NotRegion& r) {
+                   chosen = select(*r.part, points, on_boundary);
+                   chosen.flip();
+                 },
+             },
+             region.shape);
   return chosen;
 }
 
 bool contains(const Region& region, const Vec3d& X) {
-  const bool shape = !std::holds_alternative<NearestRegion>(region.shape) && !std::holds_alternative<IdsRegion>(region.shape);
+  const bool shape =
+      !std::holds_alternative<NearestRegion>(region.shape) && !std::holds_alternative<IdsRegion>(region.shape);
   if (!shape) fail(region, "nearest and ids select frames, not material; use a box, sphere, cylinder or halfspace");
   if (const auto* all = std::get_if<AllOfRegion>(&region.shape))
     return std::all_of(all->parts.begin(), all->parts.end(), [&](const Region& r) { return contains(r, X); });

@@ -1,5 +1,6 @@
 #include "app/results.hpp"
 
+#include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,6 @@
 namespace fascia::app {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using Clock = std::chrono::steady_clock;
 
@@ -94,7 +93,8 @@ void add_fields(io::VisualMesh& mesh, const std::vector<PointValue>& values, con
     }
     if (name == "strain") add("strain", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.strain); });
     if (name == "stress") add("stress", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.stress); });
-    if (name == "von_mises") add("von_mises", 1, [&](const PointValue& v, auto& out) { out.push_back(von_mises(v.stress)); });
+    if (name == "von_mises")
+      add("von_mises", 1, [&](const PointValue& v, auto& out) { out.push_back(von_mises(v.stress)); });
     if (name == "energy_density")
       add("energy_density", 1, [&](const PointValue& v, auto& out) { out.push_back(v.energy_density); });
   }
@@ -103,7 +103,10 @@ void add_fields(io::VisualMesh& mesh, const std::vector<PointValue>& values, con
 }  // namespace
 
 ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path directory, std::string name)
-    : simulation_(simulation), directory_(std::move(directory)), name_(std::move(name)), last_(simulation.probes.size()) {
+    : simulation_(simulation),
+      directory_(std::move(directory)),
+      name_(std::move(name)),
+      last_(simulation.probes.size()) {
   csv_ = "time";
   for (const ResolvedProbe& p : simulation.probes)
     for (const std::string& column : probe_columns(p)) csv_ += "," + column;
@@ -147,8 +150,8 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
   for (int i = 0; i < body.frame_count(); ++i) {
     const auto node = at(body.first_frame() + i);
     values.push_back({b.frames[at(i)], state.u[node], rotation_vector(state.D[node]),
-                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node], t.frames.strain[at(i)],
-                      t.frames.stress[at(i)], t.frames.energy_density[at(i)]});
+                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node],
+                      t.frames.strain[at(i)], t.frames.stress[at(i)], t.frames.energy_density[at(i)]});
   }
   for (std::size_t q = 0; q < body.points().size(); ++q) {
     PointValue v = at_field(body.points()[q].X, body.attach(body.points()[q]));

@@ -34,11 +34,21 @@ SolverSettings settings_of(const Solver& solver) {
              : solver.linear == LinearKind::cholesky ? LinearMethod::cholesky
                                                      : LinearMethod::automatic;
   switch (solver.preconditioner) {
-    case PreconditionerKind::automatic: s.preconditioner = Preconditioner::automatic; break;
-    case PreconditionerKind::none: s.preconditioner = Preconditioner::none; break;
-    case PreconditionerKind::jacobi: s.preconditioner = Preconditioner::jacobi; break;
-    case PreconditionerKind::block_jacobi: s.preconditioner = Preconditioner::block_jacobi; break;
-    case PreconditionerKind::cholesky: s.preconditioner = Preconditioner::cholesky; break;
+    case PreconditionerKind::automatic:
+      s.preconditioner = Preconditioner::automatic;
+      break;
+    case PreconditionerKind::none:
+      s.preconditioner = Preconditioner::none;
+      break;
+    case PreconditionerKind::jacobi:
+      s.preconditioner = Preconditioner::jacobi;
+      break;
+    case PreconditionerKind::block_jacobi:
+      s.preconditioner = Preconditioner::block_jacobi;
+      break;
+    case PreconditionerKind::cholesky:
+      s.preconditioner = Preconditioner::cholesky;
+      break;
   }
   s.cg.max_iterations = solver.linear_max_iterations;
   s.cg.tolerance = solver.linear_tolerance;
@@ -60,7 +70,8 @@ Simulation load(const RunOptions& options) {
 /// Saved steps of a dynamic run: every so many seconds or steps, 25 a simulated second otherwise, and the last.
 class SaveRule {
  public:
-  SaveRule(const Output& output, bool statics) : every_(output.every), every_steps_(output.every_steps), statics_(statics) {
+  SaveRule(const Output& output, bool statics)
+      : every_(output.every), every_steps_(output.every_steps), statics_(statics) {
     if (!statics && every_ == 0 && every_steps_ == 0) every_ = 0.04;
   }
   bool save(const StepInfo& step) {
@@ -122,7 +133,8 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     system.begin_step(state, 0);
     system.evaluate();
     save(0, state, true);
-    out.run = run_implicit_euler(system, state, factors, settings, {s.scene.solver.time_step, s.scene.solver.steps}, observe);
+    out.run =
+        run_implicit_euler(system, state, factors, settings, {s.scene.solver.time_step, s.scene.solver.steps}, observe);
   }
   progress.finish();
   out.times.solve = seconds_since(start) - output_seconds;
@@ -169,8 +181,10 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
     files.add_state(number, state);
     for (std::size_t i = 0; i < s.probes.size(); ++i) {
       const nlohmann::json value = probe_json(s.probes[i], files.last_values(i));
-      if (s.probes[i].probe->quantity == Quantity::frequency) frequencies[i].push_back(value);
-      else frequencies[i] = value;
+      if (s.probes[i].probe->quantity == Quantity::frequency)
+        frequencies[i].push_back(value);
+      else
+        frequencies[i] = value;
     }
   }
   out.probes = std::move(frequencies);
@@ -179,8 +193,9 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
 }
 
 void print_summary(const nlohmann::ordered_json& j, const std::filesystem::path& directory) {
-  fmt::print("{}: {} unknowns, {} steps, {} Newton iterations, {:.2f} s\n", j["status"].get<std::string>(), j["dofs"].get<int>(),
-             j["steps"].get<int>(), j["newton_iterations"].get<int>(), j["seconds"]["solve"].get<double>());
+  fmt::print("{}: {} unknowns, {} steps, {} Newton iterations, {:.2f} s\n", j["status"].get<std::string>(),
+             j["dofs"].get<int>(), j["steps"].get<int>(), j["newton_iterations"].get<int>(),
+             j["seconds"]["solve"].get<double>());
   for (const auto& [name, probe] : j["probes"].items())
     fmt::print("  {} ({}): {} {}\n", name, probe["quantity"].get<std::string>(), probe["value"].dump(),
                probe["unit"].get<std::string>());
@@ -203,15 +218,18 @@ int run_scene(const RunOptions& options) {
   ResultFiles files(s, directory.path(), name);
   const double setup = seconds_since(start);
   std::signal(SIGINT, on_interrupt);
-  Outcome out = s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files) : simulate(s, pool, files, options);
+  Outcome out =
+      s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files) : simulate(s, pool, files, options);
   out.times.setup += setup;
   files.finish();
   if (s.scene.output.picture) make_picture(s, directory.path(), name);
   const nlohmann::ordered_json j = summary(s, out.run, out.times, pool.size(), out.probes, out.stabilization);
   io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
   directory.commit();
-  if (options.json) fmt::print("{}\n", j.dump(2));
-  else if (!options.quiet) print_summary(j, s.scene.output.directory);
+  if (options.json)
+    fmt::print("{}\n", j.dump(2));
+  else if (!options.quiet)
+    print_summary(j, s.scene.output.directory);
   if (out.run.status != RunStatus::converged) fmt::print(stderr, "{}: {}\n", options.scene.string(), out.run.message);
   return exit_status(out.run.status);
 }
@@ -220,8 +238,8 @@ int check_scene(const RunOptions& options) {
   const Simulation s = load(options);
   for (const SimulatedBody& b : s.bodies)
     fmt::print("body {}: meshless, {} frames, {} integration points{}, {:.6g} m3, {:.6g} kg\n", b.name,
-               b.meshless.frame_count(), b.meshless.points().size(), b.meshless.selective() ? " (lambda at one point a cell)" : "",
-               b.meshless.volume(), b.meshless.mass());
+               b.meshless.frame_count(), b.meshless.points().size(),
+               b.meshless.selective() ? " (lambda at one point a cell)" : "", b.meshless.volume(), b.meshless.mass());
   const int free = s.model.dof_count() - s.model.constrained_dof_count();
   fmt::print("{} unknowns ({} prescribed), {} loads, {} probes\n", free, s.model.constrained_dof_count(),
              s.scene.loads.size(), s.probes.size());

@@ -4,6 +4,7 @@
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/schedule.hpp"
+#include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
@@ -17,8 +18,6 @@
 namespace fascia::app {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double available_memory() {
   std::ifstream info("/proc/meminfo");
@@ -47,8 +46,9 @@ std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body) {
       if (contains(use.where, X))
         return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
                                  use.material.stiffness_damping};
-    throw SceneError({{body.place, fmt::format("no material at ({}, {}, {}); let the last entry of material have no where",
-                                               X[0], X[1], X[2])}});
+    throw SceneError(
+        {{body.place,
+          fmt::format("no material at ({}, {}, {}); let the last entry of material have no where", X[0], X[1], X[2])}});
   };
 }
 
@@ -86,6 +86,10 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
     mass += s.model.inertia[at(i)].mass;
     center += s.model.rest_position[at(i)] * s.model.inertia[at(i)].mass + s.model.inertia[at(i)].first;
   }
+  const bool moves = squared_norm(body.initial.velocity) + squared_norm(body.initial.angular_velocity) > 0;
+  if (moves && s.scene.solver.kind != SolverKind::implicit_euler)
+    throw SceneError(
+        {{body.place, "initial motion needs a dynamic solver; remove initial, or use kind = \"implicit-euler\""}});
   const Vec3d about = body.initial.about.value_or(center * (1 / mass)), w = body.initial.angular_velocity;
   for (int i = first; i < first + count; ++i) {
     s.initial.v[at(i)] = body.initial.velocity + cross(w, s.model.rest_position[at(i)] - about);
@@ -133,7 +137,8 @@ std::vector<double> Simulation::factors(double time) const {
 }
 
 int body_index(const Simulation& s, const std::string& name) {
-  const auto found = std::find_if(s.bodies.begin(), s.bodies.end(), [&](const SimulatedBody& b) { return b.name == name; });
+  const auto found =
+      std::find_if(s.bodies.begin(), s.bodies.end(), [&](const SimulatedBody& b) { return b.name == name; });
   return static_cast<int>(found - s.bodies.begin());
 }
 
@@ -151,9 +156,10 @@ std::vector<int> select_nodes(const Simulation& s, int body, const Region& regio
         low[a] = std::min(low[a], p[a]);
         high[a] = std::max(high[a], p[a]);
       }
-    throw SceneError({{region.place, fmt::format("the region selects no frame of body \"{}\"; its frames lie between ({:.6g}, "
-                                                 "{:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
-                                                 b.name, low[0], low[1], low[2], high[0], high[1], high[2])}});
+    throw SceneError(
+        {{region.place, fmt::format("the region selects no frame of body \"{}\"; its frames lie between ({:.6g}, "
+                                    "{:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
+                                    b.name, low[0], low[1], low[2], high[0], high[1], high[2])}});
   }
   return nodes;
 }

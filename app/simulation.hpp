@@ -13,7 +13,7 @@ namespace fascia::app {
 struct SimulatedBody {
   std::string name;
   MeshlessBody meshless;
-  std::vector<Vec3d> frames;        ///< rest positions [m]
+  std::vector<Vec3d> frames;  ///< rest positions [m]
   std::vector<char> frame_on_boundary;
 };
 
@@ -27,10 +27,10 @@ struct ProbePoint {
 /// A probe with what it selects resolved.
 struct ResolvedProbe {
   const Probe* probe = nullptr;
-  int body = -1;                   ///< −1: the whole scene
+  int body = -1;  ///< −1: the whole scene
   std::vector<ProbePoint> points;
-  std::vector<int> nodes;          ///< of the model, by `where`
-  Vec3d about{};                   ///< for moments
+  std::vector<int> nodes;  ///< of the model, by `where`
+  Vec3d about{};           ///< of moments and angular momentum
 };
 
 /// A scene ready to run.
@@ -38,11 +38,11 @@ struct Simulation {
   Scene scene;
   Model model;
   std::vector<SimulatedBody> bodies;
-  std::vector<Schedule> schedules;   ///< index = DeadLoad::schedule and so on
+  std::vector<Schedule> schedules;  ///< index = DeadLoad::schedule and so on
   std::vector<ResolvedProbe> probes;
   State initial;
   std::vector<std::string> warnings;
-  int gravity_load = -1;             ///< index of gravity in Model::loads
+  int gravity_load = -1;  ///< index of gravity in Model::loads
 
   /// Factors of all schedules at a time.
   std::vector<double> factors(double time) const;
@@ -58,10 +58,10 @@ double estimated_memory(const Scene& scene);
 Simulation build_simulation(Scene scene);
 
 // Parts of build_simulation, in files of their own.
-void add_constraints(Simulation& simulation);  ///< constraints.cpp
-void add_loads(Simulation& simulation);        ///< loads.cpp
+void add_constraints(Simulation& simulation);      ///< constraints.cpp
+void add_loads(Simulation& simulation);            ///< loads.cpp
 void check_support(const Simulation& simulation);  ///< support.cpp
-void resolve_probes(Simulation& simulation);   ///< probe_setup.cpp
+void resolve_probes(Simulation& simulation);       ///< probe_setup.cpp
 int body_index(const Simulation& simulation, const std::string& name);
 /// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.
 /// @throws SceneError further away

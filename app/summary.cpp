@@ -24,9 +24,12 @@ std::size_t peak_memory_bytes() {
 
 const char* status_name(RunStatus status) {
   switch (status) {
-    case RunStatus::converged: return "converged";
-    case RunStatus::diverged: return "diverged";
-    default: return "not-converged";
+    case RunStatus::converged:
+      return "converged";
+    case RunStatus::diverged:
+      return "diverged";
+    default:
+      return "not-converged";
   }
 }
 
@@ -48,12 +51,9 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   j["threads"] = threads;
   j["bodies"] = nlohmann::ordered_json::object();
   for (const SimulatedBody& b : s.bodies) {
-    j["bodies"][b.name] = {{"model", "meshless"},
-                           {"frames", b.meshless.frame_count()},
-                           {"points", b.meshless.points().size()},
-                           {"cells", 0},
-                           {"volume", b.meshless.volume()},
-                           {"mass", b.meshless.mass()}};
+    j["bodies"][b.name] = {
+        {"model", "meshless"}, {"frames", b.meshless.frame_count()}, {"points", b.meshless.points().size()},
+        {"cells", 0},          {"volume", b.meshless.volume()},      {"mass", b.meshless.mass()}};
   }
   j["couplings"] = nlohmann::ordered_json::object();
   j["dofs"] = s.model.dof_count() - s.model.constrained_dof_count();
@@ -75,7 +75,8 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   j["probes"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
     const Probe& p = *s.probes[i].probe;
-    j["probes"][p.name] = {{"quantity", quantity_name(p.quantity)}, {"unit", probe_unit(p.quantity)}, {"value", probe_values[i]}};
+    j["probes"][p.name] = {
+        {"quantity", quantity_name(p.quantity)}, {"unit", probe_unit(p.quantity)}, {"value", probe_values[i]}};
   }
   return j;
 }

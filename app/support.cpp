@@ -1,8 +1,10 @@
 #include "app/scene/errors.hpp"
-#include "app/simulation.hpp"
 
-#include <Eigen/Dense>
+#include "app/simulation.hpp"
+#include "core/math/index.hpp"
+
 #include <fmt/format.h>
+#include <Eigen/Dense>
 
 #include <cmath>
 #include <numeric>
@@ -10,8 +12,6 @@
 namespace fascia::app {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using Motion6 = Eigen::Matrix<double, 6, 1>;
 
@@ -76,14 +76,17 @@ void check_support(const Simulation& s) {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(resistance);
       std::string free;
       for (int k = 0; k < 6; ++k)
-        if (eigen.eigenvalues()[k] < 1e-9) free += (free.empty() ? "" : ", ") + named_motion(eigen.eigenvectors().col(k));
+        if (eigen.eigenvalues()[k] < 1e-9)
+          free += (free.empty() ? "" : ", ") + named_motion(eigen.eigenvectors().col(k));
       if (free.empty()) continue;
       const bool whole = count == body.frame_count();
-      errors.push_back({s.scene.bodies[b].place,
-                        fmt::format("nothing holds {} in a static solve ({}); add a constraint, or use kind = \"implicit-euler\"",
-                                    whole ? "this body" : fmt::format("its part of {} frames around ({:.4g}, {:.4g}, {:.4g})",
-                                                                      count, center[0], center[1], center[2]),
-                                    free)});
+      errors.push_back(
+          {s.scene.bodies[b].place,
+           fmt::format("nothing holds {} in a static solve ({}); add a constraint, or use kind = \"implicit-euler\"",
+                       whole ? "this body"
+                             : fmt::format("its part of {} frames around ({:.4g}, {:.4g}, {:.4g})", count, center[0],
+                                           center[1], center[2]),
+                       free)});
     }
   }
   if (!errors.empty()) throw SceneError(std::move(errors));

@@ -19,7 +19,8 @@ class GmshParser {
     read_format();
     end_section("$EndMeshFormat");
     while (!input_.at_end()) read_section(std::string(input_.word()));
-    if (!has_elements_) throw InputError(name_ + ": the mesh has no $Elements section; the file is cut off or holds no mesh");
+    if (!has_elements_)
+      throw InputError(name_ + ": the mesh has no $Elements section; the file is cut off or holds no mesh");
     return builder_.finish(name_);
   }
 

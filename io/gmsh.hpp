@@ -9,8 +9,8 @@ namespace fascia::io {
 
 /// Reads a Gmsh mesh, 2.2 or 4.1, ASCII or binary.
 ///
-/// Linear cells of every kind; cells of higher order keep their corners, and the nodes between are left out. A cell that
-/// belongs to several physical groups appears once for each, as Gmsh 2.2 itself writes it.
+/// Linear cells of every kind; cells of higher order keep their corners, and the nodes between are left out. A cell
+/// that belongs to several physical groups appears once for each, as Gmsh 2.2 itself writes it.
 ///
 /// @param text  the whole file
 /// @param name  the file's name, for messages

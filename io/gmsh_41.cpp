@@ -44,7 +44,8 @@ std::vector<int> read_groups(GmshInput& input, GmshBuilder& builder, int dimensi
   const char* what = "the number of physical groups";
   const std::size_t count = input.checked_count(input.size(what), 2, 4, what);
   constexpr std::size_t most_groups = 64;  // cells are repeated for each
-  if (count > most_groups) input.fail("an entity has " + std::to_string(count) + " physical groups; must be at most 64");
+  if (count > most_groups)
+    input.fail("an entity has " + std::to_string(count) + " physical groups; must be at most 64");
   std::vector<int> groups;
   for (std::size_t g = 0; g < count; ++g) {
     const std::int64_t number = input.int32("a physical group");
@@ -59,7 +60,8 @@ std::vector<int> read_groups(GmshInput& input, GmshBuilder& builder, int dimensi
 
 GmshEntities read_entities_41(GmshInput& input, GmshBuilder& builder) {
   std::array<std::size_t, 4> counts{};
-  for (std::size_t& count : counts) count = input.checked_count(input.size("a number of entities"), 8, 36, "a number of entities");
+  for (std::size_t& count : counts)
+    count = input.checked_count(input.size("a number of entities"), 8, 36, "a number of entities");
   GmshEntities entities;
   for (int dimension = 0; dimension <= 3; ++dimension)
     for (std::size_t e = 0; e < counts[static_cast<std::size_t>(dimension)]; ++e) {

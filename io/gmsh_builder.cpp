@@ -18,34 +18,62 @@ constexpr std::int64_t largest_group = std::numeric_limits<int>::max();
 GmshElement gmsh_element(std::int64_t number, const GmshInput& input) {
   using enum CellType;
   switch (number) {
-    case 1: return {line, 2};
-    case 2: return {triangle, 3};
-    case 3: return {quadrilateral, 4};
-    case 4: return {tetrahedron, 4};
-    case 5: return {hexahedron, 8};
-    case 6: return {wedge, 6};
-    case 7: return {pyramid, 5};
-    case 8: return {line, 3};
-    case 9: return {triangle, 6};
-    case 10: return {quadrilateral, 9};
-    case 11: return {tetrahedron, 10};
-    case 12: return {hexahedron, 27};
-    case 13: return {wedge, 18};
-    case 14: return {pyramid, 14};
-    case 15: return {vertex, 1};
-    case 16: return {quadrilateral, 8};
-    case 17: return {hexahedron, 20};
-    case 18: return {wedge, 15};
-    case 19: return {pyramid, 13};
-    case 21: return {triangle, 10};
-    case 23: return {triangle, 15};
-    case 25: return {triangle, 21};
-    case 26: return {line, 4};
-    case 27: return {line, 5};
-    case 28: return {line, 6};
-    case 29: return {tetrahedron, 20};
-    case 30: return {tetrahedron, 35};
-    case 31: return {tetrahedron, 56};
+    case 1:
+      return {line, 2};
+    case 2:
+      return {triangle, 3};
+    case 3:
+      return {quadrilateral, 4};
+    case 4:
+      return {tetrahedron, 4};
+    case 5:
+      return {hexahedron, 8};
+    case 6:
+      return {wedge, 6};
+    case 7:
+      return {pyramid, 5};
+    case 8:
+      return {line, 3};
+    case 9:
+      return {triangle, 6};
+    case 10:
+      return {quadrilateral, 9};
+    case 11:
+      return {tetrahedron, 10};
+    case 12:
+      return {hexahedron, 27};
+    case 13:
+      return {wedge, 18};
+    case 14:
+      return {pyramid, 14};
+    case 15:
+      return {vertex, 1};
+    case 16:
+      return {quadrilateral, 8};
+    case 17:
+      return {hexahedron, 20};
+    case 18:
+      return {wedge, 15};
+    case 19:
+      return {pyramid, 13};
+    case 21:
+      return {triangle, 10};
+    case 23:
+      return {triangle, 15};
+    case 25:
+      return {triangle, 21};
+    case 26:
+      return {line, 4};
+    case 27:
+      return {line, 5};
+    case 28:
+      return {line, 6};
+    case 29:
+      return {tetrahedron, 20};
+    case 30:
+      return {tetrahedron, 35};
+    case 31:
+      return {tetrahedron, 56};
     default:
       input.fail("element type " + std::to_string(number) +
                  " is not supported; save linear or quadratic elements (gmsh -order 1)");

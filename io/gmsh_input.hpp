@@ -36,7 +36,8 @@ class GmshInput {
   /// Fails unless `count` records of at least so many bytes fit into what is left.
   /// @param text_bytes    least bytes of a record in an ASCII file
   /// @param binary_bytes  least bytes of a record in a binary file
-  std::size_t checked_count(std::int64_t count, std::size_t text_bytes, std::size_t binary_bytes, const char* what) const;
+  std::size_t checked_count(std::int64_t count, std::size_t text_bytes, std::size_t binary_bytes,
+                            const char* what) const;
 
   /// Throws InputError with the place of what was read last.
   [[noreturn]] void fail(const std::string& message) const;

@@ -16,13 +16,15 @@ namespace fascia::io {
 namespace {
 
 /// Statements that say nothing of the shape.
-constexpr std::array<std::string_view, 16> ignored{"vt", "vn", "vp", "g",  "o",      "s",      "l",     "p",
-                                                   "lod", "mg", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj",
-                                                   "trace_obj"};
+constexpr std::array<std::string_view, 16> ignored{"vt",     "vn",     "vp",         "g",        "o",      "s",
+                                                   "l",      "p",      "lod",        "mg",       "usemtl", "mtllib",
+                                                   "usemap", "maplib", "shadow_obj", "trace_obj"};
 
 class ObjParser {
  public:
-  ObjParser(std::string_view text, const std::string& name) : text_(text), name_(name) { points_->SetDataTypeToDouble(); }
+  ObjParser(std::string_view text, const std::string& name) : text_(text), name_(name) {
+    points_->SetDataTypeToDouble();
+  }
 
   vtkSmartPointer<vtkDataSet> parse() {
     std::vector<std::string_view> words;

@@ -84,13 +84,14 @@ fs::path resolved(const fs::path& target) {
   fs::path path = fs::weakly_canonical(fs::absolute(target), error);
   if (error) throw FileError(target.string() + ": cannot be used: " + error.message());
   if (!path.has_filename()) path = path.parent_path();
-  if (!path.has_filename()) throw FileError(target.string() + ": is no directory that could be replaced; choose another");
+  if (!path.has_filename())
+    throw FileError(target.string() + ": is no directory that could be replaced; choose another");
   return path;
 }
 
 }  // namespace
 
-ResultDirectory::ResultDirectory(fs::path target) : target_(resolved(target)) {
+ResultDirectory::ResultDirectory(const fs::path& target) : target_(resolved(target)) {
   check_replaceable(target_);
   make_directories(target_.parent_path());
   clean_up(target_);

@@ -39,8 +39,8 @@ void check_sizes(const VisualMesh& mesh) {
 
 void check_finite(const std::filesystem::path& file, const VisualMesh& mesh) {
   const auto fail = [&](const std::string& name, std::size_t point) {
-    throw InputError(fmt::format("{}: \"{}\" is not finite at point {}; the state that it shows is wrong", file.string(),
-                                 name, point));
+    throw InputError(fmt::format("{}: \"{}\" is not finite at point {}; the state that it shows is wrong",
+                                 file.string(), name, point));
   };
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
     for (const double x : mesh.points[p].v)
@@ -91,11 +91,20 @@ void add_fields(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
     }
   return result;
 }
@@ -125,7 +134,8 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
 
 void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& entries) {
   std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
+      "<Collection>\n";
   std::vector<std::string> bodies;
   for (const PvdEntry& entry : entries) {
     if (!std::isfinite(entry.time)) throw InputError(fmt::format("{}: a time is not finite", file.string()));

@@ -20,9 +20,9 @@ struct FieldArray {
 struct VisualMesh {
   std::vector<Vec3d> points;
   std::vector<std::array<int, 3>> triangles;
-  std::vector<int> vertices;            ///< point indices, one vertex cell each
+  std::vector<int> vertices;  ///< point indices, one vertex cell each
   std::vector<FieldArray> point_fields;
-  std::vector<int> part;                ///< cell array "part", one a cell (triangles, then vertices); may be empty
+  std::vector<int> part;  ///< cell array "part", one a cell (triangles, then vertices); may be empty
 };
 
 /// Writes an unstructured grid (XML, appended and compressed).
@@ -49,13 +49,13 @@ class ResultDirectory {
   /// Creates the hidden sibling.
   /// @throws FileError  where it cannot be made, or where `target` exists and is no result of this program
   ///                    (a directory that is empty or holds a summary.json with a "fascia" key is)
-  explicit ResultDirectory(std::filesystem::path target);
+  explicit ResultDirectory(const std::filesystem::path& target);
   ~ResultDirectory();
   ResultDirectory(const ResultDirectory&) = delete;
   ResultDirectory& operator=(const ResultDirectory&) = delete;
 
   const std::filesystem::path& path() const { return work_; }  ///< write here
-  void commit();                                               ///< @throws FileError; the older result is then still there
+  void commit();  ///< @throws FileError; the older result is then still there
 
  private:
   std::filesystem::path target_, work_;

@@ -44,37 +44,72 @@ constexpr VtkKind curved(CellType type, const std::array<int, 8>& order = usual)
 bool find_kind(int vtk_type, VtkKind& kind) {
   using enum CellType;
   switch (vtk_type) {
-    case VTK_VERTEX: kind = linear(vertex); return true;
-    case VTK_LINE: kind = linear(line); return true;
-    case VTK_TRIANGLE: kind = linear(triangle); return true;
-    case VTK_QUAD: kind = linear(quadrilateral); return true;
-    case VTK_PIXEL: kind = linear(quadrilateral, pixel_order); return true;
-    case VTK_TETRA: kind = linear(tetrahedron); return true;
-    case VTK_HEXAHEDRON: kind = linear(hexahedron); return true;
-    case VTK_VOXEL: kind = linear(hexahedron, pixel_order); return true;
-    case VTK_WEDGE: kind = linear(wedge, wedge_order); return true;
-    case VTK_PYRAMID: kind = linear(pyramid); return true;
+    case VTK_VERTEX:
+      kind = linear(vertex);
+      return true;
+    case VTK_LINE:
+      kind = linear(line);
+      return true;
+    case VTK_TRIANGLE:
+      kind = linear(triangle);
+      return true;
+    case VTK_QUAD:
+      kind = linear(quadrilateral);
+      return true;
+    case VTK_PIXEL:
+      kind = linear(quadrilateral, pixel_order);
+      return true;
+    case VTK_TETRA:
+      kind = linear(tetrahedron);
+      return true;
+    case VTK_HEXAHEDRON:
+      kind = linear(hexahedron);
+      return true;
+    case VTK_VOXEL:
+      kind = linear(hexahedron, pixel_order);
+      return true;
+    case VTK_WEDGE:
+      kind = linear(wedge, wedge_order);
+      return true;
+    case VTK_PYRAMID:
+      kind = linear(pyramid);
+      return true;
     case VTK_QUADRATIC_EDGE:
     case VTK_CUBIC_LINE:
-    case VTK_LAGRANGE_CURVE: kind = curved(line); return true;
+    case VTK_LAGRANGE_CURVE:
+      kind = curved(line);
+      return true;
     case VTK_QUADRATIC_TRIANGLE:
     case VTK_BIQUADRATIC_TRIANGLE:
-    case VTK_LAGRANGE_TRIANGLE: kind = curved(triangle); return true;
+    case VTK_LAGRANGE_TRIANGLE:
+      kind = curved(triangle);
+      return true;
     case VTK_QUADRATIC_QUAD:
     case VTK_BIQUADRATIC_QUAD:
     case VTK_QUADRATIC_LINEAR_QUAD:
-    case VTK_LAGRANGE_QUADRILATERAL: kind = curved(quadrilateral); return true;
+    case VTK_LAGRANGE_QUADRILATERAL:
+      kind = curved(quadrilateral);
+      return true;
     case VTK_QUADRATIC_TETRA:
-    case VTK_LAGRANGE_TETRAHEDRON: kind = curved(tetrahedron); return true;
+    case VTK_LAGRANGE_TETRAHEDRON:
+      kind = curved(tetrahedron);
+      return true;
     case VTK_QUADRATIC_HEXAHEDRON:
     case VTK_TRIQUADRATIC_HEXAHEDRON:
     case VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON:
-    case VTK_LAGRANGE_HEXAHEDRON: kind = curved(hexahedron); return true;
+    case VTK_LAGRANGE_HEXAHEDRON:
+      kind = curved(hexahedron);
+      return true;
     case VTK_QUADRATIC_WEDGE:
     case VTK_QUADRATIC_LINEAR_WEDGE:
-    case VTK_BIQUADRATIC_QUADRATIC_WEDGE: kind = curved(wedge, wedge_order); return true;
-    case VTK_QUADRATIC_PYRAMID: kind = curved(pyramid); return true;
-    default: return false;
+    case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
+      kind = curved(wedge, wedge_order);
+      return true;
+    case VTK_QUADRATIC_PYRAMID:
+      kind = curved(pyramid);
+      return true;
+    default:
+      return false;
   }
 }
 

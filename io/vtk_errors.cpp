@@ -15,7 +15,7 @@ class FirstErrorWindow : public vtkOutputWindow {
   static FirstErrorWindow* New();
   vtkTypeMacro(FirstErrorWindow, vtkOutputWindow)
 
-  void DisplayText(const char*) override {}
+      void DisplayText(const char*) override {}
   void DisplayErrorText(const char* text) override { keep(text); }
   void DisplayWarningText(const char* text) override { keep(text); }
   void DisplayGenericWarningText(const char* text) override { keep(text); }

@@ -27,10 +27,14 @@ namespace {
                    "; it may be cut off or of another format: write it again");
 }
 
+/// Triangles keep their own points: closed_surface() welds, and says so.
+void configure(vtkSTLReader& reader) { reader.MergingOff(); }
+void configure(vtkAlgorithm&) {}
+
 template <class Reader>
 vtkSmartPointer<vtkDataSet> read_with(const std::string& file) {
   const auto reader = vtkSmartPointer<Reader>::New();
-  if constexpr (requires { reader->MergingOff(); }) reader->MergingOff();  // closed_surface() welds, and says so
+  configure(*reader);
   reader->SetFileName(file.c_str());
   reader->Update();
   if (reader->GetErrorCode() != vtkErrorCode::NoError) return nullptr;

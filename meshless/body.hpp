@@ -13,11 +13,11 @@ namespace fascia {
 
 /// A solid in the axes of its frame grid, before its rigid placement.
 struct SolidDomain {
-  Vec3d min{}, max{};                          ///< bounding box [m]
-  double volume = 0;                           ///< [m³]
-  std::function<bool(const Vec3d&)> contains;  ///< empty: the whole box
+  Vec3d min{}, max{};                            ///< bounding box [m]
+  double volume = 0;                             ///< [m³]
+  std::function<bool(const Vec3d&)> contains;    ///< empty: the whole box
   std::function<double(const Vec3d&)> distance;  ///< from a point to the solid [m], 0 inside; empty: the box
-  TriangleMesh surface;                        ///< closed, outward; carried along for pictures and surface loads
+  TriangleMesh surface;                          ///< closed, outward; carried along for pictures and surface loads
 };
 
 /// Material of a point.
@@ -32,14 +32,14 @@ enum class IntegrationKind { automatic, full, selective };
 /// A meshless body on a regular grid of frames that spans the domain's bounding box.
 struct MeshlessSpec {
   SolidDomain domain;
-  std::array<int, 3> grid{2, 2, 2};                 ///< frames along x, y, z
-  std::optional<std::array<int, 3>> per_cell;       ///< Gauss points of a cell (trilinear weights)
+  std::array<int, 3> grid{2, 2, 2};            ///< frames along x, y, z
+  std::optional<std::array<int, 3>> per_cell;  ///< Gauss points of a cell (trilinear weights)
   GridWeightKind weights = GridWeightKind::trilinear;
-  bool half_blend = true;                           ///< the paper's rule otherwise
-  double drilling = 0.1;                            ///< γ/μ
+  bool half_blend = true;  ///< the paper's rule otherwise
+  double drilling = 0.1;   ///< γ/μ
   IntegrationKind integration = IntegrationKind::automatic;
-  double density = 0;                               ///< [kg/m³]
-  Mat3d rotation = Mat3d::identity();               ///< rigid placement: X = rotation x + translation
+  double density = 0;                  ///< [kg/m³]
+  Mat3d rotation = Mat3d::identity();  ///< rigid placement: X = rotation x + translation
   Vec3d translation{};
   std::function<PointMaterialSpec(const Vec3d&)> material;  ///< by rest position
 };
@@ -53,8 +53,8 @@ struct Attachment {
 
 /// A point with what it weighs, for results.
 struct BodyPoint {
-  Vec3d X{};           ///< [m]
-  double volume = 0;   ///< [m³]
+  Vec3d X{};          ///< [m]
+  double volume = 0;  ///< [m³]
   double lambda = 0, mu = 0;
   int cell = -1;                     ///< whose frames move it
   std::array<int, 3> tetrahedron{};  ///< linear weights: order of axes
@@ -73,7 +73,7 @@ class MeshlessBody {
   bool selective() const { return selective_; }
   double volume() const { return volume_; }
   double mass() const { return mass_; }
-  double size() const { return size_; }  ///< diagonal of the bounding box [m]
+  double size() const { return size_; }                     ///< diagonal of the bounding box [m]
   const TriangleMesh& surface() const { return surface_; }  ///< at rest, placed
   const std::vector<std::string>& messages() const { return messages_; }
   int first_group = 0, group_count = 0;  ///< in the model's point set; set by who closes the set
@@ -92,9 +92,9 @@ class MeshlessBody {
  private:
   struct Cell {
     std::array<int, 3> index{};
-    int owner = -1;       ///< the cell whose frames move its points
+    int owner = -1;  ///< the cell whose frames move its points
     int point_count = 0;
-    Vec3d center{};       ///< of its points, in grid axes
+    Vec3d center{};  ///< of its points, in grid axes
   };
   struct Sample {
     Vec3d x{};  ///< grid axes
@@ -103,10 +103,18 @@ class MeshlessBody {
     std::array<int, 3> tetrahedron{};  ///< linear weights: order of axes
   };
 
+  struct CellShare {
+    std::vector<int> frame;
+    std::vector<double> w;
+  };
+
   std::vector<Sample> sample(const MeshlessSpec& spec) const;
   void find_owners(const std::vector<Sample>& samples, int full_count);
+  int nearest_owner(int cell) const;
   void number_frames(const std::vector<Sample>& samples, Model& model);
   void add_points(const MeshlessSpec& spec, const std::vector<Sample>& samples, PointSetBuilder& points);
+  CellShare cell_share(const Sample& s) const;
+  std::vector<double> frame_support(const std::vector<Sample>& samples) const;
   void add_inertia(const MeshlessSpec& spec, const std::vector<Sample>& samples, Model& model);
   Attachment attach_local(const Vec3d& x, int cell, const std::array<int, 3>* tetrahedron) const;
   Vec3d cell_coordinates(const Vec3d& x, const Cell& cell) const;

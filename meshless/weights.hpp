@@ -12,9 +12,9 @@ namespace fascia {
 
 template <int N>
 struct CellWeights {
-  std::array<int, N> corner{};         ///< ascending
-  std::array<double, N> w{};           ///< sum 1
-  std::array<Vec3d, N> gradient{};     ///< with respect to the cell's coordinates, sum 0
+  std::array<int, N> corner{};      ///< ascending
+  std::array<double, N> w{};        ///< sum 1
+  std::array<Vec3d, N> gradient{};  ///< with respect to the cell's coordinates, sum 0
 };
 
 /// What a builder needs of a weight function on a grid.

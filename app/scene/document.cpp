@@ -17,11 +17,13 @@ Position position_of(const toml::source_region& region) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), false};
 }
 
-/// Finds out how deep a text nests without parsing it: whoever walks the parsed tables recurses, the parser's own
-/// clean-up too. Brackets and the parts of dotted keys count.
-class NestingScan {
+/// Refuses, without parsing, what the parser does not bear: tables nested so deep that walking them overflows the stack
+/// (brackets and the parts of dotted keys count), and bytes beyond ASCII outside texts and comments.
+class Scan {
  public:
-  explicit NestingScan(std::string_view text) : text_(text) {}
+  explicit Scan(std::string_view text) : text_(text) {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = line_start_ = 3;
+  }
 
   /// @throws SyntaxError  where the text goes too deep
   void check() {
@@ -50,9 +52,12 @@ class NestingScan {
       ++line_;
       line_start_ = at_ + 1;
     }
-    if (depth_ + dots_ > max_nesting)
-      throw SyntaxError{{line_, static_cast<int>(at_ - line_start_) + 1, false},
-                        fmt::format("nested more than {} levels deep", max_nesting)};
+    if (depth_ + dots_ > max_nesting) fail(fmt::format("nested more than {} levels deep", max_nesting));
+    if (static_cast<unsigned char>(c) >= 0x80) fail("a character beyond ASCII outside quotes");
+  }
+
+  [[noreturn]] void fail(std::string message) const {
+    throw SyntaxError{{line_, static_cast<int>(at_ - line_start_) + 1, false}, std::move(message)};
   }
 
   void open() {
@@ -146,7 +151,7 @@ const Value* Value::find(std::string_view key) const {
 Value* Value::find(std::string_view key) { return const_cast<Value*>(std::as_const(*this).find(key)); }
 
 Value parse_toml(std::string_view text) {
-  NestingScan(text).check();
+  Scan(text).check();
   try {
     return convert(toml::parse(text));
   } catch (const toml::parse_error& error) {

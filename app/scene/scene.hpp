@@ -10,7 +10,8 @@
 #include <variant>
 #include <vector>
 
-/// The scene as the user wrote it, checked key by key, in SI units. The parser makes it; the builder turns it into a model.
+/// The scene as the user wrote it, checked key by key, in SI units. The parser makes it; the builder turns it into a
+/// model.
 namespace fascia::app {
 
 /// Where in a scene file (or on the command line) something was said.
@@ -24,16 +25,38 @@ struct Place {
 struct Region;
 struct AllRegion {};
 struct BoundaryRegion {};
-struct BoxRegion { Vec3d min, max; };
-struct SphereRegion { Vec3d center; double radius = 0; };
-struct CylinderRegion { Vec3d from, to; double radius = 0; };
-struct HalfspaceRegion { Vec3d point, normal; };
-struct NearestRegion { Vec3d point; };
-struct GroupRegion { std::string name; };
-struct IdsRegion { std::vector<int> ids; };
-struct AllOfRegion { std::vector<Region> parts; };
-struct AnyOfRegion { std::vector<Region> parts; };
-struct NotRegion { std::shared_ptr<const Region> part; };
+struct BoxRegion {
+  Vec3d min, max;
+};
+struct SphereRegion {
+  Vec3d center;
+  double radius = 0;
+};
+struct CylinderRegion {
+  Vec3d from, to;
+  double radius = 0;
+};
+struct HalfspaceRegion {
+  Vec3d point, normal;
+};
+struct NearestRegion {
+  Vec3d point;
+};
+struct GroupRegion {
+  std::string name;
+};
+struct IdsRegion {
+  std::vector<int> ids;
+};
+struct AllOfRegion {
+  std::vector<Region> parts;
+};
+struct AnyOfRegion {
+  std::vector<Region> parts;
+};
+struct NotRegion {
+  std::shared_ptr<const Region> part;
+};
 
 struct Region {
   Place place;
@@ -45,8 +68,12 @@ struct Region {
 // ------------------------------------------------------------------------------------------------ time
 struct LinearProfile {};
 struct SmoothProfile {};
-struct TableProfile { std::vector<std::array<double, 2>> points; };  ///< (time [s], factor [-]), times ascending
-struct SineProfile { double period = 1; };
+struct TableProfile {
+  std::vector<std::array<double, 2>> points;
+};  ///< (time [s], factor [-]), times ascending
+struct SineProfile {
+  double period = 1;
+};
 
 /// A factor over time: `over` [s] (0: at once) and `profile`.
 struct Schedule {
@@ -58,21 +85,30 @@ struct Schedule {
 // ------------------------------------------------------------------------------------------------ bodies
 struct Material {
   Place place;
-  std::string name;  ///< empty for an inline table
-  double lambda = 0, mu = 0;                            ///< [Pa]
-  double mass_damping = 0, stiffness_damping = 0;       ///< [1/s], [s]
+  std::string name;                                ///< empty for an inline table
+  double lambda = 0, mu = 0;                       ///< [Pa]
+  double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
   double poisson() const { return lambda / (2 * (lambda + mu)); }
   double young() const { return mu * (3 * lambda + 2 * mu) / (lambda + mu); }
 };
 struct MaterialUse {
-  Region where;      ///< AllRegion where none was given
+  Region where;  ///< AllRegion where none was given
   Material material;
 };
 
-struct BoxDomain { Vec3d min, max; };
-struct CylinderDomain { Vec3d from, to; double radius = 0; };
-struct EllipsoidDomain { Vec3d center, radii; };
-struct FileDomain { std::filesystem::path path; };  ///< already resolved against the scene's folder
+struct BoxDomain {
+  Vec3d min, max;
+};
+struct CylinderDomain {
+  Vec3d from, to;
+  double radius = 0;
+};
+struct EllipsoidDomain {
+  Vec3d center, radii;
+};
+struct FileDomain {
+  std::filesystem::path path;
+};  ///< already resolved against the scene's folder
 using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain>;
 
 /// x → R(axis, angle) (scale x) + translate
@@ -98,7 +134,7 @@ struct Body {
   Domain domain;
   Place domain_place;
   Transform transform;
-  std::vector<MaterialUse> materials;  ///< first match wins
+  std::vector<MaterialUse> materials;   ///< first match wins
   std::optional<double> mass, density;  ///< exactly one [kg], [kg/m³]
   std::array<int, 3> grid{};
   Place grid_place;
@@ -123,9 +159,9 @@ struct Constraint {
   Place place;
   std::string body;
   Region where;
-  std::array<bool, 6> fixed{};   ///< x y z rx ry rz along `axes`
+  std::array<bool, 6> fixed{};     ///< x y z rx ry rz along `axes`
   Mat3d axes = Mat3d::identity();  ///< rows: orthonormal directions
-  std::optional<Motion> motion;  ///< none: held where it is
+  std::optional<Motion> motion;    ///< none: held where it is
   Schedule schedule;
 };
 
@@ -172,9 +208,23 @@ struct Solver {
 
 // ------------------------------------------------------------------------------------------------ results
 enum class Quantity {
-  displacement, position, rotation, velocity, strain, stress,  // at points
-  force, moment,                                               // on constrained or loaded nodes
-  volume, mass, energy, kinetic_energy, total_energy, momentum, angular_momentum, max_displacement, mean_displacement,
+  displacement,
+  position,
+  rotation,
+  velocity,
+  strain,
+  stress,  // at points
+  force,
+  moment,  // on constrained or loaded nodes
+  volume,
+  mass,
+  energy,
+  kinetic_energy,
+  total_energy,
+  momentum,
+  angular_momentum,
+  max_displacement,
+  mean_displacement,
   frequency
 };
 

@@ -17,7 +17,7 @@ Shape of_type(Type type) {
   return shape;
 }
 
-std::string with_range(std::string noun, const Range& range) {
+std::string with_range(const std::string& noun, const Range& range) {
   return range.is_everything() ? noun : noun + " " + range.text();
 }
 
@@ -67,8 +67,8 @@ bool Range::contains(double value) const {
 bool Range::is_everything() const { return std::isinf(min) && std::isinf(max); }
 
 std::string Range::text() const {
-  const std::string low = fmt::format("{} {}", min_excluded ? "above" : "at least", min);
-  const std::string high = fmt::format("{} {}", max_excluded ? "below" : "at most", max);
+  std::string low = fmt::format("{} {}", min_excluded ? "above" : "at least", min);
+  std::string high = fmt::format("{} {}", max_excluded ? "below" : "at most", max);
   if (is_everything()) return "";
   if (std::isinf(max)) return low;
   if (std::isinf(min)) return high;

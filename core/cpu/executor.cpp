@@ -1,6 +1,7 @@
 #include "core/cpu/executor.hpp"
 
 #include "core/cpu/group_kernels.hpp"
+#include "core/math/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,6 @@ using namespace kernels;
 namespace {
 
 constexpr int kGroupGrain = 32, kNodeGrain = 256;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Sum of a frame's slots in ascending order: force (3) and Σ v (P Bᵀ + w Y) (9).
 struct NodeSum {
@@ -61,7 +60,8 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
 }
 
 template <bool Drilling>
-void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& history, double motion, int begin, int end) {
+void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& history, double motion, int begin,
+                                     int end) {
   for (int group = begin; group < end; ++group) {
     const auto nodes = set_.nodes(group);
     const int first_slot = set_.slot_begin[at(group)];
@@ -103,8 +103,10 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
                                      std::span<double> gradient) {
   const double motion = largest_motion(state, length);
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
-    if (drilling_) gradient_of_groups<true>(state, history, motion, begin, end);
-    else gradient_of_groups<false>(state, history, motion, begin, end);
+    if (drilling_)
+      gradient_of_groups<true>(state, history, motion, begin, end);
+    else
+      gradient_of_groups<false>(state, history, motion, begin, end);
   });
   pool_.for_ranges(set_.node_count, kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {

@@ -75,7 +75,7 @@ class CpuExecutor {
   bool drilling_ = false;
   AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
   std::vector<double> group_elastic_, group_drilling_, group_viscous_, group_rounding_;
-  std::vector<Mat3d> node_L_;        ///< L of the last gradient
+  std::vector<Mat3d> node_L_;         ///< L of the last gradient
   AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), [dr]× Q (9)
 };
 

@@ -1,5 +1,6 @@
 #include "core/cpu/executor.hpp"
 #include "core/cpu/group_kernels.hpp"
+#include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 
 #include <array>
@@ -9,8 +10,6 @@ namespace fascia {
 using namespace kernels;
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 PointMotion<Lanes> motion_of(const Linearization& lin, int group, int b) {
   const double* point = lin.points.data() + at(group) * 24 * kGroupSize;
@@ -44,8 +43,8 @@ void CpuExecutor::multiply_groups(const Linearization& lin, int begin, int end) 
                            broadcast(stored_matrix(d + 3)), direction);
       }
       const PointMaterial<Lanes> m = material(set_, group, b, lin.inverse_step);
-      const auto r = point_stress_differential<Drilling>(motion_of(lin, group, b), stress_of(lin, group, b), m, lin.tangent,
-                                                         direction.H, direction.Dbar);
+      const auto r = point_stress_differential<Drilling>(motion_of(lin, group, b), stress_of(lin, group, b), m,
+                                                         lin.tangent, direction.H, direction.Dbar);
       dP[b] = r.dP * m.volume;
       dY[b] = r.dY * m.volume;
     }
@@ -69,8 +68,10 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
     }
   });
   pool_.for_ranges(set_.group_count(), 32, [&](int begin, int end) {
-    if (drilling_) multiply_groups<true>(lin, begin, end);
-    else multiply_groups<false>(lin, begin, end);
+    if (drilling_)
+      multiply_groups<true>(lin, begin, end);
+    else
+      multiply_groups<false>(lin, begin, end);
   });
   pool_.for_ranges(set_.node_count, 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
@@ -142,8 +143,10 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out) {
     const int first = set_.color_begin[c];
     pool_.for_ranges(set_.color_begin[c + 1] - first, 8, [&](int begin, int end) {
       for (int i = first + begin; i < first + end; ++i) {
-        if (drilling_) assemble_group<true>(lin, set_.color_group[at(i)], matrix_out);
-        else assemble_group<false>(lin, set_.color_group[at(i)], matrix_out);
+        if (drilling_)
+          assemble_group<true>(lin, set_.color_group[at(i)], matrix_out);
+        else
+          assemble_group<false>(lin, set_.color_group[at(i)], matrix_out);
       }
     });
   }

@@ -8,7 +8,9 @@ namespace fascia::kernels {
 
 inline constexpr int kBatches = kGroupSize / kBatchWidth;
 
-inline Lanes row(const double* base, int r, int batch) { return Lanes::load(base + r * kGroupSize + batch * kBatchWidth); }
+inline Lanes row(const double* base, int r, int batch) {
+  return Lanes::load(base + r * kGroupSize + batch * kBatchWidth);
+}
 
 inline Mat3<Lanes> matrix(const double* base, int first_row, int batch) {
   Mat3<Lanes> m;
@@ -62,7 +64,8 @@ inline Mat3<Lanes> broadcast(const Mat3d& a) {
 
 /// H += u gᵀ + D B, Dbar += w D of one slot; u and D may be a direction (dx, [dr]× Q).
 template <bool Drilling>
-inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const Mat3<Lanes>& D, PointMotion<Lanes>& x) {
+inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const Mat3<Lanes>& D,
+                     PointMotion<Lanes>& x) {
   const Lanes w = row(shape, 0, batch);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -75,7 +78,8 @@ inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const
 
 /// Σ over lanes of v P g (3) and v (P Bᵀ + w Y) (9) of one slot; P and Y already carry v.
 template <bool Drilling>
-inline void slot_sums(const double* shape, const Mat3<Lanes> (&P)[kBatches], const Mat3<Lanes> (&Y)[kBatches], double* out) {
+inline void slot_sums(const double* shape, const Mat3<Lanes> (&P)[kBatches], const Mat3<Lanes> (&Y)[kBatches],
+                      double* out) {
   for (int i = 0; i < 3; ++i) {
     Lanes force;
     for (int b = 0; b < kBatches; ++b)

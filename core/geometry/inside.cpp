@@ -37,11 +37,11 @@ void InsideTest::for_each_bin(const std::array<int, 3>& triangle, Act&& act) con
       to[a] = std::max(to[a], b);
     }
   for (int j = from[0]; j <= to[0]; ++j)
-    for (int k = from[1]; k <= to[1]; ++k) act(static_cast<std::size_t>(j * bins_[1] + k));
+    for (int k = from[1]; k <= to[1]; ++k) act(bin_number(j, k));
 }
 
 void InsideTest::fill_bins() {
-  constexpr double most_bins = 1024;  // along an axis
+  constexpr double most_bins = 1024;        // along an axis
   constexpr std::size_t most_members = 32;  // a triangle, on average: slivers across many bins make the bins wider
   int count = static_cast<int>(std::clamp(std::sqrt(static_cast<double>(mesh_.triangles.size())), 1.0, most_bins));
   for (;; count /= 2) {
@@ -92,7 +92,7 @@ int InsideTest::winding_number(const Vec3d& x) const {
   if (mesh_.triangles.empty() || !(x[0] < high_[0])) return 0;
   for (int axis = 1; axis < 3; ++axis)
     if (!(x[axis] >= low_[axis] && x[axis] <= high_[axis])) return 0;
-  const auto b = static_cast<std::size_t>(bin(1, x[1]) * bins_[1] + bin(2, x[2]));
+  const std::size_t b = bin_number(bin(1, x[1]), bin(2, x[2]));
   int sum = 0;
   for (std::size_t m = begin_[b]; m < begin_[b + 1]; ++m)
     sum += crossing(mesh_.triangles[static_cast<std::size_t>(members_[m])], x);

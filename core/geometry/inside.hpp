@@ -26,6 +26,9 @@ class InsideTest {
 
  private:
   int bin(int axis, double coordinate) const;
+  std::size_t bin_number(int j, int k) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(bins_[1]) + static_cast<std::size_t>(k);
+  }
   template <class Act>
   void for_each_bin(const std::array<int, 3>& triangle, Act&& act) const;
   void fill_bins();
@@ -34,9 +37,9 @@ class InsideTest {
   TriangleMesh mesh_;
   TriangleTree tree_;
   Vec3d low_{}, high_{};
-  std::array<int, 2> bins_{1, 1};     ///< along y, z
-  std::vector<std::size_t> begin_;    ///< of each bin in members_
-  std::vector<int> members_;          ///< triangles by bin
+  std::array<int, 2> bins_{1, 1};   ///< along y, z
+  std::vector<std::size_t> begin_;  ///< of each bin in members_
+  std::vector<int> members_;        ///< triangles by bin
 };
 
 }  // namespace fascia

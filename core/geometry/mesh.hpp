@@ -11,7 +11,8 @@ namespace fascia {
 
 enum class CellType { vertex, line, triangle, quadrilateral, tetrahedron, hexahedron, wedge, pyramid };
 
-/// Number of nodes of a cell (linear cells; corner nodes of quadratic ones are kept, mid-side nodes dropped by readers).
+/// Number of nodes of a cell (linear cells; corner nodes of quadratic ones are kept, mid-side nodes dropped by
+/// readers).
 constexpr int node_count(CellType type) {
   constexpr std::array<int, 8> counts{1, 2, 3, 4, 4, 8, 6, 5};
   return counts[static_cast<std::size_t>(type)];

@@ -118,7 +118,7 @@ TriangleMesh ellipsoid_surface(const Vec3d& center, const Vec3d& radii, int n) {
       for (const int sz : {-1, 1}) {
         const auto at = [&](int i, int j) { return LatticePoint{sx * i, sy * j, sz * (n - i - j)}; };
         const auto add = [&](const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
-          sx * sy * sz > 0 ? mesh.add(a, b, c) : mesh.add(a, c, b);
+          sx* sy* sz > 0 ? mesh.add(a, b, c) : mesh.add(a, c, b);
         };
         for (int i = 0; i < n; ++i)
           for (int j = 0; i + j < n; ++j) {

@@ -11,8 +11,8 @@ TriangleMesh box_surface(const Vec3d& min, const Vec3d& max, int nx, int ny, int
 /// A cylinder with flat caps; vertices lie on the circle. `from` and `to` must differ.
 TriangleMesh cylinder_surface(const Vec3d& from, const Vec3d& to, double radius, int n_around, int n_along);
 
-/// An ellipsoid along the axes: an octahedron with n edges from pole to pole of each axis, its vertices on the ellipsoid
-/// (the six ends of the axes among them).
+/// An ellipsoid along the axes: an octahedron with n edges from pole to pole of each axis, its vertices on the
+/// ellipsoid (the six ends of the axes among them).
 TriangleMesh ellipsoid_surface(const Vec3d& center, const Vec3d& radii, int n);
 
 }  // namespace fascia

@@ -12,10 +12,10 @@ namespace fascia {
 namespace surface_parts {
 namespace {
 
-constexpr double weld_tolerance = 1e-9;       // of the diagonal
-constexpr double largest_coordinate = 1e60;   // volumes stay finite
-constexpr double smallest_diagonal = 1e-60;   // volumes stay normal numbers
-constexpr double smallest_volume = 1e-12;     // of the cube of the diagonal
+constexpr double weld_tolerance = 1e-9;      // of the diagonal
+constexpr double largest_coordinate = 1e60;  // volumes stay finite
+constexpr double smallest_diagonal = 1e-60;  // volumes stay normal numbers
+constexpr double smallest_volume = 1e-12;    // of the cube of the diagonal
 
 bool is_volume(CellType type) { return type >= CellType::tetrahedron; }
 bool is_surface(CellType type) { return type == CellType::triangle || type == CellType::quadrilateral; }
@@ -62,8 +62,9 @@ void report_unused(const Mesh& mesh, std::vector<std::string>& messages) {
   const auto unused = std::count(number.begin(), number.end(), -1);
   if (unused == 0) return;
   const auto first = static_cast<std::size_t>(std::find(number.begin(), number.end(), -1) - number.begin());
-  messages.push_back(mesh.file + ": left out " + std::to_string(unused) + " points that no cell uses (the first: node " +
-                     std::to_string(mesh.point_file_number[first]) + ")");
+  messages.push_back(mesh.file + ": left out " + std::to_string(unused) +
+                     " points that no cell uses (the first: node " + std::to_string(mesh.point_file_number[first]) +
+                     ")");
 }
 
 void weld(Solid& solid, std::vector<std::string>& messages) {
@@ -152,8 +153,7 @@ ClosedSurface closed_surface(const Mesh& mesh) {
 
   report_unused(mesh, result.messages);
   const Solid solid = make_solid(mesh, volume_mesh ? is_volume : is_surface, result.messages);
-  std::vector<Triangle> triangles =
-      volume_mesh ? boundary_of_cells(solid, result.messages) : triangles_of_cells(solid);
+  std::vector<Triangle> triangles = volume_mesh ? boundary_of_cells(solid, result.messages) : triangles_of_cells(solid);
   check_closed(solid, triangles);
   if (!volume_mesh) orient_outward(solid, triangles, result.messages);
 

@@ -7,12 +7,14 @@ namespace fascia {
 /// The closed outward-oriented surface of a solid, from a volume mesh (faces that one cell has) or a surface mesh.
 struct ClosedSurface {
   TriangleMesh mesh;
-  double volume = 0;                   ///< [m³] > 0
-  std::vector<std::string> messages;   ///< what was repaired: turned over, welded
+  double volume = 0;                  ///< [m³] > 0
+  std::vector<std::string> messages;  ///< what was repaired: turned over, welded
 };
 
-/// Coincident vertices are welded (within 1e-9 of the bounding box's diagonal), unused ones dropped, quadrilaterals split.
-/// @throws InputError  open, non-manifold, flat or inverted cells, mixed orientation, NaN; with the file and its own cell
+/// Coincident vertices are welded (within 1e-9 of the bounding box's diagonal), unused ones dropped, quadrilaterals
+/// split.
+/// @throws InputError  open, non-manifold, flat or inverted cells, mixed orientation, NaN; with the file and its own
+/// cell
 ///                     or node number
 ClosedSurface closed_surface(const Mesh& mesh);
 

@@ -24,11 +24,16 @@ std::span<const LocalFace> faces_of(CellType type) {
   static constexpr std::array<LocalFace, 5> pyramid{
       {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}};
   switch (type) {
-    case CellType::tetrahedron: return tetrahedron;
-    case CellType::hexahedron: return hexahedron;
-    case CellType::wedge: return wedge;
-    case CellType::pyramid: return pyramid;
-    default: return {};
+    case CellType::tetrahedron:
+      return tetrahedron;
+    case CellType::hexahedron:
+      return hexahedron;
+    case CellType::wedge:
+      return wedge;
+    case CellType::pyramid:
+      return pyramid;
+    default:
+      return {};
   }
 }
 

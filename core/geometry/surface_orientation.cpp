@@ -58,8 +58,8 @@ struct Neighbours {
   }
 };
 
-/// Components of a surface whose edges have two triangles each, and which triangles must turn to agree with the first of
-/// their component.
+/// Components of a surface whose edges have two triangles each, and which triangles must turn to agree with the first
+/// of their component.
 struct Components {
   std::vector<int> of;     ///< component of each triangle
   std::vector<bool> turn;  ///< of each triangle
@@ -114,9 +114,9 @@ struct Components {
     first = std::min(first, t);
     ++count;
   }
-  fail(solid, "triangle " + std::to_string(triangles[first].file_number) + " is oriented against its neighbours, as are " +
-                  std::to_string(count - 1) + " more of " + std::to_string(triangles.size()) +
-                  " triangles; orient all of them outward");
+  fail(solid, "triangle " + std::to_string(triangles[first].file_number) +
+                  " is oriented against its neighbours, as are " + std::to_string(count - 1) + " more of " +
+                  std::to_string(triangles.size()) + " triangles; orient all of them outward");
 }
 
 /// One closed component: whether it is outward, and what a test of points needs.
@@ -202,8 +202,8 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
   if (wrong < components.size())
     fail(solid, "the closed part with triangle " + std::to_string(components[first_wrong].triangles[0].file_number) +
                     " is oriented against the others (" + std::to_string(wrong) + " of " +
-                    std::to_string(components.size()) + " parts); orient outer surfaces outward and those of cavities " +
-                    "inward");
+                    std::to_string(components.size()) +
+                    " parts); orient outer surfaces outward and those of cavities " + "inward");
   for (Triangle& t : triangles) std::swap(t.nodes[1], t.nodes[2]);
   messages.push_back(solid.file + ": all " + std::to_string(triangles.size()) + " triangles face inward; turned over");
 }

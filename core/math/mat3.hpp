@@ -117,6 +117,13 @@ FASCIA_HD constexpr T contract(const Mat3<T>& a, const Mat3<T>& b) {
   return dot(a.row(0), b.row(0)) + dot(a.row(1), b.row(1)) + dot(a.row(2), b.row(2));
 }
 
+/// Frobenius norm.
+template <class T>
+FASCIA_HD T norm(const Mat3<T>& a) {
+  using std::sqrt;
+  return sqrt(contract(a, a));
+}
+
 template <class T>
 FASCIA_HD constexpr T determinant(const Mat3<T>& a) {
   return dot(a.row(0), cross(a.row(1), a.row(2)));

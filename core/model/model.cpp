@@ -18,7 +18,8 @@ int Model::constrained_dof_count() const {
 
 bool Model::loads_are_conservative() const {
   const auto has_torque = [](const DeadLoad& load) {
-    return std::any_of(load.nodes.begin(), load.nodes.end(), [](const NodeLoad& n) { return squared_norm(n.torque) > 0; });
+    return std::any_of(load.nodes.begin(), load.nodes.end(),
+                       [](const NodeLoad& n) { return squared_norm(n.torque) > 0; });
   };
   return followers.empty() && std::none_of(loads.begin(), loads.end(), has_torque);
 }

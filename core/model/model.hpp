@@ -10,9 +10,9 @@ namespace fascia {
 
 /// Block-lumped inertia of a frame about its origin, in rest axes; the 6×6 block follows from it and from Q.
 struct FrameInertia {
-  double mass = 0;     ///< m = Σ m_q w [kg]
-  Vec3d first{};       ///< c = Σ m_q w d, d = X_q − X_i [kg m]
-  Mat3d second{};      ///< S = Σ m_q w d dᵀ [kg m²]
+  double mass = 0;  ///< m = Σ m_q w [kg]
+  Vec3d first{};    ///< c = Σ m_q w d, d = X_q − X_i [kg m]
+  Mat3d second{};   ///< S = Σ m_q w d dᵀ [kg m²]
 
   FrameInertia& operator+=(const FrameInertia& o) {
     mass += o.mass;
@@ -66,8 +66,8 @@ struct PrescribedMotion {
 
 /// Everything about a scene that does not move.
 struct Model {
-  std::vector<Vec3d> rest_position;       ///< of the frames [m]
-  std::vector<Mat3d> rest_orientation;    ///< of the frames
+  std::vector<Vec3d> rest_position;     ///< of the frames [m]
+  std::vector<Mat3d> rest_orientation;  ///< of the frames
   std::vector<FrameInertia> inertia;
   std::vector<FrameInertia> mass_damping;  ///< inertia weighted with α [.../s]; empty where nothing is damped
   PointSet points;
@@ -86,9 +86,9 @@ struct Model {
 
 /// Where everything is, and how fast. Rotations as D = Q − I, with Q = R R_restᵀ.
 struct State {
-  std::vector<Vec3d> u;  ///< displacement [m]
-  std::vector<Mat3d> D;  ///< Q − I
-  std::vector<Vec3d> v;     ///< du/dt [m/s]
+  std::vector<Vec3d> u;      ///< displacement [m]
+  std::vector<Mat3d> D;      ///< Q − I
+  std::vector<Vec3d> v;      ///< du/dt [m/s]
   std::vector<Mat3d> Q_dot;  ///< dQ/dt [1/s]
   double time = 0;           ///< [s]; in statics the load factor
 

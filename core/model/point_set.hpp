@@ -25,11 +25,11 @@ struct Influence {
 
 /// An integration point as a builder describes it.
 struct PointSample {
-  Vec3d X{};                        ///< rest position [m]
-  double volume = 0;                ///< [m³]
-  double lambda = 0, mu = 0;        ///< Lamé [Pa]
-  double drilling = 0;              ///< γ [Pa]
-  double stiffness_damping = 0;     ///< β [s]
+  Vec3d X{};                          ///< rest position [m]
+  double volume = 0;                  ///< [m³]
+  double lambda = 0, mu = 0;          ///< Lamé [Pa]
+  double drilling = 0;                ///< γ [Pa]
+  double stiffness_damping = 0;       ///< β [s]
   std::vector<Influence> influences;  ///< one for each node of its group
 };
 
@@ -41,7 +41,7 @@ struct PointSet {
   std::vector<int> slot_node;      ///< (slots)
   std::vector<int> lane_point;     ///< (groups × 8): running number of the point, −1 in unused lanes
   int point_count = 0;
-  bool damped = false;             ///< any stiffness damping
+  bool damped = false;  ///< any stiffness damping
 
   AlignedVector<double> shape;     ///< (slots × 13 × 8): w, g (3), B (9, by rows)
   AlignedVector<double> material;  ///< (groups × 6 × 8): volume, λ, μ, γ, β, gradient norm
@@ -49,7 +49,7 @@ struct PointSet {
   std::vector<int> node_slot_begin;  ///< (nodes + 1), transposed incidence
   std::vector<int> node_slot;        ///< slots of each node, ascending
 
-  std::vector<int> color_begin{0};   ///< groups of one colour share no frame
+  std::vector<int> color_begin{0};  ///< groups of one colour share no frame
   std::vector<int> color_group;
 
   int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
@@ -59,7 +59,9 @@ struct PointSet {
     const auto end = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(group) + 1]);
     return std::span(slot_node).subspan(begin, end - begin);
   }
-  const double* shape_of_slot(int slot) const { return shape.data() + static_cast<std::size_t>(slot) * 13 * kGroupSize; }
+  const double* shape_of_slot(int slot) const {
+    return shape.data() + static_cast<std::size_t>(slot) * 13 * kGroupSize;
+  }
   const double* material_of_group(int group) const {
     return material.data() + static_cast<std::size_t>(group) * 6 * kGroupSize;
   }

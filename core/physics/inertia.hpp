@@ -23,7 +23,7 @@ struct Momentum {
   Vec3d linear{}, angular{};  ///< [kg m/s], [kg m²/s] about `about`
   double kinetic_energy = 0;  ///< [J]
   double mass = 0;
-  Vec3d first_moment{};       ///< Σ m x [kg m]
+  Vec3d first_moment{};  ///< Σ m x [kg m]
 };
 
 /// Momentum of one frame. @param x  present position of its origin, Q its rotation

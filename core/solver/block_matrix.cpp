@@ -7,14 +7,16 @@ namespace fascia {
 BlockMatrix::BlockMatrix(const PointSet& set) {
   std::vector<int> group_of_slot(static_cast<std::size_t>(set.slot_count()));
   for (int group = 0; group < set.group_count(); ++group)
-    for (int s = set.slot_begin[static_cast<std::size_t>(group)]; s < set.slot_begin[static_cast<std::size_t>(group) + 1]; ++s)
+    for (int s = set.slot_begin[static_cast<std::size_t>(group)];
+         s < set.slot_begin[static_cast<std::size_t>(group) + 1]; ++s)
       group_of_slot[static_cast<std::size_t>(s)] = group;
   std::vector<int> last_seen(static_cast<std::size_t>(set.node_count), -1);
   for (int row = 0; row < set.node_count; ++row) {
     const std::size_t begin = column_.size();
     last_seen[static_cast<std::size_t>(row)] = row;
     column_.push_back(row);
-    for (int k = set.node_slot_begin[static_cast<std::size_t>(row)]; k < set.node_slot_begin[static_cast<std::size_t>(row) + 1]; ++k) {
+    for (int k = set.node_slot_begin[static_cast<std::size_t>(row)];
+         k < set.node_slot_begin[static_cast<std::size_t>(row) + 1]; ++k) {
       const int slot = set.node_slot[static_cast<std::size_t>(k)];
       for (const int column : set.nodes(group_of_slot[static_cast<std::size_t>(slot)])) {
         if (last_seen[static_cast<std::size_t>(column)] == row) continue;

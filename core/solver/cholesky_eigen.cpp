@@ -17,8 +17,9 @@ struct BlockCholesky::Impl {
     llt.analyzePattern(view());
   }
   Sparse view() const {
-    return {matrix.size, matrix.size, static_cast<Eigen::Index>(matrix.row.size()), matrix.column_begin.data(),
-            matrix.row.data(), matrix.value.data()};
+    return {
+        matrix.size,       matrix.size,        static_cast<Eigen::Index>(matrix.row.size()), matrix.column_begin.data(),
+        matrix.row.data(), matrix.value.data()};
   }
 };
 

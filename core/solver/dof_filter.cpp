@@ -1,12 +1,12 @@
 #include "core/solver/dof_filter.hpp"
 
+#include "core/math/index.hpp"
+
 #include <algorithm>
 
 namespace fascia {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void apply(const Mat3d& A, double* v) {
   const Vec3d r = A * Vec3d{{v[0], v[1], v[2]}};

@@ -8,8 +8,8 @@
 
 namespace fascia {
 
-/// Coordinates in which prescribed degrees of freedom are single numbers: each constrained frame's increments are turned
-/// into its constraint's axes; the first `translations` (3 + first `rotations`) of its six are prescribed.
+/// Coordinates in which prescribed degrees of freedom are single numbers: each constrained frame's increments are
+/// turned into its constraint's axes; the first `translations` (3 + first `rotations`) of its six are prescribed.
 class DofFilter {
  public:
   explicit DofFilter(const Model& model);

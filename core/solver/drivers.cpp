@@ -19,16 +19,22 @@ constexpr double kRotationPerStep = 0.35;
 std::string sentence(const NewtonReport& r, const SolverSettings& settings) {
   std::ostringstream out;
   switch (r.status) {
-    case NewtonStatus::converged: return "";
+    case NewtonStatus::converged:
+      return "";
     case NewtonStatus::limit:
       out << "Newton stopped after " << r.iterations << " iterations, residual " << r.last.relative() << " > "
           << settings.tolerance;
       break;
     case NewtonStatus::stalled:
-      out << "Newton found no better state along its direction, residual " << r.last.relative() << " > " << settings.tolerance;
+      out << "Newton found no better state along its direction, residual " << r.last.relative() << " > "
+          << settings.tolerance;
       break;
-    case NewtonStatus::not_finite: out << "the forces are not finite"; break;
-    case NewtonStatus::linear_failure: out << "the linear system could not be solved"; break;
+    case NewtonStatus::not_finite:
+      out << "the forces are not finite";
+      break;
+    case NewtonStatus::linear_failure:
+      out << "the linear system could not be solved";
+      break;
   }
   if (!r.trouble.empty()) out << "; " << r.trouble;
   return out.str();
@@ -58,8 +64,8 @@ RunStatus failure_status(const NewtonReport& newton) {
 
 }  // namespace
 
-RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                      const StaticsSettings& statics, const StepObserver& observe) {
+RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                      const SolverSettings& settings, const StaticsSettings& statics, const StepObserver& observe) {
   constexpr double kSmallest = 1.0 / 1024;
   RunReport run;
   const double longest = statics.load_steps > 0 ? 1.0 / statics.load_steps : 1.0;
@@ -106,11 +112,12 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
 namespace {
 
 /// Advances by dt, in halves where Newton fails.
-NewtonReport advance(MechanicalSystem& system, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                     double end, double dt, int depth, RunReport& run) {
+NewtonReport advance(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                     const SolverSettings& settings, double end, double dt, int depth, RunReport& run) {
   system.set_factors(factors(state.time));
   system.begin_step(state, dt);
   system.set_factors(factors(end));
+  system.start_from_prediction();
   Newton newton(system, settings);
   NewtonReport report = newton.solve();
   count(run, report);
@@ -128,7 +135,8 @@ NewtonReport advance(MechanicalSystem& system, State& state, const FactorFunctio
 }  // namespace
 
 RunReport run_implicit_euler(MechanicalSystem& system, State& state, const FactorFunction& factors,
-                             const SolverSettings& settings, const DynamicsSettings& dynamics, const StepObserver& observe) {
+                             const SolverSettings& settings, const DynamicsSettings& dynamics,
+                             const StepObserver& observe) {
   RunReport run;
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();

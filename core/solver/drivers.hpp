@@ -12,11 +12,11 @@ enum class RunStatus { converged, not_converged, diverged, interrupted };
 
 /// What a driver tells after each accepted step.
 struct StepInfo {
-  int step = 0;            ///< counted from 1
-  double time = 0;         ///< [s]; in statics the load factor
-  double progress = 0;     ///< part of the whole [0, 1]
+  int step = 0;         ///< counted from 1
+  double time = 0;      ///< [s]; in statics the load factor
+  double progress = 0;  ///< part of the whole [0, 1]
   NewtonReport newton;
-  double seconds = 0;      ///< of this step
+  double seconds = 0;  ///< of this step
 };
 
 /// Called with the state and the system (whose gradient belongs to it); returns false to stop (Ctrl-C).
@@ -38,8 +38,8 @@ struct StaticsSettings {
 
 /// Equilibrium under loads and boundary motions that grow with the load factor from 0 to 1. A load step that does not
 /// converge is cut in half, down to 1/1024.
-RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                      const StaticsSettings& statics, const StepObserver& observe);
+RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                      const SolverSettings& settings, const StaticsSettings& statics, const StepObserver& observe);
 
 struct DynamicsSettings {
   double time_step = 0;  ///< [s]
@@ -48,6 +48,7 @@ struct DynamicsSettings {
 
 /// Implicit Euler. A time step that does not converge is taken in halves, down to 1/256.
 RunReport run_implicit_euler(MechanicalSystem& system, State& state, const FactorFunction& factors,
-                             const SolverSettings& settings, const DynamicsSettings& dynamics, const StepObserver& observe);
+                             const SolverSettings& settings, const DynamicsSettings& dynamics,
+                             const StepObserver& observe);
 
 }  // namespace fascia

@@ -1,12 +1,10 @@
 #include "core/solver/free_matrix.hpp"
 
+#include "core/math/index.hpp"
+
 #include <cmath>
 
 namespace fascia {
-
-namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
 
 /// Visits the lower triangle column by column: row r of the symmetric matrix serves as column r.
 /// begin_column(r, j), entry(offset of the block behind the diagonal, j, i, number of the row)

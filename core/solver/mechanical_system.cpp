@@ -1,16 +1,16 @@
 #include "core/solver/mechanical_system.hpp"
 
+#include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fascia {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Adds the force and, through L, the torque of a frame.
 void add(std::span<double> gradient, int node, const Vec3d& force, const Vec3d& torque) {
@@ -79,6 +79,23 @@ void MechanicalSystem::rebuild_state() {
   }
 }
 
+void MechanicalSystem::start_from_prediction() {
+  const double at_old_state = evaluate().energy;
+  save();
+  std::vector<char> held(start_.u.size(), 0);
+  for (const FrameConstraint& c : model_.constraints) held[at(c.node)] = 1;
+  for (std::size_t i = 0; i < start_.u.size(); ++i) {
+    if (held[i] != 0) continue;
+    const Mat3d Q = Mat3d::identity() + start_.D[i];
+    const Vec3d spin = axl(transpose(times_transpose(start_.Q_dot[i], Q))) * 0.5;
+    increment_.du[i] = start_.v[i] * dt_;
+    increment_.Ds[i] = rotation_increment(spin * dt_);
+  }
+  rebuild_state();
+  const double predicted = evaluate().energy;
+  if (!(predicted < at_old_state)) restore();
+}
+
 State MechanicalSystem::finish_step(double end_time) const {
   State end = state_;
   end.time = end_time;
@@ -120,7 +137,7 @@ void MechanicalSystem::add_loads() {
 /// 1/(2 dt²) |motion − dt velocity|² + α/(2 dt) |motion|², in the pose form of inertia.hpp.
 void MechanicalSystem::add_inertia() {
   std::fill(inertia_.begin(), inertia_.end(), 0.0);
-  inertia_energy_ = 0;
+  inertia_energy_ = inertia_rounding_ = 0;
   if (dt_ <= 0) return;
   const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
   for (int i = 0; i < model_.node_count(); ++i) {
@@ -140,7 +157,13 @@ void MechanicalSystem::add_inertia() {
       moment += f.moment * damping_scale;
     }
     add(inertia_, i, force, axl(Q * transpose(moment)));
+    // The motion and what the old velocity predicts of it cancel.
+    const double cancelled = norm(increment_.du[at(i)]) + dt_ * norm(start_.v[at(i)]) +
+                             model_.length * (norm(motion) + dt_ * norm(start_.Q_dot[at(i)]));
+    const double rounding = scale * model_.inertia[at(i)].mass * cancelled;
+    inertia_rounding_ += rounding * rounding;
   }
+  inertia_rounding_ = std::numeric_limits<double>::epsilon() * std::sqrt(inertia_rounding_);
 }
 
 void MechanicalSystem::add_node_blocks(Linearization& lin) const {
@@ -148,8 +171,8 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
   if (full) {
     for (const DeadLoad& load : model_.loads)
       for (const NodeLoad& n : load.nodes)
-        add_rotation_block(lin.node_blocks[at(n.node)],
-                           rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) * -factors_[at(load.schedule)]);
+        add_rotation_block(lin.node_blocks[at(n.node)], rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) *
+                                                            -factors_[at(load.schedule)]);
   }
   if (dt_ <= 0) return;
   const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
@@ -212,7 +235,7 @@ Evaluation MechanicalSystem::evaluate() {
   e.reference = std::max({std::hypot(scaled_norm(load_, false), scaled_norm(load_, true)), scaled_norm(inertia_, false),
                           scaled_norm(gradient_, true)});
   // 4: sums of a few terms of the estimated size in each entry.
-  e.floor = 4 * internal_.rounding;
+  e.floor = 4 * std::hypot(internal_.rounding, inertia_rounding_);
   return e;
 }
 

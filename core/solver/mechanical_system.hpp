@@ -23,6 +23,8 @@ class MechanicalSystem {
   void begin_step(const State& start, double dt);
   /// Loads and boundary motions at the end of the step: one factor for each schedule.
   void set_factors(std::span<const double> factors);
+  /// Starts Newton where the old velocities lead, if the step's potential is lower there than at the old state.
+  void start_from_prediction();
   /// The state reached, with the velocities of the step.
   State finish_step(double end_time) const;
 
@@ -78,7 +80,7 @@ class MechanicalSystem {
   std::vector<double> gradient_, load_, inertia_, direction_;
   mutable std::vector<double> work_;
   InternalEnergy internal_;
-  double load_energy_ = 0, inertia_energy_ = 0;
+  double load_energy_ = 0, inertia_energy_ = 0, inertia_rounding_ = 0;
   Linearization lin_;
 };
 

@@ -112,7 +112,7 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(block), column;
   Modes modes;
   modes.converged = false;
-  for (modes.iterations = 0; modes.iterations < 200 && !modes.converged; ++modes.iterations) {
+  for (modes.iterations = 0; modes.iterations < 500 && !modes.converged; ++modes.iterations) {
     for (int k = 0; k < block; ++k) {
       problem.multiply_mass(X.col(k), column);
       factor.solve({column.data(), static_cast<std::size_t>(n)}, {X.col(k).data(), static_cast<std::size_t>(n)});
@@ -130,7 +130,8 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     const double scale = std::abs(next[wanted - 1]) + 1e-300;
     modes.converged = true;
     for (int k = 0; k < wanted; ++k)
-      modes.converged = modes.converged && std::abs(next[k] - values[k]) <= 1e-10 * std::max(std::abs(next[k]), 1e-6 * scale);
+      modes.converged =
+          modes.converged && std::abs(next[k] - values[k]) <= 1e-10 * std::max(std::abs(next[k]), 1e-2 * scale);
     values = next;
   }
   for (int k = 0; k < wanted; ++k) {

@@ -10,8 +10,8 @@ namespace fascia {
 
 /// Natural frequencies and shapes about the rest state, without loads.
 struct Modes {
-  std::vector<double> frequency;            ///< ascending [Hz]; a free motion has 0
-  std::vector<std::vector<double>> shape;   ///< 6 a frame, mass-normalised, largest translation positive
+  std::vector<double> frequency;           ///< ascending [Hz]; a free motion has 0
+  std::vector<std::vector<double>> shape;  ///< 6 a frame, mass-normalised, largest translation positive
   int iterations = 0;
   bool converged = true;
 };

@@ -10,10 +10,10 @@ namespace fascia {
 
 /// A system at a state, in numbers. Residuals are norms with torques divided by the model's length [N].
 struct Evaluation {
-  double energy = 0;      ///< potential that an equilibrium minimises [J]
-  double residual = 0;    ///< of the free degrees of freedom
-  double reference = 0;   ///< largest of loads, inertia and reactions
-  double floor = 0;       ///< what rounding leaves of the residual
+  double energy = 0;     ///< potential that an equilibrium minimises [J]
+  double residual = 0;   ///< of the free degrees of freedom
+  double reference = 0;  ///< largest of loads, inertia and reactions
+  double floor = 0;      ///< what rounding leaves of the residual
 
   bool finite() const { return std::isfinite(energy) && std::isfinite(residual); }
   bool converged(double tolerance) const { return residual <= std::max(tolerance * reference, floor); }
@@ -27,7 +27,7 @@ struct DirectionReport {
   double slope = 0;             ///< gradient · direction [J]
   double largest_rotation = 0;  ///< [rad]
   int linear_iterations = 0;
-  std::string trouble;          ///< a sentence, where there was any
+  std::string trouble;  ///< a sentence, where there was any
 };
 
 enum class NewtonStatus { converged, limit, stalled, not_finite, linear_failure };
@@ -62,8 +62,10 @@ class Newton {
       if (!d.usable) return finish(NewtonStatus::linear_failure);
       system_.apply(std::min(1.0, kRotationCap / std::max(d.largest_rotation, 1e-300)));
       current_ = system_.evaluate();
-      if (moving && current_.finite()) mark();
-      else if (current_.finite() && better_than_mark(0.0)) mark();
+      if (moving && current_.finite())
+        mark();
+      else if (current_.finite() && better_than_mark(0.0))
+        mark();
       else if (!current_.finite() || ++detour_ > kDetour) {
         if (const NewtonStatus status = search_from_mark(); status != NewtonStatus::converged) return finish(status);
       }
@@ -106,8 +108,9 @@ class Newton {
     for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
       system_.apply(step);
       current_ = system_.evaluate();
-      if (current_.finite() && (current_.residual <= (1 - 0.1 * step) * marked_.residual ||
-                                (system_.conservative() && current_.energy <= marked_.energy + 1e-4 * step * d.slope))) {
+      if (current_.finite() &&
+          (current_.residual <= (1 - 0.1 * step) * marked_.residual ||
+           (system_.conservative() && current_.energy <= marked_.energy + 1e-4 * step * d.slope))) {
         mark();
         return NewtonStatus::converged;
       }

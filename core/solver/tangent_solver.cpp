@@ -1,5 +1,7 @@
 #include "core/solver/tangent_solver.hpp"
 
+#include "core/math/index.hpp"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -10,7 +12,6 @@ namespace fascia {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Up to here a factorisation is always worth it (measured: docs/manual.md, "Which linear solver").
 constexpr int kDirectDofs = 15000;
@@ -35,9 +36,12 @@ BlockCholesky& TangentSolver::factor() {
 
 bool TangentSolver::direct() {
   if (direct_) return *direct_;
-  if (settings_.linear != LinearMethod::automatic) direct_ = settings_.linear == LinearMethod::cholesky;
-  else if (filter_.free_count() <= kDirectDofs) direct_ = true;
-  else direct_ = factor().factor_flops() < kFlopsPerNonzero * 36.0 * static_cast<double>(matrix().block_count());
+  if (settings_.linear != LinearMethod::automatic)
+    direct_ = settings_.linear == LinearMethod::cholesky;
+  else if (filter_.free_count() <= kDirectDofs)
+    direct_ = true;
+  else
+    direct_ = factor().factor_flops() < kFlopsPerNonzero * 36.0 * static_cast<double>(matrix().block_count());
   if (!*direct_ && settings_.preconditioner != Preconditioner::cholesky) cholesky_.reset();
   return *direct_;
 }
@@ -49,8 +53,9 @@ void TangentSolver::apply_matrix(std::span<const double> local, std::span<double
   filter_.to_local(out);
 }
 
-TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed, std::span<const double> b,
-                                   std::span<double> x, const std::function<const Linearization&()>& relinearize) {
+TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed,
+                                   std::span<const double> b, std::span<double> x,
+                                   const std::function<const Linearization&()>& relinearize) {
   const std::size_t n = b.size();
   work_.resize(n);
   executor_.assemble(lin, matrix());
@@ -78,7 +83,8 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   return report;
 }
 
-bool TangentSolver::factorize_with_shifts(const std::function<const Linearization&()>& relinearize, TangentReport& report) {
+bool TangentSolver::factorize_with_shifts(const std::function<const Linearization&()>& relinearize,
+                                          TangentReport& report) {
   report.trouble = "the tangent was not positive definite (buckling, or parts that nothing holds); it was shifted";
   if (!material_matrix_) material_matrix_.emplace(model_.points);
   executor_.assemble(relinearize(), *material_matrix_);
@@ -128,11 +134,14 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
   CpuVectors::Vector result;
   CgReport cg;
   if (kind == Preconditioner::none) {
-    cg = conjugate_gradients(vectors_, apply, [](const auto& r, auto& z) { z = r; }, rhs, result, settings_.cg);
+    cg = conjugate_gradients(
+        vectors_, apply, [](const auto& r, auto& z) { z = r; }, rhs, result, settings_.cg);
   } else if (kind == Preconditioner::cholesky) {
     if (!factor_is_preconditioner_) factor_is_preconditioner_ = factor().factorize(matrix());
-    if (!factor_is_preconditioner_) return {false, 0, "the tangent is not positive definite: no Cholesky preconditioner"};
-    cg = conjugate_gradients(vectors_, apply, [&](const auto& r, auto& z) { factor().solve(r, z); }, rhs, result, settings_.cg);
+    if (!factor_is_preconditioner_)
+      return {false, 0, "the tangent is not positive definite: no Cholesky preconditioner"};
+    cg = conjugate_gradients(
+        vectors_, apply, [&](const auto& r, auto& z) { factor().solve(r, z); }, rhs, result, settings_.cg);
     if (cg.iterations > 30) factor_is_preconditioner_ = false;  // out of date: renewed next time
   } else {
     build_block_jacobi();

@@ -17,7 +17,7 @@ vtkSmartPointer<vtkLookupTable> perceptual_colors(double low, double high) {
                                                          {0.678, 0.864, 0.190},
                                                          {0.993, 0.906, 0.144}}};
   constexpr int colors = 256;
-  const auto table = vtkSmartPointer<vtkLookupTable>::New();
+  auto table = vtkSmartPointer<vtkLookupTable>::New();
   table->SetNumberOfTableValues(colors);
   for (int i = 0; i < colors; ++i) {
     const double place = static_cast<double>(i) / (colors - 1) * (points.size() - 1);

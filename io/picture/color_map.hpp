@@ -5,7 +5,8 @@
 
 namespace fascia::io {
 
-/// Dark violet over green to yellow, even steps of lightness: readable in grey and for the colour-blind (after viridis).
+/// Dark violet over green to yellow, even steps of lightness: readable in grey and for the colour-blind (after
+/// viridis).
 /// @param low, high  range of the values; low < high
 vtkSmartPointer<vtkLookupTable> perceptual_colors(double low, double high);
 

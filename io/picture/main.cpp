@@ -15,17 +15,18 @@ using fascia::InputError;
 /// Three numbers "x,y,z" that are not all zero.
 std::array<double, 3> direction(const std::string& option, const std::string& text) {
   std::array<double, 3> result{};
+  const InputError wrong(option + ": \"" + text + "\" must be three numbers x,y,z, not all zero");
   std::size_t begin = 0, count = 0;
   for (bool more = true; more; ++count) {
     const std::size_t comma = text.find(',', begin);
     more = comma != std::string::npos;
     const auto value = fascia::io::to_number(std::string_view(text).substr(begin, more ? comma - begin : comma));
-    if (!value || count >= result.size()) throw InputError(option + ": \"" + text + "\" must be three numbers x,y,z");
+    if (!value || count >= result.size()) throw wrong;
     result[count] = *value;
     begin = comma + 1;
   }
-  if (count != result.size()) throw InputError(option + ": \"" + text + "\" must be three numbers x,y,z");
-  if (result == std::array<double, 3>{}) throw InputError(option + ": must not be 0,0,0");
+  if (count != result.size()) throw wrong;
+  if (result == std::array<double, 3>{}) throw wrong;
   return result;
 }
 
@@ -33,7 +34,8 @@ std::array<double, 3> direction(const std::string& option, const std::string& te
 std::array<int, 2> size(const std::string& text) {
   const std::size_t cross = text.find('x');
   const auto width = fascia::io::to_integer(std::string_view(text).substr(0, cross));
-  const auto height = fascia::io::to_integer(cross == std::string::npos ? "" : std::string_view(text).substr(cross + 1));
+  const auto height =
+      fascia::io::to_integer(cross == std::string::npos ? "" : std::string_view(text).substr(cross + 1));
   const auto fits = [](const std::optional<std::int64_t>& n) { return n && *n >= 16 && *n <= 16384; };
   if (!fits(width) || !fits(height))
     throw InputError("--size: \"" + text + "\" must be WIDTHxHEIGHT in pixels, each from 16 to 16384");
@@ -51,7 +53,7 @@ int run(int argc, char** argv) {
   app.add_option("--size", pixels, "width and height in pixels")->capture_default_str();
   app.add_option("--field", style.field, "point field that colours the surface (magnitude of vectors)");
   app.add_option("--title", style.title, "text above the picture");
-  app.add_flag("--frames", style.frames, "show the frames as balls, the surface half transparent");
+  app.add_flag("--frames", style.frames, "show the frames as balls in front of the surface");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -61,9 +63,10 @@ int run(int argc, char** argv) {
   if (!up.empty()) style.up = direction("--up", up);
   style.size = size(pixels);
 
-  fascia::io::check_display();
+  const fascia::io::DisplayConnection display;
   std::vector<fascia::io::PictureBody> bodies;
-  for (std::size_t f = 0; f + 1 < files.size(); ++f) bodies.push_back(fascia::io::read_picture_body(files[f], style.field));
+  for (std::size_t f = 0; f + 1 < files.size(); ++f)
+    bodies.push_back(fascia::io::read_picture_body(files[f], style.field));
   fascia::io::render_picture(bodies, style, files.back());
   return 0;
 }

@@ -52,7 +52,7 @@ std::array<double, 2> range_of(const std::vector<PictureBody>& bodies) {
   return range;
 }
 
-void add_surface(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable* colors, bool see_through) {
+void add_surface(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable* colors) {
   constexpr double crease = 35;  // degrees: sharper edges stay sharp
   vtkNew<vtkPolyDataNormals> normals;
   normals->SetInputData(body.surface);
@@ -60,6 +60,8 @@ void add_surface(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable*
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(normals->GetOutputPort());
   mapper->SetScalarVisibility(colors != nullptr);
+  mapper->SetResolveCoincidentTopologyToPolygonOffset();
+  mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 2);  // behind the lines of its edges
   if (colors) {
     mapper->SetLookupTable(colors);
     mapper->UseLookupTableScalarRangeOn();
@@ -69,11 +71,10 @@ void add_surface(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable*
   actor->SetMapper(mapper);
   vtkProperty* look = actor->GetProperty();
   look->SetColor(0.80, 0.55, 0.50);
-  look->SetAmbient(0.25);
-  look->SetDiffuse(0.75);
+  look->SetAmbient(0.4);
+  look->SetDiffuse(0.65);
   look->SetSpecular(0.12);
   look->SetSpecularPower(25);
-  look->SetOpacity(see_through ? 0.55 : 1);
   renderer.AddActor(actor);
 }
 
@@ -82,9 +83,6 @@ void add_edges(vtkRenderer& renderer, const PictureBody& body) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(body.surface);
   mapper->ScalarVisibilityOff();
-  mapper->SetResolveCoincidentTopologyToPolygonOffset();
-  mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(-1, -1);
-  mapper->SetRelativeCoincidentTopologyLineOffsetParameters(-1, -1);
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   actor->GetProperty()->SetRepresentationToWireframe();
@@ -133,7 +131,7 @@ void add_scale(vtkRenderer& renderer, vtkLookupTable* colors, const PictureStyle
   std::replace(name.begin(), name.end(), '_', ' ');
   scale->SetTitle(name.c_str());
   scale->SetNumberOfLabels(5);
-  scale->SetLabelFormat("%.3g");
+  scale->SetLabelFormat(" %.4g");
   scale->UnconstrainedFontSizeOn();
   scale->SetVerticalTitleSeparation(font);
   styled(scale->GetTitleTextProperty(), font, true);
@@ -211,12 +209,15 @@ void write_png(vtkRenderWindow& window, const std::filesystem::path& png) {
 
 }  // namespace
 
-void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& style, const std::filesystem::path& png) {
+void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& style,
+                    const std::filesystem::path& png) {
   VtkErrors errors;
   const vtkBoundingBox box = bounds_of(bodies);
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1, 1, 1);
-  renderer->UseDepthPeelingOn();
+  vtkNew<vtkRenderer> in_front;  // a layer of its own, so that the surface hides nothing of it
+  in_front->SetLayer(1);
+  in_front->SetActiveCamera(renderer->GetActiveCamera());
   vtkSmartPointer<vtkLookupTable> colors;
   if (!style.field.empty()) {
     const std::array<double, 2> range = range_of(bodies);
@@ -224,18 +225,19 @@ void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& 
     add_scale(*renderer, colors, style);
   }
   for (const PictureBody& body : bodies) {
-    add_surface(*renderer, body, colors, style.frames);
+    add_surface(*renderer, body, colors);
     add_edges(*renderer, body);
-    if (style.frames) add_frames(*renderer, body, 0.008 * box.GetDiagonalLength());
+    if (style.frames) add_frames(*in_front, body, 0.006 * box.GetDiagonalLength());
   }
   if (!style.title.empty()) add_title(*renderer, style);
 
   vtkNew<vtkRenderWindow> window;
   window->SetOffScreenRendering(true);
   window->SetMultiSamples(8);
-  window->SetAlphaBitPlanes(true);
   window->SetSize(style.size[0], style.size[1]);
+  window->SetNumberOfLayers(2);
   window->AddRenderer(renderer);
+  window->AddRenderer(in_front);
   place_camera(*renderer, box, style);
   window->Render();
   if (!errors.first().empty()) throw FileError(png.string() + ": cannot be rendered: " + errors.first());

@@ -11,11 +11,12 @@ struct PictureStyle {
   std::array<int, 2> size{1200, 800};   ///< pixels
   std::string field;                    ///< name on the scale; no scale where empty
   std::string title;
-  bool frames = false;                  ///< show them as small balls, through the surface
+  bool frames = false;  ///< show them as small balls, in front of the surface
 };
 
-/// Renders the bodies, coloured over their common range, into a PNG. Needs a display: check_display() first.
+/// Renders the bodies, coloured over their common range, into a PNG. Needs a DisplayConnection.
 /// @throws FileError  where the file cannot be written
-void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& style, const std::filesystem::path& png);
+void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& style,
+                    const std::filesystem::path& png);
 
 }  // namespace fascia::io

@@ -139,11 +139,11 @@ TEST_F(Results, EmptyFolderIsFilled) {
 
 TEST_F(Results, FolderThatCannotBeMadeIsNamed) {
   write("plain_file", "text");
-  for (const char* output : {"plain_file/out", "/proc/fascia/out"}) {
+  for (const std::string output : {"plain_file/out", "/proc/fascia/out"}) {
     const ProgramResult result = fascia({"run", "scene.toml", "--output", output});
     EXPECT_EQ(result.status, 4) << output;
     EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
-    EXPECT_NE(result.err.find(output), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(output.substr(0, output.rfind('/'))), std::string::npos) << result.err;
   }
 }
 

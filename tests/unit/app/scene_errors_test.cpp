@@ -291,8 +291,15 @@ TEST(SceneErrors, GarbageIsRefused) {
   EXPECT_NE(errors_of(tables).find("nested more than 256 levels deep"), std::string::npos);
   EXPECT_NE(errors_of(std::string(100000, '[')), "");
   EXPECT_EQ(errors_of("[%]"),
-            "a.toml:1:2: toml: Error while parsing table header: expected bare key starting character or string "
+            "a.toml:1:2: toml: Error while parsing key: expected bare key starting character or string "
             "delimiter, saw '%'; must be TOML 1.0");
+}
+
+TEST(SceneErrors, LettersBeyondAsciiBelongInQuotes) {
+  EXPECT_EQ(errors_of("title = \"µ\" # é\n" + std::string(test::beam)), "");
+  EXPECT_EQ(errors_of("title = \"\"\"a \\\n  µm\"\"\"\n" + std::string(test::beam)), "");
+  EXPECT_EQ(errors_of("\xEF\xBB\xBF" + std::string(test::beam)), "");
+  EXPECT_EQ(errors_of("a = 5 µm\n"), "a.toml:1:7: toml: a character beyond ASCII outside quotes; must be TOML 1.0");
 }
 
 TEST(SceneErrors, DotsInTextsAndNumbersDoNotNest) {

@@ -51,7 +51,8 @@ TEST(GmshErrors, version_22_names_line_and_remedy) {
       {"5 4 2 7 1 10 20 30 40", "5 77 2 7 1 10 20 30 40", "a.msh:24: element type 77 is not supported"},
       {"5 4 2 7 1 10 20 30 40", "5 4 2 7 1 10 20 30", "a.msh:24: expected a node number, found the end of the line"},
       {"5 4 2 7 1 10 20 30 40", "5 4 -2 7 1 10 20 30 40", "a.msh:24: the number of tags is -2"},
-      {"5 4 2 7 1 10 20 30 40", "5 4 2 7777777777 1 10 20 30 40", "a.msh:24: physical group 7777777777 is out of range"},
+      {"5 4 2 7 1 10 20 30 40", "5 4 2 7777777777 1 10 20 30 40",
+       "a.msh:24: physical group 7777777777 is out of range"},
       {"$EndElements\n", "", "a.msh:26: expected $EndElements"},
       {"$EndComments", "", "a.msh:4: the section has no $EndComments"},
       {"$Comments", "Comments", "a.msh:4: expected a section"},
@@ -122,7 +123,8 @@ TEST(GmshErrors, every_truncation_and_many_mutations) {
     for (int round = 0; round < 20000; ++round) {
       std::string mutated = text;
       for (int change = 0; change < 1 + round % 4; ++change)
-        mutated[random() % mutated.size()] = round % 2 ? static_cast<char>(random() % 256) : "0123456789 -$.e\n"[random() % 16];
+        mutated[random() % mutated.size()] =
+            round % 2 ? static_cast<char>(random() % 256) : "0123456789 -$.e\n"[random() % 16];
       survive(mutated);
     }
   }

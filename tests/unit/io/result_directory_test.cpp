@@ -94,7 +94,8 @@ TEST(ResultDirectory, replaces_nothing_else) {
   EXPECT_EQ(file_error(target), "no FileError") << "an empty directory may be replaced";
 
   directory.write("precious/thesis.txt", "years");
-  EXPECT_EQ(file_error(target).rfind(fs::canonical(target).string() + ": exists and is no result of this program", 0), 0u)
+  EXPECT_EQ(file_error(target).rfind(fs::canonical(target).string() + ": exists and is no result of this program", 0),
+            0u)
       << file_error(target);
   for (const char* other : {"{ \"name\": \"x\" }", "[1, 2]", "{ \"fascia\"", "\xff\xfe"}) {
     directory.write("precious/summary.json", other);

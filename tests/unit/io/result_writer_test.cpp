@@ -69,12 +69,14 @@ TEST(WriteVtu, reads_back) {
     ASSERT_NE(array, nullptr);
     ASSERT_EQ(array->GetNumberOfComponents(), field.components);
     for (std::size_t i = 0; i < field.values.size(); ++i)
-      EXPECT_EQ(array->GetComponent(static_cast<vtkIdType>(i) / field.components, static_cast<int>(i) % field.components),
-                field.values[i]);
+      EXPECT_EQ(
+          array->GetComponent(static_cast<vtkIdType>(i) / field.components, static_cast<int>(i) % field.components),
+          field.values[i]);
   }
   vtkDataArray* part = grid->GetCellData()->GetArray("part");
   ASSERT_NE(part, nullptr);
-  for (std::size_t c = 0; c < mesh.part.size(); ++c) EXPECT_EQ(part->GetComponent(static_cast<vtkIdType>(c), 0), mesh.part[c]);
+  for (std::size_t c = 0; c < mesh.part.size(); ++c)
+    EXPECT_EQ(part->GetComponent(static_cast<vtkIdType>(c), 0), mesh.part[c]);
 }
 
 TEST(WriteVtu, is_deterministic) {
@@ -178,7 +180,8 @@ TEST(WritePvd, lists_times_and_parts) {
   const auto file = directory.path() / "a.pvd";
   write_pvd(file, {{0, "beam", "beam_0.vtu"}, {0, "a<b&\"c\"", "x.vtu"}, {0.1, "beam", "beam_1.vtu"}});
   const std::string text = content(file);
-  EXPECT_NE(text.find("timestep=\"0\" group=\"\" part=\"0\" name=\"beam\" file=\"beam_0.vtu\""), std::string::npos) << text;
+  EXPECT_NE(text.find("timestep=\"0\" group=\"\" part=\"0\" name=\"beam\" file=\"beam_0.vtu\""), std::string::npos)
+      << text;
   EXPECT_NE(text.find("part=\"1\" name=\"a&lt;b&amp;&quot;c&quot;\""), std::string::npos) << text;
   EXPECT_NE(text.find("timestep=\"0.1\" group=\"\" part=\"0\""), std::string::npos) << text;
 }

@@ -12,9 +12,7 @@ using samples::mesh_of;
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TriangleMesh cube(double low, double high) {
-  return box_surface({{low, low, low}}, {{high, high, high}}, 2, 2, 2);
-}
+TriangleMesh cube(double low, double high) { return box_surface({{low, low, low}}, {{high, high, high}}, 2, 2, 2); }
 
 TriangleMesh inward(TriangleMesh mesh) {
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
@@ -92,8 +90,8 @@ TEST(SurfaceOrientation, cavities) {
 TEST(SurfaceOrientation, one_sided_surface) {
   // Projective plane with six vertices: closed, every edge twice, not orientable.
   const std::vector<Vec3d> points{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{1, 1, 0.5}}, {{0.3, 1, 1}}};
-  const Mesh mesh = mesh_of(CellType::triangle, points, {0, 1, 4, 0, 1, 5, 0, 2, 3, 0, 2, 5, 0, 3, 4,
-                                                         1, 2, 3, 1, 2, 4, 1, 3, 5, 2, 4, 5, 3, 4, 5});
+  const Mesh mesh = mesh_of(CellType::triangle, points,
+                            {0, 1, 4, 0, 1, 5, 0, 2, 3, 0, 2, 5, 0, 3, 4, 1, 2, 3, 1, 2, 4, 1, 3, 5, 2, 4, 5, 3, 4, 5});
   const std::string e = input_error([&] { closed_surface(mesh); });
   EXPECT_TRUE(contains(e, "one side only")) << e;
 }

@@ -70,11 +70,13 @@ TEST(ClosedSurface, flat_cell) {
 TEST(ClosedSurface, overlapping_and_repeated_cells) {
   auto points = samples::cube_points();
   points.push_back({{0.2, 0.2, 2}});
-  const std::string overlap =
-      input_error([&] { closed_surface(mesh_of(CellType::tetrahedron, points, {0, 1, 3, 4, 0, 1, 3, 8})); });
+  const std::string overlap = input_error([&] {
+    closed_surface(mesh_of(CellType::tetrahedron, points, {0, 1, 3, 4, 0, 1, 3, 8}));
+  });
   EXPECT_TRUE(contains(overlap, "cells 1 and 2 overlap")) << overlap;
-  const std::string repeated =
-      input_error([&] { closed_surface(mesh_of(CellType::tetrahedron, points, {0, 1, 3, 4, 1, 3, 0, 4})); });
+  const std::string repeated = input_error([&] {
+    closed_surface(mesh_of(CellType::tetrahedron, points, {0, 1, 3, 4, 1, 3, 0, 4}));
+  });
   EXPECT_TRUE(contains(repeated, "cells 1 and 2 have the same nodes")) << repeated;
 }
 
@@ -91,8 +93,7 @@ TEST(ClosedSurface, welds_and_drops_unused_points) {
   const auto copy = points;
   points.insert(points.end(), copy.begin(), copy.end());
   points[8][0] += 1e-10;
-  const ClosedSurface s =
-      closed_surface(mesh_of(CellType::wedge, points, {0, 1, 2, 4, 5, 6, 8, 10, 11, 12, 14, 15}));
+  const ClosedSurface s = closed_surface(mesh_of(CellType::wedge, points, {0, 1, 2, 4, 5, 6, 8, 10, 11, 12, 14, 15}));
   EXPECT_NEAR(s.volume, 1, 1e-9);
   EXPECT_EQ(s.mesh.points.size(), 8u);
   ASSERT_EQ(s.messages.size(), 2u);
@@ -107,21 +108,21 @@ TEST(ClosedSurface, unusable_points) {
     const std::string e = input_error([&] { closed_surface(mesh_of(CellType::hexahedron, points, hexahedron)); });
     EXPECT_TRUE(contains(e, "node 7")) << e;
   }
-  const std::string e = input_error(
-      [&] { closed_surface(mesh_of(CellType::triangle, std::vector<Vec3d>(3), {0, 1, 2})); });
+  const std::string e = input_error([&] {
+    closed_surface(mesh_of(CellType::triangle, std::vector<Vec3d>(3), {0, 1, 2}));
+  });
   EXPECT_TRUE(contains(e, "coincide")) << e;
 }
 
 TEST(ClosedSurface, needs_triangles_or_cells) {
-  const std::string e =
-      input_error([&] { closed_surface(mesh_of(CellType::line, samples::cube_points(), {0, 1})); });
+  const std::string e = input_error([&] { closed_surface(mesh_of(CellType::line, samples::cube_points(), {0, 1})); });
   EXPECT_TRUE(contains(e, "neither volume cells nor triangles")) << e;
 }
 
 TEST(ClosedSurface, quadrilaterals) {
-  const ClosedSurface s = closed_surface(
-      mesh_of(CellType::quadrilateral, samples::cube_points(),
-              {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7}));
+  const ClosedSurface s =
+      closed_surface(mesh_of(CellType::quadrilateral, samples::cube_points(),
+                             {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7}));
   EXPECT_NEAR(s.volume, 1, 1e-15);
   EXPECT_EQ(s.mesh.triangles.size(), 12u);
 }

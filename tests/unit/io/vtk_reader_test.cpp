@@ -96,9 +96,10 @@ TEST(VtkReader, obj_keeps_the_numbers_of_the_file) {
 
 TEST(ObjReader, relative_indices_and_continued_lines) {
   const TemporaryDirectory directory;
-  const auto file = directory.write("a.obj",
-                                    "o thing\nv 0 0 0 1\nv 1 0 0\nv 0 1 0\nf -3 -1 -2\nv 0 0 1\ng side\nusemtl none\ns off\n"
-                                    "f -4 -3 -1\nf 2 \\\n3 4\nf 1 4 3 # the last\nl 1 2\n");
+  const auto file =
+      directory.write("a.obj",
+                      "o thing\nv 0 0 0 1\nv 1 0 0\nv 0 1 0\nf -3 -1 -2\nv 0 0 1\ng side\nusemtl none\ns off\n"
+                      "f -4 -3 -1\nf 2 \\\n3 4\nf 1 4 3 # the last\nl 1 2\n");
   EXPECT_NEAR(closed_surface(read_mesh(file)).volume, 1. / 6, 1e-15);
 }
 

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <cstddef>
+
+namespace fascia {
+
+/// An index that is known not to be negative, for the standard containers.
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace fascia

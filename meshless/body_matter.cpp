@@ -1,0 +1,135 @@
+#include "meshless/body.hpp"
+
+#include "core/math/index.hpp"
+#include "meshless/weights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace fascia {
+
+namespace {
+
+/// Above this Poisson ratio full integration locks (docs/manual.md, "Nearly incompressible tissue").
+constexpr double kSelectivePoisson = 0.45;
+
+}  // namespace
+
+void MeshlessBody::add_points(const MeshlessSpec& spec, const std::vector<Sample>& samples, PointSetBuilder& builder) {
+  const double length = std::cbrt(spacing_[0] * spacing_[1] * spacing_[2]);
+  std::vector<PointMaterialSpec> materials;
+  bool nearly_incompressible = false;
+  for (const Sample& s : samples) {
+    materials.push_back(spec.material(to_world(s.x)));
+    const double poisson = materials.back().lambda / (2 * (materials.back().lambda + materials.back().mu));
+    nearly_incompressible = nearly_incompressible || poisson > kSelectivePoisson;
+  }
+  const bool thick = *std::min_element(grid_.begin(), grid_.end()) >= 3;
+  selective_ = weights_ == GridWeightKind::trilinear &&
+               (spec.integration == IntegrationKind::selective ||
+                (spec.integration == IntegrationKind::automatic && nearly_incompressible && thick));
+  if (selective_ && spec.integration == IntegrationKind::automatic)
+    messages_.push_back("Poisson ratio above 0.45: lambda is integrated at one point a cell (selective integration)");
+
+  // Points that share their frames, in the order of the cells (and tetrahedra).
+  std::map<std::pair<int, std::array<int, 3>>, std::vector<std::size_t>> groups;
+  for (std::size_t q = 0; q < samples.size(); ++q)
+    groups[{cells_[at(samples[q].cell)].owner, samples[q].tetrahedron}].push_back(q);
+  for (const auto& [key, members] : groups) {
+    std::vector<PointSample> points;
+    std::vector<int> nodes;
+    PointSample volumetric;
+    for (const std::size_t q : members) {
+      const Sample& s = samples[q];
+      Attachment a = attach_local(s.x, s.cell, weights_ == GridWeightKind::linear ? &s.tetrahedron : nullptr);
+      const PointMaterialSpec& m = materials[q];
+      const Vec3d X = to_world(s.x);
+      points_.push_back({X, s.volume, m.lambda, m.mu, a.cell, s.tetrahedron});
+      points.push_back({X, s.volume, selective_ ? 0.0 : m.lambda, m.mu, spec.drilling * m.mu, m.stiffness_damping,
+                        std::move(a.influences)});
+      nodes = a.nodes;
+      volumetric.volume += s.volume;
+      volumetric.lambda += s.volume * m.lambda;
+      volumetric.stiffness_damping += s.volume * m.stiffness_damping;
+    }
+    if (selective_) {
+      volumetric.lambda /= volumetric.volume;
+      volumetric.stiffness_damping /= volumetric.volume;
+      const Attachment a = attach_local(cells_[at(key.first)].center, key.first, nullptr);
+      volumetric.influences = a.influences;
+      points.push_back(volumetric);
+    }
+    builder.add_points(nodes, points, length);
+  }
+}
+
+/// Any partition of unity gives a rigid motion its exact kinetic energy, since each frame takes the full lever. It is
+/// that of the weights inside; in cut cells frames take less, as their support is smaller: the weight of much matter on
+/// a long lever would turn a frame that hardly any point ties to the rest. Points lent to a cell count at their nearest
+/// place in it, so that no frame's mass turns negative.
+void MeshlessBody::add_inertia(const MeshlessSpec& spec, const std::vector<Sample>& samples, Model& model) {
+  model.inertia.resize(model.rest_position.size());
+  const std::vector<double> support = frame_support(samples);
+  for (const Sample& s : samples) {
+    const CellShare share = cell_share(s);
+    const Vec3d X = to_world(s.x);
+    const double mass_damping = spec.material(X).mass_damping;
+    if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
+    double sum = 0;
+    for (std::size_t k = 0; k < share.frame.size(); ++k) sum += share.w[k] * support[at(share.frame[k] - first_frame_)];
+    for (std::size_t k = 0; k < share.frame.size(); ++k) {
+      const auto frame = at(share.frame[k]);
+      const double m = spec.density * s.volume * share.w[k] * support[frame - at(first_frame_)] / sum;
+      const Vec3d d = X - model.rest_position[frame];
+      const FrameInertia part{m, d * m, outer(d, d) * m};
+      model.inertia[frame] += part;
+      if (mass_damping > 0)
+        model.mass_damping[frame] += {m * mass_damping, part.first * mass_damping, part.second * mass_damping};
+    }
+  }
+  if (!model.mass_damping.empty()) model.mass_damping.resize(model.rest_position.size());
+}
+
+/// Weights of the frames of a point's cell, the point moved to its nearest place in that cell.
+MeshlessBody::CellShare MeshlessBody::cell_share(const Sample& s) const {
+  const Cell& owner = cells_[at(cells_[at(s.cell)].owner)];
+  Vec3d xi = cell_coordinates(s.x, owner);
+  for (int a = 0; a < 3; ++a) xi[a] = std::clamp(xi[a], 0.0, 1.0);
+  CellShare share;
+  const auto fill = [&](const auto& weights) {
+    for (std::size_t k = 0; k < weights.w.size(); ++k) {
+      share.frame.push_back(frame_of_grid_node_[at(grid_node(owner.index, weights.corner[k]))]);
+      share.w.push_back(weights.w[k]);
+    }
+  };
+  if (weights_ == GridWeightKind::trilinear)
+    fill(TrilinearWeights::at(xi));
+  else
+    fill(LinearWeights::at(xi));
+  return share;
+}
+
+/// Part of a frame's weight function, over the cells around it that have points, that the matter fills: 1 in a box.
+std::vector<double> MeshlessBody::frame_support(const std::vector<Sample>& samples) const {
+  std::vector<double> filled(at(frame_count_)), full(at(frame_count_));
+  for (const Sample& s : samples) {
+    const CellShare share = cell_share(s);
+    for (std::size_t k = 0; k < share.frame.size(); ++k)
+      filled[at(share.frame[k] - first_frame_)] += s.volume * share.w[k];
+  }
+  const double cell_volume = spacing_[0] * spacing_[1] * spacing_[2];
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    if (cells_[c].owner != static_cast<int>(c)) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      // Linear weights: six tetrahedra meet at both ends of the main diagonal, two at the other corners.
+      const double part =
+          weights_ == GridWeightKind::trilinear ? 1.0 / 8 : (corner == 0 || corner == 7 ? 1.0 / 4 : 1.0 / 12);
+      full[at(frame_of_grid_node_[at(grid_node(cells_[c].index, corner))] - first_frame_)] += part * cell_volume;
+    }
+  }
+  for (std::size_t i = 0; i < filled.size(); ++i) filled[i] = std::min(1.0, filled[i] / full[i]);
+  return filled;
+}
+
+}  // namespace fascia

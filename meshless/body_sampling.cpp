@@ -1,0 +1,143 @@
+#include "meshless/body.hpp"
+
+#include "core/math/index.hpp"
+#include "meshless/gauss.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia {
+
+namespace {
+
+/// A cell with a smaller part of its points than this lends them to a neighbour: its outer frames would hang on so few
+/// that they could turn almost freely (docs/decisions/cut_cells.md).
+constexpr double kSmallCell = 0.3;
+
+}  // namespace
+
+std::vector<MeshlessBody::Sample> MeshlessBody::sample(const MeshlessSpec& spec) const {
+  const double cell_volume = spacing_[0] * spacing_[1] * spacing_[2];
+  // Candidates of the unit cell.
+  std::vector<Sample> unit;
+  if (weights_ == GridWeightKind::linear) {
+    std::array<int, 3> order{0, 1, 2};
+    do {
+      for (const auto& bary : kTetrahedronPoints) {
+        Sample s;
+        s.tetrahedron = order;
+        s.volume = 1.0 / 24;
+        double coordinate = 0;
+        for (int a = 2; a >= 0; --a) s.x[order[at(a)]] = coordinate += bary[at(a + 1)];
+        unit.push_back(s);
+      }
+    } while (std::next_permutation(order.begin(), order.end()));
+  } else {
+    std::array<std::vector<GaussPoint>, 3> rule;
+    for (std::size_t a = 0; a < 3; ++a)
+      rule[a] = gauss_legendre(spec.per_cell ? (*spec.per_cell)[a] : (grid_[a] == 2 ? 3 : 2));
+    for (const GaussPoint& z : rule[2])
+      for (const GaussPoint& y : rule[1])
+        for (const GaussPoint& x : rule[0]) unit.push_back({{{x.x, y.x, z.x}}, x.weight * y.weight * z.weight, 0, {}});
+  }
+  std::vector<Sample> samples;
+  for (int c = 0; c < static_cast<int>(cells_.size()); ++c) {
+    for (const Sample& u : unit) {
+      Sample s = u;
+      s.cell = c;
+      s.volume *= cell_volume;
+      for (int a = 0; a < 3; ++a) s.x[a] = min_[a] + (cells_[at(c)].index[at(a)] + u.x[a]) * spacing_[a];
+      if (!spec.domain.contains || spec.domain.contains(s.x)) samples.push_back(s);
+    }
+  }
+  return samples;
+}
+
+/// Cells with enough points own themselves; from these, layer by layer, each other cell takes the owner among its
+/// neighbours' that is nearest, of equals the one with most points.
+void MeshlessBody::find_owners(const std::vector<Sample>& samples, int full_count) {
+  int least = std::max(1, static_cast<int>(std::ceil(kSmallCell * full_count)));
+  if (std::none_of(cells_.begin(), cells_.end(), [&](const Cell& c) { return c.point_count >= least; })) least = 1;
+  int lent = 0;
+  std::vector<int> open;
+  for (int c = 0; c < static_cast<int>(cells_.size()); ++c) {
+    if (cells_[at(c)].point_count >= least) {
+      cells_[at(c)].owner = c;
+    } else {
+      open.push_back(c);
+      lent += cells_[at(c)].point_count;
+    }
+  }
+  while (!open.empty()) {
+    std::vector<std::pair<int, int>> found;
+    std::vector<int> left;
+    for (const int c : open) {
+      const int owner = nearest_owner(c);
+      if (owner >= 0)
+        found.emplace_back(c, owner);
+      else
+        left.push_back(c);
+    }
+    for (const auto& [c, owner] : found) cells_[at(c)].owner = owner;
+    open = std::move(left);
+  }
+  if (lent > 0)
+    messages_.push_back(std::to_string(lent) +
+                        " points in cells that the domain hardly fills were given to neighbouring cells");
+  std::vector<double> volume(cells_.size());
+  for (const Sample& s : samples) {
+    const int owner = cells_[at(s.cell)].owner;
+    cells_[at(owner)].center += s.x * s.volume;
+    volume[at(owner)] += s.volume;
+  }
+  for (std::size_t c = 0; c < cells_.size(); ++c)
+    if (volume[c] > 0) cells_[c].center *= 1 / volume[c];
+}
+
+/// Best owner among those of the 26 neighbours; −1 where none has one yet.
+int MeshlessBody::nearest_owner(int c) const {
+  const Cell& cell = cells_[at(c)];
+  int best = -1, best_distance = 0;
+  for (int n = 0; n < 27; ++n) {
+    const std::array<int, 3> i{cell.index[0] + n % 3 - 1, cell.index[1] + n / 3 % 3 - 1, cell.index[2] + n / 9 - 1};
+    bool inside = true;
+    for (std::size_t a = 0; a < 3; ++a) inside = inside && i[a] >= 0 && i[a] < grid_[a] - 1;
+    if (!inside) continue;
+    const int owner = cells_[at(i[0] + (grid_[0] - 1) * (i[1] + (grid_[1] - 1) * i[2]))].owner;
+    if (owner < 0) continue;
+    int distance = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int d = cell.index[a] - cells_[at(owner)].index[a];
+      distance += d * d;
+    }
+    const bool better = best < 0 || distance < best_distance ||
+                        (distance == best_distance && cells_[at(owner)].point_count > cells_[at(best)].point_count);
+    if (better) {
+      best = owner;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+void MeshlessBody::number_frames(const std::vector<Sample>& samples, Model& model) {
+  frame_of_grid_node_.assign(at(grid_[0] * grid_[1] * grid_[2]), -1);
+  for (const Sample& s : samples)
+    for (int corner = 0; corner < 8; ++corner)
+      frame_of_grid_node_[at(grid_node(cells_[at(cells_[at(s.cell)].owner)].index, corner))] = 0;
+  first_frame_ = model.node_count();
+  int dropped = 0;
+  for (int node = 0; node < static_cast<int>(frame_of_grid_node_.size()); ++node) {
+    if (frame_of_grid_node_[at(node)] < 0) {
+      ++dropped;
+      continue;
+    }
+    frame_of_grid_node_[at(node)] = model.node_count();
+    model.rest_position.push_back(to_world(grid_position(node)));
+    model.rest_orientation.push_back(rotation_);
+  }
+  frame_count_ = model.node_count() - first_frame_;
+  if (dropped > 0) messages_.push_back(std::to_string(dropped) + " frames without points were dropped");
+}
+
+}  // namespace fascia

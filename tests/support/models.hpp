@@ -1,0 +1,116 @@
+#pragma once
+
+#include "core/math/rotation.hpp"
+#include "core/model/model.hpp"
+#include "core/physics/st_venant_kirchhoff.hpp"
+#include "meshless/body.hpp"
+
+#include <random>
+
+/// Small models for tests.
+namespace fascia::test {
+
+struct BlockOptions {
+  std::array<int, 3> grid{3, 3, 3};
+  Vec3d size{{1, 1, 1}};
+  double young = 1e4, poisson = 0.3;
+  double density = 1000;
+  GridWeightKind weights = GridWeightKind::trilinear;
+  bool half_blend = true;
+  double drilling = 0.1;
+  double stiffness_damping = 0, mass_damping = 0;
+  IntegrationKind integration = IntegrationKind::automatic;
+  Mat3d rotation = Mat3d::identity();
+  Vec3d translation{};
+};
+
+inline MeshlessSpec block_spec(const BlockOptions& o) {
+  MeshlessSpec spec;
+  spec.domain.max = o.size;
+  spec.domain.volume = o.size[0] * o.size[1] * o.size[2];
+  spec.grid = o.grid;
+  spec.weights = o.weights;
+  spec.half_blend = o.half_blend;
+  spec.drilling = o.drilling;
+  spec.integration = o.integration;
+  spec.density = o.density;
+  spec.rotation = o.rotation;
+  spec.translation = o.translation;
+  const Lame lame = Lame::from_young(o.young, o.poisson);
+  spec.material = [=](const Vec3d&) {
+    return PointMaterialSpec{lame.lambda, lame.mu, o.mass_damping, o.stiffness_damping};
+  };
+  return spec;
+}
+
+struct BuiltModel {
+  Model model;
+  std::vector<MeshlessBody> bodies;
+};
+
+inline BuiltModel build(const std::vector<MeshlessSpec>& specs) {
+  BuiltModel built;
+  PointSetBuilder points;
+  double volume = 0;
+  for (const MeshlessSpec& spec : specs) {
+    built.bodies.emplace_back(spec, built.model, points);
+    volume += spec.domain.volume;
+  }
+  built.model.points = std::move(points).finish(built.model.node_count());
+  built.model.length = std::cbrt(volume / built.model.node_count());
+  return built;
+}
+
+inline BuiltModel block(const BlockOptions& o = {}) { return build({block_spec(o)}); }
+
+inline Vec3d random_vector(std::mt19937& random, double size) {
+  std::uniform_real_distribution<double> uniform(-size, size);
+  return {{uniform(random), uniform(random), uniform(random)}};
+}
+
+/// Frames displaced by up to `displacement` and turned by up to about `rotation`.
+inline State random_state(const Model& model, double displacement, double rotation, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  State state = State::at_rest(model);
+  for (Vec3d& u : state.u) u = random_vector(random, displacement);
+  for (Mat3d& D : state.D) D = rotation_increment(random_vector(random, rotation));
+  return state;
+}
+
+/// u ← u + s dx, Q ← exp(s dr) Q.
+inline State moved(const State& state, const std::vector<double>& d, double s) {
+  State r = state;
+  for (std::size_t i = 0; i < r.u.size(); ++i) {
+    r.u[i] += Vec3d{{d[6 * i], d[6 * i + 1], d[6 * i + 2]}} * s;
+    r.D[i] = compose_increments(rotation_increment(Vec3d{{d[6 * i + 3], d[6 * i + 4], d[6 * i + 5]}} * s), r.D[i]);
+  }
+  return r;
+}
+
+inline std::vector<double> random_direction(const Model& model, unsigned seed = 2) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<double> d(static_cast<std::size_t>(model.dof_count()));
+  for (double& v : d) v = uniform(random);
+  return d;
+}
+
+inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+inline double norm(const std::vector<double>& a) { return std::sqrt(dot(a, a)); }
+
+/// State in which every frame follows x → R x + t.
+inline State rigid_state(const Model& model, const Mat3d& D, const Vec3d& t) {
+  State state = State::at_rest(model);
+  for (std::size_t i = 0; i < state.u.size(); ++i) {
+    state.u[i] = D * model.rest_position[i] + t;
+    state.D[i] = D;
+  }
+  return state;
+}
+
+}  // namespace fascia::test

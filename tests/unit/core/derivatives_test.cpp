@@ -1,0 +1,220 @@
+#include "core/cpu/executor.hpp"
+#include "core/solver/mechanical_system.hpp"
+#include "tests/support/models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace fascia {
+namespace {
+
+using namespace test;
+
+struct Case {
+  const char* name;
+  BlockOptions options;
+  double dt = 0;
+};
+
+/// Every kind of term: drilling or not, both blends, selective points, viscosity.
+std::vector<Case> cases() {
+  BlockOptions plain;
+  plain.grid = {3, 3, 2};
+  BlockOptions no_drilling = plain, full = plain, linear = plain, selective = plain, viscous = plain;
+  no_drilling.drilling = 0;
+  full.half_blend = false;
+  full.drilling = 0;
+  linear.weights = GridWeightKind::linear;
+  selective.grid = {3, 3, 3};
+  selective.poisson = 0.48;
+  viscous.stiffness_damping = 0.02;
+  return {{"default", plain}, {"no drilling", no_drilling}, {"paper", full},
+          {"linear", linear}, {"selective", selective},     {"viscous", viscous, 0.05}};
+}
+
+class Derivatives : public testing::TestWithParam<Case> {
+ protected:
+  Derivatives()
+      : built_(block(GetParam().options)),
+        executor_(built_.model.points, pool_),
+        state_(random_state(built_.model, 0.02, 0.4)) {
+    if (GetParam().dt > 0) {
+      history_.inverse_step = 1 / GetParam().dt;
+      executor_.store_strain(random_state(built_.model, 0.01, 0.2, 7), history_);
+    }
+  }
+  std::size_t size() const { return static_cast<std::size_t>(built_.model.dof_count()); }
+  double energy(const State& state) {
+    std::vector<double> unused(size());
+    return executor_.gradient(state, history_, 1, unused).total();
+  }
+  std::vector<double> gradient(const State& state) {
+    std::vector<double> g(size());
+    executor_.gradient(state, history_, 1, g);
+    return g;
+  }
+  Linearization linearization(Tangent tangent) {
+    gradient(state_);
+    Linearization lin;
+    executor_.linearize(state_, history_, tangent, lin);
+    return lin;
+  }
+
+  BuiltModel built_;
+  ThreadPool pool_{1};
+  CpuExecutor executor_;
+  State state_;
+  StrainHistory history_;
+};
+
+TEST_P(Derivatives, GradientIsThatOfTheEnergy) {
+  const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
+  const double h = 1e-6;  // truncation h² and rounding eps/h balance near here
+  const double numeric = (energy(moved(state_, d, h)) - energy(moved(state_, d, -h))) / (2 * h);
+  const double error = std::abs(numeric - test::dot(g, d)) / (test::norm(g) * test::norm(d));
+  std::printf("%-12s gradient against differences of the energy: %.1e\n", GetParam().name, error);
+  EXPECT_LT(error, 1e-8);
+}
+
+TEST_P(Derivatives, TangentIsTheSecondDerivativeAlongExponentials) {
+  const std::vector<double> d = random_direction(built_.model);
+  const Linearization lin = linearization(Tangent::full);
+  std::vector<double> Kd(size());
+  executor_.multiply(lin, d, Kd);
+  const double h = 1e-4;
+  const double numeric = (energy(moved(state_, d, h)) - 2 * energy(state_) + energy(moved(state_, d, -h))) / (h * h);
+  const double error = std::abs(numeric - test::dot(d, Kd)) / std::abs(numeric);
+  std::printf("%-12s dᵀKd against second differences: %.1e\n", GetParam().name, error);
+  EXPECT_LT(error, 1e-6);
+}
+
+/// The derivative of successive increments is K − ½ [torque]× on the rotation blocks (docs/notation.md).
+TEST_P(Derivatives, DifferencesOfTheGradientAreTangentMinusHalfTorque) {
+  const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
+  const Linearization lin = linearization(Tangent::full);
+  std::vector<double> Kd(size());
+  executor_.multiply(lin, d, Kd);
+  for (std::size_t i = 0; i < size(); i += 6) {
+    const Vec3d torque{{g[i + 3], g[i + 4], g[i + 5]}}, dr{{d[i + 3], d[i + 4], d[i + 5]}};
+    const Vec3d correction = cross(torque, dr) * 0.5;
+    for (std::size_t k = 0; k < 3; ++k) Kd[i + 3 + k] -= correction[static_cast<int>(k)];
+  }
+  const double h = 1e-6;
+  const std::vector<double> plus = gradient(moved(state_, d, h)), minus = gradient(moved(state_, d, -h));
+  std::vector<double> difference(size());
+  for (std::size_t i = 0; i < size(); ++i) difference[i] = (plus[i] - minus[i]) / (2 * h) - Kd[i];
+  const double error = test::norm(difference) / test::norm(Kd);
+  std::printf("%-12s product against differences of the gradient: %.1e\n", GetParam().name, error);
+  EXPECT_LT(error, 1e-8);
+}
+
+TEST_P(Derivatives, AssembledMatrixEqualsTheProduct) {
+  for (const Tangent tangent : {Tangent::full, Tangent::material}) {
+    const Linearization lin = linearization(tangent);
+    BlockMatrix matrix(built_.model.points);
+    executor_.assemble(lin, matrix);
+    const std::vector<double> d = random_direction(built_.model);
+    std::vector<double> free(size()), assembled(size());
+    executor_.multiply(lin, d, free);
+    matrix.multiply(pool_, d, assembled);
+    for (std::size_t i = 0; i < size(); ++i) assembled[i] -= free[i];
+    EXPECT_LT(test::norm(assembled), 1e-12 * test::norm(free)) << GetParam().name;
+  }
+}
+
+TEST_P(Derivatives, MaterialTangentIsSymmetricAndNotNegative) {
+  const Linearization lin = linearization(Tangent::material);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const std::vector<double> a = random_direction(built_.model, seed), b = random_direction(built_.model, seed + 100);
+    std::vector<double> Ka(size()), Kb(size());
+    executor_.multiply(lin, a, Ka);
+    executor_.multiply(lin, b, Kb);
+    EXPECT_GE(test::dot(a, Ka), 0);
+    EXPECT_NEAR(test::dot(a, Kb), test::dot(b, Ka), 1e-12 * test::norm(Ka) * test::norm(b));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Terms, Derivatives, testing::ValuesIn(cases()), [](const auto& parameter) {
+  std::string name = parameter.param.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+/// The slow reference: F of one point from the formula, against differences and against the executor's strain energy.
+TEST(Reference, DeformationGradientAgainstDifferences) {
+  const BuiltModel built = block();
+  const MeshlessBody& body = built.bodies[0];
+  const State state = random_state(built.model, 0.05, 0.4);
+  const auto position = [&](const Vec3d& X) {
+    const Attachment a = body.attach(X);
+    Vec3d x = X;
+    for (std::size_t k = 0; k < a.nodes.size(); ++k)
+      x += state.u[static_cast<std::size_t>(a.nodes[k])] * a.influences[k].w +
+           state.D[static_cast<std::size_t>(a.nodes[k])] * a.influences[k].b;
+    return x;
+  };
+  double largest = 0;
+  for (const BodyPoint& p : body.points()) {
+    const Attachment a = body.attach(p);
+    Mat3d F = Mat3d::identity();
+    for (std::size_t k = 0; k < a.nodes.size(); ++k)
+      F += outer(state.u[static_cast<std::size_t>(a.nodes[k])], a.influences[k].g) +
+           state.D[static_cast<std::size_t>(a.nodes[k])] * a.influences[k].B;
+    for (int j = 0; j < 3; ++j) {
+      Vec3d e;
+      e[j] = 1e-5;
+      const Vec3d column = (position(p.X + e) - position(p.X - e)) * (0.5 / 1e-5);
+      for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(column[i] - F(i, j)));
+    }
+  }
+  std::printf("F against differences of the position: %.1e\n", largest);
+  EXPECT_LT(largest, 1e-9);
+}
+
+TEST(Reference, EnergyAndForcesFromPlainLoops) {
+  BlockOptions o;
+  const BuiltModel built = block(o);
+  const MeshlessBody& body = built.bodies[0];
+  const State state = random_state(built.model, 0.05, 0.4);
+  double elastic = 0, drilling = 0;
+  std::vector<Vec3d> force(state.u.size()), torque(state.u.size());
+  for (const BodyPoint& p : body.points()) {
+    const Attachment a = body.attach(p);
+    Mat3d F = Mat3d::identity(), Qbar;
+    for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+      const auto node = static_cast<std::size_t>(a.nodes[k]);
+      F += outer(state.u[node], a.influences[k].g) + state.D[node] * a.influences[k].B;
+      Qbar += (Mat3d::identity() + state.D[node]) * a.influences[k].w;
+    }
+    const Mat3d E = (transpose_times(F, F) - Mat3d::identity()) * 0.5;
+    const Mat3d S = Mat3d::diagonal(p.lambda * trace(E)) + E * (2 * p.mu);
+    const double gamma = o.drilling * p.mu;
+    const Mat3d M = transpose_times(Qbar, F), T = (M - transpose(M)) * gamma;
+    elastic += p.volume * 0.5 * contract(S, E);
+    drilling += p.volume / (4 * gamma) * contract(T, T);
+    const Mat3d P = F * S + Qbar * T, Y = times_transpose(F, T);
+    for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+      const auto node = static_cast<std::size_t>(a.nodes[k]);
+      const Mat3d Q = Mat3d::identity() + state.D[node];
+      force[node] += P * a.influences[k].g * p.volume;
+      torque[node] +=
+          (axl(times_transpose(Q * a.influences[k].B, P)) + axl(times_transpose(Q, Y)) * a.influences[k].w) * p.volume;
+    }
+  }
+  ThreadPool pool(1);
+  CpuExecutor executor(built.model.points, pool);
+  std::vector<double> g(static_cast<std::size_t>(built.model.dof_count()));
+  const InternalEnergy energy = executor.gradient(state, {}, 1, g);
+  EXPECT_NEAR(energy.elastic, elastic, 1e-12 * elastic);
+  EXPECT_NEAR(energy.drilling, drilling, 1e-12 * drilling);
+  const double scale = test::norm(g);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(g[6 * i + k], force[i][static_cast<int>(k)], 1e-12 * scale);
+      EXPECT_NEAR(g[6 * i + 3 + k], torque[i][static_cast<int>(k)], 1e-12 * scale);
+    }
+}
+
+}  // namespace
+}  // namespace fascia

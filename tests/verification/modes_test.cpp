@@ -1,0 +1,48 @@
+// Natural frequencies.
+#include "tests/support/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace fascia::test {
+namespace {
+
+TEST(Modes, SteelCantilever) {
+  const SceneRun run("beam_modes");
+  struct Mode {
+    const char* name;
+    double solid;
+    int copies;
+  };
+  const Mode modes[] = {{"bending 1", 1.5988, 2}, {"bending 2", 9.974, 2}, {"bending 3", 27.73, 2},
+                        {"torsion 1", 45.08, 1},  {"bending 4", 53.77, 2}, {"axial 1", 79.19, 1},
+                        {"bending 5", 87.7, 2}};
+  const nlohmann::json f = run.probe("frequency");
+  ASSERT_EQ(f.size(), 12u);
+  std::size_t i = 0;
+  std::printf("mode         f [Hz]     solid [Hz]   error\n");
+  for (const Mode& m : modes)
+    for (int copy = 0; copy < m.copies; ++copy, ++i) {
+      const double value = f[i].get<double>();
+      std::printf("%-10s %9.4f %12.4f %+7.2f %%\n", m.name, value, m.solid, 100 * (value / m.solid - 1));
+      EXPECT_NEAR(value / m.solid, 1.0, 0.03) << m.name;
+    }
+}
+
+TEST(Modes, FreeBlockHasSixZeros) {
+  for (const char* weights : {"trilinear", "linear"}) {
+    const SceneRun run("free_modes", {std::string("bodies.block.weights.kind='") + weights + "'"});
+    const nlohmann::json f = run.probe("frequency");
+    ASSERT_EQ(f.size(), 10u);
+    std::printf("%-10s", weights);
+    for (const nlohmann::json& v : f) std::printf(" %.3g", v.get<double>());
+    std::printf(" Hz\n");
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_LT(f[i].get<double>(), 1e-5 * f[6].get<double>());
+    EXPECT_GT(f[6].get<double>(), 0.5);
+  }
+}
+
+}  // namespace
+}  // namespace fascia::test
