@@ -4,6 +4,7 @@
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 
+#include <nlohmann/json.hpp>
 #include <algorithm>
 #include <cmath>
 

@@ -3,7 +3,7 @@
 #include "app/simulation.hpp"
 #include "core/solver/mechanical_system.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 #include <vector>

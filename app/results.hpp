@@ -5,7 +5,7 @@
 #include "core/solver/drivers.hpp"
 #include "io/result_writer.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 #include <vector>

@@ -8,6 +8,7 @@
 #include "core/math/rotation.hpp"
 #include "core/solver/modes.hpp"
 
+#include <nlohmann/json.hpp>
 #include <fmt/format.h>
 
 #include <chrono>

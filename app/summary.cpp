@@ -1,5 +1,6 @@
 #include "app/results.hpp"
 
+#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include <algorithm>

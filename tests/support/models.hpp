@@ -3,6 +3,7 @@
 #include "core/math/rotation.hpp"
 #include "core/model/model.hpp"
 #include "core/physics/st_venant_kirchhoff.hpp"
+#include "core/solver/drivers.hpp"
 #include "meshless/body.hpp"
 
 #include <random>
@@ -112,5 +113,28 @@ inline State rigid_state(const Model& model, const Mat3d& D, const Vec3d& t) {
   }
   return state;
 }
+
+/// Holds all of the frames of a plane.
+inline void hold_face(Model& model, double x = 0) {
+  for (int i = 0; i < model.node_count(); ++i) {
+    if (std::abs(model.rest_position[static_cast<std::size_t>(i)][0] - x) > 1e-9) continue;
+    FrameConstraint c;
+    c.node = i;
+    c.translations = c.rotations = 3;
+    model.constraints.push_back(c);
+  }
+}
+
+inline void add_gravity(Model& model, const Vec3d& g) {
+  DeadLoad load;
+  for (int i = 0; i < model.node_count(); ++i) {
+    const FrameInertia& inertia = model.inertia[static_cast<std::size_t>(i)];
+    load.nodes.push_back({i, g * inertia.mass, outer(g, inertia.first), {}});
+  }
+  model.loads.push_back(load);
+}
+
+inline const FactorFunction kRamp = [](double t) { return std::vector<double>{t}; };
+inline const FactorFunction kAlways = [](double) { return std::vector<double>{1.0}; };
 
 }  // namespace fascia::test

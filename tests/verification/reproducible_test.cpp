@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <ostream>
 
 namespace fascia::test {
 namespace {
@@ -13,6 +14,8 @@ struct Case {
   std::string scene;
   Settings settings;
 };
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 class Threads : public ::testing::TestWithParam<Case> {};
 

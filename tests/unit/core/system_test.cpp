@@ -13,28 +13,6 @@ namespace {
 
 using namespace test;
 
-void hold_face(Model& model, double x = 0) {
-  for (int i = 0; i < model.node_count(); ++i) {
-    if (std::abs(model.rest_position[static_cast<std::size_t>(i)][0] - x) > 1e-9) continue;
-    FrameConstraint c;
-    c.node = i;
-    c.translations = c.rotations = 3;
-    model.constraints.push_back(c);
-  }
-}
-
-void add_gravity(Model& model, const Vec3d& g) {
-  DeadLoad load;
-  for (int i = 0; i < model.node_count(); ++i) {
-    const FrameInertia& inertia = model.inertia[static_cast<std::size_t>(i)];
-    load.nodes.push_back({i, g * inertia.mass, outer(g, inertia.first), {}});
-  }
-  model.loads.push_back(load);
-}
-
-const FactorFunction kRamp = [](double t) { return std::vector<double>{t}; };
-const FactorFunction kAlways = [](double) { return std::vector<double>{1.0}; };
-
 /// Loads and inertia of a time step against differences of their energy, with mass damping.
 TEST(MechanicalSystem, GradientOfAStepIsThatOfItsEnergy) {
   BlockOptions o;
@@ -150,31 +128,6 @@ TEST(InternalEnergy, DoesNotChangeUnderASuperposedRotation) {
   std::vector<double> g(static_cast<std::size_t>(built.model.dof_count()));
   const double before = executor.gradient(state, {}, 1, g).total(), after = executor.gradient(turned, {}, 1, g).total();
   EXPECT_NEAR(after, before, 1e-12 * before);
-}
-
-TEST(Results, DoNotDependOnTheNumberOfThreads) {
-  BlockOptions o;
-  o.grid = {30, 5, 5};
-  o.size = {{10, 1, 1}};
-  BuiltModel built = block(o);
-  hold_face(built.model);
-  add_gravity(built.model, {{0, -0.01, 0}});
-  for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::cg}) {
-    State ends[2];
-    for (int k = 0; k < 2; ++k) {
-      ThreadPool pool(k + 1);
-      SolverSettings settings;
-      settings.linear = method;
-      MechanicalSystem system(built.model, pool, settings);
-      ends[k] = State::at_rest(built.model);
-      const RunReport report = run_statics(system, ends[k], kRamp, settings, {}, nullptr);
-      EXPECT_EQ(report.status, RunStatus::converged) << report.message;
-    }
-    for (std::size_t i = 0; i < ends[0].u.size(); ++i) {
-      EXPECT_EQ(ends[0].u[i], ends[1].u[i]);
-      EXPECT_EQ(ends[0].D[i], ends[1].D[i]);
-    }
-  }
 }
 
 TEST(Results, CgAgreesWithCholesky) {
