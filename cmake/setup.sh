@@ -54,7 +54,7 @@ install_missing() {
   missing=$(missing_packages "$1" | tr '\n' ' ')
   [ -n "$missing" ] || return 0
 
-  say "installing with apt-get what is missing (up to 520 MB to fetch; cmake/packages.txt says what each is for): $missing"
+  say "installing with apt-get what is missing (cmake/packages.txt says what each is for; 520 MB to fetch on a bare system): $missing"
   if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
     say "that needs root and there is no sudo; as root: apt-get install --no-install-recommends $missing"
     return 1

@@ -81,6 +81,8 @@ void MeshlessBody::find_owners(const std::vector<Sample>& samples, int full_coun
     for (const auto& [c, owner] : found) cells_[at(c)].owner = owner;
     open = std::move(left);
   }
+  if (lent > 0 && full_count < 27)
+    messages_.push_back("the boundary cuts cells that have few points; use 3 in each direction (per_cell = [3, 3, 3])");
   if (lent > 0)
     messages_.push_back(std::to_string(lent) +
                         " points in cells that the domain hardly fills were given to neighbouring cells");

@@ -35,14 +35,14 @@ NodeSum gather(const PointSet& set, const AlignedVector<double>& slot_sums, int 
 
 Lanes squared(const Mat3<Lanes>& m) { return contract(m, m); }
 
+}  // namespace
+
 double largest_motion(const State& state, double length) {
   double largest = 0;
   for (const Vec3d& u : state.u) largest = std::max(largest, squared_norm(u));
   for (const Mat3d& D : state.D) largest = std::max(largest, length * length * contract(D, D));
   return std::sqrt(largest);
 }
-
-}  // namespace
 
 CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
     : set_(set),
@@ -100,8 +100,8 @@ void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& hi
 }
 
 InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, double length,
-                                     std::span<double> gradient) {
-  const double motion = largest_motion(state, length);
+                                     std::span<double> gradient, double earlier_motion) {
+  const double motion = std::max(largest_motion(state, length), earlier_motion);
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     if (drilling_)
       gradient_of_groups<true>(state, history, motion, begin, end);

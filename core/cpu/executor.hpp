@@ -32,6 +32,9 @@ struct Linearization {
   AlignedVector<double> points;     ///< (groups × 24 × 8): H (9), Dbar (9), S (6)
 };
 
+/// Largest displacement of a frame, its rotation taken at a lever of `length` [m].
+double largest_motion(const State& state, double length);
+
 /// Executes a point set on the processor: one pass over groups of points, one gather over frames. No atomics, sums in
 /// fixed order: results do not depend on the number of threads.
 class CpuExecutor {
@@ -41,8 +44,10 @@ class CpuExecutor {
   /// Gradient of the internal energy: 6 numbers a frame, force then torque (overwritten).
   /// Along u ← u + dx, Q ← exp(dr) Q the energy changes by gradient · (dx, dr).
   ///
-  /// @param length  scale that makes torques comparable with forces in `rounding` [m]
-  InternalEnergy gradient(const State& state, const StrainHistory& history, double length, std::span<double> gradient);
+  /// @param length          scale that makes torques comparable with forces in `rounding` [m]
+  /// @param earlier_motion  largest motion that the state has gone through, whose rounding it still carries [m]
+  InternalEnergy gradient(const State& state, const StrainHistory& history, double length, std::span<double> gradient,
+                          double earlier_motion = 0);
 
   /// Tangent at the state of the last call of gradient(), which must have been `state`.
   void linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out);

@@ -58,6 +58,7 @@ void MechanicalSystem::begin_step(const State& start, double dt) {
   start_ = start;
   dt_ = dt;
   start_factors_ = factors_;
+  start_motion_ = std::max(start_motion_, largest_motion(start, model_.length));
   increment_.du.assign(start.u.size(), Vec3d{});
   increment_.Ds.assign(start.u.size(), Mat3d{});
   increment_.turned.assign(model_.constraints.size(), {0, 0, 0});
@@ -225,7 +226,7 @@ double MechanicalSystem::scaled_norm(std::span<const double> global, bool fixed_
 }
 
 Evaluation MechanicalSystem::evaluate() {
-  internal_ = executor_.gradient(state_, history_, model_.length, gradient_);
+  internal_ = executor_.gradient(state_, history_, model_.length, gradient_, start_motion_);
   add_loads();
   add_inertia();
   for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] += inertia_[i] - load_[i];
@@ -263,8 +264,14 @@ void MechanicalSystem::prescribed_increments(std::span<double> local) const {
 bool MechanicalSystem::has_prescribed_increment() const {
   std::vector<double>& local = work_;
   prescribed_increments(local);
+  // Rounding of a target grows with the displacements and, for a turn, with the arm: after whole turns nothing is
+  // displaced.
   double largest_u = 0;
   for (const Vec3d& u : state_.u) largest_u = std::max(largest_u, std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]));
+  for (const FrameConstraint& c : model_.constraints)
+    for (const int motion : c.translation_motion)
+      if (motion >= 0 && model_.motions[at(motion)].angle != 0)
+        largest_u = std::max(largest_u, norm(model_.rest_position[at(c.node)] - model_.motions[at(motion)].center));
   for (std::size_t i = 0; i < local.size(); ++i) {
     const double scale = i % 6 < 3 ? largest_u : 1.0;
     if (std::abs(local[i]) > 1e-14 * scale) return true;

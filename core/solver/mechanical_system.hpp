@@ -81,6 +81,7 @@ class MechanicalSystem {
   mutable std::vector<double> work_;
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0, inertia_rounding_ = 0;
+  double start_motion_ = 0;  ///< largest motion at the start of any step so far [m]
   Linearization lin_;
 };
 

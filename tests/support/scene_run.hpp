@@ -20,6 +20,22 @@ namespace fascia::test {
 /// "key.path=value", as after --set.
 using Settings = std::vector<std::string>;
 
+/// A new empty folder that goes with this object.
+struct TemporaryFolder {
+  std::filesystem::path path;
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "fascia_verification_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a directory for results");
+    path = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+};
+
 /// One run of a scene of this project by the program, in a directory of its own that goes with this object.
 ///
 /// The test that includes this defines FASCIA_EXECUTABLE and FASCIA_SOURCE_DIR.
@@ -30,32 +46,25 @@ class SceneRun {
   /// @param options   further options of the command line
   explicit SceneRun(const std::string& scene, const Settings& settings = {},
                     const std::vector<std::string>& options = {}) {
-    std::string name = (std::filesystem::temp_directory_path() / "fascia_verification_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a directory for results");
-    root_ = name;
     const std::filesystem::path file = std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (scene + ".toml");
     std::vector<std::string> command{FASCIA_EXECUTABLE, "run",      file.string(),
                                      "--json",          "--output", directory().string()};
     for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
     command.insert(command.end(), options.begin(), options.end());
     ProgramOptions how;
-    how.directory = root_;
+    how.directory = folder_.path;
     how.timeout = std::chrono::minutes(4);
     program_ = run_program(command, how);
     summary_ = nlohmann::json::parse(program_.out, nullptr, false);
     if (summary_.is_discarded()) summary_ = nlohmann::json::object();
     EXPECT_EQ(program_.status, 0) << scene << ": " << program_.err;
   }
-  ~SceneRun() {
-    std::error_code ignored;
-    std::filesystem::remove_all(root_, ignored);
-  }
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;
 
   bool ok() const { return program_.status == 0 && summary_.contains("probes"); }
   const nlohmann::json& summary() const { return summary_; }
-  std::filesystem::path directory() const { return root_ / "out"; }
+  std::filesystem::path directory() const { return folder_.path / "out"; }
   int newton_iterations() const { return summary_.value("newton_iterations", -1); }
 
   /// Value of a probe as JSON; null, with a failure, where there is none.
@@ -105,7 +114,7 @@ class SceneRun {
   }
 
  private:
-  std::filesystem::path root_;
+  TemporaryFolder folder_;
   ProgramResult program_;
   nlohmann::json summary_;
 };

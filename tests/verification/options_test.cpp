@@ -44,15 +44,39 @@ TEST(Options, MaterialTangentConvergesToTheSameAnswer) {
   EXPECT_LT(d, 1e-6);
 }
 
-TEST(Options, LinearWeights) {
-  std::printf("linear weights   corner sag [m]   error against 6.586   measured before\n");
+/// Tip of the steel beam with linear weights against Euler-Bernoulli [%].
+double linear_steel_error(int along, const char* weights) {
+  const SceneRun run("steel_cantilever", {grid_setting("beam", {along, 5, 5}), weights});
+  return 100 * (-run.vector("tip")[1] / 0.150441 - 1);
+}
+
+TEST(Options, LinearWeightsOfTheSteelBeam) {
+  std::printf("frames        drilling 0   measured before   default drilling\n");
+  const std::pair<int, double> cases[] = {{5, -89}, {9, -68}, {13, -49}, {17, -36}, {25, -21}, {33, -13}, {49, -7.5}};
+  for (const auto& [along, expected] : cases) {
+    const double plain = linear_steel_error(along, "bodies.beam.weights={kind='linear',drilling=0}");
+    const double tied = linear_steel_error(along, "bodies.beam.weights.kind='linear'");
+    std::printf("%2d x 5 x 5 %10.2f %% %12.1f %% %14.2f %%\n", along, plain, expected, tied);
+    EXPECT_NEAR(plain, expected, 1.0) << along << " frames along";
+    EXPECT_LT(tied, plain) << "drilling stiffens";
+  }
+}
+
+TEST(Options, LinearWeightsOfTheSoftBeam) {
+  std::printf("frames        full blend, no drilling   measured before   default   (corner sag against 6.586 m)\n");
   const std::pair<std::array<int, 3>, double> cases[] = {{{9, 3, 3}, -33.9}, {{21, 3, 3}, -10.5}, {{33, 4, 4}, -5.0}};
+  double previous = -100;
   for (const auto& [grid, expected] : cases) {
-    const SceneRun run("soft_cantilever",
-                       {grid_setting("beam", grid), "bodies.beam.weights.kind='linear'", "probes.tip.at=[16,0.5,0.5]"});
-    const double sag = -run.vector("tip")[1], error = 100 * (sag / 6.586 - 1);
-    std::printf("%2d x %d x %d %15.4f %15.2f %% %15.1f %%\n", grid[0], grid[1], grid[2], sag, error, expected);
-    EXPECT_NEAR(error, expected, 1.0);
+    const auto error = [&g = grid](const char* weights) {
+      const SceneRun run("soft_cantilever", {grid_setting("beam", g), weights, "probes.tip.at=[16,0.5,0.5]"});
+      return 100 * (-run.vector("tip")[1] / 6.586 - 1);
+    };
+    const double full = error("bodies.beam.weights={kind='linear',blend='full',drilling=0}");
+    const double standard = error("bodies.beam.weights.kind='linear'");
+    std::printf("%2d x %d x %d %18.2f %% %20.1f %% %12.2f %%\n", grid[0], grid[1], grid[2], full, expected, standard);
+    EXPECT_NEAR(full, expected, 4.0);
+    EXPECT_GT(standard, previous) << "converges from below";
+    previous = standard;
   }
 }
 
@@ -75,14 +99,26 @@ TEST(Options, PaperRuleTurnsFramesAway) {
 }
 
 TEST(Options, SelectiveIntegration) {
-  constexpr double beam = 0.150441;
-  std::printf("nu = 0.49, 25 x 5 x 5   sag [m]   error     measured before\n");
-  const std::pair<const char*, double> cases[] = {{"auto", 0.7}, {"selective", 0.7}, {"full", -20}};
-  for (const auto& [integration, expected] : cases) {
-    const SceneRun run("nearly_incompressible", {std::string("bodies.beam.points.integration='") + integration + "'"});
-    const double sag = -run.vector("tip")[1], error = 100 * (sag / beam - 1);
-    std::printf("%-20s %10.6f %+8.2f %% %+8.1f %%\n", integration, sag, error, expected);
-    EXPECT_NEAR(error, expected, 1.0) << integration;
+  struct Case {
+    std::array<int, 3> grid;
+    const char *poisson, *integration, *drilling;
+    double expected;  // measured before, with a drilling stiffness of 0.001 [%]
+  };
+  const Case cases[] = {
+      {{25, 5, 5}, "0.49", "auto", "0.1", 0.7},        {{25, 5, 5}, "0.49", "selective", "0.1", 0.7},
+      {{25, 5, 5}, "0.49", "selective", "0.001", 0.7}, {{25, 5, 5}, "0.499", "selective", "0.001", 0.6},
+      {{25, 3, 3}, "0.49", "selective", "0.001", 4.8}, {{25, 5, 5}, "0.49", "full", "0.001", -20},
+      {{25, 5, 5}, "0.499", "full", "0.001", -46},     {{25, 3, 3}, "0.49", "full", "0.001", -25}};
+  std::printf("frames        nu      integration  drilling   sag [m]    error    measured before\n");
+  for (const Case& c : cases) {
+    const SceneRun run("nearly_incompressible",
+                       {grid_setting("beam", c.grid), std::string("bodies.beam.material.poisson=") + c.poisson,
+                        std::string("bodies.beam.points.integration='") + c.integration + "'",
+                        std::string("bodies.beam.weights.drilling=") + c.drilling});
+    const double sag = -run.vector("tip")[1], error = 100 * (sag / 0.150441 - 1);
+    std::printf("%2d x %d x %d   %-6s  %-10s  %-6s %11.6f %+8.2f %% %+7.1f %%\n", c.grid[0], c.grid[1], c.grid[2],
+                c.poisson, c.integration, c.drilling, sag, error, c.expected);
+    EXPECT_NEAR(error, c.expected, 1.0) << c.integration;
   }
 }
 
