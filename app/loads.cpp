@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 
 namespace fascia::app {
@@ -13,20 +14,17 @@ namespace {
 
 /// A point that takes a share of a total load.
 struct Share {
+  Vec3d X{};
   Attachment attachment;
   double part = 0;
+  Vec3d force{}, torque{};
 };
-
-int new_schedule(Simulation& s, const Schedule& schedule) {
-  s.schedules.push_back(schedule);
-  return static_cast<int>(s.schedules.size()) - 1;
-}
 
 void add_gravity(Simulation& s) {
   const Vec3d& g = s.scene.world.gravity;
   if (squared_norm(g) == 0) return;
   DeadLoad load;
-  load.schedule = new_schedule(s, s.scene.world.schedule);
+  load.schedule = new_schedule(s, s.scene.world.schedule, {s.scene.path.string(), 1, 1, "world.gravity"});
   for (int i = 0; i < s.model.node_count(); ++i) {
     const FrameInertia& inertia = s.model.inertia[at(i)];
     load.nodes.push_back({i, g * inertia.mass, outer(g, inertia.first), {}});
@@ -46,7 +44,7 @@ std::vector<Share> surface_shares(const MeshlessBody& body, const Region& region
     const Vec3d &a = surface.points[at(t[0])], &b = surface.points[at(t[1])], &c = surface.points[at(t[2])];
     const double area = 0.5 * norm(cross(b - a, c - a));
     for (const Vec3d& X : {(a * 4.0 + b + c) * (1.0 / 6), (a + b * 4.0 + c) * (1.0 / 6), (a + b + c * 4.0) * (1.0 / 6)})
-      shares.push_back({body.attach(X), area / 3});
+      shares.push_back({X, body.attach(X), area / 3, {}, {}});
   }
   return shares;
 }
@@ -57,7 +55,7 @@ std::vector<Share> volume_shares(const MeshlessBody& body, const Region& region)
   const std::vector<bool> chosen = select(region, positions, {});
   std::vector<Share> shares;
   for (std::size_t q = 0; q < positions.size(); ++q)
-    if (chosen[q]) shares.push_back({body.attach(positions[q]), body.points()[q].volume});
+    if (chosen[q]) shares.push_back({positions[q], body.attach(positions[q]), body.points()[q].volume, {}, {}});
   return shares;
 }
 
@@ -75,13 +73,27 @@ std::vector<Share> shares_of(const SimulatedBody& body, const Load& load) {
   return shares;
 }
 
-/// J^T of a force and a torque at material points, summed by frame; or followers, one a point.
-void add_shares(Simulation& s, const std::vector<Share>& shares, const Vec3d& force, const Vec3d& torque, bool follower,
-                int schedule) {
+/// Forces without resultant that make up a torque: part (a × r) about the centre c, with a from the shares' inertia.
+void spread_torque(std::vector<Share>& shares, const Vec3d& torque, const Place& place) {
+  Vec3d center;
+  for (const Share& s : shares) center += s.X * s.part;
+  Mat3d inertia;
+  for (const Share& s : shares) {
+    const Vec3d r = s.X - center;
+    inertia += (Mat3d::diagonal(squared_norm(r)) - outer(r, r)) * s.part;
+  }
+  if (determinant(inertia) < 1e-9 * std::pow(trace(inertia), 3))
+    throw SceneError({{place, "the region is a point or a line and cannot take up a torque; enlarge it"}});
+  const Vec3d a = inverse(inertia) * torque;
+  for (Share& s : shares) s.force += cross(a, s.X - center) * s.part;
+}
+
+/// J^T of forces and torques at material points, summed by frame; or followers, one a point.
+void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, int schedule) {
   std::map<int, NodeLoad> by_node;
   for (const Share& share : shares) {
     const Attachment& a = share.attachment;
-    FollowerLoad f{schedule, force * share.part, torque * share.part, a.nodes, {}, {}};
+    FollowerLoad f{schedule, share.force, share.torque, a.nodes, {}, {}};
     for (std::size_t k = 0; k < a.nodes.size(); ++k) {
       const Influence& i = a.influences[k];
       f.w.push_back(i.w);
@@ -118,15 +130,19 @@ void add_node_forces(Simulation& s, int body, const Load& load, int schedule) {
 void add_loads(Simulation& s) {
   add_gravity(s);
   for (const Load& load : s.scene.loads) {
-    const int body = body_index(s, load.body), schedule = new_schedule(s, load.schedule);
+    const int body = body_index(s, load.body), schedule = new_schedule(s, load.schedule, load.place);
     const SimulatedBody& b = s.bodies[at(body)];
-    if (load.total_force || load.total_torque)
-      add_shares(s, shares_of(b, load), load.total_force.value_or(Vec3d{}), load.total_torque.value_or(Vec3d{}),
-                 load.follower, schedule);
+    if (load.total_force || load.total_torque) {
+      std::vector<Share> shares = shares_of(b, load);
+      if (load.total_force)
+        for (Share& share : shares) share.force = *load.total_force * share.part;
+      if (load.total_torque) spread_torque(shares, *load.total_torque, load.where->place);
+      add_shares(s, shares, load.follower, schedule);
+    }
     if (load.force_per_node) add_node_forces(s, body, load, schedule);
     if (load.at) {
       const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
-      add_shares(s, {{b.meshless.attach(X), 1.0}}, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{}),
+      add_shares(s, {{X, b.meshless.attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
                  load.follower, schedule);
     }
   }

@@ -4,9 +4,9 @@
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 
-#include <nlohmann/json.hpp>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace fascia::app {
 
@@ -172,6 +172,10 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
       add(n.node, n.force * factor, (axl(Q * transpose(n.couple)) + n.torque) * factor);
     }
   }
+  for (const FollowerLoad& load : s.model.followers)
+    for_each_share(load, *snap.state, factors[at(load.schedule)], [&](int node, const Vec3d& f, const Vec3d& torque) {
+      if (chosen[at(node)] != 0) add(node, f, torque);
+    });
 }
 
 }  // namespace
@@ -268,7 +272,7 @@ nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>&
     if (shape == Shape::scalar) return values[i];
     nlohmann::json rows = nlohmann::json::array();
     for (std::size_t k = 0; k < size; k += 3) {
-      const nlohmann::json row = {values[i + k], values[i + k + 1], values[i + k + 2]};
+      nlohmann::json row = {values[i + k], values[i + k + 1], values[i + k + 2]};
       if (shape == Shape::vector) return row;
       rows.push_back(row);
     }

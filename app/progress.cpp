@@ -16,7 +16,7 @@ void Progress::update(const StepInfo& step) {
   const double since = std::chrono::duration<double>(now - last_).count();
   if (verbose_) {
     fmt::print(stderr, "step {} (t = {:.6g}): {} Newton iterations, {} linear, residual {:.2e}, {:.3f} s{}\n",
-               step.step, step.time, step.newton.iterations, step.newton.linear_iterations, step.newton.last.relative(),
+               step.step, step.time, step.newton.iterations, step.newton.linear_iterations, step.newton.last.relative,
                step.seconds, step.newton.trouble.empty() ? "" : "; " + step.newton.trouble);
     return;
   }
@@ -25,7 +25,7 @@ void Progress::update(const StepInfo& step) {
   const double left = step.progress > 0 ? elapsed * (1 - step.progress) / step.progress : 0;
   const std::string text = fmt::format(
       "{:3.0f} %  step {} (t = {:.4g})  residual {:.1e}  {:.3g} steps/s  {:.0f} s left", 100 * step.progress, step.step,
-      step.time, step.newton.last.relative(), (step.step - last_step_) / since, left);
+      step.time, step.newton.last.relative, (step.step - last_step_) / since, left);
   if (terminal_) {
     constexpr int kWidth = 24;
     const int full = static_cast<int>(kWidth * step.progress);

@@ -16,14 +16,13 @@ struct Overloaded : Handlers... {
 template <class... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
-/// Rounding must not decide whether a frame on the face of a box is inside.
-double tolerance(double size) { return 1e-9 * size; }
+/// Rounding must not decide whether a frame on a face is inside: a small part of the largest coordinate is forgiven.
+double tolerance(const Vec3d& a, const Vec3d& b) { return 1e-9 * (norm(a) + norm(b)); }
 
 bool in_box(const BoxRegion& b, const Vec3d& X) {
-  for (int a = 0; a < 3; ++a) {
-    const double t = tolerance(b.max[a] - b.min[a]);
+  const double t = tolerance(b.min, b.max);
+  for (int a = 0; a < 3; ++a)
     if (X[a] < b.min[a] - t || X[a] > b.max[a] + t) return false;
-  }
   return true;
 }
 
@@ -31,7 +30,8 @@ bool in_cylinder(const CylinderRegion& c, const Vec3d& X) {
   const Vec3d axis = c.to - c.from, d = X - c.from;
   const double length = norm(axis), along = dot(d, axis) / length;
   const double radius = norm(d - axis * (along / length));
-  return along >= -tolerance(length) && along <= length + tolerance(length) && radius <= c.radius * (1 + 1e-9);
+  const double t = tolerance(c.from, c.to);
+  return along >= -t && along <= length + t && radius <= c.radius + t;
 }
 
 int nearest_point(const Vec3d& target, std::span<const Vec3d> points) {
@@ -74,11 +74,12 @@ std::vector<bool> select(const Region& region, std::span<const Vec3d> points, st
                  },
                  [&](const BoxRegion& b) { by_position([&](const Vec3d& X) { return in_box(b, X); }); },
                  [&](const SphereRegion& s) {
-                   by_position([&](const Vec3d& X) { return norm(X - s.center) <= s.radius * (1 + 1e-9); });
+                   by_position([&](const Vec3d& X) { return norm(X - s.center) <= s.radius + tolerance(s.center, X); });
                  },
                  [&](const CylinderRegion& c) { by_position([&](const Vec3d& X) { return in_cylinder(c, X); }); },
                  [&](const HalfspaceRegion& h) {
-                   by_position([&](const Vec3d& X) { return dot(X - h.point, h.normal) <= 0; });
+                   by_position(
+                       [&](const Vec3d& X) { return dot(X - h.point, normalized(h.normal)) <= tolerance(X, h.point); });
                  },
                  [&](const NearestRegion& n) {
                    if (const int i = nearest_point(n.point, points); i >= 0) chosen[static_cast<std::size_t>(i)] = true;

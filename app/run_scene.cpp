@@ -8,8 +8,8 @@
 #include "core/math/rotation.hpp"
 #include "core/solver/modes.hpp"
 
-#include <nlohmann/json.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -94,10 +94,35 @@ class SaveRule {
 
 struct Outcome {
   RunReport run;
+  std::vector<std::string> warnings;
   RunTimes times;
   std::vector<nlohmann::json> probes;
   double stabilization = 0;
 };
+
+/// What a user must know of a result that converged.
+void add_result_warnings(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
+  if (run.status == RunStatus::converged && !run.trouble.empty())
+    warnings.push_back("the end state may be an unstable equilibrium: " + run.trouble);
+  if (run.residual_floor > 1e-3 && !s.model.loads.empty())
+    warnings.push_back(fmt::format(
+        "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
+  for (const SimulatedBody& b : s.bodies) {
+    int inverted = 0;
+    for (const BodyPoint& p : b.meshless.points())
+      inverted += determinant(Mat3d::identity() + field_at(b.meshless.attach(p), end).H) <= 0 ? 1 : 0;
+    if (inverted > 0)
+      warnings.push_back(
+          fmt::format("body \"{}\" is turned inside out at {} of {} integration points: St Venant-Kirchhoff does "
+                      "not resist that; the result is no physical state",
+                      b.name, inverted, b.meshless.points().size()));
+  }
+  if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
+    run.status = RunStatus::not_converged;
+    run.message =
+        fmt::format("{} steps were accepted above the tolerance (newton.on_limit = \"continue\")", run.steps_at_limit);
+  }
+}
 
 Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, const RunOptions& options) {
   Outcome out;
@@ -140,12 +165,17 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
   progress.finish();
   out.times.solve = seconds_since(start) - output_seconds;
   // What was computed up to a failure is a result too.
-  if (out.run.status != RunStatus::converged && saved_time != out.run.time) {
-    system.set_factors(factors(statics ? state.time : out.run.time));
-    system.begin_step(state, 0);
-    system.evaluate();
-    save(out.run.time, state, true);
+  if (out.run.status != RunStatus::converged && saved_time != state.time) {
+    if (statics && out.run.steps > 0) {
+      files.add_state(state.time, state);
+    } else {
+      system.set_factors(factors(state.time));
+      system.begin_step(state, 0);
+      system.evaluate();
+      save(state.time, state, true);
+    }
   }
+  add_result_warnings(s, state, out.run, out.warnings);
   out.times.output = output_seconds;
   if (out.run.status == RunStatus::interrupted) out.run.message = fmt::format("interrupted at {:.6g}", out.run.time);
   for (std::size_t i = 0; i < s.probes.size(); ++i) out.probes.push_back(probe_json(s.probes[i], files.last_values(i)));
@@ -224,6 +254,10 @@ int run_scene(const RunOptions& options) {
   out.times.setup += setup;
   files.finish();
   if (s.scene.output.picture) make_picture(s, directory.path(), name);
+  for (const std::string& w : out.warnings) {
+    fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
+    s.warnings.push_back(w);
+  }
   const nlohmann::ordered_json j = summary(s, out.run, out.times, pool.size(), out.probes, out.stabilization);
   io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
   directory.commit();
@@ -232,6 +266,7 @@ int run_scene(const RunOptions& options) {
   else if (!options.quiet)
     print_summary(j, s.scene.output.directory);
   if (out.run.status != RunStatus::converged) fmt::print(stderr, "{}: {}\n", options.scene.string(), out.run.message);
+  if (out.run.steps_at_limit > 0) return kDone;  // as asked for
   return exit_status(out.run.status);
 }
 

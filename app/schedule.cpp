@@ -22,7 +22,8 @@ double interpolate(const TableProfile& table, double t) {
 }  // namespace
 
 double schedule_factor(const Schedule& schedule, double time, bool statics) {
-  if (const auto* table = std::get_if<TableProfile>(&schedule.profile)) return interpolate(*table, time);
+  if (const auto* table = std::get_if<TableProfile>(&schedule.profile))
+    return interpolate(*table, statics ? time * table->points.back()[0] : time);
   if (const auto* sine = std::get_if<SineProfile>(&schedule.profile))
     return std::sin(2 * std::numbers::pi * time / sine->period);
   const double over = statics ? 1.0 : schedule.over;

@@ -4,7 +4,8 @@
 
 namespace fascia::app {
 
-/// Factor of a schedule at a time [s]; in statics at a load factor, which then stands for time / over.
+/// Factor of a schedule at a time [s]; in statics at a load factor, which stands for time / `over`, or for time / the
+/// last time of a table.
 double schedule_factor(const Schedule& schedule, double time, bool statics);
 
 }  // namespace fascia::app

@@ -116,7 +116,7 @@ void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
 }  // namespace
 
 double estimated_memory(const Scene& scene) {
-  double bytes = 0;
+  double bytes = 30e6;  // the program itself
   for (const Body& b : scene.bodies) {
     const double frames = 1.0 * b.grid[0] * b.grid[1] * b.grid[2];
     double points = 1;
@@ -125,7 +125,7 @@ double estimated_memory(const Scene& scene) {
     // Per point: shapes of 8 frames, stress and strain, results. Per frame: 27 blocks of the matrix and the fill of a
     // factor (grows with the smaller section), vectors.
     const double section = std::cbrt(frames);
-    bytes += points * 1400 + frames * (27 * 300 + 36 * 8 * 6 * section + 1000);
+    bytes += points * 2500 + frames * (27 * 300 + 36 * 8 * 6 * section + 1000);
   }
   return bytes;
 }
@@ -134,6 +134,13 @@ std::vector<double> Simulation::factors(double time) const {
   std::vector<double> f;
   for (const Schedule& s : schedules) f.push_back(schedule_factor(s, time, scene.solver.kind == SolverKind::statics));
   return f;
+}
+
+int new_schedule(Simulation& s, const Schedule& schedule, const Place& place) {
+  if (s.scene.solver.kind == SolverKind::statics && std::holds_alternative<SineProfile>(schedule.profile))
+    throw SceneError({{place, "a sine profile needs time; use a dynamic solver, or a table of [load factor, factor]"}});
+  s.schedules.push_back(schedule);
+  return static_cast<int>(s.schedules.size()) - 1;
 }
 
 int body_index(const Simulation& s, const std::string& name) {
@@ -178,12 +185,13 @@ Simulation build_simulation(Scene scene) {
   }
   s.model.points = std::move(points).finish(s.model.node_count());
   if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
-  double volume = 0;
-  for (const SimulatedBody& b : s.bodies) volume += b.meshless.volume();
-  s.model.length = std::cbrt(volume / s.model.node_count());
   s.initial = State::at_rest(s.model);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
   add_constraints(s);
+  s.initial.turned.resize(s.model.constraints.size());
+  if (s.model.constrained_dof_count() == s.model.dof_count() && s.scene.solver.kind == SolverKind::modes)
+    throw SceneError(
+        {{s.scene.solver.place, "the constraints hold every degree of freedom; leave some free for modes"}});
   add_loads(s);
   if (s.scene.solver.kind == SolverKind::statics) check_support(s);
   resolve_probes(s);

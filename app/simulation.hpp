@@ -62,6 +62,8 @@ void add_constraints(Simulation& simulation);      ///< constraints.cpp
 void add_loads(Simulation& simulation);            ///< loads.cpp
 void check_support(const Simulation& simulation);  ///< support.cpp
 void resolve_probes(Simulation& simulation);       ///< probe_setup.cpp
+/// Registers a schedule. @throws SceneError a sine in statics, which has no time
+int new_schedule(Simulation& simulation, const Schedule& schedule, const Place& place);
 int body_index(const Simulation& simulation, const std::string& name);
 /// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.
 /// @throws SceneError further away

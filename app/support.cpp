@@ -7,27 +7,15 @@
 #include <Eigen/Dense>
 
 #include <cmath>
-#include <numeric>
+#include <set>
+#include <vector>
 
 namespace fascia::app {
 
 namespace {
 
 using Motion6 = Eigen::Matrix<double, 6, 1>;
-
-/// Representatives of the connected parts of a model: frames that share a group of points hang together.
-std::vector<int> connected_parts(const Model& model) {
-  std::vector<int> parent(at(model.node_count()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
-  for (int group = 0; group < model.points.group_count(); ++group)
-    for (const int node : model.points.nodes(group)) parent[at(root(node))] = root(model.points.nodes(group)[0]);
-  for (int i = 0; i < model.node_count(); ++i) parent[at(i)] = root(i);
-  return parent;
-}
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 std::string named_motion(const Motion6& m) {
   const Vec3d v{{m[0], m[1], m[2]}}, w{{m[3], m[4], m[5]}};
@@ -39,16 +27,38 @@ std::string named_motion(const Motion6& m) {
   return fmt::format("{} ({:.2f}, {:.2f}, {:.2f})", turns ? "rotation about" : "translation along", d[0], d[1], d[2]);
 }
 
+/// The motions without resistance: those along and about the axes first, then what is left of the null space.
+std::string free_motions(const Matrix6& resistance) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(resistance);
+  std::vector<Motion6> found;
+  int dimension = 0;
+  for (int k = 0; k < 6; ++k) {
+    Motion6 axis = Motion6::Zero();
+    axis[k] = 1;
+    if (axis.dot(resistance * axis) < 1e-9) found.push_back(axis);
+    if (eigen.eigenvalues()[k] < 1e-9) ++dimension;
+  }
+  for (int k = 0; k < dimension && static_cast<int>(found.size()) < dimension; ++k) {
+    Motion6 rest = eigen.eigenvectors().col(k);
+    for (const Motion6& f : found) rest -= f * f.dot(rest);
+    if (rest.norm() > 1e-6) found.push_back(rest.normalized());
+  }
+  std::string names;
+  for (const Motion6& f : found) names += (names.empty() ? "" : ", ") + named_motion(f);
+  return names;
+}
+
 }  // namespace
 
 /// Rigid motions of each part against what its constraints hold: a motion that none of them resists is free.
 void check_support(const Simulation& s) {
-  const std::vector<int> part = connected_parts(s.model);
+  const std::vector<int>& part = s.model.points.node_part;
   std::vector<Diagnostic> errors;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const MeshlessBody& body = s.bodies[b].meshless;
-    for (int r = body.first_frame(); r < body.first_frame() + body.frame_count(); ++r) {
-      if (part[at(r)] != r) continue;
+    std::set<int> parts;
+    for (int i = body.first_frame(); i < body.first_frame() + body.frame_count(); ++i) parts.insert(part[at(i)]);
+    for (const int r : parts) {
       Vec3d center{};
       int count = 0;
       for (int i = 0; i < s.model.node_count(); ++i) {
@@ -57,7 +67,7 @@ void check_support(const Simulation& s) {
         ++count;
       }
       center *= 1.0 / count;
-      Eigen::Matrix<double, 6, 6> resistance = Eigen::Matrix<double, 6, 6>::Zero();
+      Matrix6 resistance = Matrix6::Zero();
       const double size = body.size();
       for (const FrameConstraint& c : s.model.constraints) {
         if (part[at(c.node)] != r) continue;
@@ -73,11 +83,7 @@ void check_support(const Simulation& s) {
           resistance += row * row.transpose();
         }
       }
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(resistance);
-      std::string free;
-      for (int k = 0; k < 6; ++k)
-        if (eigen.eigenvalues()[k] < 1e-9)
-          free += (free.empty() ? "" : ", ") + named_motion(eigen.eigenvectors().col(k));
+      const std::string free = free_motions(resistance);
       if (free.empty()) continue;
       const bool whole = count == body.frame_count();
       errors.push_back(

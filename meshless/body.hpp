@@ -94,7 +94,8 @@ class MeshlessBody {
     std::array<int, 3> index{};
     int owner = -1;  ///< the cell whose frames move its points
     int point_count = 0;
-    Vec3d center{};  ///< of its points, in grid axes
+    Vec3d center{};     ///< of its points, in grid axes
+    bool whole = true;  ///< linear weights: each of its tetrahedra has points
   };
   struct Sample {
     Vec3d x{};  ///< grid axes

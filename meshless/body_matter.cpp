@@ -1,5 +1,7 @@
 #include "meshless/body.hpp"
 
+#include "core/model/errors.hpp"
+
 #include "core/math/index.hpp"
 #include "meshless/weights.hpp"
 
@@ -24,6 +26,8 @@ void MeshlessBody::add_points(const MeshlessSpec& spec, const std::vector<Sample
     materials.push_back(spec.material(to_world(s.x)));
     const double poisson = materials.back().lambda / (2 * (materials.back().lambda + materials.back().mu));
     nearly_incompressible = nearly_incompressible || poisson > kSelectivePoisson;
+    if (spec.integration == IntegrationKind::selective && materials.back().lambda < 0)
+      throw InputError("selective integration needs a Poisson ratio that is not negative; use integration = \"full\"");
   }
   const bool thick = *std::min_element(grid_.begin(), grid_.end()) >= 3;
   selective_ = weights_ == GridWeightKind::trilinear &&

@@ -1,10 +1,13 @@
 #include "meshless/body.hpp"
 
+#include "core/model/errors.hpp"
+
 #include "core/math/index.hpp"
 #include "meshless/gauss.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace fascia {
 
@@ -58,10 +61,21 @@ std::vector<MeshlessBody::Sample> MeshlessBody::sample(const MeshlessSpec& spec)
 void MeshlessBody::find_owners(const std::vector<Sample>& samples, int full_count) {
   int least = std::max(1, static_cast<int>(std::ceil(kSmallCell * full_count)));
   if (std::none_of(cells_.begin(), cells_.end(), [&](const Cell& c) { return c.point_count >= least; })) least = 1;
+  if (weights_ == GridWeightKind::linear) {
+    // Frames of a tetrahedron without points would be free: such a cell lends its points too.
+    std::vector<std::set<std::array<int, 3>>> filled(cells_.size());
+    for (const Sample& s : samples) filled[at(s.cell)].insert(s.tetrahedron);
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      if (filled[c].size() < 6) cells_[c].whole = false;
+    if (std::none_of(cells_.begin(), cells_.end(), [&](const Cell& c) { return c.whole && c.point_count >= least; }))
+      throw InputError(
+          "no cell of the grid lies deep enough inside the domain for linear weights; use more frames or trilinear "
+          "weights");
+  }
   int lent = 0;
   std::vector<int> open;
   for (int c = 0; c < static_cast<int>(cells_.size()); ++c) {
-    if (cells_[at(c)].point_count >= least) {
+    if (cells_[at(c)].whole && cells_[at(c)].point_count >= least) {
       cells_[at(c)].owner = c;
     } else {
       open.push_back(c);
@@ -78,6 +92,7 @@ void MeshlessBody::find_owners(const std::vector<Sample>& samples, int full_coun
       else
         left.push_back(c);
     }
+    if (found.empty()) throw InputError("no cell of the grid holds enough of the domain; use more frames");
     for (const auto& [c, owner] : found) cells_[at(c)].owner = owner;
     open = std::move(left);
   }

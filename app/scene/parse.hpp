@@ -15,6 +15,7 @@ namespace fascia::app {
 Scene parse_scene_file(const std::filesystem::path& path, const std::vector<std::string>& overrides);
 
 /// The same for a text; `path` gives the name for messages and the folder for relative paths.
-Scene parse_scene_text(std::string_view text, const std::filesystem::path& path, const std::vector<std::string>& overrides);
+Scene parse_scene_text(std::string_view text, const std::filesystem::path& path,
+                       const std::vector<std::string>& overrides);
 
 }  // namespace fascia::app

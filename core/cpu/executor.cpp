@@ -37,13 +37,6 @@ Lanes squared(const Mat3<Lanes>& m) { return contract(m, m); }
 
 }  // namespace
 
-double largest_motion(const State& state, double length) {
-  double largest = 0;
-  for (const Vec3d& u : state.u) largest = std::max(largest, squared_norm(u));
-  for (const Mat3d& D : state.D) largest = std::max(largest, length * length * contract(D, D));
-  return std::sqrt(largest);
-}
-
 CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
     : set_(set),
       pool_(pool),
@@ -52,6 +45,8 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
       group_drilling_(at(set.group_count())),
       group_viscous_(at(set.group_count())),
       group_rounding_(at(set.group_count())),
+      part_motion_(at(set.part_count())),
+      part_rounding_(at(set.part_count())),
       node_L_(at(set.node_count)),
       directions_(at(set.node_count) * 12) {
   for (int group = 0; group < set.group_count(); ++group)
@@ -59,13 +54,23 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
       drilling_ = drilling_ || set.material_of_group(group)[kDrilling * kGroupSize + lane] > 0;
 }
 
+/// Displacements and rotations (taken at the part's length) of each part, kept as a running maximum: a state that came
+/// back to rest still carries the rounding of where it was.
+void CpuExecutor::note_motion(const State& state) {
+  for (int node = 0; node < set_.node_count; ++node) {
+    const int part = set_.node_part[at(node)];
+    const double turn = set_.part_length[at(part)] * norm(state.D[at(node)]);
+    part_motion_[at(part)] = std::max({part_motion_[at(part)], norm(state.u[at(node)]), turn});
+  }
+}
+
 template <bool Drilling>
-void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& history, double motion, int begin,
-                                     int end) {
+void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& history, int begin, int end) {
   for (int group = begin; group < end; ++group) {
     const auto nodes = set_.nodes(group);
     const int first_slot = set_.slot_begin[at(group)];
     Mat3<Lanes> P[kBatches], Y[kBatches];
+    const Lanes motion(part_motion_[at(set_.part_of_group(group))]);
     double elastic = 0, drilling = 0, viscous = 0, rounding = 0;
     for (int b = 0; b < kBatches; ++b) {
       PointMotion<Lanes> x;
@@ -85,7 +90,7 @@ void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& hi
       // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
       const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
       const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0));
-      const Lanes strain = squared(x.H) + (g * Lanes(motion)) * (g * Lanes(motion));
+      const Lanes strain = squared(x.H) + (g * motion) * (g * motion);
       rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * strain * (Lanes(1.0) + squared(x.H))));
     }
     group_elastic_[at(group)] = elastic;
@@ -99,14 +104,13 @@ void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& hi
   }
 }
 
-InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, double length,
-                                     std::span<double> gradient, double earlier_motion) {
-  const double motion = std::max(largest_motion(state, length), earlier_motion);
+InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, std::span<double> gradient) {
+  note_motion(state);
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     if (drilling_)
-      gradient_of_groups<true>(state, history, motion, begin, end);
+      gradient_of_groups<true>(state, history, begin, end);
     else
-      gradient_of_groups<false>(state, history, motion, begin, end);
+      gradient_of_groups<false>(state, history, begin, end);
   });
   pool_.for_ranges(set_.node_count, kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
@@ -121,13 +125,14 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
     }
   });
   InternalEnergy energy;
+  std::fill(part_rounding_.begin(), part_rounding_.end(), 0.0);
   for (int group = 0; group < set_.group_count(); ++group) {
     energy.elastic += group_elastic_[at(group)];
     energy.drilling += group_drilling_[at(group)];
     energy.viscous += group_viscous_[at(group)];
-    energy.rounding += group_rounding_[at(group)];
+    part_rounding_[at(set_.part_of_group(group))] += group_rounding_[at(group)];
   }
-  energy.rounding = std::numeric_limits<double>::epsilon() * std::sqrt(energy.rounding);
+  for (double& r : part_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
   return energy;
 }
 

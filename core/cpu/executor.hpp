@@ -10,10 +10,9 @@
 
 namespace fascia {
 
-/// Sums over all points [J], and what rounding alone leaves in the gradient.
+/// Sums over all points [J].
 struct InternalEnergy {
   double elastic = 0, drilling = 0, viscous = 0;
-  double rounding = 0;  ///< estimated norm of the gradient's rounding error, torques divided by the length [N]
   double total() const { return elastic + drilling + viscous; }
 };
 
@@ -32,9 +31,6 @@ struct Linearization {
   AlignedVector<double> points;     ///< (groups × 24 × 8): H (9), Dbar (9), S (6)
 };
 
-/// Largest displacement of a frame, its rotation taken at a lever of `length` [m].
-double largest_motion(const State& state, double length);
-
 /// Executes a point set on the processor: one pass over groups of points, one gather over frames. No atomics, sums in
 /// fixed order: results do not depend on the number of threads.
 class CpuExecutor {
@@ -44,10 +40,7 @@ class CpuExecutor {
   /// Gradient of the internal energy: 6 numbers a frame, force then torque (overwritten).
   /// Along u ← u + dx, Q ← exp(dr) Q the energy changes by gradient · (dx, dr).
   ///
-  /// @param length          scale that makes torques comparable with forces in `rounding` [m]
-  /// @param earlier_motion  largest motion that the state has gone through, whose rounding it still carries [m]
-  InternalEnergy gradient(const State& state, const StrainHistory& history, double length, std::span<double> gradient,
-                          double earlier_motion = 0);
+  InternalEnergy gradient(const State& state, const StrainHistory& history, std::span<double> gradient);
 
   /// Tangent at the state of the last call of gradient(), which must have been `state`.
   void linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out);
@@ -65,11 +58,16 @@ class CpuExecutor {
   std::span<const double> group_elastic() const { return group_elastic_; }
   std::span<const double> group_drilling() const { return group_drilling_; }
 
+  /// What rounding alone leaves in the gradient of a connected part, as a norm with torques divided by the part's
+  /// length, at the last call of gradient() [N]. It grows with the largest motion that the part ever went through here.
+  double rounding(int part) const { return part_rounding_[static_cast<std::size_t>(part)]; }
+
   ThreadPool& pool() { return pool_; }
 
  private:
   template <bool Drilling>
-  void gradient_of_groups(const State& state, const StrainHistory& history, double motion, int begin, int end);
+  void gradient_of_groups(const State& state, const StrainHistory& history, int begin, int end);
+  void note_motion(const State& state);
   template <bool Drilling>
   void multiply_groups(const Linearization& at, int begin, int end);
   template <bool Drilling>
@@ -80,6 +78,7 @@ class CpuExecutor {
   bool drilling_ = false;
   AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
   std::vector<double> group_elastic_, group_drilling_, group_viscous_, group_rounding_;
+  std::vector<double> part_motion_, part_rounding_;
   std::vector<Mat3d> node_L_;         ///< L of the last gradient
   AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), [dr]× Q (9)
 };

@@ -31,6 +31,7 @@ State State::at_rest(const Model& model) {
   state.D.resize(n);
   state.v.resize(n);
   state.Q_dot.resize(n);
+  state.turned.resize(model.constraints.size());
   return state;
 }
 

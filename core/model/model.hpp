@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/math/mat3.hpp"
+#include "core/math/index.hpp"
+#include "core/math/rotation.hpp"
 #include "core/model/point_set.hpp"
 
 #include <array>
@@ -75,7 +76,6 @@ struct Model {
   std::vector<FollowerLoad> followers;
   std::vector<PrescribedMotion> motions;
   std::vector<FrameConstraint> constraints;  ///< at most one a frame, ascending
-  double length = 1;                         ///< mean frame spacing: makes torques and forces comparable [m]
 
   int node_count() const { return static_cast<int>(rest_position.size()); }
   int dof_count() const { return 6 * node_count(); }
@@ -86,13 +86,27 @@ struct Model {
 
 /// Where everything is, and how fast. Rotations as D = Q − I, with Q = R R_restᵀ.
 struct State {
-  std::vector<Vec3d> u;      ///< displacement [m]
-  std::vector<Mat3d> D;      ///< Q − I
-  std::vector<Vec3d> v;      ///< du/dt [m/s]
-  std::vector<Mat3d> Q_dot;  ///< dQ/dt [1/s]
-  double time = 0;           ///< [s]; in statics the load factor
+  std::vector<Vec3d> u;                       ///< displacement [m]
+  std::vector<Mat3d> D;                       ///< Q − I
+  std::vector<Vec3d> v;                       ///< du/dt [m/s]
+  std::vector<Mat3d> Q_dot;                   ///< dQ/dt [1/s]
+  std::vector<std::array<double, 3>> turned;  ///< of each constraint: rotation done about its axes [rad]
+  double time = 0;                            ///< [s]; in statics the load factor
 
   static State at_rest(const Model& model);
 };
+
+/// Calls act(node, force, torque) for each frame of a follower: turned with the rotation in Σ w Q, and scaled.
+template <class Act>
+void for_each_share(const FollowerLoad& load, const State& state, double factor, const Act& act) {
+  Mat3d D;
+  for (std::size_t k = 0; k < load.nodes.size(); ++k) D += state.D[at(load.nodes[k])] * load.w[k];
+  const Mat3d Q = Mat3d::identity() + polar_increment(D);
+  const Vec3d force = Q * load.force * factor, torque = Q * load.torque * factor;
+  for (std::size_t k = 0; k < load.nodes.size(); ++k) {
+    const Vec3d arm = load.b[k] + state.D[at(load.nodes[k])] * load.b[k];
+    act(load.nodes[k], force * load.w[k], cross(arm, force) + torque * load.w[k]);
+  }
+}
 
 }  // namespace fascia

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace fascia {
@@ -57,6 +58,45 @@ void transpose_incidence(PointSet& set) {
   }
 }
 
+/// Numbers the connected parts in the order of their first nodes.
+void find_parts(PointSet& set) {
+  const auto n = static_cast<std::size_t>(set.node_count);
+  std::vector<int> parent(n);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[static_cast<std::size_t>(i)] != i) {
+      int& up = parent[static_cast<std::size_t>(i)];
+      i = up = parent[static_cast<std::size_t>(up)];
+    }
+    return i;
+  };
+  for (int group = 0; group < set.group_count(); ++group) {
+    for (const int node : set.nodes(group)) {
+      const int a = root(node), b = root(set.nodes(group)[0]);
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  }
+  std::vector<double> nodes, volume;
+  set.node_part.resize(n);
+  for (int i = 0; i < set.node_count; ++i) {
+    const int r = root(i);
+    if (r == i) {
+      set.node_part[static_cast<std::size_t>(i)] = static_cast<int>(nodes.size());
+      nodes.push_back(0);
+    } else {
+      set.node_part[static_cast<std::size_t>(i)] = set.node_part[static_cast<std::size_t>(r)];
+    }
+    nodes[static_cast<std::size_t>(set.node_part[static_cast<std::size_t>(i)])] += 1;
+  }
+  volume.resize(nodes.size());
+  for (int group = 0; group < set.group_count(); ++group)
+    for (int lane = 0; lane < kGroupSize; ++lane)
+      volume[static_cast<std::size_t>(set.part_of_group(group))] +=
+          set.material_of_group(group)[kVolume * kGroupSize + lane];
+  for (std::size_t p = 0; p < nodes.size(); ++p)
+    set.part_length.push_back(volume[p] > 0 ? std::cbrt(volume[p] / nodes[p]) : 1.0);
+}
+
 /// Greedy colouring: the lowest colour that no group with a common frame has.
 void color_groups(PointSet& set) {
   const int groups = set.group_count();
@@ -86,6 +126,7 @@ void color_groups(PointSet& set) {
 PointSet PointSetBuilder::finish(int node_count) && {
   set_.node_count = node_count;
   transpose_incidence(set_);
+  find_parts(set_);
   color_groups(set_);
   return std::move(set_);
 }

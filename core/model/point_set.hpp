@@ -49,10 +49,15 @@ struct PointSet {
   std::vector<int> node_slot_begin;  ///< (nodes + 1), transposed incidence
   std::vector<int> node_slot;        ///< slots of each node, ascending
 
+  std::vector<int> node_part;       ///< connected part of each node: nodes that share a group hang together
+  std::vector<double> part_length;  ///< (parts) mean spacing of its frames: makes torques and forces comparable [m]
+
   std::vector<int> color_begin{0};  ///< groups of one colour share no frame
   std::vector<int> color_group;
 
   int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
+  int part_count() const { return static_cast<int>(part_length.size()); }
+  int part_of_group(int group) const { return node_part[static_cast<std::size_t>(nodes(group)[0])]; }
   int slot_count() const { return static_cast<int>(slot_node.size()); }
   std::span<const int> nodes(int group) const {
     const auto begin = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(group)]);

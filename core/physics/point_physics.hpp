@@ -19,8 +19,6 @@ struct PointMaterial {
 template <class T>
 struct PointMotion {
   Mat3<T> H, Dbar;
-  FASCIA_HD Mat3<T> F() const { return Mat3<T>::identity() + H; }
-  FASCIA_HD Mat3<T> Qbar() const { return Mat3<T>::identity() + Dbar; }
 };
 
 template <class T>

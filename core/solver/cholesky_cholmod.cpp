@@ -33,6 +33,7 @@ struct BlockCholesky::Impl {
     cholmod_start(&common);
     common.print = 0;
     common.quick_return_if_not_posdef = 1;
+    common.final_ll = 1;  // LDLᵀ, its choice for small matrices, would accept negative pivots
     const auto n = static_cast<std::size_t>(matrix.size);
     sparse.nrow = sparse.ncol = n;
     sparse.nzmax = matrix.row.size();

@@ -22,11 +22,11 @@ std::string sentence(const NewtonReport& r, const SolverSettings& settings) {
     case NewtonStatus::converged:
       return "";
     case NewtonStatus::limit:
-      out << "Newton stopped after " << r.iterations << " iterations, residual " << r.last.relative() << " > "
+      out << "Newton stopped after " << r.iterations << " iterations, residual " << r.last.relative << " > "
           << settings.tolerance;
       break;
     case NewtonStatus::stalled:
-      out << "Newton found no better state along its direction, residual " << r.last.relative() << " > "
+      out << "Newton found no better state along its direction, residual " << r.last.relative << " > "
           << settings.tolerance;
       break;
     case NewtonStatus::not_finite:
@@ -54,8 +54,10 @@ bool acceptable(const NewtonReport& newton, const SolverSettings& settings) {
 void accept(RunReport& run, const NewtonReport& newton, double time) {
   ++run.steps;
   run.time = time;
-  run.residual = std::max(run.residual, newton.last.relative());
-  run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor());
+  run.residual = std::max(run.residual, newton.last.relative);
+  run.steps_at_limit += newton.status != NewtonStatus::converged;
+  run.trouble = newton.trouble;
+  run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor);
 }
 
 RunStatus failure_status(const NewtonReport& newton) {
@@ -70,12 +72,10 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
   RunReport run;
   const double longest = statics.load_steps > 0 ? 1.0 / statics.load_steps : 1.0;
   double reached = 0, increment = longest;
-  system.set_factors(factors(0));
   state.time = 0;
   while (reached < 1) {
     const Clock::time_point start = Clock::now();
     double target = reached + increment > 1 - 1e-9 ? 1.0 : reached + increment;
-    system.set_factors(factors(reached));
     system.begin_step(state, 0);
     system.set_factors(factors(target));
     if (const double turn = system.prescribed_rotation(); turn > kRotationPerStep && target - reached > kSmallest) {
@@ -94,7 +94,7 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
               << "; try more load_steps, a stiffer material or smaller loads, or implicit-euler with damping";
       run.message = message.str();
       run.status = failure_status(report);
-      run.residual = report.last.finite() ? report.last.relative() : 0.0;
+      run.residual = report.last.finite() ? report.last.relative : 0.0;
       return run;
     }
     state = system.finish_step(target);
@@ -111,21 +111,23 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
 
 namespace {
 
-/// Advances by dt, in halves where Newton fails.
+/// Advances by dt, in halves where Newton fails or a boundary turns too far at once.
 NewtonReport advance(MechanicalSystem& system, State& state, const FactorFunction& factors,
                      const SolverSettings& settings, double end, double dt, int depth, RunReport& run) {
-  system.set_factors(factors(state.time));
   system.begin_step(state, dt);
   system.set_factors(factors(end));
-  system.start_from_prediction();
-  Newton newton(system, settings);
-  NewtonReport report = newton.solve();
-  count(run, report);
-  if (acceptable(report, settings)) {
-    state = system.finish_step(end);
-    return report;
+  NewtonReport report;
+  if (depth == 0 || system.prescribed_rotation() <= kRotationPerStep) {
+    system.start_from_prediction();
+    Newton newton(system, settings);
+    report = newton.solve();
+    count(run, report);
+    if (acceptable(report, settings)) {
+      state = system.finish_step(end);
+      return report;
+    }
+    if (depth == 0) return report;
   }
-  if (depth == 0) return report;
   const double middle = end - 0.5 * dt;
   report = advance(system, state, factors, settings, middle, 0.5 * dt, depth - 1, run);
   if (!acceptable(report, settings)) return report;
@@ -141,14 +143,16 @@ RunReport run_implicit_euler(MechanicalSystem& system, State& state, const Facto
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
     const double end = step * dynamics.time_step;
+    const State before = state;
     const NewtonReport report = advance(system, state, factors, settings, end, dynamics.time_step, 8, run);
     if (!acceptable(report, settings)) {
+      state = before;
       std::ostringstream message;
       message << "step " << step << " (t = " << end << " s): " << sentence(report, settings)
               << "; try a smaller time_step, damping, or newton.on_limit = \"continue\"";
       run.message = message.str();
       run.status = failure_status(report);
-      run.residual = report.last.finite() ? report.last.relative() : 0.0;
+      run.residual = report.last.finite() ? report.last.relative : 0.0;
       return run;
     }
     accept(run, report, end);

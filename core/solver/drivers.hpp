@@ -29,7 +29,9 @@ struct RunReport {
   int steps = 0, newton_iterations = 0, linear_iterations = 0;
   double residual = 0, residual_floor = 0;  ///< largest of the steps, relative
   double time = 0;
-  std::string message;  ///< one sentence on what went wrong, where, and what to try
+  int steps_at_limit = 0;  ///< accepted above the tolerance (proceed_on_limit)
+  std::string trouble;     ///< of the last step's last direction: its equilibrium may be unstable
+  std::string message;     ///< one sentence on what went wrong, where, and what to try
 };
 
 struct StaticsSettings {

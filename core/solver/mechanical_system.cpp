@@ -43,7 +43,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
   inertia_.resize(n);
   direction_.resize(n);
   work_.resize(n);
-  factors_ = start_factors_ = zero_factors(model);
+  factors_ = zero_factors(model);
 }
 
 std::vector<double> zero_factors(const Model& model) {
@@ -57,11 +57,9 @@ std::vector<double> zero_factors(const Model& model) {
 void MechanicalSystem::begin_step(const State& start, double dt) {
   start_ = start;
   dt_ = dt;
-  start_factors_ = factors_;
-  start_motion_ = std::max(start_motion_, largest_motion(start, model_.length));
   increment_.du.assign(start.u.size(), Vec3d{});
   increment_.Ds.assign(start.u.size(), Mat3d{});
-  increment_.turned.assign(model_.constraints.size(), {0, 0, 0});
+  increment_.turned = start.turned;
   if (model_.points.damped && dt > 0) {
     history_.inverse_step = 1 / dt;
     executor_.store_strain(start, history_);
@@ -99,6 +97,7 @@ void MechanicalSystem::start_from_prediction() {
 
 State MechanicalSystem::finish_step(double end_time) const {
   State end = state_;
+  end.turned = increment_.turned;
   end.time = end_time;
   end.v.assign(end.u.size(), Vec3d{});
   end.Q_dot.assign(end.u.size(), Mat3d{});
@@ -123,22 +122,16 @@ void MechanicalSystem::add_loads() {
       add(load_, n.node, n.force * s, (axl(transpose(L)) + n.torque) * s);
     }
   }
-  for (const FollowerLoad& load : model_.followers) {
-    const double s = factors_[at(load.schedule)];
-    Mat3d Qbar = Mat3d::identity();
-    for (std::size_t k = 0; k < load.nodes.size(); ++k) Qbar += state_.D[at(load.nodes[k])] * load.w[k];
-    const Vec3d force = Qbar * load.force * s, torque = Qbar * load.torque * s;
-    for (std::size_t k = 0; k < load.nodes.size(); ++k) {
-      const Vec3d arm = load.b[k] + state_.D[at(load.nodes[k])] * load.b[k];
-      add(load_, load.nodes[k], force * load.w[k], cross(arm, force) + torque * load.w[k]);
-    }
-  }
+  for (const FollowerLoad& load : model_.followers)
+    for_each_share(load, state_, factors_[at(load.schedule)],
+                   [&](int node, const Vec3d& force, const Vec3d& torque) { add(load_, node, force, torque); });
 }
 
 /// 1/(2 dt²) |motion − dt velocity|² + α/(2 dt) |motion|², in the pose form of inertia.hpp.
 void MechanicalSystem::add_inertia() {
   std::fill(inertia_.begin(), inertia_.end(), 0.0);
-  inertia_energy_ = inertia_rounding_ = 0;
+  inertia_energy_ = 0;
+  inertia_rounding_.assign(at(model_.points.part_count()), 0.0);
   if (dt_ <= 0) return;
   const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
   for (int i = 0; i < model_.node_count(); ++i) {
@@ -158,13 +151,14 @@ void MechanicalSystem::add_inertia() {
       moment += f.moment * damping_scale;
     }
     add(inertia_, i, force, axl(Q * transpose(moment)));
+    const auto part = at(model_.points.node_part[at(i)]);
     // The motion and what the old velocity predicts of it cancel.
     const double cancelled = norm(increment_.du[at(i)]) + dt_ * norm(start_.v[at(i)]) +
-                             model_.length * (norm(motion) + dt_ * norm(start_.Q_dot[at(i)]));
+                             model_.points.part_length[part] * (norm(motion) + dt_ * norm(start_.Q_dot[at(i)]));
     const double rounding = scale * model_.inertia[at(i)].mass * cancelled;
-    inertia_rounding_ += rounding * rounding;
+    inertia_rounding_[part] += rounding * rounding;
   }
-  inertia_rounding_ = std::numeric_limits<double>::epsilon() * std::sqrt(inertia_rounding_);
+  for (double& r : inertia_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
 }
 
 void MechanicalSystem::add_node_blocks(Linearization& lin) const {
@@ -211,32 +205,46 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
   }
 }
 
-/// |v| with torques divided by the model's length, over the free (or the prescribed) degrees of freedom.
-double MechanicalSystem::scaled_norm(std::span<const double> global, bool fixed_only) const {
-  std::vector<double>& local = work_;
-  std::copy(global.begin(), global.end(), local.begin());
-  filter_.to_local(local);
-  double sum = 0;
-  for (std::size_t i = 0; i < local.size(); ++i) {
-    if (filter_.is_fixed(i) != fixed_only) continue;
-    const double value = i % 6 < 3 ? local[i] : local[i] / model_.length;
-    sum += value * value;
+/// Squares of |v| by connected part, torques divided by the part's length, over the free or the prescribed degrees.
+void MechanicalSystem::add_squares(std::span<const double> global, std::vector<double>& free,
+                                   std::vector<double>& fixed) {
+  std::copy(global.begin(), global.end(), work_.begin());
+  filter_.to_local(work_);
+  free.assign(at(model_.points.part_count()), 0.0);
+  fixed.assign(free.size(), 0.0);
+  for (std::size_t i = 0; i < work_.size(); ++i) {
+    const auto part = at(model_.points.node_part[i / 6]);
+    const double value = i % 6 < 3 ? work_[i] : work_[i] / model_.points.part_length[part];
+    (filter_.is_fixed(i) ? fixed : free)[part] += value * value;
   }
-  return std::sqrt(sum);
 }
 
 Evaluation MechanicalSystem::evaluate() {
-  internal_ = executor_.gradient(state_, history_, model_.length, gradient_, start_motion_);
+  internal_ = executor_.gradient(state_, history_, gradient_);
   add_loads();
   add_inertia();
   for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] += inertia_[i] - load_[i];
   Evaluation e;
   e.energy = internal_.total() + load_energy_ + inertia_energy_;
-  e.residual = scaled_norm(gradient_, false);
-  e.reference = std::max({std::hypot(scaled_norm(load_, false), scaled_norm(load_, true)), scaled_norm(inertia_, false),
-                          scaled_norm(gradient_, true)});
-  // 4: sums of a few terms of the estimated size in each entry.
-  e.floor = 4 * std::hypot(internal_.rounding, inertia_rounding_);
+  add_squares(load_, part_squares_.load, part_squares_.held_load);
+  add_squares(inertia_, part_squares_.inertia, part_squares_.unused);
+  add_squares(gradient_, part_squares_.residual, part_squares_.reaction);
+  double total = 0;
+  for (std::size_t p = 0; p < part_squares_.residual.size(); ++p) {
+    total += part_squares_.residual[p];
+    const double residual = std::sqrt(part_squares_.residual[p]);
+    const double reference = std::sqrt(std::max(
+        {part_squares_.load[p] + part_squares_.held_load[p], part_squares_.inertia[p], part_squares_.reaction[p]}));
+    // 4: sums of a few terms of the estimated size in each entry.
+    const double floor = 4 * std::hypot(executor_.rounding(static_cast<int>(p)), inertia_rounding_[p]);
+    const double allowed = std::max(settings_.tolerance * reference, floor);
+    const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
+    if (excess < e.excess && p > 0) continue;
+    e.excess = excess;
+    e.relative = reference > 0 ? residual / reference : (residual > 0 ? 1.0 : 0.0);
+    e.relative_floor = reference > 0 ? floor / reference : 0.0;
+  }
+  e.residual = std::sqrt(total);
   return e;
 }
 
@@ -255,25 +263,34 @@ void MechanicalSystem::prescribed_increments(std::span<double> local) const {
       const int motion = c.rotation_motion[at(a)];
       if (motion < 0) continue;
       const PrescribedMotion& m = model_.motions[at(motion)];
-      const double turn = m.angle * (factor(motion) - start_factors_[at(m.schedule)]);
+      const double turn = m.angle * factor(motion);
       local[at(6 * c.node + 3 + a)] = dot(c.rotation_axes.row(a), m.axis) * turn - increment_.turned[k][at(a)];
     }
   }
 }
 
+double MechanicalSystem::largest_angle() const {
+  double largest = 1;
+  for (const PrescribedMotion& m : model_.motions) largest = std::max(largest, std::abs(m.angle));
+  return largest;
+}
+
 bool MechanicalSystem::has_prescribed_increment() const {
   std::vector<double>& local = work_;
   prescribed_increments(local);
-  // Rounding of a target grows with the displacements and, for a turn, with the arm: after whole turns nothing is
-  // displaced.
+  // Rounding of a target grows with the displacements and, for a turn, with the arm.
   double largest_u = 0;
-  for (const Vec3d& u : state_.u) largest_u = std::max(largest_u, std::abs(u[0]) + std::abs(u[1]) + std::abs(u[2]));
+  for (std::size_t i = 0; i < state_.u.size(); ++i)
+    largest_u = std::max({largest_u, norm(state_.u[i]), norm(start_.u[i])});
   for (const FrameConstraint& c : model_.constraints)
     for (const int motion : c.translation_motion)
-      if (motion >= 0 && model_.motions[at(motion)].angle != 0)
-        largest_u = std::max(largest_u, norm(model_.rest_position[at(c.node)] - model_.motions[at(motion)].center));
+      if (motion >= 0)
+        largest_u = std::max({largest_u, norm(model_.motions[at(motion)].translation),
+                              model_.motions[at(motion)].angle != 0
+                                  ? norm(model_.rest_position[at(c.node)] - model_.motions[at(motion)].center)
+                                  : 0.0});
   for (std::size_t i = 0; i < local.size(); ++i) {
-    const double scale = i % 6 < 3 ? largest_u : 1.0;
+    const double scale = i % 6 < 3 ? largest_u : largest_angle();
     if (std::abs(local[i]) > 1e-14 * scale) return true;
   }
   return false;

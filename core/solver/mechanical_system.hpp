@@ -55,12 +55,13 @@ class MechanicalSystem {
   struct Increment {
     std::vector<Vec3d> du;
     std::vector<Mat3d> Ds;
-    std::vector<std::array<double, 3>> turned;  ///< of each constraint: rotation done about its axes [rad]
+    std::vector<std::array<double, 3>> turned;  ///< as in State
   };
   void rebuild_state();
   void add_loads();
   void add_inertia();
-  double scaled_norm(std::span<const double> global, bool fixed_only) const;
+  void add_squares(std::span<const double> global, std::vector<double>& free, std::vector<double>& fixed);
+  double largest_angle() const;
   void prescribed_increments(std::span<double> local) const;
   void add_node_blocks(Linearization& lin) const;
 
@@ -74,14 +75,17 @@ class MechanicalSystem {
   State start_, state_;
   double dt_ = 0;
   StrainHistory history_;
-  std::vector<double> factors_, start_factors_;
+  std::vector<double> factors_;
   Increment increment_, saved_;
 
   std::vector<double> gradient_, load_, inertia_, direction_;
   mutable std::vector<double> work_;
+  std::vector<double> inertia_rounding_;  ///< by part [N]
+  struct PartSquares {
+    std::vector<double> load, held_load, inertia, residual, reaction, unused;
+  } part_squares_;
   InternalEnergy internal_;
-  double load_energy_ = 0, inertia_energy_ = 0, inertia_rounding_ = 0;
-  double start_motion_ = 0;  ///< largest motion at the start of any step so far [m]
+  double load_energy_ = 0, inertia_energy_ = 0;
   Linearization lin_;
 };
 

@@ -40,7 +40,7 @@ class Problem {
     CpuExecutor executor(model.points, pool);
     const State rest = State::at_rest(model);
     std::vector<double> gradient(static_cast<std::size_t>(model.dof_count()));
-    executor.gradient(rest, {}, model.length, gradient);
+    executor.gradient(rest, {}, gradient);
     Linearization lin;
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, K_);
@@ -102,6 +102,7 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   Problem problem(model, pool);
   const auto n = static_cast<Eigen::Index>(model.dof_count());
   const int free = problem.filter().free_count();
+  if (free == 0) return {};
   const int wanted = std::min(count, free), block = std::min(free, std::max(2 * wanted, wanted + 8));
   double shift = 0;
   const BlockCholesky factor = problem.factorize(shift);
@@ -125,9 +126,9 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
       MX.col(k) = column;
     }
     const Eigen::GeneralizedSelfAdjointEigenSolver<Dense> ritz(X.transpose() * KX, X.transpose() * MX);
-    const Eigen::VectorXd next = ritz.eigenvalues();
+    const Eigen::VectorXd& next = ritz.eigenvalues();
     X = X * ritz.eigenvectors();
-    const double scale = std::abs(next[wanted - 1]) + 1e-300;
+    const double scale = std::max(std::abs(next[wanted - 1]), shift) + 1e-300;
     modes.converged = true;
     for (int k = 0; k < wanted; ++k)
       modes.converged =

@@ -8,17 +8,17 @@
 
 namespace fascia {
 
-/// A system at a state, in numbers. Residuals are norms with torques divided by the model's length [N].
+/// A system at a state, in numbers. Residuals are norms with torques divided by a length [N]. Each connected part of
+/// the model is judged by itself, so that a stiff or heavy neighbour does not hide what is left in a soft one.
 struct Evaluation {
-  double energy = 0;     ///< potential that an equilibrium minimises [J]
-  double residual = 0;   ///< of the free degrees of freedom
-  double reference = 0;  ///< largest of loads, inertia and reactions
-  double floor = 0;      ///< what rounding leaves of the residual
+  double energy = 0;          ///< potential that an equilibrium minimises [J]
+  double residual = 0;        ///< of all free degrees of freedom
+  double excess = 0;          ///< largest of the parts: residual over what is allowed; at most 1 where converged
+  double relative = 0;        ///< that part's residual over the largest of its loads, inertia and reactions
+  double relative_floor = 0;  ///< what rounding leaves of it, likewise
 
   bool finite() const { return std::isfinite(energy) && std::isfinite(residual); }
-  bool converged(double tolerance) const { return residual <= std::max(tolerance * reference, floor); }
-  double relative() const { return reference > 0 ? residual / reference : (residual > 0 ? 1.0 : 0.0); }
-  double relative_floor() const { return reference > 0 ? floor / reference : 0.0; }
+  bool converged() const { return excess <= 1; }
 };
 
 /// A Newton direction and what the linear solver says of it.
@@ -36,7 +36,7 @@ struct NewtonReport {
   NewtonStatus status = NewtonStatus::converged;
   int iterations = 0, linear_iterations = 0;
   Evaluation last;
-  std::string trouble;
+  std::string trouble;  ///< of the last direction, empty where there was none
 };
 
 /// Newton's method with a watchdog (Chamberlain et al. 1982): full steps may raise energy and residual for a few
@@ -55,18 +55,16 @@ class Newton {
     current_ = system_.evaluate();
     if (!current_.finite()) return finish(NewtonStatus::not_finite);
     mark();
-    while (system_.has_prescribed_increment() || !current_.converged(settings_.tolerance)) {
+    while (system_.has_prescribed_increment() || !current_.converged()) {
       if (report_.iterations >= settings_.max_iterations) return finish(NewtonStatus::limit);
       const bool moving = system_.has_prescribed_increment();
       const DirectionReport d = direction();
       if (!d.usable) return finish(NewtonStatus::linear_failure);
       system_.apply(std::min(1.0, kRotationCap / std::max(d.largest_rotation, 1e-300)));
       current_ = system_.evaluate();
-      if (moving && current_.finite())
+      if (current_.finite() && (moving || better_than_mark())) {
         mark();
-      else if (current_.finite() && better_than_mark(0.0))
-        mark();
-      else if (!current_.finite() || ++detour_ > kDetour) {
+      } else if (!current_.finite() || ++detour_ > kDetour) {
         if (const NewtonStatus status = search_from_mark(); status != NewtonStatus::converged) return finish(status);
       }
     }
@@ -78,10 +76,10 @@ class Newton {
   static constexpr int kDetour = 4, kHalvings = 14;
 
   DirectionReport direction() {
-    const DirectionReport d = system_.direction();
+    DirectionReport d = system_.direction();
     ++report_.iterations;
     report_.linear_iterations += d.linear_iterations;
-    if (!d.trouble.empty()) report_.trouble = d.trouble;
+    report_.trouble = d.trouble;
     return d;
   }
 
@@ -91,11 +89,10 @@ class Newton {
     detour_ = 0;
   }
 
-  /// Less energy than at the mark, by what Armijo asks, or a residual that is clearly smaller.
-  bool better_than_mark(double predicted) const {
+  /// Less energy than at the mark while the residual stays within reach, or a residual that is clearly smaller.
+  bool better_than_mark() const {
     if (current_.residual <= 0.5 * marked_.residual) return true;
-    return system_.conservative() && current_.energy < marked_.energy + 1e-4 * predicted &&
-           current_.residual <= 1e3 * marked_.residual;
+    return system_.conservative() && current_.energy < marked_.energy && current_.residual <= 1e3 * marked_.residual;
   }
 
   NewtonStatus search_from_mark() {

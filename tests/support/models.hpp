@@ -52,13 +52,10 @@ struct BuiltModel {
 inline BuiltModel build(const std::vector<MeshlessSpec>& specs) {
   BuiltModel built;
   PointSetBuilder points;
-  double volume = 0;
   for (const MeshlessSpec& spec : specs) {
     built.bodies.emplace_back(spec, built.model, points);
-    volume += spec.domain.volume;
   }
   built.model.points = std::move(points).finish(built.model.node_count());
-  built.model.length = std::cbrt(volume / built.model.node_count());
   return built;
 }
 

@@ -47,11 +47,11 @@ class Derivatives : public testing::TestWithParam<Case> {
   std::size_t size() const { return static_cast<std::size_t>(built_.model.dof_count()); }
   double energy(const State& state) {
     std::vector<double> unused(size());
-    return executor_.gradient(state, history_, 1, unused).total();
+    return executor_.gradient(state, history_, unused).total();
   }
   std::vector<double> gradient(const State& state) {
     std::vector<double> g(size());
-    executor_.gradient(state, history_, 1, g);
+    executor_.gradient(state, history_, g);
     return g;
   }
   Linearization linearization(Tangent tangent) {
@@ -205,7 +205,7 @@ TEST(Reference, EnergyAndForcesFromPlainLoops) {
   ThreadPool pool(1);
   CpuExecutor executor(built.model.points, pool);
   std::vector<double> g(static_cast<std::size_t>(built.model.dof_count()));
-  const InternalEnergy energy = executor.gradient(state, {}, 1, g);
+  const InternalEnergy energy = executor.gradient(state, {}, g);
   EXPECT_NEAR(energy.elastic, elastic, 1e-12 * elastic);
   EXPECT_NEAR(energy.drilling, drilling, 1e-12 * drilling);
   const double scale = test::norm(g);

@@ -157,7 +157,7 @@ TEST(MeshlessBody, DoesNotDependOnPlaceOrientationOrNumbering) {
     ThreadPool pool(1);
     CpuExecutor executor(built.model.points, pool);
     std::vector<double> g(static_cast<std::size_t>(built.model.dof_count()));
-    return executor.gradient(state, {}, 1, g).total();
+    return executor.gradient(state, {}, g).total();
   };
   BlockOptions o;
   o.grid = {4, 3, 2};
