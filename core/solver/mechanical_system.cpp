@@ -60,6 +60,7 @@ void MechanicalSystem::begin_step(const State& start, double dt) {
   increment_.du.assign(start.u.size(), Vec3d{});
   increment_.Ds.assign(start.u.size(), Mat3d{});
   increment_.turned = start.turned;
+  increment_.turned.resize(model_.constraints.size());  // a state made before the constraints has none
   if (model_.points.damped && dt > 0) {
     history_.inverse_step = 1 / dt;
     executor_.store_strain(start, history_);
@@ -241,8 +242,9 @@ Evaluation MechanicalSystem::evaluate() {
     const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
     if (excess < e.excess && p > 0) continue;
     e.excess = excess;
-    e.relative = reference > 0 ? residual / reference : (residual > 0 ? 1.0 : 0.0);
-    e.relative_floor = reference > 0 ? floor / reference : 0.0;
+    const double scale = std::max({reference, floor, 1e-300});
+    e.relative = residual / scale;
+    e.relative_floor = floor / scale;
   }
   e.residual = std::sqrt(total);
   return e;

@@ -14,7 +14,7 @@ struct Evaluation {
   double energy = 0;          ///< potential that an equilibrium minimises [J]
   double residual = 0;        ///< of all free degrees of freedom
   double excess = 0;          ///< largest of the parts: residual over what is allowed; at most 1 where converged
-  double relative = 0;        ///< that part's residual over the largest of its loads, inertia and reactions
+  double relative = 0;        ///< that part's residual over the largest of its loads, inertia, reactions and rounding
   double relative_floor = 0;  ///< what rounding leaves of it, likewise
 
   bool finite() const { return std::isfinite(energy) && std::isfinite(residual); }
