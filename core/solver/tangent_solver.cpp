@@ -13,7 +13,8 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-/// Up to here a factorisation is always worth it (measured: docs/manual.md, "Which linear solver").
+/// Up to here a factorisation takes a few seconds at most, whatever the conditioning; CG may be 2 to 3 times faster on
+/// a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual.md).
 constexpr int kDirectDofs = 15000;
 /// Beyond: only where its work stays below that of the CG iterations that a bulky body of this size needs.
 constexpr double kFlopsPerNonzero = 2000;

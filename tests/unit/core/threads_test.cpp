@@ -32,7 +32,7 @@ TEST(ThreadPool, CoversARangeWithoutRemainder) {
 
 TEST(Results, DoNotDependOnTheNumberOfThreads) {
   BlockOptions o;
-  o.grid = {30, 5, 5};
+  o.grid = {20, 4, 4};
   o.size = {{10, 1, 1}};
   BuiltModel built = block(o);
   hold_face(built.model);
