@@ -1,6 +1,7 @@
 #include "core/solver/modes.hpp"
 
 #include "core/cpu/executor.hpp"
+#include "core/math/index.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/dof_filter.hpp"
 
@@ -49,22 +50,27 @@ class Problem {
 
   const DofFilter& filter() const { return filter_; }
 
-  /// A factor of K + s M; the smallest s that the factorisation accepts.
-  BlockCholesky factorize(double& s) {
-    BlockCholesky factor(K_, filter_);
+  /// Σ diag K / Σ diag M: the scale of the largest eigenvalues [1/s²].
+  double stiffness_to_mass() const {
     double stiffness = 0, mass = 0;
     for (int i = 0; i < K_.rows(); ++i) {
       stiffness += K_.block(K_.diagonal(i))[0];
-      mass += mass_[static_cast<std::size_t>(i)](0, 0);
+      mass += mass_[at(i)](0, 0);
     }
-    const bool supported = filter_.free_count() < static_cast<int>(filter_.size());
-    s = supported ? 0.0 : 1e-6 * stiffness / mass;
+    return stiffness / mass;
+  }
+
+  /// A factor of K + s M; the smallest s that the factorisation accepts.
+  BlockCholesky factorize() {
+    BlockCholesky factor(K_, filter_);
+    const double step = 1e-6 * stiffness_to_mass();
+    double s = filter_.free_count() < static_cast<int>(filter_.size()) ? 0.0 : step;
     for (int attempt = 0; attempt < 12; ++attempt) {
       BlockMatrix shifted = K_;
       for (int i = 0; i < K_.rows() && s > 0; ++i)
-        Eigen::Map<Matrix6>(shifted.block(shifted.diagonal(i))) += s * mass_[static_cast<std::size_t>(i)];
+        Eigen::Map<Matrix6>(shifted.block(shifted.diagonal(i))) += s * mass_[at(i)];
       if (factor.factorize(shifted)) return factor;
-      s = std::max(10 * s, 1e-6 * stiffness / mass);
+      s = std::max(10 * s, step);
     }
     return factor;
   }
@@ -104,8 +110,9 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   const int free = problem.filter().free_count();
   if (free == 0) return {};
   const int wanted = std::min(count, free), block = std::min(free, std::max(2 * wanted, wanted + 8));
-  double shift = 0;
-  const BlockCholesky factor = problem.factorize(shift);
+  // Free motions have eigenvalue 0 up to the rounding of the largest.
+  const double rounding = 1e-13 * problem.stiffness_to_mass();
+  const BlockCholesky factor = problem.factorize();
 
   std::mt19937 random(1);
   Dense X(n, block), KX(n, block), MX(n, block);
@@ -128,11 +135,11 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Dense> ritz(X.transpose() * KX, X.transpose() * MX);
     const Eigen::VectorXd& next = ritz.eigenvalues();
     X = X * ritz.eigenvectors();
-    const double scale = std::max(std::abs(next[wanted - 1]), shift) + 1e-300;
     modes.converged = true;
-    for (int k = 0; k < wanted; ++k)
-      modes.converged =
-          modes.converged && std::abs(next[k] - values[k]) <= 1e-10 * std::max(std::abs(next[k]), 1e-2 * scale);
+    for (int k = 0; k < wanted; ++k) {
+      const double allowed = std::max({1e-10 * std::abs(next[k]), 1e-12 * std::abs(next[wanted - 1]), rounding});
+      modes.converged = modes.converged && std::abs(next[k] - values[k]) <= allowed;
+    }
     values = next;
   }
   for (int k = 0; k < wanted; ++k) {
