@@ -122,10 +122,10 @@ double estimated_memory(const Scene& scene) {
     double points = 1;
     for (std::size_t a = 0; a < 3; ++a)
       points *= 1.0 * (b.grid[a] - 1) * (b.per_cell ? (*b.per_cell)[a] : (b.grid[a] == 2 ? 3 : 2));
-    // Per point: shapes of 8 frames, stress and strain, results. Per frame: 27 blocks of the matrix and the fill of a
-    // factor (grows with the smaller section), vectors.
-    const double section = std::cbrt(frames);
-    bytes += points * 2500 + frames * (27 * 300 + 36 * 8 * 6 * section + 1000);
+    // Per point: shapes of 8 frames, stress and strain, results. Per frame: 27 blocks of the matrix, vectors; and the
+    // fill of a factor, which grows with the section, where one is made whatever its size.
+    const bool factor = scene.solver.linear == LinearKind::cholesky || 6 * frames <= 15000;
+    bytes += points * 2500 + frames * (27 * 300 + 1000 + (factor ? 36 * 8 * 6 * std::cbrt(frames) : 0.0));
   }
   return bytes;
 }
