@@ -59,10 +59,28 @@ std::vector<Share> volume_shares(const MeshlessBody& body, const Region& region)
   return shares;
 }
 
-/// By area where the region asks for the boundary or holds faces but no material point, else by volume. Parts add to 1.
-std::vector<Share> shares_of(const SimulatedBody& body, const Load& load) {
+/// The frames that `nearest` or `ids` pick, each with the same part.
+std::vector<Share> frame_shares(const Simulation& s, int body, const Region& region) {
   std::vector<Share> shares;
-  if (!names_boundary(*load.where)) shares = volume_shares(body.meshless, *load.where);
+  for (const int node : select_nodes(s, body, region)) {
+    Attachment frame;
+    frame.nodes = {node};
+    frame.influences.resize(1);
+    frame.influences[0].w = 1;
+    shares.push_back({s.model.rest_position[at(node)], std::move(frame), 1.0, {}, {}});
+  }
+  return shares;
+}
+
+/// By frames where the region picks single ones; by area where it asks for the boundary or holds faces but no material
+/// point; else by volume. Parts add to 1.
+std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
+  const SimulatedBody& body = s.bodies[at(index)];
+  std::vector<Share> shares;
+  if (names_frames(*load.where))
+    shares = frame_shares(s, index, *load.where);
+  else if (!names_boundary(*load.where))
+    shares = volume_shares(body.meshless, *load.where);
   if (shares.empty()) shares = surface_shares(body.meshless, *load.where);
   if (shares.empty())
     throw SceneError({{load.where->place,
@@ -133,7 +151,7 @@ void add_loads(Simulation& s) {
     const int body = body_index(s, load.body), schedule = new_schedule(s, load.schedule, load.place);
     const SimulatedBody& b = s.bodies[at(body)];
     if (load.total_force || load.total_torque) {
-      std::vector<Share> shares = shares_of(b, load);
+      std::vector<Share> shares = shares_of(s, body, load);
       if (load.total_force)
         for (Share& share : shares) share.force = *load.total_force * share.part;
       if (load.total_torque) spread_torque(shares, *load.total_torque, load.where->place);

@@ -118,14 +118,30 @@ bool contains(const Region& region, const Vec3d& X) {
   return select(region, std::span(&X, 1), {})[0];
 }
 
-bool names_boundary(const Region& region) {
-  if (std::holds_alternative<BoundaryRegion>(region.shape)) return true;
+namespace {
+
+/// Whether a region, or any that it is made of, passes a test.
+template <class Test>
+bool any_part(const Region& region, const Test& test) {
+  const auto in = [&](const Region& r) { return any_part(r, test); };
   if (const auto* all = std::get_if<AllOfRegion>(&region.shape))
-    return std::any_of(all->parts.begin(), all->parts.end(), names_boundary);
+    return std::any_of(all->parts.begin(), all->parts.end(), in);
   if (const auto* any = std::get_if<AnyOfRegion>(&region.shape))
-    return std::any_of(any->parts.begin(), any->parts.end(), names_boundary);
-  if (const auto* inner = std::get_if<NotRegion>(&region.shape)) return names_boundary(*inner->part);
-  return false;
+    return std::any_of(any->parts.begin(), any->parts.end(), in);
+  if (const auto* inner = std::get_if<NotRegion>(&region.shape)) return in(*inner->part);
+  return test(region);
+}
+
+}  // namespace
+
+bool names_boundary(const Region& region) {
+  return any_part(region, [](const Region& r) { return std::holds_alternative<BoundaryRegion>(r.shape); });
+}
+
+bool names_frames(const Region& region) {
+  return any_part(region, [](const Region& r) {
+    return std::holds_alternative<NearestRegion>(r.shape) || std::holds_alternative<IdsRegion>(r.shape);
+  });
 }
 
 }  // namespace fascia::app

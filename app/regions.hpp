@@ -20,4 +20,7 @@ bool contains(const Region& region, const Vec3d& X);
 /// Whether a region names `boundary` anywhere.
 bool names_boundary(const Region& region);
 
+/// Whether a region picks single frames anywhere: `nearest` or `ids`.
+bool names_frames(const Region& region);
+
 }  // namespace fascia::app

@@ -152,6 +152,15 @@ TEST(Solutions, AFollowerLoadIsInItsProbe) {
   EXPECT_NEAR(std::hypot(probe(j, "load", 0), probe(j, "load", 1)), 0.5, 1e-6);
 }
 
+/// A force on the frame that `nearest` picks is the same as one per node there.
+TEST(Solutions, ATotalForceOnOneFrameIsAForceOnThatFrame) {
+  const auto tip = [](const std::string& key) {
+    return probe(run(beam("[[loads]]\nbody = \"beam\"\nwhere = { nearest = [1, 0, 0] }\n" + key + " = [0, 0.5, 0]\n")),
+                 "tip", 1);
+  };
+  EXPECT_DOUBLE_EQ(tip("total_force"), tip("force_per_node"));
+}
+
 TEST(Solutions, LinearWeightsTakeACurvedDomain) {
   const nlohmann::json j = run(R"(
 [world]
