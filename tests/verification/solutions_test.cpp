@@ -212,6 +212,13 @@ quantity = "frequency"
   }
 }
 
+TEST(Solutions, ModesSayThatTheyLeaveLoadsOut) {
+  const std::string modes = "kind = \"modes\"\ncount = 1";
+  std::string text = beam("[world]\ngravity = [0, -9.81, 0]\n", modes);
+  text.erase(text.find("[probes.tip]"), text.find("[solver]") - text.find("[probes.tip]"));
+  EXPECT_NE(run(text).at("warnings").dump().find("unloaded rest state"), std::string::npos);
+}
+
 /// Past the largest force that the law can bear: an answer, but one that says what it is.
 TEST(Solutions, AnInvertedBodyIsToldOf) {
   const nlohmann::json j =
