@@ -119,17 +119,28 @@ int add_motion(Simulation& s, const Constraint& c) {
 
 bool moves_positions_only(const Constraint& c) { return c.motion && !(c.fixed[3] || c.fixed[4] || c.fixed[5]); }
 
+/// An affine frame that turns through an angle must know all of its A.
+void check_affine_turn(const Simulation& s, int body, const Constraint& c) {
+  const bool all = std::all_of(c.fixed.begin(), c.fixed.end(), [](bool f) { return f; });
+  const bool turns = c.motion && c.motion->angle != 0 && (c.fixed[3] || c.fixed[4] || c.fixed[5]);
+  if (turns && !all && s.scene.bodies[at(body)].affine)
+    throw SceneError({{c.place, "turns affine frames about some axes only; let it hold all six axes (remove axes)"}});
+}
+
 }  // namespace
 
-void add_constraints(Simulation& s) {
+void add_constraints(Simulation& s, PointSetBuilder& points) {
   std::map<int, Held> held;
   for (const Constraint& c : s.scene.constraints) {
     const int motion = add_motion(s, c);
     const int body = body_index(s, c.body);
-    for (const int node : select_nodes(s, body, c.where)) {
+    const bool interpolates = s.bodies[at(body)].meshless->interpolates();
+    const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion);
+    check_affine_turn(s, body, c);
+    for (const int node : tied > 0 ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
       const Vec3d& X = s.model.rest_position[at(node)];
       for (int k = 0; k < 3; ++k) {
-        if (c.fixed[at(k)]) add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
+        if (c.fixed[at(k)] && interpolates) add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
         if (c.fixed[at(3 + k)]) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
       }
     }

@@ -1,10 +1,16 @@
 #include "app/domains.hpp"
 
+#include "app/regions.hpp"
+#include "app/scene/errors.hpp"
 #include "core/geometry/inside.hpp"
+#include "core/geometry/mesh_parts.hpp"
 #include "core/geometry/primitives.hpp"
 #include "core/geometry/surface.hpp"
+#include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "io/mesh_reader.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,17 +38,31 @@ void add_distance(SolidDomain& solid) {
   solid.distance = [test, contains = solid.contains](const Vec3d& x) { return contains(x) ? 0.0 : test->distance(x); };
 }
 
-SolidDomain make_box(const BoxDomain& b, double scale, const std::array<int, 3>& grid) {
+/// Cells of the faces that are carried along: those of a frame grid, else a few dozen along the longest edge.
+std::array<int, 3> face_cells(const Body& body, const Vec3d& size) {
+  std::array<int, 3> cells{};
+  const auto* grid = std::get_if<GridFrames>(&body.frames);
+  const double longest = std::max({size[0], size[1], size[2]});
+  for (std::size_t a = 0; a < 3; ++a)
+    cells[a] = grid ? grid->count[a] - 1
+                    : std::max(1, static_cast<int>(std::lround(32 * size[static_cast<int>(a)] / longest)));
+  return cells;
+}
+
+SolidDomain make_box(const BoxDomain& b, const Body& body) {
+  const double scale = body.transform.scale;
   SolidDomain solid;
   solid.min = b.min * scale;
   solid.max = b.max * scale;
   const Vec3d size = solid.max - solid.min;
   solid.volume = size[0] * size[1] * size[2];
-  solid.surface = box_surface(solid.min, solid.max, grid[0] - 1, grid[1] - 1, grid[2] - 1);
+  const std::array<int, 3> cells = face_cells(body, size);
+  solid.surface = box_surface(solid.min, solid.max, cells[0], cells[1], cells[2]);
   return solid;
 }
 
-SolidDomain make_cylinder(const CylinderDomain& c, double scale, const std::array<int, 3>& grid) {
+SolidDomain make_cylinder(const CylinderDomain& c, const Body& body) {
+  const double scale = body.transform.scale;
   SolidDomain solid;
   const Vec3d from = c.from * scale, to = c.to * scale;
   const double radius = c.radius * scale, length = norm(to - from);
@@ -52,7 +72,8 @@ SolidDomain make_cylinder(const CylinderDomain& c, double scale, const std::arra
     const double along = dot(x - from, axis);
     return along >= 0 && along <= length && norm(x - from - axis * along) <= radius;
   };
-  const int most = std::clamp(*std::max_element(grid.begin(), grid.end()), 9, 200);
+  const auto* grid = std::get_if<GridFrames>(&body.frames);
+  const int most = grid ? std::clamp(*std::max_element(grid->count.begin(), grid->count.end()), 9, 200) : 25;
   solid.surface = cylinder_surface(from, to, radius, 48, 2 * (most - 1));
   add_distance(solid);
   for (int a = 0; a < 3; ++a) {  // exact bounds, which the facets do not reach
@@ -79,13 +100,11 @@ SolidDomain make_ellipsoid(const EllipsoidDomain& e, double scale) {
   return solid;
 }
 
-SolidDomain make_file(const FileDomain& f, double scale, std::vector<std::string>& messages) {
-  ClosedSurface closed = closed_surface(io::read_mesh(f.path));
+SolidDomain make_solid(ClosedSurface closed, double scale) {
   SolidDomain solid;
   solid.volume = closed.volume * scale * scale * scale;
   solid.surface = std::move(closed.mesh);
   for (Vec3d& p : solid.surface.points) p *= scale;
-  messages.insert(messages.end(), closed.messages.begin(), closed.messages.end());
   const auto test = std::make_shared<const InsideTest>(solid.surface);
   solid.contains = [test](const Vec3d& x) { return test->contains(x); };
   solid.distance = [test](const Vec3d& x) { return test->contains(x) ? 0.0 : test->distance(x); };
@@ -93,21 +112,95 @@ SolidDomain make_file(const FileDomain& f, double scale, std::vector<std::string
   return solid;
 }
 
+SheetPart make_sheet(TriangleMesh mesh, const Body& body, const MatterParts& placement) {
+  SheetPart sheet;
+  sheet.surface = std::move(mesh);
+  for (const auto& t : sheet.surface.triangles) {
+    Vec3d center;
+    for (const int node : t) center += sheet.surface.points[at(node)] * (1.0 / 3);
+    sheet.thickness.push_back(thickness_at(body, placement.rotation * center + placement.translation));
+  }
+  return sheet;
+}
+
+/// A parallelogram of triangles, fine enough for pictures and for a thickness that varies.
+TriangleMesh rectangle_mesh(const RectangleDomain& r, const Body& body, double scale) {
+  std::array<int, 2> cells{32, 32};
+  if (const auto* grid = std::get_if<GridFrames>(&body.frames))
+    for (std::size_t a = 0; a < 2; ++a) cells[a] = 2 * (grid->count[a] - 1);
+  TriangleMesh mesh;
+  for (int j = 0; j <= cells[1]; ++j)
+    for (int i = 0; i <= cells[0]; ++i)
+      mesh.points.push_back((r.origin + r.edge_u * (1.0 * i / cells[0]) + r.edge_v * (1.0 * j / cells[1])) * scale);
+  for (int j = 0; j < cells[1]; ++j) {
+    for (int i = 0; i < cells[0]; ++i) {
+      const int a = i + (cells[0] + 1) * j, c = a + cells[0] + 1;
+      mesh.triangles.push_back({a, a + 1, c + 1});
+      mesh.triangles.push_back({a, c + 1, c});
+    }
+  }
+  return mesh;
+}
+
+LinePart line_part(const LineDomain& l, const Body& body, double scale) {
+  LinePart line;
+  line.radius = *body.radius;
+  const auto* grid = std::get_if<GridFrames>(&body.frames);
+  const int cells = grid ? 2 * (grid->count[0] - 1) : 64;
+  for (int i = 0; i <= cells; ++i) {
+    line.points.push_back((l.from + (l.to - l.from) * (1.0 * i / cells)) * scale);
+    if (i > 0) line.segments.push_back({i - 1, i});
+  }
+  return line;
+}
+
+/// Solids, sheets and lines of a mesh.
+void add_mesh(const FileDomain& file, const Body& body, MatterParts& parts, std::vector<std::string>& messages) {
+  const double scale = body.transform.scale;
+  const Mesh mesh = io::read_mesh(file.path);
+  if (body.thickness.empty() && !body.radius) {
+    ClosedSurface closed = closed_surface(mesh);
+    messages.insert(messages.end(), closed.messages.begin(), closed.messages.end());
+    parts.solid = make_solid(std::move(closed), scale);
+    return;
+  }
+  MeshParts found = mesh_parts(mesh);
+  messages.insert(messages.end(), found.messages.begin(), found.messages.end());
+  if (found.solid) parts.solid = make_solid(std::move(*found.solid), scale);
+  for (Vec3d& x : found.sheet.points) x *= scale;
+  for (Vec3d& x : found.line_points) x *= scale;
+  if (!found.sheet.triangles.empty() && body.thickness.empty())
+    throw SceneError({{body.domain_place, "the mesh has triangles that bound no solid; give the body a thickness"}});
+  if (found.sheet.triangles.empty() && !body.thickness.empty())
+    throw SceneError({{body.thickness_place, "the mesh has no triangles outside its solids; remove thickness"}});
+  if (found.segments.empty() && body.radius)
+    throw SceneError({{body.radius_place, "the mesh has no lines; remove radius"}});
+  if (!found.sheet.triangles.empty()) parts.sheets.push_back(make_sheet(std::move(found.sheet), body, parts));
+  if (body.radius) parts.lines.push_back({std::move(found.line_points), std::move(found.segments), *body.radius});
+}
+
 }  // namespace
 
-PlacedDomain make_domain(const Body& body) {
-  PlacedDomain placed;
+double thickness_at(const Body& body, const Vec3d& X) {
+  for (const ThicknessUse& use : body.thickness)
+    if (contains(use.where, X)) return use.value;
+  throw SceneError({{body.thickness_place,
+                     fmt::format("no thickness at ({}, {}, {}); let the last entry have no where", X[0], X[1], X[2])}});
+}
+
+MatterParts make_domain(const Body& body, std::vector<std::string>& messages) {
+  MatterParts parts;
   const double scale = body.transform.scale;
-  if (const auto* box = std::get_if<BoxDomain>(&body.domain)) placed.solid = make_box(*box, scale, body.grid);
-  if (const auto* cylinder = std::get_if<CylinderDomain>(&body.domain))
-    placed.solid = make_cylinder(*cylinder, scale, body.grid);
-  if (const auto* ellipsoid = std::get_if<EllipsoidDomain>(&body.domain))
-    placed.solid = make_ellipsoid(*ellipsoid, scale);
-  if (const auto* file = std::get_if<FileDomain>(&body.domain)) placed.solid = make_file(*file, scale, placed.messages);
-  if (body.transform.angle != 0)
-    placed.rotation = rotation_about(normalized(body.transform.axis), body.transform.angle);
-  placed.translation = body.transform.translate;
-  return placed;
+  if (body.transform.angle != 0) parts.rotation = rotation_about(normalized(body.transform.axis), body.transform.angle);
+  parts.translation = body.transform.translate;
+  if (const auto* box = std::get_if<BoxDomain>(&body.domain)) parts.solid = make_box(*box, body);
+  if (const auto* cylinder = std::get_if<CylinderDomain>(&body.domain)) parts.solid = make_cylinder(*cylinder, body);
+  if (const auto* ellipsoid = std::get_if<EllipsoidDomain>(&body.domain)) parts.solid = make_ellipsoid(*ellipsoid, scale);
+  if (const auto* r = std::get_if<RectangleDomain>(&body.domain))
+    parts.sheets.push_back(make_sheet(rectangle_mesh(*r, body, scale), body, parts));
+  if (const auto* line = std::get_if<LineDomain>(&body.domain)) parts.lines.push_back(line_part(*line, body, scale));
+  if (const auto* file = std::get_if<FileDomain>(&body.domain)) add_mesh(*file, body, parts, messages);
+  return parts;
 }
 
 }  // namespace fascia::app

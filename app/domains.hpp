@@ -1,22 +1,18 @@
 #pragma once
 
 #include "app/scene/scene.hpp"
-#include "meshless/body.hpp"
+#include "meshless/cloud_build.hpp"
 
 #include <string>
 #include <vector>
 
 namespace fascia::app {
 
-/// A domain in the axes of its frame grid (scaled, not yet turned or moved), and its rigid placement.
-struct PlacedDomain {
-  SolidDomain solid;
-  Mat3d rotation = Mat3d::identity();
-  Vec3d translation{};
-  std::vector<std::string> messages;
-};
-
+/// What a body fills: scaled, with the placement that its frames and points still take.
 /// @throws FileError, InputError  a mesh that cannot be used
-PlacedDomain make_domain(const Body& body);
+MatterParts make_domain(const Body& body, std::vector<std::string>& messages);
+
+/// Thickness of a surface body at a rest position [m]. @throws SceneError  where none is given
+double thickness_at(const Body& body, const Vec3d& X);
 
 }  // namespace fascia::app

@@ -51,11 +51,11 @@ std::vector<Share> surface_shares(const MeshlessBody& body, const Region& region
 
 std::vector<Share> volume_shares(const MeshlessBody& body, const Region& region) {
   std::vector<Vec3d> positions;
-  for (const BodyPoint& p : body.points()) positions.push_back(p.X);
+  for (const BodyPoint& p : body.points()) positions.push_back(p.middle);
   const std::vector<bool> chosen = select(region, positions, {});
   std::vector<Share> shares;
   for (std::size_t q = 0; q < positions.size(); ++q)
-    if (chosen[q]) shares.push_back({positions[q], body.attach(positions[q]), body.points()[q].volume, {}, {}});
+    if (chosen[q]) shares.push_back({body.points()[q].X, body.attach_point(q), body.points()[q].volume, {}, {}});
   return shares;
 }
 
@@ -72,16 +72,17 @@ std::vector<Share> frame_shares(const Simulation& s, int body, const Region& reg
   return shares;
 }
 
-/// By frames where the region picks single ones; by area where it asks for the boundary or holds faces but no material
-/// point; else by volume. Parts add to 1.
+/// By frames where the region picks single ones, or holds no more than frames; by area where it asks for the boundary or
+/// holds faces but no material point; else by volume. Parts add to 1.
 std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
   const SimulatedBody& body = s.bodies[at(index)];
   std::vector<Share> shares;
   if (names_frames(*load.where))
     shares = frame_shares(s, index, *load.where);
   else if (!names_boundary(*load.where))
-    shares = volume_shares(body.meshless, *load.where);
-  if (shares.empty()) shares = surface_shares(body.meshless, *load.where);
+    shares = volume_shares(*body.meshless, *load.where);
+  if (shares.empty()) shares = surface_shares(*body.meshless, *load.where);
+  if (shares.empty() && !find_nodes(s, index, *load.where).empty()) shares = frame_shares(s, index, *load.where);
   if (shares.empty())
     throw SceneError({{load.where->place,
                        fmt::format("the region holds no material and no face of body \"{}\"; enlarge it", body.name)}});
@@ -92,7 +93,8 @@ std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
 }
 
 /// Forces without resultant that make up a torque: part (a × r) about the centre c, with a from the shares' inertia.
-void spread_torque(std::vector<Share>& shares, const Vec3d& torque, const Place& place) {
+/// Where the shares lie on a line or a point, forces cannot: each takes its part of the torque itself.
+void spread_torque(std::vector<Share>& shares, const Vec3d& torque) {
   Vec3d center;
   for (const Share& s : shares) center += s.X * s.part;
   Mat3d inertia;
@@ -100,8 +102,10 @@ void spread_torque(std::vector<Share>& shares, const Vec3d& torque, const Place&
     const Vec3d r = s.X - center;
     inertia += (Mat3d::diagonal(squared_norm(r)) - outer(r, r)) * s.part;
   }
-  if (determinant(inertia) < 1e-9 * std::pow(trace(inertia), 3))
-    throw SceneError({{place, "the region is a point or a line and cannot take up a torque; enlarge it"}});
+  if (determinant(inertia) < 1e-9 * std::pow(trace(inertia), 3)) {
+    for (Share& s : shares) s.torque += torque * s.part;
+    return;
+  }
   const Vec3d a = inverse(inertia) * torque;
   for (Share& s : shares) s.force += cross(a, s.X - center) * s.part;
 }
@@ -154,13 +158,13 @@ void add_loads(Simulation& s) {
       std::vector<Share> shares = shares_of(s, body, load);
       if (load.total_force)
         for (Share& share : shares) share.force = *load.total_force * share.part;
-      if (load.total_torque) spread_torque(shares, *load.total_torque, load.where->place);
+      if (load.total_torque) spread_torque(shares, *load.total_torque);
       add_shares(s, shares, load.follower, schedule);
     }
     if (load.force_per_node) add_node_forces(s, body, load, schedule);
     if (load.at) {
       const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
-      add_shares(s, {{X, b.meshless.attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
+      add_shares(s, {{X, b.meshless->attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
                  load.follower, schedule);
     }
   }

@@ -1,3 +1,4 @@
+#include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 
 #include "app/simulation.hpp"
@@ -5,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace fascia::app {
@@ -23,12 +25,30 @@ const BodyPoint& nearest_point(const MeshlessBody& body, const Vec3d& X) {
   return *best;
 }
 
+/// Tethers of the probe's region; of all its bodies without one.
+void select_tethers(const Simulation& s, ResolvedProbe& r) {
+  if (r.probe->quantity != Quantity::force && r.probe->quantity != Quantity::moment) return;
+  for (std::size_t t = 0; t < s.tethered.size(); ++t) {
+    const TetheredMaterial& m = s.tethered[t];
+    if (r.body >= 0 && m.body != r.body) continue;
+    bool chosen = true;
+    if (r.probe->where && names_frames(*r.probe->where)) {
+      const std::vector<int> nodes = find_nodes(s, m.body, *r.probe->where);
+      chosen = std::find(nodes.begin(), nodes.end(), m.frame) != nodes.end();
+    } else if (r.probe->where) {
+      const char on_boundary = 1;
+      chosen = select(*r.probe->where, std::span(&s.model.tethers[at(m.tether)].X, 1), std::span(&on_boundary, 1))[0];
+    }
+    if (chosen) r.tethered.push_back(static_cast<int>(t));
+  }
+}
+
 bool over_time_only(Quantity q) { return q == Quantity::velocity || q == Quantity::kinetic_energy; }
 
 }  // namespace
 
 Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place) {
-  const MeshlessBody& b = s.bodies[at(body)].meshless;
+  const MeshlessBody& b = *s.bodies[at(body)].meshless;
   const double distance = b.distance(X);
   if (distance <= 1e-9 * b.size()) return X;
   if (distance > 1e-3 * b.size())
@@ -51,19 +71,18 @@ void resolve_probes(Simulation& s) {
     for (const Vec3d& X0 : probe.at) {
       ProbePoint p;
       p.X = place_on_body(s, r.body, X0, probe.at_place);
-      const MeshlessBody& body = s.bodies[at(r.body)].meshless;
+      const MeshlessBody& body = *s.bodies[at(r.body)].meshless;
       p.field = body.attach(p.X);
       p.volumetric = body.attach_volumetric(p.field);
-      const BodyPoint& material = nearest_point(body, p.X);
-      p.lambda = material.lambda;
-      p.mu = material.mu;
+      p.material = nearest_point(body, p.X);
       r.points.push_back(std::move(p));
     }
+    select_tethers(s, r);
     if (probe.where) {
-      r.nodes = select_nodes(s, r.body, *probe.where);
+      r.nodes = r.tethered.empty() ? select_nodes(s, r.body, *probe.where) : find_nodes(s, r.body, *probe.where);
     } else {
-      const int first = r.body >= 0 ? s.bodies[at(r.body)].meshless.first_frame() : 0;
-      const int count = r.body >= 0 ? s.bodies[at(r.body)].meshless.frame_count() : s.model.node_count();
+      const int first = r.body >= 0 ? s.bodies[at(r.body)].meshless->first_frame() : 0;
+      const int count = r.body >= 0 ? s.bodies[at(r.body)].meshless->frame_count() : s.model.node_count();
       for (int i = first; i < first + count; ++i) r.nodes.push_back(i);
     }
     r.about = probe.about.value_or(Vec3d{});

@@ -78,7 +78,7 @@ void push_point_value(std::vector<double>& out, Quantity q, const ProbePoint& p,
       push(out, green_strain(f.H));
       break;
     default:
-      push(out, cauchy_stress(f.H, displacement_gradient(p.volumetric, state), p.lambda, p.mu));
+      push(out, cauchy_stress(f.H, displacement_gradient(p.volumetric, state), p.material));
       break;
   }
 }
@@ -88,9 +88,10 @@ double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const St
   double volume = 0;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
-    for (const BodyPoint& p : s.bodies[b].meshless.points()) {
-      const Mat3d H = displacement_gradient(s.bodies[b].meshless.attach(p), state);
-      volume += p.volume * determinant(Mat3d::identity() + H);
+    const MeshlessBody& body = *s.bodies[b].meshless;
+    for (std::size_t q = 0; q < body.points().size(); ++q) {
+      const Mat3d H = displacement_gradient(body.attach_point(q), state);
+      volume += body.points()[q].volume * determinant(Mat3d::identity() + H);
     }
   }
   return volume;
@@ -104,10 +105,10 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
   Energies e;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
-    const MeshlessBody& body = s.bodies[b].meshless;
+    const MeshlessBody& body = *s.bodies[b].meshless;
     for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
       e.elastic += snap.system->executor().group_elastic()[at(g)];
-      e.stabilization += snap.system->executor().group_drilling()[at(g)];
+      e.stabilization += snap.system->executor().group_stabilization()[at(g)];
     }
   }
   for (const int i : probe.nodes)
@@ -144,21 +145,32 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     moment += torque + cross(x - probe.about, f);
   };
   bool held = false;
-  const std::span<const double> gradient = snap.system->gradient();
+  std::vector<double> held_forces(snap.system->gradient().begin(), snap.system->gradient().end());
+  const DofFilter& filter = snap.system->filter();
+  filter.to_local(held_forces);
+  filter.keep_fixed(held_forces);
+  filter.to_global(held_forces);
   for (const FrameConstraint& c : s.model.constraints) {
     if (chosen[at(c.node)] == 0) continue;
     held = true;
     Vec3d f, t;
-    const double* g = gradient.data() + 6 * c.node;
-    for (int k = 0; k < c.translations; ++k) {
-      const Vec3d a = c.translation_axes.row(k);
-      f += a * dot(a, Vec3d{{g[0], g[1], g[2]}});
-    }
-    for (int k = 0; k < c.rotations; ++k) {
-      const Vec3d a = c.rotation_axes.row(k);
-      t += a * dot(a, Vec3d{{g[3], g[4], g[5]}});
-    }
+    const double* g = held_forces.data() + s.model.points.dofs.begin(c.node);
+    for (int k = 0; k < 3; ++k) f[k] = g[k];
+    const Mat3d A = Mat3d::identity() + snap.state->D[at(c.node)];
+    if (s.model.kind(c.node) == FrameKind::rigid)
+      for (int k = 0; k < 3; ++k) t[k] = g[3 + k];
+    else
+      t = axl(A * transpose(frame_variation(FrameKind::affine, g + 3, A)));
     add(c.node, f, t);
+  }
+  for (const int t : probe.tethered) {
+    const TetheredMaterial& m = s.tethered[at(t)];
+    held = true;
+    const Tether& tether = s.model.tethers[at(m.tether)];
+    const Vec3d f = snap.system->executor().tether_force(tether, *snap.state);
+    const Vec3d x = tether.X + field_at(m.field, *snap.state).u;
+    force += f;
+    moment += cross(x - probe.about, f);
   }
   if (held) return;
   const std::vector<double> factors = s.factors(snap.state->time);
@@ -173,9 +185,12 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     }
   }
   for (const FollowerLoad& load : s.model.followers)
-    for_each_share(load, *snap.state, factors[at(load.schedule)], [&](int node, const Vec3d& f, const Vec3d& torque) {
-      if (chosen[at(node)] != 0) add(node, f, torque);
-    });
+    for_each_share(load, *snap.state, factors[at(load.schedule)],
+                   [&](int node, const Vec3d& f, const Mat3d& couple, const Vec3d& torque) {
+                     if (chosen[at(node)] == 0) return;
+                     const Mat3d Q = Mat3d::identity() + snap.state->D[at(node)];
+                     add(node, f, axl(Q * transpose(couple)) + torque);
+                   });
 }
 
 }  // namespace
@@ -193,10 +208,23 @@ FieldValue field_at(const Attachment& a, const State& state) {
   return f;
 }
 
-Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, double lambda, double mu) {
+PointMaterial<double> stress_material(const BodyPoint& p) {
+  const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
+  PointMaterial<double> m{};
+  m.volume = p.volume;
+  m.lambda = lame.lambda;
+  m.mu = lame.mu;
+  m.law = p.law;
+  m.axes = p.axes;
+  return m;
+}
+
+Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, const BodyPoint& point) {
   const Mat3d F = Mat3d::identity() + H, Fv = Mat3d::identity() + H_volumetric;
-  const Mat3d shear = green_strain(H) * (2 * mu);
-  const Mat3d pressure = Mat3d::diagonal(lambda * trace(green_strain(H_volumetric)));
+  if (point.law != Law::solid)
+    return times_transpose(F * second_piola(stress_material(point), green_strain(H)), F) * (1 / determinant(F));
+  const Mat3d shear = green_strain(H) * (2 * point.mu);
+  const Mat3d pressure = Mat3d::diagonal(point.lambda * trace(green_strain(H_volumetric)));
   return times_transpose(F * shear, F) * (1 / determinant(F)) +
          times_transpose(Fv * pressure, Fv) * (1 / determinant(Fv));
 }

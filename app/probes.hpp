@@ -33,6 +33,9 @@ struct FieldValue {
 FieldValue field_at(const Attachment& attachment, const State& state);
 
 /// Cauchy stress at a point, from F there and the volumetric strain at its stand-in.
-Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, double lambda, double mu);
+Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, const BodyPoint& point);
+
+/// The point's material as the mechanics use it, without stabilisation and damping.
+PointMaterial<double> stress_material(const BodyPoint& point);
 
 }  // namespace fascia::app

@@ -45,11 +45,14 @@ BodyTensors tensors(const MeshlessBody& body, const State& state) {
   t.frames.stress.resize(n);
   t.frames.energy_density.resize(n);
   std::vector<double> weight(n);
-  for (const BodyPoint& p : body.points()) {
-    const Attachment a = body.attach(p);
+  for (std::size_t q = 0; q < body.points().size(); ++q) {
+    const BodyPoint& p = body.points()[q];
+    const Attachment a = body.attach_point(q);
     const Mat3d H = field_at(a, state).H, Hv = body.selective() ? field_at(body.attach_volumetric(a), state).H : H;
-    const Mat3d E = green_strain(H), stress = cauchy_stress(H, Hv, p.lambda, p.mu);
-    const double tr = trace(green_strain(Hv)), density = 0.5 * p.lambda * tr * tr + p.mu * contract(E, E);
+    const Mat3d E = green_strain(H), stress = cauchy_stress(H, Hv, p);
+    const double tr = trace(green_strain(Hv));
+    const double density = p.law == Law::solid ? 0.5 * p.lambda * tr * tr + p.mu * contract(E, E)
+                                               : energy_density(stress_material(p), E);
     t.points.strain.push_back(E);
     t.points.stress.push_back(stress);
     t.points.energy_density.push_back(density);
@@ -113,7 +116,7 @@ ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path dir
   csv_ += "\n";
   for (const SimulatedBody& b : simulation.bodies) {
     surface_.emplace_back();
-    for (const Vec3d& X : b.meshless.surface().points) surface_.back().push_back(b.meshless.attach(X));
+    for (const Vec3d& X : b.meshless->surface().points) surface_.back().push_back(b.meshless->attach(X));
   }
 }
 
@@ -127,7 +130,7 @@ void ResultFiles::add_probes(double time, const Snapshot& snap) {
 }
 
 io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) const {
-  const MeshlessBody& body = b.meshless;
+  const MeshlessBody& body = *b.meshless;
   const BodyTensors t = tensors(body, state);
   const std::vector<Attachment>& surface = surface_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
   std::vector<PointValue> values;
@@ -149,12 +152,14 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
   }
   for (int i = 0; i < body.frame_count(); ++i) {
     const auto node = at(body.first_frame() + i);
-    values.push_back({b.frames[at(i)], state.u[node], rotation_vector(state.D[node]),
+    const Mat3d turn = simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node]
+                                                                              : polar_increment(state.D[node]);
+    values.push_back({b.frames[at(i)], state.u[node], rotation_vector(turn),
                       (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node],
                       t.frames.strain[at(i)], t.frames.stress[at(i)], t.frames.energy_density[at(i)]});
   }
   for (std::size_t q = 0; q < body.points().size(); ++q) {
-    PointValue v = at_field(body.points()[q].X, body.attach(body.points()[q]));
+    PointValue v = at_field(body.points()[q].X, body.attach_point(q));
     v.strain = t.points.strain[q];
     v.stress = t.points.stress[q];
     v.energy_density = t.points.energy_density[q];
@@ -163,7 +168,8 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
   io::VisualMesh mesh;
   for (const PointValue& v : values) mesh.points.push_back(v.rest + v.u);
   mesh.triangles = body.surface().triangles;
-  mesh.part.assign(mesh.triangles.size(), 0);
+  mesh.lines = body.segments();
+  mesh.part.assign(mesh.triangles.size() + mesh.lines.size(), 0);
   for (std::size_t i = surface.size(); i < values.size(); ++i) {
     mesh.vertices.push_back(static_cast<int>(i));
     mesh.part.push_back(i < surface.size() + b.frames.size() ? 1 : 2);

@@ -109,13 +109,13 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
         "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
   for (const SimulatedBody& b : s.bodies) {
     int inverted = 0;
-    for (const BodyPoint& p : b.meshless.points())
-      inverted += determinant(Mat3d::identity() + field_at(b.meshless.attach(p), end).H) <= 0 ? 1 : 0;
+    for (std::size_t q = 0; q < b.meshless->points().size(); ++q)
+      inverted += determinant(Mat3d::identity() + field_at(b.meshless->attach_point(q), end).H) <= 0 ? 1 : 0;
     if (inverted > 0)
       warnings.push_back(
           fmt::format("body \"{}\" is turned inside out at {} of {} integration points: St Venant-Kirchhoff does "
                       "not resist that; the result is no physical state",
-                      b.name, inverted, b.meshless.points().size()));
+                      b.name, inverted, b.meshless->points().size()));
   }
   if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
     run.status = RunStatus::not_converged;
@@ -148,7 +148,7 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     progress.update(step);
     const bool due = rule.save(step);
     if (due || statics) save(step.time, at, due);
-    out.stabilization = system.internal_energy().drilling;
+    out.stabilization = system.internal_energy().stabilization;
     return interrupted == 0;
   };
   const Clock::time_point start = Clock::now();
@@ -195,17 +195,22 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
   }
   std::vector<nlohmann::json> frequencies(s.probes.size(), nlohmann::json::array());
   double size = 0;
-  for (const SimulatedBody& b : s.bodies) size = std::max(size, b.meshless.size());
+  for (const SimulatedBody& b : s.bodies) size = std::max(size, b.meshless->size());
   for (std::size_t m = 0; m < modes.frequency.size(); ++m) {
     State state = State::at_rest(s.model);
     double largest = 0;
-    for (std::size_t i = 0; i < modes.shape[m].size(); i += 6)
-      largest = std::max(largest, std::hypot(modes.shape[m][i], modes.shape[m][i + 1], modes.shape[m][i + 2]));
+    const DofLayout& dofs = s.model.points.dofs;
+    for (int i = 0; i < dofs.node_count(); ++i) {
+      const double* d = modes.shape[m].data() + dofs.begin(i);
+      largest = std::max(largest, std::hypot(d[0], d[1], d[2]));
+    }
     const double scale = 0.1 * size / std::max(largest, 1e-300);
-    for (std::size_t i = 0; i < state.u.size(); ++i) {
-      const double* d = modes.shape[m].data() + 6 * i;
-      state.u[i] = Vec3d{{d[0], d[1], d[2]}} * scale;
-      state.D[i] = rotation_increment(Vec3d{{d[3], d[4], d[5]}} * scale);
+    for (int i = 0; i < dofs.node_count(); ++i) {
+      const double* d = modes.shape[m].data() + dofs.begin(i);
+      state.u[at(i)] = Vec3d{{d[0], d[1], d[2]}} * scale;
+      const bool rigid = dofs.kind(i) == FrameKind::rigid;
+      state.D[at(i)] = rigid ? rotation_increment(Vec3d{{d[3], d[4], d[5]}} * scale)
+                             : frame_variation(FrameKind::affine, d + 3, {}) * scale;
     }
     const auto number = static_cast<double>(m + 1);
     files.add_probes(number, {&state, nullptr, modes.frequency[m]});
@@ -274,8 +279,8 @@ int check_scene(const RunOptions& options) {
   const Simulation s = load(options);
   for (const SimulatedBody& b : s.bodies)
     fmt::print("body {}: meshless, {} frames, {} integration points{}, {:.6g} m3, {:.6g} kg\n", b.name,
-               b.meshless.frame_count(), b.meshless.points().size(),
-               b.meshless.selective() ? " (lambda at one point a cell)" : "", b.meshless.volume(), b.meshless.mass());
+               b.meshless->frame_count(), b.meshless->points().size(),
+               b.meshless->selective() ? " (lambda at one point a cell)" : "", b.meshless->volume(), b.meshless->mass());
   const int free = s.model.dof_count() - s.model.constrained_dof_count();
   fmt::print("{} unknowns ({} prescribed), {} loads, {} probes\n", free, s.model.constrained_dof_count(),
              s.scene.loads.size(), s.probes.size());

@@ -1,6 +1,6 @@
 #include "app/simulation.hpp"
 
-#include "app/domains.hpp"
+#include "app/bodies.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/schedule.hpp"
@@ -32,54 +32,16 @@ void check_memory(const Scene& scene) {
   const double need = estimated_memory(scene), have = available_memory();
   if (need <= have && need < 2e11) return;
   const auto largest = std::max_element(scene.bodies.begin(), scene.bodies.end(), [](const Body& a, const Body& b) {
-    return 1.0 * a.grid[0] * a.grid[1] * a.grid[2] < 1.0 * b.grid[0] * b.grid[1] * b.grid[2];
+    return estimated_samples(a).frames < estimated_samples(b).frames;
   });
-  throw SceneError({{largest->grid_place,
-                     fmt::format("{} x {} x {} frames need about {:.3g} GB, {:.3g} GB are free; use a smaller grid",
-                                 largest->grid[0], largest->grid[1], largest->grid[2], need / 1e9, have / 1e9)}});
-}
-
-/// A single-material spec, or a choice by region.
-std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body) {
-  return [&body](const Vec3d& X) {
-    for (const MaterialUse& use : body.materials)
-      if (contains(use.where, X))
-        return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
-                                 use.material.stiffness_damping};
-    throw SceneError(
-        {{body.place,
-          fmt::format("no material at ({}, {}, {}); let the last entry of material have no where", X[0], X[1], X[2])}});
-  };
-}
-
-void check_material_regions(const Body& body, const MeshlessBody& built) {
-  for (const MaterialUse& use : body.materials) {
-    const auto& points = built.points();
-    if (!std::any_of(points.begin(), points.end(), [&](const BodyPoint& p) { return contains(use.where, p.X); }))
-      throw SceneError({{use.where.place, "the region holds no integration point of the body; enlarge it"}});
-  }
-}
-
-MeshlessSpec spec_of(const Body& body, PlacedDomain&& domain) {
-  MeshlessSpec spec;
-  spec.domain = std::move(domain.solid);
-  spec.grid = body.grid;
-  spec.per_cell = body.per_cell;
-  spec.weights = body.weights == WeightKind::linear ? GridWeightKind::linear : GridWeightKind::trilinear;
-  spec.half_blend = body.blend != Blend::full;
-  spec.drilling = body.drilling;
-  spec.integration = body.integration == Integration::automatic ? IntegrationKind::automatic
-                     : body.integration == Integration::full    ? IntegrationKind::full
-                                                                : IntegrationKind::selective;
-  spec.density = body.density ? *body.density : *body.mass / spec.domain.volume;
-  spec.rotation = domain.rotation;
-  spec.translation = domain.translation;
-  spec.material = material_of(body);
-  return spec;
+  throw SceneError({{largest->frames_place,
+                     fmt::format("{:.6g} frames need about {:.3g} GB, {:.3g} GB are free; use {}",
+                                 estimated_samples(*largest).frames, need / 1e9, have / 1e9,
+                                 std::holds_alternative<GridFrames>(largest->frames) ? "a smaller grid" : "fewer frames")}});
 }
 
 void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& built) {
-  const int first = built.meshless.first_frame(), count = built.meshless.frame_count();
+  const int first = built.meshless->first_frame(), count = built.meshless->frame_count();
   Vec3d center{};
   double mass = 0;
   for (int i = first; i < first + count; ++i) {
@@ -99,14 +61,12 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
 
 void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
   try {
-    PlacedDomain domain = make_domain(body);
-    std::vector<std::string> messages = domain.messages;
-    MeshlessBody built(spec_of(body, std::move(domain)), s.model, points);
-    check_material_regions(body, built);
-    messages.insert(messages.end(), built.messages().begin(), built.messages().end());
+    std::vector<std::string> messages;
+    std::unique_ptr<MeshlessBody> built = build_body(body, s.model, points, messages);
+    messages.insert(messages.end(), built->messages().begin(), built->messages().end());
     for (const std::string& m : messages) s.warnings.push_back("bodies." + body.name + ": " + m);
-    std::vector<Vec3d> frames(s.model.rest_position.begin() + built.first_frame(), s.model.rest_position.end());
-    std::vector<char> boundary = built.frames_on_boundary();
+    std::vector<Vec3d> frames(s.model.rest_position.begin() + built->first_frame(), s.model.rest_position.end());
+    std::vector<char> boundary = built->frames_on_boundary();
     s.bodies.push_back({body.name, std::move(built), std::move(frames), std::move(boundary)});
   } catch (const InputError& e) {
     throw SceneError({{body.domain_place, e.what()}});
@@ -118,14 +78,14 @@ void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
 double estimated_memory(const Scene& scene) {
   double bytes = 30e6;  // the program itself
   for (const Body& b : scene.bodies) {
-    const double frames = 1.0 * b.grid[0] * b.grid[1] * b.grid[2];
-    double points = 1;
-    for (std::size_t a = 0; a < 3; ++a)
-      points *= 1.0 * (b.grid[a] - 1) * (b.per_cell ? (*b.per_cell)[a] : (b.grid[a] == 2 ? 3 : 2));
-    // Per point: shapes of 8 frames, stress and strain, results. Per frame: 27 blocks of the matrix, vectors; and the
+    const SampleEstimate e = estimated_samples(b);
+    // Per point: shapes of its frames, stress and strain, results. Per frame: blocks of the matrix, vectors; and the
     // fill of a factor, which grows with the section, where one is made whatever its size.
-    const bool factor = scene.solver.linear == LinearKind::cholesky || 6 * frames <= 15000;
-    bytes += points * 2500 + frames * (27 * 300 + 1000 + (factor ? 36 * 8 * 6 * std::cbrt(frames) : 0.0));
+    const double dofs = (b.affine ? 12 : 6) * e.frames, block = b.affine ? 4 : 1;
+    const bool factor = scene.solver.linear == LinearKind::cholesky || dofs <= 15000;
+    bytes += e.points * (500 + 250.0 * e.neighbours) +
+             e.frames * (e.coupled * 300 * block + 1000 + (factor ? 36 * 8 * 6 * block * std::cbrt(e.frames) : 0.0)) +
+             e.pieces * 160;
   }
   return bytes;
 }
@@ -149,15 +109,20 @@ int body_index(const Simulation& s, const std::string& name) {
   return static_cast<int>(found - s.bodies.begin());
 }
 
-std::vector<int> select_nodes(const Simulation& s, int body, const Region& region) {
+std::vector<int> find_nodes(const Simulation& s, int body, const Region& region) {
   const SimulatedBody& b = s.bodies[at(body)];
   const std::vector<bool> chosen = select(region, b.frames, b.frame_on_boundary);
   std::vector<int> nodes;
   for (std::size_t i = 0; i < chosen.size(); ++i)
-    if (chosen[i]) nodes.push_back(b.meshless.first_frame() + static_cast<int>(i));
+    if (chosen[i]) nodes.push_back(b.meshless->first_frame() + static_cast<int>(i));
+  return nodes;
+}
+
+std::vector<int> select_nodes(const Simulation& s, int body, const Region& region) {
+  std::vector<int> nodes = find_nodes(s, body, region);
   if (nodes.empty()) {
-    const Vec3d lo = b.meshless.surface().points.front();
-    Vec3d low = lo, high = lo;
+    const SimulatedBody& b = s.bodies[at(body)];
+    Vec3d low = b.frames.front(), high = low;
     for (const Vec3d& p : b.frames)
       for (int a = 0; a < 3; ++a) {
         low[a] = std::min(low[a], p[a]);
@@ -180,14 +145,14 @@ Simulation build_simulation(Scene scene) {
   for (const Body& body : s.scene.bodies) {
     const int group = points.group_count();
     add_body(s, body, points);
-    s.bodies.back().meshless.first_group = group;
-    s.bodies.back().meshless.group_count = points.group_count() - group;
+    s.bodies.back().meshless->first_group = group;
+    s.bodies.back().meshless->group_count = points.group_count() - group;
   }
-  s.model.points = std::move(points).finish(s.model.node_count());
+  add_constraints(s, points);
+  s.model.points = std::move(points).finish(s.model.frame_kind);
   if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
   s.initial = State::at_rest(s.model);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
-  add_constraints(s);
   s.initial.turned.resize(s.model.constraints.size());
   if (s.model.constrained_dof_count() == s.model.dof_count() && s.scene.solver.kind == SolverKind::modes)
     throw SceneError(

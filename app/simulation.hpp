@@ -4,6 +4,7 @@
 #include "core/model/model.hpp"
 #include "meshless/body.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace fascia::app {
 /// A body of the scene in the model.
 struct SimulatedBody {
   std::string name;
-  MeshlessBody meshless;
+  std::unique_ptr<MeshlessBody> meshless;
   std::vector<Vec3d> frames;  ///< rest positions [m]
   std::vector<char> frame_on_boundary;
 };
@@ -21,7 +22,15 @@ struct SimulatedBody {
 struct ProbePoint {
   Vec3d X{};
   Attachment field, volumetric;
-  double lambda = 0, mu = 0;  ///< of the nearest integration point [Pa]
+  BodyPoint material;  ///< nearest integration point
+};
+
+/// Material that a constraint ties to where it belongs.
+struct TetheredMaterial {
+  int tether = 0;  ///< of the model
+  int body = 0, frame = 0;  ///< model node of the nearest frame
+  std::vector<Vec3d> axes;  ///< directions that are held
+  Attachment field;
 };
 
 /// A probe with what it selects resolved.
@@ -29,7 +38,8 @@ struct ResolvedProbe {
   const Probe* probe = nullptr;
   int body = -1;  ///< −1: the whole scene
   std::vector<ProbePoint> points;
-  std::vector<int> nodes;  ///< of the model, by `where`
+  std::vector<int> nodes;     ///< of the model, by `where`
+  std::vector<int> tethered;  ///< of Simulation::tethered
   Vec3d about{};           ///< of moments and angular momentum
 };
 
@@ -40,6 +50,7 @@ struct Simulation {
   std::vector<SimulatedBody> bodies;
   std::vector<Schedule> schedules;  ///< index = DeadLoad::schedule and so on
   std::vector<ResolvedProbe> probes;
+  std::vector<TetheredMaterial> tethered;
   State initial;
   std::vector<std::string> warnings;
   int gravity_load = -1;  ///< index of gravity in Model::loads
@@ -58,7 +69,10 @@ double estimated_memory(const Scene& scene);
 Simulation build_simulation(Scene scene);
 
 // Parts of build_simulation, in files of their own.
-void add_constraints(Simulation& simulation);      ///< constraints.cpp
+/// Ties the positions of a region's material, for bodies whose weights do not interpolate. tethers.cpp
+/// @returns how many places it ties
+int add_tethers(Simulation& simulation, PointSetBuilder& points, int body, const Constraint& constraint, int motion);
+void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< constraints.cpp
 void add_loads(Simulation& simulation);            ///< loads.cpp
 void check_support(const Simulation& simulation);  ///< support.cpp
 void resolve_probes(Simulation& simulation);       ///< probe_setup.cpp
@@ -68,7 +82,9 @@ int body_index(const Simulation& simulation, const std::string& name);
 /// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.
 /// @throws SceneError further away
 Vec3d place_on_body(Simulation& simulation, int body, const Vec3d& X, const Place& place);
-/// Model nodes of a body that a region selects. @throws SceneError where it selects none
+/// Model nodes of a body that a region selects; none or more.
+std::vector<int> find_nodes(const Simulation& simulation, int body, const Region& region);
+/// The same. @throws SceneError where it selects none
 std::vector<int> select_nodes(const Simulation& simulation, int body, const Region& region);
 
 }  // namespace fascia::app

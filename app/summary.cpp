@@ -53,8 +53,8 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   j["bodies"] = nlohmann::ordered_json::object();
   for (const SimulatedBody& b : s.bodies) {
     j["bodies"][b.name] = {
-        {"model", "meshless"}, {"frames", b.meshless.frame_count()}, {"points", b.meshless.points().size()},
-        {"cells", 0},          {"volume", b.meshless.volume()},      {"mass", b.meshless.mass()}};
+        {"model", "meshless"}, {"frames", b.meshless->frame_count()}, {"points", b.meshless->points().size()},
+        {"cells", 0},          {"volume", b.meshless->volume()},      {"mass", b.meshless->mass()}};
   }
   j["couplings"] = nlohmann::ordered_json::object();
   j["dofs"] = s.model.dof_count() - s.model.constrained_dof_count();

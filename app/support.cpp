@@ -55,7 +55,7 @@ void check_support(const Simulation& s) {
   const std::vector<int>& part = s.model.points.node_part;
   std::vector<Diagnostic> errors;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const MeshlessBody& body = s.bodies[b].meshless;
+    const MeshlessBody& body = *s.bodies[b].meshless;
     std::set<int> parts;
     for (int i = body.first_frame(); i < body.first_frame() + body.frame_count(); ++i) parts.insert(part[at(i)]);
     for (const int r : parts) {
@@ -80,6 +80,15 @@ void check_support(const Simulation& s) {
         for (int k = 0; k < c.rotations; ++k) {
           const Vec3d a = c.rotation_axes.row(k);
           const Motion6 row{{0, 0, 0, a[0], a[1], a[2]}};
+          resistance += row * row.transpose();
+        }
+      }
+      for (const TetheredMaterial& t : s.tethered) {
+        if (part[at(t.field.nodes[0])] != r) continue;
+        const Vec3d arm = (s.model.tethers[at(t.tether)].X - center) * (1 / size);
+        for (const Vec3d& a : t.axes) {
+          const Vec3d moment = cross(arm, a);
+          const Motion6 row{{a[0], a[1], a[2], moment[0], moment[1], moment[2]}};
           resistance += row * row.transpose();
         }
       }

@@ -27,9 +27,12 @@ namespace {
 void check_sizes(const VisualMesh& mesh) {
   const auto n_points = static_cast<int>(mesh.points.size());
   const auto valid = [&](int node) { return node >= 0 && node < n_points; };
-  bool right = mesh.part.empty() || mesh.part.size() == mesh.triangles.size() + mesh.vertices.size();
+  const std::size_t n_cells = mesh.triangles.size() + mesh.lines.size() + mesh.vertices.size();
+  bool right = mesh.part.empty() || mesh.part.size() == n_cells;
   for (const auto& triangle : mesh.triangles)
     for (const int node : triangle) right = right && valid(node);
+  for (const auto& line : mesh.lines)
+    for (const int node : line) right = right && valid(node);
   for (const int node : mesh.vertices) right = right && valid(node);
   for (const FieldArray& field : mesh.point_fields)
     right = right && field.components > 0 &&
@@ -64,6 +67,10 @@ void add_cells(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     cells->InsertNextCell({triangle[0], triangle[1], triangle[2]});
     types->InsertNextValue(VTK_TRIANGLE);
+  }
+  for (const auto& line : mesh.lines) {
+    cells->InsertNextCell({line[0], line[1]});
+    types->InsertNextValue(VTK_LINE);
   }
   for (const int vertex : mesh.vertices) {
     cells->InsertNextCell({vertex});

@@ -16,13 +16,14 @@ struct FieldArray {
   std::vector<double> values;
 };
 
-/// What one .vtu holds: triangles first, then single points ("vertices").
+/// What one .vtu holds: triangles first, then lines, then single points ("vertices").
 struct VisualMesh {
   std::vector<Vec3d> points;
   std::vector<std::array<int, 3>> triangles;
+  std::vector<std::array<int, 2>> lines;
   std::vector<int> vertices;  ///< point indices, one vertex cell each
   std::vector<FieldArray> point_fields;
-  std::vector<int> part;  ///< cell array "part", one a cell (triangles, then vertices); may be empty
+  std::vector<int> part;  ///< cell array "part", one a cell (triangles, lines, vertices); may be empty
 };
 
 /// Writes an unstructured grid (XML, appended and compressed).

@@ -2,18 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace fascia::app {
 namespace {
-
-template <std::size_t N>
-std::array<int, N> to_array(const std::vector<int>& numbers) {
-  std::array<int, N> result{};
-  std::copy_n(numbers.begin(), N, result.begin());
-  return result;
-}
 
 Material find_material(const Value& name, const std::string& path, const Materials& materials,
                        Diagnostics& diagnostics) {
@@ -33,11 +25,7 @@ Material material_from(const Value& value, const std::string& path, const Materi
 
 std::vector<MaterialUse> read_material_list(const TableReader& body, const Materials& materials) {
   std::vector<MaterialUse> uses;
-  const std::vector<TableReader> parts = body.tables("material");
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const TableReader& part = parts[i];
-    if (!part.has("where") && i + 1 < parts.size())
-      part.error("has no where, so that no later entry can match; must be the last one");
+  for (const TableReader& part : read_choices(body, "material")) {
     MaterialUse use{read_region(part, "where"), {}};
     if (const Value* material = part.value("use"))
       use.material = material_from(*material, part.path_of("use"), materials, body.diagnostics());
@@ -52,38 +40,6 @@ std::vector<MaterialUse> read_material_uses(const TableReader& body, const Mater
   if (value->as_array()) return read_material_list(body, materials);
   const Place place = body.place("material");
   return {{{place, AllRegion{}}, material_from(*value, place.key, materials, body.diagnostics())}};
-}
-
-void read_frames(const TableReader& frames, Body& body) {
-  body.grid_place = frames.place("grid");
-  const auto grid = frames.integers("grid");
-  if (!grid) return;
-  body.grid = to_array<3>(*grid);
-  constexpr double most = 1e7;
-  const double count = 1.0 * body.grid[0] * body.grid[1] * body.grid[2];
-  if (count > most) frames.error("grid", fmt::format("asks for {} frames; must be at most {}", count, most));
-}
-
-void read_points(const TableReader& points, Body& body) {
-  body.points_place = points.exists() ? points.place() : body.place;
-  if (const auto per_cell = points.integers("per_cell")) {
-    body.per_cell = to_array<3>(*per_cell);
-    body.points_place = points.place("per_cell");
-    if (body.weights == WeightKind::linear)
-      points.error("per_cell",
-                   "is not used by weights of kind \"linear\", which have 4 points in each tetrahedron; remove it");
-  }
-  const std::string integration = points.text("integration").value_or("auto");
-  if (integration == "full") body.integration = Integration::full;
-  if (integration == "selective") body.integration = Integration::selective;
-}
-
-void read_weights(const TableReader& weights, Body& body) {
-  if (weights.text("kind") == "linear") body.weights = WeightKind::linear;
-  const std::string blend = weights.text("blend").value_or("auto");
-  if (blend == "half") body.blend = Blend::half;
-  if (blend == "full") body.blend = Blend::full;
-  body.drilling = weights.number("drilling").value_or(body.drilling);
 }
 
 InitialMotion read_initial(const TableReader& initial) {
@@ -151,6 +107,14 @@ Materials read_materials(const TableReader& scene) {
   return materials;
 }
 
+std::vector<TableReader> read_choices(const TableReader& table, std::string_view key) {
+  std::vector<TableReader> choices = table.tables(key);
+  for (std::size_t i = 0; i + 1 < choices.size(); ++i)
+    if (!choices[i].has("where"))
+      choices[i].error("has no where, so that no later entry can match; must be the last one");
+  return choices;
+}
+
 Body read_body(const TableReader& table, const Materials& materials, const std::filesystem::path& folder) {
   Body body;
   body.place = table.place();
@@ -161,9 +125,8 @@ Body read_body(const TableReader& table, const Materials& materials, const std::
   body.materials = read_material_uses(table, materials);
   body.mass = table.number("mass");
   body.density = table.number("density");
-  read_frames(table.table("frames"), body);
-  read_weights(table.table("weights"), body);
-  read_points(table.table("points"), body);
+  read_section(table, body);
+  read_discretisation(table, folder, body);
   body.initial = read_initial(table.table("initial"));
   return body;
 }

@@ -27,6 +27,26 @@ Materials read_materials(const TableReader& scene);
 Body read_body(const TableReader& table, const Materials& materials, const std::filesystem::path& folder);
 Domain read_domain(const TableReader& table, const std::filesystem::path& folder);
 
+/// What a domain fills.
+enum class Extent {
+  solid,
+  surface,
+  line,
+  thin_mesh  ///< sheets and lines of a mesh, perhaps beside solids
+};
+/// By the keys `domain`, `thickness` and `radius` of a body; none where the domain is missing or wrong.
+std::optional<Extent> read_extent(const TableReader& body);
+
+/// The keys `thickness` and `radius` of a body.
+void read_section(const TableReader& table, Body& body);
+
+/// The keys `frames`, `weights` and `points` of a body.
+/// @param folder  to which paths in the scene are relative
+void read_discretisation(const TableReader& table, const std::filesystem::path& folder, Body& body);
+
+/// A list of tables of which the first that selects something counts: only the last may have no `where`.
+std::vector<TableReader> read_choices(const TableReader& table, std::string_view key);
+
 Constraint read_constraint(const TableReader& table, const std::vector<std::string>& bodies);
 Load read_load(const TableReader& table, const std::vector<std::string>& bodies);
 World read_world(const TableReader& scene);

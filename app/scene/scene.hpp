@@ -109,7 +109,14 @@ struct EllipsoidDomain {
 struct FileDomain {
   std::filesystem::path path;
 };  ///< already resolved against the scene's folder
-using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain>;
+/// A parallelogram: origin + u edge_u + v edge_v, u and v from 0 to 1.
+struct RectangleDomain {
+  Vec3d origin, edge_u, edge_v;
+};
+struct LineDomain {
+  Vec3d from, to;
+};
+using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain, RectangleDomain, LineDomain>;
 
 /// x → R(axis, angle) (scale x) + translate
 struct Transform {
@@ -124,7 +131,44 @@ struct InitialMotion {
   std::optional<Vec3d> about;  ///< default: the body's mass centre
 };
 
-enum class WeightKind { trilinear, linear };
+/// Frames at the nodes of a regular grid.
+struct GridFrames {
+  std::vector<int> count;  ///< along each direction, ends included: three numbers; a surface two, a line one
+};
+/// Poisson-disk samples.
+struct SpacedSamples {
+  double spacing = 0;  ///< mean distance of neighbours [m]
+  int seed = 1;
+};
+/// Poisson-disk samples whose spacing is found for about `count` of them.
+struct CountedSamples {
+  int count = 0;
+  int seed = 1;
+};
+struct ListedFrames {
+  std::vector<Vec3d> positions;  ///< [m]
+  std::vector<Vec3d> rotations;  ///< rotation vectors [rad]: none, or as many as positions
+};
+/// A CSV table of positions, see io/point_table.hpp.
+struct SampleFile {
+  std::filesystem::path path;  ///< already resolved against the scene's folder
+};
+using Frames = std::variant<GridFrames, SpacedSamples, CountedSamples, ListedFrames, SampleFile>;
+
+/// Gauss points along each direction of every cell of the frame grid.
+struct PerCell {
+  std::vector<int> count;  ///< as many numbers as the grid has
+};
+/// monostate: the default of the body's kind of frames
+using Points = std::variant<std::monostate, PerCell, SpacedSamples, CountedSamples, SampleFile>;
+
+struct ThicknessUse {
+  Region where;      ///< AllRegion where none was given
+  double value = 0;  ///< [m]
+};
+
+/// automatic: trilinear on a grid, mls for scattered frames
+enum class WeightKind { automatic, trilinear, linear, mls, shepard, wendland, cubic_spline };
 enum class Blend { automatic, half, full };
 enum class Integration { automatic, full, selective };
 
@@ -136,13 +180,22 @@ struct Body {
   Transform transform;
   std::vector<MaterialUse> materials;   ///< first match wins
   std::optional<double> mass, density;  ///< exactly one [kg], [kg/m³]
-  std::array<int, 3> grid{};
-  Place grid_place;
-  std::optional<std::array<int, 3>> per_cell;
+  std::vector<ThicknessUse> thickness;  ///< surface domains; first match wins; empty: none given
+  Place thickness_place;
+  std::optional<double> radius;  ///< line domains [m]
+  Place radius_place;
+  Frames frames;
+  Place frames_place;   ///< of the key that says where they are
+  bool affine = false;  ///< frames of 12 DOFs, otherwise of 6
+  Points points;
   Place points_place;
-  WeightKind weights = WeightKind::trilinear;
+  std::optional<int> through;  ///< points through a sheet's thickness; 1: the 2014 paper's rule
+  WeightKind weights = WeightKind::automatic;
+  Place weights_place;
+  std::optional<int> neighbours;  ///< frames that influence a point, scattered frames
+  std::optional<double> support;  ///< radius of the weights, scattered frames [m]
   Blend blend = Blend::automatic;
-  double drilling = 0.1;
+  std::optional<double> drilling;  ///< relative to mu; default: 0.1, affine frames 0.003
   Integration integration = Integration::automatic;
   InitialMotion initial;
 };

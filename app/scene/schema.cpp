@@ -29,6 +29,7 @@ std::string list_in_words(const Shape& shape) {
   }
   const std::string item = in_words(shape.items.front());
   if (shape.min_items == shape.max_items) return fmt::format("a list of {}, each {}", shape.min_items, item);
+  if (shape.is_bounded()) return fmt::format("a list of {} to {}, each {}", shape.min_items, shape.max_items, item);
   return fmt::format("a list, each {}", item);
 }
 

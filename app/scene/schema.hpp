@@ -57,6 +57,7 @@ struct Shape {
   const Shape& (*target)() = nullptr;  ///< reference
 
   const Key* find(std::string_view key) const;
+  bool is_bounded() const { return max_items != std::numeric_limits<std::size_t>::max(); }
 };
 
 /// A key of a table.
@@ -109,6 +110,9 @@ Key output_schema();
 const Shape& material_schema();
 const Shape& profile_schema();
 Shape domain_schema();
+Shape frames_schema();
+Shape points_schema();
+Shape weights_schema();
 Key over_key();
 Key profile_key();
 std::vector<Choice> field_choices();

@@ -7,71 +7,6 @@ constexpr const char* not_for_meshless = "is not used by a meshless body";
 
 Shape region() { return reference("region", region_schema); }
 
-Shape frames_schema() {
-  return table(
-      {key("grid", array(integer(between(2, 1000)), 3, 3),
-           "Frames along x, y and z of the domain's bounding box, its faces included."),
-       key("poisson_disk", number("m", above(0)), "Scattered frames with this spacing.").not_yet(),
-       key("count", integer(between(1, 10000000)), "About this many scattered frames.").not_yet(),
-       key("positions", array(vector3("m"), 1), "Frames where you want them.").not_yet(),
-       key("rotations", array(vector3("rad")), "Rotation vectors of `positions`.").not_yet(),
-       key("file", text(), "Frames from a CSV file.").not_yet(),
-       key("seed", integer(between(0, 2147483647)), "Seed of scattered frames.").not_yet(),
-       key("kind",
-           choice({{"rigid", "6 degrees of freedom a frame."}, {"affine", "12 degrees of freedom a frame.", false}}),
-           "Kind of frame.")
-           .defaults("\"rigid\""),
-       key("share",
-           array(
-               table({key("body", text("the name of a body"), "The other body."), key("where", region(), "Its nodes."),
-                      key("rotations", boolean(), "Give vertices a rotation.")})),
-           "Nodes of other bodies that are frames of this one too.")
-           .not_yet()},
-      {{{"grid", "poisson_disk", "count", "positions", "file"}}});
-}
-
-Shape points_schema() {
-  return table(
-      {key("per_cell", array(integer(between(1, 10)), 3, 3),
-           "Gauss points along x, y and z of each cell of the frame grid. Not with `weights.kind = \"linear\"`.")
-           .defaults("[2, 2, 2]; 3 in a direction that has a single cell"),
-       key("poisson_disk", number("m", above(0)), "Scattered points with this spacing.").not_yet(),
-       key("count", integer(between(1, 100000000)), "About this many scattered points.").not_yet(),
-       key("file", text(), "Points from a CSV file.").not_yet(),
-       key("seed", integer(between(0, 2147483647)), "Seed of scattered points.").not_yet(),
-       key("integration",
-           choice({{"auto", "Chosen from Poisson's ratio."},
-                   {"full", "Everything at every point."},
-                   {"selective", "The volumetric part at fewer points, against locking."}}),
-           "Integration of the volumetric part.")
-           .defaults("\"auto\""),
-       key("through", integer(between(1, 10)), "Points through the thickness of a sheet.").not_yet()},
-      {{{"per_cell", "poisson_disk", "count", "file"}, false}});
-}
-
-Shape weights_schema() {
-  return table({key("kind",
-                    choice({{"trilinear", "Of the 8 frames of a grid cell."},
-                            {"linear", "The grid's cells cut into 6 tetrahedra: 4 neighbours, 4 points each."},
-                            {"mls", "Moving least squares.", false},
-                            {"shepard", "Shepard's.", false},
-                            {"wendland", "Wendland's.", false},
-                            {"cubic-spline", "Cubic splines.", false}}),
-                    "Weight functions; always a partition of unity.")
-                    .defaults("\"trilinear\""),
-                key("neighbours", integer(between(1, 1000)), "Frames that a point follows.").not_yet(),
-                key("radius", number("m", above(0)), "Reach of a frame.").not_yet(),
-                key("blend",
-                    choice({{"auto", "`half` where the weights reproduce linear fields."},
-                            {"half", "Half blend."},
-                            {"full", "Equation 3 of the 2014 paper."}}),
-                    "How much of a frame's rotation a point follows.")
-                    .defaults("\"auto\""),
-                key("drilling", number("1", at_least(0)),
-                    "Stiffness, relative to mu, that ties a frame's rotation to the material's; 0: none.")
-                    .defaults("0.1")});
-}
-
 Shape material() { return reference("material", material_schema); }
 
 Shape body_material() {
@@ -80,6 +15,12 @@ Shape body_material() {
              key("use", one_of({text("the name of a material"), material()}), "Name of a material, or an inline table.")
                  .needed()});
   return one_of({text("the name of a material"), material(), array(part, 1)});
+}
+
+Shape thickness() {
+  const Shape part = table({key("where", region(), "Points that take this thickness.").defaults("\"all\""),
+                            key("value", number("m", above(0)), "The thickness.").needed()});
+  return one_of({number("m", above(0)), array(part, 1)});
 }
 
 Shape initial_schema() {
@@ -106,7 +47,7 @@ Shape body_schema() {
                    {"rigid", "One frame that carries a surface.", false}}),
            "How the body is discretised.")
            .needed(),
-       key("domain", domain_schema(), "The space that the body fills.").needed(),
+       key("domain", domain_schema(), "The space, surface or line that the body fills.").needed(),
        key("mass", number("kg", above(0)), "Mass of the whole body."),
        key("density", number("kg/m3", above(0)), "Mass of a volume."),
        key("material", body_material(), "Name, inline table, or a list of which the first that selects a point counts.")
@@ -115,12 +56,10 @@ Shape body_schema() {
        key("points", points_schema(), "The integration points."),
        key("weights", weights_schema(), "The weight functions."), key("initial", initial_schema(), "Motion at time 0."),
        key("transform", transform_schema(), "Moves the domain before anything is built."),
-       key("thickness",
-           one_of({number("m", above(0)), array(table({key("where", region(), "Part."),
-                                                       key("value", number("m", above(0)), "Its thickness.")}))}),
-           "Thickness of a surface domain.")
-           .not_yet(),
-       key("radius", number("m", above(0)), "Radius of a line domain.").not_yet(),
+       key("thickness", thickness(),
+           "Thickness of a sheet: of a rectangle, or of a file's triangles that bound no solid. A value, or a list of "
+           "which the first that selects a point counts."),
+       key("radius", number("m", above(0)), "Radius of a line, or of a file's lines."),
        key("inertia", array(vector3("kg m2"), 3, 3), "Inertia of a rigid body.").not_yet(),
        key("formulation", choice({{"st-venant-kirchhoff", ""}, {"corotational", ""}, {"linear", ""}}),
            "Strain of finite elements.")

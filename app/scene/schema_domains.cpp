@@ -30,6 +30,18 @@ Shape ellipsoid() {
                 key("radii", vector3("m", above(0)), "Half axes along x, y and z.").needed(), cells(2)});
 }
 
+Shape rectangle() {
+  return table(
+      {key("origin", vector3("m"), "A corner.").needed(),
+       key("edge_u", vector3("m"), "From `origin` to the next corner.").needed(),
+       key("edge_v", vector3("m"), "From `origin` to the corner on the other side; not parallel to `edge_u`.").needed(),
+       cells(2)});
+}
+
+Shape line() {
+  return table({key("from", vector3("m"), "One end.").needed(), key("to", vector3("m"), "The other end.").needed()});
+}
+
 }  // namespace
 
 Shape domain_schema() {
@@ -37,11 +49,14 @@ Shape domain_schema() {
       {key("box", box(), "An axis-aligned box."), key("cylinder", cylinder(), "A solid cylinder."),
        key("ellipsoid", ellipsoid(), "A solid ellipsoid."),
        key("file", text("a path"),
-           "A closed surface or a volume mesh: Gmsh 2.2 or 4.1, VTK legacy, VTU, STL, OBJ or PLY. The path is relative "
-           "to the scene file."),
+           "A mesh: Gmsh 2.2 or 4.1, VTK legacy, VTU, STL, OBJ or PLY. Closed surfaces and volume cells are solids; "
+           "with "
+           "`thickness`, triangles that bound no solid are sheets; with `radius`, its lines are lines. The path is "
+           "relative to the scene file."),
        key("block", table({}), "A tapered block: eight corners.").not_yet(),
-       key("rectangle", table({}), "A flat surface: origin and two edges.").not_yet(),
-       key("annulus", table({}), "A flat ring.").not_yet(), key("line", table({}), "A straight line.").not_yet(),
+       key("rectangle", rectangle(), "A flat sheet between two edges; the body needs `thickness`."),
+       key("annulus", table({}), "A flat ring.").not_yet(),
+       key("line", line(), "A straight line; the body needs `radius`."),
        key("between", array(text(), 2, 2), "The space between the surfaces of two bodies.").not_yet(),
        key("where", reference("region", region_schema), "Parts of the surfaces of `between`.").not_yet(),
        key("as", choice({{"volume", ""}, {"sheet", ""}, {"strands", ""}}), "What `between` becomes.").not_yet()},

@@ -39,7 +39,7 @@ Json array_as_json(const Shape& shape) {
   else
     json["items"] = shape_as_json(shape.items.front());
   if (shape.min_items > 0) json["minItems"] = shape.min_items;
-  if (shape.max_items < 1000) json["maxItems"] = shape.max_items;
+  if (shape.is_bounded()) json["maxItems"] = shape.max_items;
   return json;
 }
 

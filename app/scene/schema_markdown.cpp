@@ -41,7 +41,11 @@ std::string list_type(const Shape& shape) {
     for (const Shape& item : shape.items) parts += (parts.empty() ? "" : ", ") + type_of(item);
     return "[" + parts + "]";
   }
-  const std::string count = shape.min_items == shape.max_items ? fmt::format(" of {}", shape.min_items) : "";
+  std::string count;
+  if (shape.min_items == shape.max_items)
+    count = fmt::format(" of {}", shape.min_items);
+  else if (shape.is_bounded())
+    count = fmt::format(" of {} to {}", shape.min_items, shape.max_items);
   return fmt::format("list{}: {}", count, type_of(first));
 }
 

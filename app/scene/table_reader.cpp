@@ -48,6 +48,14 @@ std::optional<Vec3d> TableReader::vector(std::string_view key) const {
   return found ? std::optional(to_vector(*found)) : std::nullopt;
 }
 
+std::optional<std::vector<Vec3d>> TableReader::vectors(std::string_view key) const {
+  const Value* found = value(key);
+  if (!found) return std::nullopt;
+  std::vector<Vec3d> vectors;
+  for (const Value& item : *found->as_array()) vectors.push_back(to_vector(item));
+  return vectors;
+}
+
 std::optional<std::vector<int>> TableReader::integers(std::string_view key) const {
   const Value* found = value(key);
   if (!found) return std::nullopt;

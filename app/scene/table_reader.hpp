@@ -29,6 +29,7 @@ class TableReader {
   std::optional<std::string> text(std::string_view key) const;
   std::optional<bool> boolean(std::string_view key) const;
   std::optional<Vec3d> vector(std::string_view key) const;
+  std::optional<std::vector<Vec3d>> vectors(std::string_view key) const;
   std::optional<std::vector<int>> integers(std::string_view key) const;
   TableReader table(std::string_view key) const;
   /// The tables of an array of tables, or of a table of tables.

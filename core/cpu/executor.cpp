@@ -42,98 +42,113 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
       pool_(pool),
       slot_sums_(at(set.slot_count()) * 12),
       group_elastic_(at(set.group_count())),
-      group_drilling_(at(set.group_count())),
+      group_stabilization_(at(set.group_count())),
       group_viscous_(at(set.group_count())),
       group_rounding_(at(set.group_count())),
+      group_tether_(at(set.group_count())),
       part_motion_(at(set.part_count())),
       part_rounding_(at(set.part_count())),
-      node_L_(at(set.node_count)),
-      directions_(at(set.node_count) * 12) {
-  for (int group = 0; group < set.group_count(); ++group)
-    for (int lane = 0; lane < kGroupSize; ++lane)
-      drilling_ = drilling_ || set.material_of_group(group)[kDrilling * kGroupSize + lane] > 0;
-}
+      part_tether_(at(set.part_count())),
+      targets_(set.axes.size() / 3),
+      node_L_(at(set.node_count())),
+      directions_(at(set.node_count()) * 12) {}
 
 /// Displacements and rotations (taken at the part's length) of each part, kept as a running maximum: a state that came
 /// back to rest still carries the rounding of where it was.
 void CpuExecutor::note_motion(const State& state) {
-  for (int node = 0; node < set_.node_count; ++node) {
+  for (int node = 0; node < set_.node_count(); ++node) {
     const int part = set_.node_part[at(node)];
     const double turn = set_.part_length[at(part)] * norm(state.D[at(node)]);
     part_motion_[at(part)] = std::max({part_motion_[at(part)], norm(state.u[at(node)]), turn});
   }
 }
 
-template <bool Drilling>
-void CpuExecutor::gradient_of_groups(const State& state, const StrainHistory& history, int begin, int end) {
-  for (int group = begin; group < end; ++group) {
-    const auto nodes = set_.nodes(group);
-    const int first_slot = set_.slot_begin[at(group)];
-    Mat3<Lanes> P[kBatches], Y[kBatches];
-    const Lanes motion(part_motion_[at(set_.part_of_group(group))]);
-    double elastic = 0, drilling = 0, viscous = 0, rounding = 0;
-    for (int b = 0; b < kBatches; ++b) {
-      PointMotion<Lanes> x;
-      for (std::size_t s = 0; s < nodes.size(); ++s)
-        add_slot<Drilling>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(state.u[at(nodes[s])]),
-                           broadcast(state.D[at(nodes[s])]), x);
-      const PointMaterial<Lanes> m = material(set_, group, b, history.inverse_step);
-      const Mat3<Lanes> E_old =
-          history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
-      const PointStress<Lanes> stress = point_stress<Drilling>(x, m, E_old);
-      P[b] = stress.P * m.volume;
-      Y[b] = stress.Y * m.volume;
-      const PointEnergy<Lanes> energy = point_energy(x, m, E_old);
-      elastic += lane_sum(energy.elastic);
-      drilling += lane_sum(energy.drilling);
-      viscous += lane_sum(energy.viscous);
-      // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
-      const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
-      const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0));
-      const Lanes strain = squared(x.H) + (g * motion) * (g * motion);
-      rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * strain * (Lanes(1.0) + squared(x.H))));
-    }
-    group_elastic_[at(group)] = elastic;
-    group_drilling_[at(group)] = drilling;
-    group_viscous_[at(group)] = viscous;
-    group_rounding_[at(group)] = rounding;
-    for (std::size_t s = 0; s < nodes.size(); ++s) {
-      const int slot = first_slot + static_cast<int>(s);
-      slot_sums<Drilling>(set_.shape_of_slot(slot), P, Y, slot_sums_.data() + at(slot) * 12);
-    }
+template <Stabilization stabilization>
+void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& history, int group) {
+  constexpr bool kBlend = stabilization != Stabilization::none;
+  const auto nodes = set_.nodes(group);
+  const int first_slot = set_.slot_begin[at(group)];
+  Mat3<Lanes> P[kBatches], Y[kBatches];
+  const Lanes motion(part_motion_[at(set_.part_of_group(group))]);
+  double elastic = 0, stabilizing = 0, viscous = 0, rounding = 0, tether = 0;
+  for (int b = 0; b < kBatches; ++b) {
+    PointMotion<Lanes> x;
+    for (std::size_t s = 0; s < nodes.size(); ++s)
+      add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(state.u[at(nodes[s])]),
+                       broadcast(state.D[at(nodes[s])]), x);
+    const PointMaterial<Lanes> m = material(set_, group, b, history.inverse_step, targets_);
+    const Mat3<Lanes> E_old =
+        history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
+    const PointStress<Lanes> stress = point_stress<stabilization>(x, m, E_old);
+    P[b] = stress.P * m.volume;
+    Y[b] = stress.Y * m.volume;
+    const PointEnergy<Lanes> energy = point_energy<stabilization>(x, m, E_old);
+    elastic += lane_sum(energy.elastic);
+    stabilizing += lane_sum(energy.stabilization);
+    viscous += lane_sum(energy.viscous);
+    if (m.law == Law::tether) tether += lane_sum(squared(P[b]));
+    // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
+    const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
+    const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0));
+    const Lanes strain = squared(x.H) + (g * motion) * (g * motion);
+    rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * strain * (Lanes(1.0) + squared(x.H))));
+  }
+  group_elastic_[at(group)] = elastic;
+  group_stabilization_[at(group)] = stabilizing;
+  group_viscous_[at(group)] = viscous;
+  group_rounding_[at(group)] = rounding;
+  group_tether_[at(group)] = tether;
+  for (std::size_t s = 0; s < nodes.size(); ++s) {
+    const int slot = first_slot + static_cast<int>(s);
+    slot_sums<kBlend>(set_.shape_of_slot(slot), P, Y, slot_sums_.data() + at(slot) * 12);
   }
 }
 
 InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, std::span<double> gradient) {
   note_motion(state);
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
-    if (drilling_)
-      gradient_of_groups<true>(state, history, begin, end);
-    else
-      gradient_of_groups<false>(state, history, begin, end);
+    for (int group = begin; group < end; ++group)
+      with_stabilization(group, [&](auto kind) { gradient_of_group<kind()>(state, history, group); });
   });
-  pool_.for_ranges(set_.node_count, kNodeGrain, [&](int begin, int end) {
+  pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       const NodeSum sum = gather(set_, slot_sums_, node);
-      const Mat3d L = sum.N + times_transpose(sum.N, state.D[at(node)]);  // N Qᵀ
-      node_L_[at(node)] = L;
-      const Vec3d torque = axl(transpose(L));
-      for (int k = 0; k < 3; ++k) {
-        gradient[at(6 * node + k)] = sum.force[k];
-        gradient[at(6 * node + 3 + k)] = torque[k];
-      }
+      node_L_[at(node)] = sum.N + times_transpose(sum.N, state.D[at(node)]);  // N Qᵀ
+      double* g = gradient.data() + set_.dofs.begin(node);
+      for (int k = 0; k < 3; ++k) g[k] = sum.force[k];
+      std::fill(g + 3, g + set_.dofs.size(node), 0.0);
+      add_moment(set_.dofs.kind(node), sum.N, Mat3d::identity() + state.D[at(node)], g + 3);
     }
   });
   InternalEnergy energy;
   std::fill(part_rounding_.begin(), part_rounding_.end(), 0.0);
+  std::fill(part_tether_.begin(), part_tether_.end(), 0.0);
   for (int group = 0; group < set_.group_count(); ++group) {
     energy.elastic += group_elastic_[at(group)];
-    energy.drilling += group_drilling_[at(group)];
+    energy.stabilization += group_stabilization_[at(group)];
     energy.viscous += group_viscous_[at(group)];
+    part_tether_[at(set_.part_of_group(group))] += group_tether_[at(group)];
     part_rounding_[at(set_.part_of_group(group))] += group_rounding_[at(group)];
   }
   for (double& r : part_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
   return energy;
+}
+
+Vec3d CpuExecutor::tether_force(const Tether& tether, const State& state) const {
+  const auto nodes = set_.nodes(tether.group);
+  Vec3d u;
+  for (std::size_t s = 0; s < nodes.size(); ++s) {
+    const double* shape = set_.shape_of_slot(set_.slot_begin[at(tether.group)] + static_cast<int>(s)) + tether.lane;
+    const Vec3d lever{{shape[4 * kGroupSize], shape[7 * kGroupSize], shape[10 * kGroupSize]}};
+    u += state.u[at(nodes[s])] * shape[kGroupSize] + state.D[at(nodes[s])] * lever;
+  }
+  const auto index = at(set_.rule[at(tether.group)].axes);
+  Vec3d force;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      force[i] += set_.axes[(index * 9 + at(3 * i + j)) * kGroupSize + at(tether.lane)] *
+                  (targets_[(index * 3 + at(j)) * kGroupSize + at(tether.lane)] - u[j]);
+  return force * set_.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
 }
 
 void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
@@ -155,16 +170,16 @@ void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
 void CpuExecutor::linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out) {
   out.tangent = tangent;
   out.inverse_step = history.inverse_step;
-  out.Q.resize(at(set_.node_count));
-  out.node_blocks.assign(at(set_.node_count), Block6{});
+  out.Q.resize(at(set_.node_count()));
+  out.node_blocks.assign(set_.dofs.block_total(), 0.0);
   out.points.resize(at(set_.group_count()) * 24 * kGroupSize);
-  for (int node = 0; node < set_.node_count; ++node) {
+  for (int node = 0; node < set_.node_count(); ++node) {
     out.Q[at(node)] = Mat3d::identity() + state.D[at(node)];
-    if (tangent == Tangent::material) continue;
+    if (tangent == Tangent::material || set_.dofs.kind(node) == FrameKind::affine) continue;
     const Mat3d& L = node_L_[at(node)];
     const Mat3d rr = sym(L) - Mat3d::diagonal(trace(L));
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) out.node_blocks[at(node)][at(6 * (3 + i) + 3 + j)] = rr(i, j);
+      for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);
   }
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group) {
@@ -177,10 +192,10 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
                          broadcast(state.u[at(nodes[s])]), broadcast(state.D[at(nodes[s])]), x);
         const Mat3<Lanes> E_old =
             history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
-        const PointMaterial<Lanes> m = material(set_, group, b, history.inverse_step);
+        const PointMaterial<Lanes> m = material(set_, group, b, history.inverse_step, targets_);
         store_matrix(point, 0, b, x.H);
         store_matrix(point, 9, b, x.Dbar);
-        store_symmetric(point, 18, b, point_stress<false>(x, m, E_old).S);
+        store_symmetric(point, 18, b, point_stress<Stabilization::none>(x, m, E_old).S);
       }
     }
   });

@@ -12,8 +12,8 @@ namespace fascia {
 
 /// Sums over all points [J].
 struct InternalEnergy {
-  double elastic = 0, drilling = 0, viscous = 0;
-  double total() const { return elastic + drilling + viscous; }
+  double elastic = 0, stabilization = 0, viscous = 0;  ///< tethers count as stabilisation
+  double total() const { return elastic + stabilization + viscous; }
 };
 
 /// Strains at the start of a time step, for stiffness damping.
@@ -26,8 +26,8 @@ struct StrainHistory {
 struct Linearization {
   Tangent tangent = Tangent::full;
   double inverse_step = 0;          ///< of the viscous stress
-  std::vector<Mat3d> Q;             ///< rotation of each frame
-  std::vector<Block6> node_blocks;  ///< what acts on one frame alone: rotation-rotation terms, inertia, loads
+  std::vector<Mat3d> Q;             ///< I + D of each frame
+  std::vector<double> node_blocks;  ///< what acts on one frame alone, by rows: rotation-rotation terms, inertia, loads
   AlignedVector<double> points;     ///< (groups × 24 × 8): H (9), Dbar (9), S (6)
 };
 
@@ -37,9 +37,11 @@ class CpuExecutor {
  public:
   CpuExecutor(const PointSet& set, ThreadPool& pool);
 
-  /// Gradient of the internal energy: 6 numbers a frame, force then torque (overwritten).
-  /// Along u ← u + dx, Q ← exp(dr) Q the energy changes by gradient · (dx, dr).
-  ///
+  /// Where tethers pull to: (groups with axes × 3 × 8) [m]. Zero at first.
+  std::span<double> targets() { return targets_; }
+
+  /// Gradient of the internal energy by degrees of freedom: force, then torque or what is conjugate to A (overwritten).
+  /// Along u ← u + dx, Q ← exp(dr) Q or A ← A + dA the energy changes by gradient · (dx, dr or dA).
   InternalEnergy gradient(const State& state, const StrainHistory& history, std::span<double> gradient);
 
   /// Tangent at the state of the last call of gradient(), which must have been `state`.
@@ -54,9 +56,13 @@ class CpuExecutor {
   /// Keeps the strains of a state.
   void store_strain(const State& state, StrainHistory& history);
 
-  /// Elastic and drilling energy of each group at the last call of gradient() [J].
+  /// Elastic and stabilisation energy of each group at the last call of gradient() [J].
   std::span<const double> group_elastic() const { return group_elastic_; }
-  std::span<const double> group_drilling() const { return group_drilling_; }
+  std::span<const double> group_stabilization() const { return group_stabilization_; }
+
+  /// Σ |force|² of a connected part's tethers at the last call of gradient() [N²]; and the force on one of them [N].
+  double squared_tether_force(int part) const { return part_tether_[static_cast<std::size_t>(part)]; }
+  Vec3d tether_force(const Tether& tether, const State& state) const;
 
   /// What rounding alone leaves in the gradient of a connected part, as a norm with torques divided by the part's
   /// length, at the last call of gradient() [N]. It grows with the largest motion that the part ever went through here.
@@ -65,22 +71,37 @@ class CpuExecutor {
   ThreadPool& pool() { return pool_; }
 
  private:
-  template <bool Drilling>
-  void gradient_of_groups(const State& state, const StrainHistory& history, int begin, int end);
+  template <Stabilization stabilization>
+  void gradient_of_group(const State& state, const StrainHistory& history, int group);
   void note_motion(const State& state);
-  template <bool Drilling>
-  void multiply_groups(const Linearization& at, int begin, int end);
-  template <bool Drilling>
+  template <Stabilization stabilization>
+  void multiply_group(const Linearization& at, int group);
+  template <Stabilization stabilization>
   void assemble_group(const Linearization& at, int group, BlockMatrix& matrix) const;
+  /// Calls act with the stabilisation of a group as a constant.
+  template <class Act>
+  void with_stabilization(int group, const Act& act) const;
 
   const PointSet& set_;
   ThreadPool& pool_;
-  bool drilling_ = false;
   AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
-  std::vector<double> group_elastic_, group_drilling_, group_viscous_, group_rounding_;
-  std::vector<double> part_motion_, part_rounding_;
-  std::vector<Mat3d> node_L_;         ///< L of the last gradient
-  AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), [dr]× Q (9)
+  std::vector<double> group_elastic_, group_stabilization_, group_viscous_, group_rounding_, group_tether_;
+  std::vector<double> part_motion_, part_rounding_, part_tether_;
+  AlignedVector<double> targets_;
+  std::vector<Mat3d> node_L_;         ///< L of the last gradient, of rigid frames
+  AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), dA (9)
 };
+
+template <class Act>
+void CpuExecutor::with_stabilization(int group, const Act& act) const {
+  switch (set_.rule[static_cast<std::size_t>(group)].rule.stabilization) {
+    case Stabilization::none:
+      return act(std::integral_constant<Stabilization, Stabilization::none>{});
+    case Stabilization::drilling:
+      return act(std::integral_constant<Stabilization, Stabilization::drilling>{});
+    case Stabilization::affine:
+      return act(std::integral_constant<Stabilization, Stabilization::affine>{});
+  }
+}
 
 }  // namespace fascia

@@ -29,38 +29,37 @@ Mat3d stored_matrix(const double* rows) {
 
 }  // namespace
 
-template <bool Drilling>
-void CpuExecutor::multiply_groups(const Linearization& lin, int begin, int end) {
-  for (int group = begin; group < end; ++group) {
-    const auto nodes = set_.nodes(group);
-    const int first_slot = set_.slot_begin[at(group)];
-    Mat3<Lanes> dP[kBatches], dY[kBatches];
-    for (int b = 0; b < kBatches; ++b) {
-      PointMotion<Lanes> direction;
-      for (std::size_t s = 0; s < nodes.size(); ++s) {
-        const double* d = directions_.data() + at(nodes[s]) * 12;
-        add_slot<Drilling>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(d),
-                           broadcast(stored_matrix(d + 3)), direction);
-      }
-      const PointMaterial<Lanes> m = material(set_, group, b, lin.inverse_step);
-      const auto r = point_stress_differential<Drilling>(motion_of(lin, group, b), stress_of(lin, group, b), m,
-                                                         lin.tangent, direction.H, direction.Dbar);
-      dP[b] = r.dP * m.volume;
-      dY[b] = r.dY * m.volume;
-    }
+template <Stabilization stabilization>
+void CpuExecutor::multiply_group(const Linearization& lin, int group) {
+  constexpr bool kBlend = stabilization != Stabilization::none;
+  const auto nodes = set_.nodes(group);
+  const int first_slot = set_.slot_begin[at(group)];
+  Mat3<Lanes> dP[kBatches], dY[kBatches];
+  for (int b = 0; b < kBatches; ++b) {
+    PointMotion<Lanes> direction;
     for (std::size_t s = 0; s < nodes.size(); ++s) {
-      const int slot = first_slot + static_cast<int>(s);
-      slot_sums<Drilling>(set_.shape_of_slot(slot), dP, dY, slot_sums_.data() + at(slot) * 12);
+      const double* d = directions_.data() + at(nodes[s]) * 12;
+      add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(d),
+                       broadcast(stored_matrix(d + 3)), direction);
     }
+    const PointMaterial<Lanes> m = material(set_, group, b, lin.inverse_step, targets_);
+    const auto r = point_stress_differential<stabilization>(motion_of(lin, group, b), stress_of(lin, group, b), m,
+                                                            lin.tangent, direction.H, direction.Dbar);
+    dP[b] = r.dP * m.volume;
+    dY[b] = r.dY * m.volume;
+  }
+  for (std::size_t s = 0; s < nodes.size(); ++s) {
+    const int slot = first_slot + static_cast<int>(s);
+    slot_sums<kBlend>(set_.shape_of_slot(slot), dP, dY, slot_sums_.data() + at(slot) * 12);
   }
 }
 
 void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, std::span<double> y) {
-  pool_.for_ranges(set_.node_count, 256, [&](int begin, int end) {
+  pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       double* d = directions_.data() + at(node) * 12;
-      const double* xn = x.data() + at(node) * 6;
-      const Mat3d W = skew(Vec3d{{xn[3], xn[4], xn[5]}}) * lin.Q[at(node)];
+      const double* xn = x.data() + set_.dofs.begin(node);
+      const Mat3d W = frame_variation(set_.dofs.kind(node), xn + 3, lin.Q[at(node)]);
       for (int i = 0; i < 3; ++i) {
         d[i] = xn[i];
         for (int j = 0; j < 3; ++j) d[3 + 3 * i + j] = W(i, j);
@@ -68,70 +67,106 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
     }
   });
   pool_.for_ranges(set_.group_count(), 32, [&](int begin, int end) {
-    if (drilling_)
-      multiply_groups<true>(lin, begin, end);
-    else
-      multiply_groups<false>(lin, begin, end);
+    for (int group = begin; group < end; ++group)
+      with_stabilization(group, [&](auto kind) { multiply_group<kind()>(lin, group); });
   });
-  pool_.for_ranges(set_.node_count, 256, [&](int begin, int end) {
+  pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       std::array<double, 12> sum{};
       for (int k = set_.node_slot_begin[at(node)]; k < set_.node_slot_begin[at(node + 1)]; ++k)
         for (int i = 0; i < 12; ++i) sum[at(i)] += slot_sums_[at(set_.node_slot[at(k)]) * 12 + at(i)];
-      const Vec3d torque = axl(lin.Q[at(node)] * transpose(stored_matrix(sum.data() + 3)));
-      const Block6& block = lin.node_blocks[at(node)];
-      for (int i = 0; i < 6; ++i) {
-        double value = i < 3 ? sum[at(i)] : torque[i - 3];
-        for (int j = 0; j < 6; ++j) value += block[at(6 * i + j)] * x[at(6 * node + j)];
-        y[at(6 * node + i)] = value;
+      const int n = set_.dofs.size(node);
+      const double* block = lin.node_blocks.data() + set_.dofs.block_begin(node);
+      const double* xn = x.data() + set_.dofs.begin(node);
+      double* yn = y.data() + set_.dofs.begin(node);
+      for (int i = 0; i < n; ++i) {
+        yn[i] = i < 3 ? sum[at(i)] : 0.0;
+        for (int j = 0; j < n; ++j) yn[i] += block[n * i + j] * xn[j];
       }
+      add_moment(set_.dofs.kind(node), stored_matrix(sum.data() + 3), lin.Q[at(node)], yn + 3);
     }
   });
 }
 
-/// Column by column: the unit motion of one DOF of slot b gives dP and dY, and these the forces on slots a ≥ b.
-template <bool Drilling>
+namespace {
+
+/// The motion of a point for a unit of one degree of freedom of a frame.
+/// @param Q  I + D of the frame, A its product with B
+template <bool Blend>
+PointMotion<Lanes> unit_motion(FrameKind kind, int dof, const double* shape, int batch, const Mat3d& Q,
+                               const Mat3<Lanes>& A) {
+  PointMotion<Lanes> d;
+  if (dof < 3) {
+    for (int j = 0; j < 3; ++j) d.H(dof, j) = row(shape, 1 + j, batch);
+  } else if (kind == FrameKind::rigid) {
+    Vec3d e;
+    e[dof - 3] = 1;
+    const Mat3d rotation = skew(e);
+    d.H = broadcast(rotation) * A;
+    if constexpr (Blend) d.Dbar = broadcast(rotation * Q) * row(shape, 0, batch);
+  } else {
+    const int q = (dof - 3) / 3, i = (dof - 3) % 3;
+    for (int j = 0; j < 3; ++j) d.H(i, j) = row(shape, 4 + 3 * q + j, batch);
+    if constexpr (Blend) d.Dbar(i, q) = row(shape, 0, batch);
+  }
+  return d;
+}
+
+/// Adds what dP and dY are on a frame to one column of a block, whose rows are `stride` apart.
+template <bool Blend>
+void add_column(FrameKind kind, const double* shape, int batch, const Mat3d& Q, const Mat3<Lanes>& A,
+                const Mat3<Lanes>& dP, const Mat3<Lanes>& dY, double* out, int stride) {
+  for (int i = 0; i < 3; ++i) {
+    Lanes force;
+    for (int j = 0; j < 3; ++j) force += dP(i, j) * row(shape, 1 + j, batch);
+    out[stride * i] += lane_sum(force);
+  }
+  if (kind == FrameKind::rigid) {
+    Mat3<Lanes> Lt = times_transpose(A, dP);
+    if constexpr (Blend) Lt += times_transpose(broadcast(Q), dY) * row(shape, 0, batch);
+    const Vec3<Lanes> torque = axl(Lt);
+    for (int i = 0; i < 3; ++i) out[stride * (3 + i)] += lane_sum(torque[i]);
+    return;
+  }
+  for (int q = 0; q < 3; ++q) {
+    for (int i = 0; i < 3; ++i) {
+      Lanes sum;
+      for (int j = 0; j < 3; ++j) sum += dP(i, j) * row(shape, 4 + 3 * q + j, batch);
+      if constexpr (Blend) sum += row(shape, 0, batch) * dY(i, q);
+      out[stride * (3 + 3 * q + i)] += lane_sum(sum);
+    }
+  }
+}
+
+}  // namespace
+
+/// Column by column: the unit motion of one degree of freedom of slot b gives dP and dY, and these the forces on slots
+/// a ≥ b.
+template <Stabilization stabilization>
 void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatrix& matrix_out) const {
+  constexpr bool kBlend = stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
-  std::array<int, kMaxSlots> block_index;  // of (a, column slot)
-  std::array<Mat3<Lanes>, kMaxSlots> A;    // Q B
+  std::array<double*, kMaxSlots> block;  // of (a, column slot)
+  std::array<Mat3<Lanes>, kMaxSlots> A;  // Q B
   for (int batch = 0; batch < kBatches; ++batch) {
-    const PointMaterial<Lanes> m = material(set_, group, batch, lin.inverse_step);
+    const PointMaterial<Lanes> m = material(set_, group, batch, lin.inverse_step, targets_);
     const PointMotion<Lanes> x = motion_of(lin, group, batch);
     const Mat3<Lanes> S = stress_of(lin, group, batch);
     for (int a = 0; a < n; ++a)
       A[at(a)] = broadcast(lin.Q[at(nodes[at(a)])]) * kernels::matrix(set_.shape_of_slot(first_slot + a), 4, batch);
     for (int b = 0; b < n; ++b) {
-      const double* shape_b = set_.shape_of_slot(first_slot + b);
-      for (int a = b; a < n; ++a) block_index[at(a)] = matrix_out.find(nodes[at(a)], nodes[at(b)]);
-      for (int k = 0; k < 6; ++k) {
-        Mat3<Lanes> dH, dQbar;
-        if (k < 3) {
-          for (int j = 0; j < 3; ++j) dH(k, j) = row(shape_b, 1 + j, batch);
-        } else {
-          Vec3d e;
-          e[k - 3] = 1;
-          const Mat3<Lanes> rotation = broadcast(skew(e));
-          dH = rotation * A[at(b)];
-          if constexpr (Drilling) dQbar = (rotation * broadcast(lin.Q[at(nodes[at(b)])])) * row(shape_b, 0, batch);
-        }
-        const auto d = point_stress_differential<Drilling>(x, S, m, lin.tangent, dH, dQbar);
+      const int column_node = nodes[at(b)], columns = set_.dofs.size(column_node);
+      for (int a = b; a < n; ++a) block[at(a)] = matrix_out.block(matrix_out.find(nodes[at(a)], column_node));
+      for (int k = 0; k < columns; ++k) {
+        const PointMotion<Lanes> unit =
+            unit_motion<kBlend>(set_.dofs.kind(column_node), k, set_.shape_of_slot(first_slot + b), batch,
+                                lin.Q[at(column_node)], A[at(b)]);
+        const auto d = point_stress_differential<stabilization>(x, S, m, lin.tangent, unit.H, unit.Dbar);
         const Mat3<Lanes> dP = d.dP * m.volume, dY = d.dY * m.volume;
-        for (int a = b; a < n; ++a) {
-          const double* shape_a = set_.shape_of_slot(first_slot + a);
-          double* out = matrix_out.block(block_index[at(a)]) + k;
-          Mat3<Lanes> Lt = times_transpose(A[at(a)], dP);
-          if constexpr (Drilling)
-            Lt += times_transpose(broadcast(lin.Q[at(nodes[at(a)])]), dY) * row(shape_a, 0, batch);
-          const Vec3<Lanes> torque = axl(Lt);
-          for (int i = 0; i < 3; ++i) {
-            Lanes force;
-            for (int j = 0; j < 3; ++j) force += dP(i, j) * row(shape_a, 1 + j, batch);
-            out[6 * i] += lane_sum(force);
-            out[6 * (3 + i)] += lane_sum(torque[i]);
-          }
-        }
+        for (int a = b; a < n; ++a)
+          add_column<kBlend>(set_.dofs.kind(nodes[at(a)]), set_.shape_of_slot(first_slot + a), batch,
+                             lin.Q[at(nodes[at(a)])], A[at(a)], dP, dY, block[at(a)] + k, columns);
       }
     }
   }
@@ -143,16 +178,15 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out) {
     const int first = set_.color_begin[c];
     pool_.for_ranges(set_.color_begin[c + 1] - first, 8, [&](int begin, int end) {
       for (int i = first + begin; i < first + end; ++i) {
-        if (drilling_)
-          assemble_group<true>(lin, set_.color_group[at(i)], matrix_out);
-        else
-          assemble_group<false>(lin, set_.color_group[at(i)], matrix_out);
+        const int group = set_.color_group[at(i)];
+        with_stabilization(group, [&](auto kind) { assemble_group<kind()>(lin, group, matrix_out); });
       }
     });
   }
-  for (int node = 0; node < set_.node_count; ++node) {
+  for (int node = 0; node < set_.node_count(); ++node) {
     double* diagonal = matrix_out.block(matrix_out.diagonal(node));
-    for (std::size_t k = 0; k < 36; ++k) diagonal[k] += lin.node_blocks[at(node)][k];
+    const double* own = lin.node_blocks.data() + set_.dofs.block_begin(node);
+    for (int k = 0; k < set_.dofs.size(node) * set_.dofs.size(node); ++k) diagonal[k] += own[k];
   }
   matrix_out.mirror_lower();
 }

@@ -44,10 +44,25 @@ inline void store_symmetric(double* base, int first_row, int batch, const Mat3<L
   for (int k = 0; k < 6; ++k) store(base, first_row + k, batch, m(kSymmetric[k][0], kSymmetric[k][1]));
 }
 
-inline PointMaterial<Lanes> material(const PointSet& set, int group, int batch, double inverse_step) {
+/// @param targets  of tethers: (groups with axes × 3 × 8) [m]
+inline PointMaterial<Lanes> material(const PointSet& set, int group, int batch, double inverse_step,
+                                     const AlignedVector<double>& targets) {
   const double* base = set.material_of_group(group);
-  return {row(base, kVolume, batch), row(base, kLambda, batch), row(base, kMu, batch), row(base, kDrilling, batch),
-          row(base, kStiffnessDamping, batch) * Lanes(inverse_step)};
+  const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];
+  PointMaterial<Lanes> m;
+  m.volume = row(base, kVolume, batch);
+  m.lambda = row(base, kLambda, batch);
+  m.mu = row(base, kMu, batch);
+  m.stabilization = row(base, kStabilization, batch);
+  m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(inverse_step);
+  m.law = rule.rule.law;
+  if (m.law == Law::solid) return m;
+  const auto index = static_cast<std::size_t>(rule.axes);
+  m.transverse = rule.rule.transverse;
+  m.axes = matrix(set.axes.data() + index * 9 * kGroupSize, 0, batch);
+  if (m.law == Law::tether)
+    for (int k = 0; k < 3; ++k) m.target[k] = row(targets.data() + index * 3 * kGroupSize, k, batch);
+  return m;
 }
 
 template <class Vector>
@@ -62,8 +77,8 @@ inline Mat3<Lanes> broadcast(const Mat3d& a) {
   return m;
 }
 
-/// H += u gᵀ + D B, Dbar += w D of one slot; u and D may be a direction (dx, [dr]× Q).
-template <bool Drilling>
+/// H += u gᵀ + D B and, where blended rotations matter, Dbar += w D of one slot; u and D may be a direction (dx, [dr]× Q).
+template <bool Blend>
 inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const Mat3<Lanes>& D,
                      PointMotion<Lanes>& x) {
   const Lanes w = row(shape, 0, batch);
@@ -71,13 +86,13 @@ inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const
     for (int j = 0; j < 3; ++j) {
       x.H(i, j) += u[i] * row(shape, 1 + j, batch) + D(i, 0) * row(shape, 4 + j, batch) +
                    D(i, 1) * row(shape, 7 + j, batch) + D(i, 2) * row(shape, 10 + j, batch);
-      if constexpr (Drilling) x.Dbar(i, j) += w * D(i, j);
+      if constexpr (Blend) x.Dbar(i, j) += w * D(i, j);
     }
   }
 }
 
 /// Σ over lanes of v P g (3) and v (P Bᵀ + w Y) (9) of one slot; P and Y already carry v.
-template <bool Drilling>
+template <bool Blend>
 inline void slot_sums(const double* shape, const Mat3<Lanes> (&P)[kBatches], const Mat3<Lanes> (&Y)[kBatches],
                       double* out) {
   for (int i = 0; i < 3; ++i) {
@@ -89,7 +104,7 @@ inline void slot_sums(const double* shape, const Mat3<Lanes> (&P)[kBatches], con
       Lanes sum;
       for (int b = 0; b < kBatches; ++b) {
         for (int k = 0; k < 3; ++k) sum += P[b](i, k) * row(shape, 4 + 3 * j + k, b);
-        if constexpr (Drilling) sum += row(shape, 0, b) * Y[b](i, j);
+        if constexpr (Blend) sum += row(shape, 0, b) * Y[b](i, j);
       }
       out[3 + 3 * i + j] = lane_sum(sum);
     }

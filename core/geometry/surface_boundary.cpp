@@ -186,7 +186,46 @@ void check_repeated(const Solid& solid, const std::vector<Triangle>& triangles) 
                       std::to_string(entries[e].file_number) + " have the same nodes; remove one of them");
 }
 
+using TriangleKey = std::array<int, 3>;
+
+TriangleKey key_of(int a, int b, int c) {
+  TriangleKey key{a, b, c};
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+/// Three corners of a face, for all faces of the volume cells; of a quadrilateral every three. Sorted.
+std::vector<TriangleKey> face_triangles(const Solid& solid) {
+  std::vector<TriangleKey> keys;
+  for (const Cell& cell : solid.cells)
+    for (const LocalFace& local : faces_of(cell.type)) {
+      const Face face = make_face(cell, local, 0);
+      const std::array<int, 4>& n = face.nodes;
+      if (face.size >= 3) keys.push_back(key_of(n[0], n[1], n[2]));
+      if (face.size == 4)
+        for (const auto& key : {key_of(n[1], n[2], n[3]), key_of(n[2], n[3], n[0]), key_of(n[3], n[0], n[1])})
+          keys.push_back(key);
+    }
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
 }  // namespace
+
+std::vector<Cell> cells_off_volumes(const Solid& solid) {
+  const std::vector<TriangleKey> faces = face_triangles(solid);
+  const auto is_face = [&](const Cell& cell, std::size_t a, std::size_t b, std::size_t c) {
+    return std::binary_search(faces.begin(), faces.end(), key_of(cell.nodes[a], cell.nodes[b], cell.nodes[c]));
+  };
+  std::vector<Cell> cells;
+  for (const Cell& cell : solid.cells) {
+    const bool off = (cell.type == CellType::triangle && !is_face(cell, 0, 1, 2)) ||
+                     (cell.type == CellType::quadrilateral && !(is_face(cell, 0, 1, 2) && is_face(cell, 0, 2, 3)) &&
+                      !(is_face(cell, 0, 1, 3) && is_face(cell, 1, 2, 3)));
+    if (off) cells.push_back(cell);
+  }
+  return cells;
+}
 
 std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::string>& messages) {
   const std::vector<Cell> cells = distinct_cells(solid);

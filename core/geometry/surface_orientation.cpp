@@ -1,4 +1,5 @@
 #include "core/geometry/inside.hpp"
+#include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
 
 #include <algorithm>
@@ -8,92 +9,10 @@
 namespace fascia::surface_parts {
 namespace {
 
-/// An edge of a triangle, under the name that both its triangles give it.
-struct Edge {
-  int low = 0, high = 0;
-  int triangle = 0;
-  bool forward = true;  ///< the triangle runs from low to high
-  bool same_as(const Edge& b) const { return low == b.low && high == b.high; }
-};
-
-std::vector<Edge> sorted_edges(const std::vector<Triangle>& triangles) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t n = 0; n < 3; ++n) {
-      const int a = triangles[t].nodes[n], b = triangles[t].nodes[(n + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), a < b});
-    }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    if (a.low != b.low) return a.low < b.low;
-    if (a.high != b.high) return a.high < b.high;
-    return a.triangle < b.triangle;
-  });
-  return edges;
-}
-
 std::string name_of(const Solid& solid, const Edge& edge) {
   return "nodes " + std::to_string(solid.point_file_number[static_cast<std::size_t>(edge.low)]) + " and " +
          std::to_string(solid.point_file_number[static_cast<std::size_t>(edge.high)]);
 }
-
-/// For each triangle its neighbours, and whether they run along the common edge in the same direction.
-struct Neighbours {
-  struct Link {
-    int triangle = -1;
-    bool same_direction = false;
-  };
-  std::vector<std::array<Link, 3>> of;
-
-  Neighbours(const std::vector<Triangle>& triangles, const std::vector<Edge>& edges) : of(triangles.size()) {
-    std::vector<std::size_t> filled(triangles.size(), 0);
-    const auto link = [&](const Edge& from, const Edge& to) {
-      const auto t = static_cast<std::size_t>(from.triangle);
-      of[t][filled[t]++] = {to.triangle, from.forward == to.forward};
-    };
-    for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {
-      link(edges[e], edges[e + 1]);
-      link(edges[e + 1], edges[e]);
-    }
-  }
-};
-
-/// Components of a surface whose edges have two triangles each, and which triangles must turn to agree with the first
-/// of their component.
-struct Components {
-  std::vector<int> of;     ///< component of each triangle
-  std::vector<bool> turn;  ///< of each triangle
-  int count = 0;
-  bool orientable = true;
-  int twisted = -1;  ///< a triangle that must turn and must not, where not orientable
-
-  explicit Components(const Neighbours& neighbours) : of(neighbours.of.size(), -1), turn(neighbours.of.size(), false) {
-    for (std::size_t t = 0; t < of.size(); ++t)
-      if (of[t] < 0) walk(neighbours, static_cast<int>(t), count++);
-  }
-
- private:
-  void walk(const Neighbours& neighbours, int start, int component) {
-    std::vector<int> open{start};
-    of[static_cast<std::size_t>(start)] = component;
-    while (!open.empty()) {
-      const auto t = static_cast<std::size_t>(open.back());
-      open.pop_back();
-      for (const Neighbours::Link& link : neighbours.of[t]) {
-        const auto other = static_cast<std::size_t>(link.triangle);
-        const bool must_turn = turn[t] != link.same_direction;
-        if (of[other] < 0) {
-          of[other] = component;
-          turn[other] = must_turn;
-          open.push_back(link.triangle);
-        } else if (turn[other] != must_turn) {
-          orientable = false;
-          twisted = link.triangle;
-        }
-      }
-    }
-  }
-};
 
 [[noreturn]] void fail_mixed(const Solid& solid, const std::vector<Triangle>& triangles, const Components& components) {
   if (!components.orientable)
@@ -185,11 +104,11 @@ void check_closed(const Solid& solid, const std::vector<Triangle>& triangles) {
   if (open > 0)
     fail(solid, "its surface is open: " + std::to_string(open) + " edges have one triangle only, the first between " +
                     name_of(solid, edges[first_open]) + "; close the holes or give a volume mesh");
-  if (!consistent) fail_mixed(solid, triangles, Components(Neighbours(triangles, edges)));
+  if (!consistent) fail_mixed(solid, triangles, Components(Neighbours(triangles.size(), edges)));
 }
 
 void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
-  const Components numbering(Neighbours(triangles, sorted_edges(triangles)));
+  const Components numbering(Neighbours(triangles.size(), sorted_edges(triangles)));
   const std::vector<Component> components = split(solid, triangles, numbering);
   const std::vector<int> depth = nesting_depths(solid, components);
   std::size_t wrong = 0, first_wrong = 0;

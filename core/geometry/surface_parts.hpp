@@ -2,11 +2,12 @@
 
 #include "core/geometry/surface.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-/// The steps of closed_surface(); for surface*.cpp only.
+/// The steps of closed_surface() and mesh_parts(); for surface*.cpp and mesh_parts.cpp only.
 namespace fascia::surface_parts {
 
 /// A cell whose points are numbered in the welded, compact numbering.
@@ -23,14 +24,31 @@ struct Triangle {
   std::int64_t file_number = 0;
 };
 
-/// The cells that bound or fill the solid, on welded points.
+/// Cells that bound or fill a solid, or make up a sheet or lines, on welded points.
 struct Solid {
   std::string file;
   std::vector<Vec3d> points;
   std::vector<std::int64_t> point_file_number;
   std::vector<Cell> cells;
-  double diagonal = 0;  ///< of the bounding box [m]
+  double diagonal = 0;  ///< of the box around the cells [m]
 };
+
+bool is_volume(CellType type);
+bool is_surface(CellType type);
+std::size_t count_cells(const Mesh& mesh, bool (*wanted)(CellType));
+
+/// @throws InputError  a coordinate that is NaN, infinite or above 1e60 m
+void check_points(const Mesh& mesh);
+
+/// Adds a message where the mesh has points that no cell uses.
+void report_unused(const Mesh& mesh, std::vector<std::string>& messages);
+
+/// The wanted cells on the points that they use, welded within 1e-9 of the diagonal.
+/// @throws InputError  all points coincide
+Solid make_solid(const Mesh& mesh, bool (*wanted)(CellType), std::vector<std::string>& messages);
+
+/// The same points with other cells.
+Solid with_cells(const Solid& solid, std::vector<Cell> cells);
 
 /// "FILE: " + message
 [[noreturn]] void fail(const Solid& solid, const std::string& message);
@@ -42,6 +60,10 @@ std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::str
 /// Triangles of a surface mesh, quadrilaterals split at the node of the lowest index.
 /// @throws InputError  flat or repeated triangles
 std::vector<Triangle> triangles_of_cells(const Solid& solid);
+
+/// The surface cells that are no face of a volume cell. A quadrilateral is one in whole or as two triangles, and a
+/// triangle is one as half of a quadrilateral too.
+std::vector<Cell> cells_off_volumes(const Solid& solid);
 
 /// @throws InputError  open, non-manifold or inconsistently oriented edges
 void check_closed(const Solid& solid, const std::vector<Triangle>& triangles);
@@ -55,5 +77,9 @@ double enclosed_volume(const std::vector<Vec3d>& points, const std::vector<Trian
 
 /// The triangles on their own points, in the order of the solid's.
 TriangleMesh compact(const Solid& solid, const std::vector<Triangle>& triangles);
+
+/// A closed outward surface with its volume, without messages.
+/// @throws InputError  a volume below 1e-12 of the diagonal cubed
+ClosedSurface enclose(const Solid& solid, const std::vector<Triangle>& triangles);
 
 }  // namespace fascia::surface_parts

@@ -12,7 +12,12 @@ Vec3d PrescribedMotion::displacement(const Vec3d& X, double factor) const {
 
 int Model::constrained_dof_count() const {
   int count = 0;
-  for (const FrameConstraint& c : constraints) count += c.translations + c.rotations;
+  for (const FrameConstraint& c : constraints) {
+    if (kind(c.node) == FrameKind::rigid)
+      count += c.translations + c.rotations;
+    else
+      count += c.translations + (c.holds_all() ? 9 : 2 * c.rotations);
+  }
   return count;
 }
 

@@ -47,13 +47,24 @@ struct FollowerLoad {
 };
 
 /// What holds a frame: the first `translations` rows of `translation_axes` (and likewise rotations) are prescribed.
+/// Of an affine frame, a rotation about a row k holds the entries (i, j) and (j, i) of A in these axes, i, j ≠ k; all
+/// six together hold all of A.
 struct FrameConstraint {
   int node = 0;
   Mat3d translation_axes = Mat3d::identity();
   Mat3d rotation_axes = Mat3d::identity();
   int translations = 0, rotations = 0;
+  bool holds_all() const { return translations == 3 && rotations == 3; }
   std::array<int, 3> translation_motion{-1, -1, -1};  ///< index into Model::motions, −1: held
   std::array<int, 3> rotation_motion{-1, -1, -1};
+};
+
+/// Ties a material point to where a motion takes it: the point of a group of law `tether`. The field of weights that do
+/// not interpolate is held so.
+struct Tether {
+  int group = 0, lane = 0;  ///< of the point set
+  Vec3d X{};                ///< rest position [m]
+  int motion = -1;          ///< −1: held where it is
 };
 
 /// x → centre + R(axis, s·angle)(x − centre) + s·translation, with s the factor of its schedule.
@@ -69,6 +80,7 @@ struct PrescribedMotion {
 struct Model {
   std::vector<Vec3d> rest_position;     ///< of the frames [m]
   std::vector<Mat3d> rest_orientation;  ///< of the frames
+  std::vector<FrameKind> frame_kind;
   std::vector<FrameInertia> inertia;
   std::vector<FrameInertia> mass_damping;  ///< inertia weighted with α [.../s]; empty where nothing is damped
   PointSet points;
@@ -76,18 +88,20 @@ struct Model {
   std::vector<FollowerLoad> followers;
   std::vector<PrescribedMotion> motions;
   std::vector<FrameConstraint> constraints;  ///< at most one a frame, ascending
+  std::vector<Tether> tethers;
 
   int node_count() const { return static_cast<int>(rest_position.size()); }
-  int dof_count() const { return 6 * node_count(); }
+  int dof_count() const { return points.dofs.total(); }
   int constrained_dof_count() const;
+  FrameKind kind(int node) const { return frame_kind[at(node)]; }
   /// Loads have a potential: no torque that keeps its direction in space, no follower.
   bool loads_are_conservative() const;
 };
 
-/// Where everything is, and how fast. Rotations as D = Q − I, with Q = R R_restᵀ.
+/// Where everything is, and how fast. Rotations as D = Q − I, with Q = R R_restᵀ; of an affine frame, D = A − I.
 struct State {
   std::vector<Vec3d> u;                       ///< displacement [m]
-  std::vector<Mat3d> D;                       ///< Q − I
+  std::vector<Mat3d> D;                       ///< Q − I, A − I
   std::vector<Vec3d> v;                       ///< du/dt [m/s]
   std::vector<Mat3d> Q_dot;                   ///< dQ/dt [1/s]
   std::vector<std::array<double, 3>> turned;  ///< of each constraint: rotation done about its axes [rad]
@@ -96,7 +110,7 @@ struct State {
   static State at_rest(const Model& model);
 };
 
-/// Calls act(node, force, torque) for each frame of a follower: turned with the rotation in Σ w Q, and scaled.
+/// Calls act(node, force, couple, torque) for each frame of a follower: turned with the rotation in Σ w Q, and scaled.
 template <class Act>
 void for_each_share(const FollowerLoad& load, const State& state, double factor, const Act& act) {
   Mat3d D;
@@ -104,8 +118,7 @@ void for_each_share(const FollowerLoad& load, const State& state, double factor,
   const Mat3d Q = Mat3d::identity() + polar_increment(D);
   const Vec3d force = Q * load.force * factor, torque = Q * load.torque * factor;
   for (std::size_t k = 0; k < load.nodes.size(); ++k) {
-    const Vec3d arm = load.b[k] + state.D[at(load.nodes[k])] * load.b[k];
-    act(load.nodes[k], force * load.w[k], cross(arm, force) + torque * load.w[k]);
+    act(load.nodes[k], force * load.w[k], outer(force, load.b[k]), torque * load.w[k]);
   }
 }
 

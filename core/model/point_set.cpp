@@ -7,12 +7,14 @@
 
 namespace fascia {
 
-void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const PointSample> points, double length) {
+void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
+                                 const PointRule& rule) {
   for (std::size_t first = 0; first < points.size(); first += kGroupSize)
-    add_group(nodes, points.subspan(first, std::min<std::size_t>(kGroupSize, points.size() - first)), length);
+    add_group(nodes, points.subspan(first, std::min<std::size_t>(kGroupSize, points.size() - first)), length, rule);
 }
 
-void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const PointSample> points, double length) {
+void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const PointSample> points, double length,
+                                const PointRule& rule) {
   const std::size_t first_shape = set_.shape.size(), first_material = set_.material.size();
   set_.shape.resize(first_shape + nodes.size() * 13 * kGroupSize);
   set_.material.resize(first_material + 6 * kGroupSize);
@@ -33,21 +35,38 @@ void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const Poin
     material[kVolume * kGroupSize] = used ? p.volume : 0.0;
     material[kLambda * kGroupSize] = p.lambda;
     material[kMu * kGroupSize] = p.mu;
-    material[kDrilling * kGroupSize] = p.drilling;
+    material[kStabilization * kGroupSize] = p.stabilization;
     material[kStiffnessDamping * kGroupSize] = p.stiffness_damping;
     material[kGradientNorm * kGroupSize] = std::sqrt(squared_gradient);
     set_.damped = set_.damped || p.stiffness_damping > 0;
     set_.lane_point.push_back(used ? set_.point_count++ : -1);
   }
+  add_rule(points, rule);
   set_.slot_node.insert(set_.slot_node.end(), nodes.begin(), nodes.end());
   set_.slot_begin.push_back(set_.slot_count());
+}
+
+void PointSetBuilder::add_rule(std::span<const PointSample> points, PointRule rule) {
+  if (std::none_of(points.begin(), points.end(), [](const PointSample& p) { return p.stabilization > 0; }))
+    rule.stabilization = Stabilization::none;
+  GroupRule group{rule, -1};
+  if (rule.law != Law::solid) {
+    const std::size_t first = set_.axes.size();
+    group.axes = static_cast<int>(first / (9 * kGroupSize));
+    set_.axes.resize(first + 9 * kGroupSize);
+    for (std::size_t lane = 0; lane < kGroupSize; ++lane)
+      for (std::size_t k = 0; k < 9; ++k)
+        set_.axes[first + k * kGroupSize + lane] =
+            points[std::min(lane, points.size() - 1)].axes(static_cast<int>(k / 3), static_cast<int>(k % 3));
+  }
+  set_.rule.push_back(group);
 }
 
 namespace {
 
 void transpose_incidence(PointSet& set) {
   std::vector<int>& begin = set.node_slot_begin;
-  begin.assign(static_cast<std::size_t>(set.node_count) + 1, 0);
+  begin.assign(static_cast<std::size_t>(set.node_count()) + 1, 0);
   for (const int node : set.slot_node) ++begin[static_cast<std::size_t>(node) + 1];
   for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
   set.node_slot.resize(set.slot_node.size());
@@ -60,7 +79,7 @@ void transpose_incidence(PointSet& set) {
 
 /// Numbers the connected parts in the order of their first nodes.
 void find_parts(PointSet& set) {
-  const auto n = static_cast<std::size_t>(set.node_count);
+  const auto n = static_cast<std::size_t>(set.node_count());
   std::vector<int> parent(n);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int i) {
@@ -78,7 +97,7 @@ void find_parts(PointSet& set) {
   }
   std::vector<double> nodes, volume;
   set.node_part.resize(n);
-  for (int i = 0; i < set.node_count; ++i) {
+  for (int i = 0; i < set.node_count(); ++i) {
     const int r = root(i);
     if (r == i) {
       set.node_part[static_cast<std::size_t>(i)] = static_cast<int>(nodes.size());
@@ -110,7 +129,7 @@ void color_groups(PointSet& set) {
                          [&](int node) { return taken[candidate][static_cast<std::size_t>(node)]; });
     };
     while (c < taken.size() && blocked(c)) ++c;
-    if (c == taken.size()) taken.emplace_back(static_cast<std::size_t>(set.node_count), false);
+    if (c == taken.size()) taken.emplace_back(static_cast<std::size_t>(set.node_count()), false);
     for (const int node : nodes) taken[c][static_cast<std::size_t>(node)] = true;
     color[static_cast<std::size_t>(group)] = static_cast<int>(c);
   }
@@ -123,8 +142,8 @@ void color_groups(PointSet& set) {
 
 }  // namespace
 
-PointSet PointSetBuilder::finish(int node_count) && {
-  set_.node_count = node_count;
+PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
+  set_.dofs = DofLayout(std::move(frames));
   transpose_incidence(set_);
   find_parts(set_);
   color_groups(set_);

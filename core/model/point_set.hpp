@@ -2,6 +2,8 @@
 
 #include "core/math/mat3.hpp"
 #include "core/model/aligned.hpp"
+#include "core/model/dof_layout.hpp"
+#include "core/physics/point_rule.hpp"
 
 #include <span>
 #include <vector>
@@ -28,15 +30,16 @@ struct PointSample {
   Vec3d X{};                          ///< rest position [m]
   double volume = 0;                  ///< [m³]
   double lambda = 0, mu = 0;          ///< Lamé [Pa]
-  double drilling = 0;                ///< γ [Pa]
+  double stabilization = 0;           ///< γ [Pa]
   double stiffness_damping = 0;       ///< β [s]
   std::vector<Influence> influences;  ///< one for each node of its group
+  Mat3d axes{};                       ///< of a thin law: tangents first; of a tether: its stiffness [N/m]
 };
 
 /// All integration points of a model, in groups of eight that share their frames (array of structures of arrays).
 /// Unused lanes repeat the group's last point with volume 0.
 struct PointSet {
-  int node_count = 0;
+  DofLayout dofs;
   std::vector<int> slot_begin{0};  ///< (groups + 1): a slot is one frame of one group
   std::vector<int> slot_node;      ///< (slots)
   std::vector<int> lane_point;     ///< (groups × 8): running number of the point, −1 in unused lanes
@@ -45,6 +48,8 @@ struct PointSet {
 
   AlignedVector<double> shape;     ///< (slots × 13 × 8): w, g (3), B (9, by rows)
   AlignedVector<double> material;  ///< (groups × 6 × 8): volume, λ, μ, γ, β, gradient norm
+  std::vector<GroupRule> rule;     ///< (groups)
+  AlignedVector<double> axes;      ///< (groups that need them × 9 × 8): PointSample::axes by rows
 
   std::vector<int> node_slot_begin;  ///< (nodes + 1), transposed incidence
   std::vector<int> node_slot;        ///< slots of each node, ascending
@@ -55,6 +60,7 @@ struct PointSet {
   std::vector<int> color_begin{0};  ///< groups of one colour share no frame
   std::vector<int> color_group;
 
+  int node_count() const { return dofs.node_count(); }
   int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
   int part_count() const { return static_cast<int>(part_length.size()); }
   int part_of_group(int group) const { return node_part[static_cast<std::size_t>(nodes(group)[0])]; }
@@ -73,22 +79,24 @@ struct PointSet {
 };
 
 /// Rows of PointSet::material.
-enum MaterialRow { kVolume, kLambda, kMu, kDrilling, kStiffnessDamping, kGradientNorm };
+enum MaterialRow { kVolume, kLambda, kMu, kStabilization, kStiffnessDamping, kGradientNorm };
 
 /// Collects groups and closes the set: transposed incidence and colours.
 class PointSetBuilder {
  public:
-  /// Adds points that share `nodes`; they are cut into groups of eight. Each point's F at rest must be I
-  /// (Σ w = 1, Σ X gᵀ + B = I), which is checked by the caller's weights.
+  /// Adds points that share `nodes` and their rule; they are cut into groups of eight. Each point's F at rest must be
+  /// I (Σ w = 1, Σ X gᵀ + B = I), which is checked by the caller's weights.
   /// @param length  converts B's rows to those of g in the rounding estimate [m]
-  void add_points(std::span<const int> nodes, std::span<const PointSample> points, double length);
+  void add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
+                  const PointRule& rule = {});
 
   int group_count() const { return set_.group_count(); }
 
-  PointSet finish(int node_count) &&;
+  PointSet finish(std::vector<FrameKind> frames) &&;
 
  private:
-  void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length);
+  void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
+  void add_rule(std::span<const PointSample> points, PointRule rule);
   PointSet set_;
 };
 

@@ -19,6 +19,33 @@ inline InertiaForce inertia_force(const FrameInertia& i, const Vec3d& a, const M
   return {a * i.mass + A * i.first, outer(a, i.first) + A * i.second};
 }
 
+/// The Hessian of half the square above on the degrees of freedom of a frame, at I + D = Q; of a rigid one, without
+/// the part that vanishes with the motion.
+inline void add_inertia_block(FrameKind kind, const FrameInertia& inertia, const Mat3d& Q, double* block) {
+  if (kind == FrameKind::affine) {
+    for (int i = 0; i < 3; ++i) {
+      block[13 * i] += inertia.mass;
+      for (int q = 0; q < 3; ++q) {
+        block[12 * i + 3 + 3 * q + i] += inertia.first[q];
+        block[12 * (3 + 3 * q + i) + i] += inertia.first[q];
+        for (int p = 0; p < 3; ++p) block[12 * (3 + 3 * p + i) + 3 + 3 * q + i] += inertia.second(p, q);
+      }
+    }
+    return;
+  }
+  const Mat3d second = times_transpose(Q * inertia.second, Q), lever = skew(Q * inertia.first);
+  for (int r = 0; r < 3; ++r) {
+    block[7 * r] += inertia.mass;
+    for (int c = 0; c < 3; ++c) {
+      block[6 * r + 3 + c] -= lever(r, c);
+      block[6 * (3 + r) + c] += lever(r, c);
+    }
+  }
+  const Mat3d turn = Mat3d::diagonal(trace(second)) - second;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) block[6 * (3 + r) + 3 + c] += turn(r, c);
+}
+
 struct Momentum {
   Vec3d linear{}, angular{};  ///< [kg m/s], [kg m²/s] about `about`
   double kinetic_energy = 0;  ///< [J]

@@ -1,21 +1,17 @@
 #pragma once
 
-#include "core/physics/st_venant_kirchhoff.hpp"
+#include "core/physics/point_law.hpp"
 
-/// What happens at one integration point: St Venant-Kirchhoff stress, viscous stress and the drilling term, which ties
-/// the blended rotation Qbar = Σ w Q to the rotation in F. Everything that a frame feels follows from P and Y:
+/// What happens at one integration point: elastic stress, viscous stress and stabilisation. Drilling ties the blended
+/// rotation Qbar = Σ w Q to the rotation in F; with affine frames the blended A is tied to all of F. Everything that a
+/// frame feels follows from P and Y:
 ///
-///   f = v P g,   L = v (P (Q B)ᵀ + w Y Qᵀ),   torque = axl(Lᵀ),   rotation-rotation tangent = sym(L) − tr(L) I.
+///   f = v P g,   N = v (P Bᵀ + w Y) conjugate to Q or A,   L = N Qᵀ,   torque = axl(Lᵀ),
+///   rotation-rotation tangent of a rigid frame = sym(L) − tr(L) I.
 namespace fascia {
 
-template <class T>
-struct PointMaterial {
-  T volume, lambda, mu;  ///< [m³], [Pa], [Pa]
-  T drilling;            ///< γ [Pa]
-  T viscosity;           ///< κ = β/dt [-]: viscous stress κ C : (E − E_old)
-};
-
-/// Displacement gradient H = F − I and blended rotation increment Dbar = Σ w (Q − I).
+/// Displacement gradient H = F − I and blended rotation increment Dbar = Σ w (Q − I). Of a tether, H's first column is
+/// the displacement of the point.
 template <class T>
 struct PointMotion {
   Mat3<T> H, Dbar;
@@ -24,9 +20,8 @@ struct PointMotion {
 template <class T>
 struct PointStress {
   Mat3<T> P;  ///< first Piola-Kirchhoff stress with all terms [Pa]
-  Mat3<T> Y;  ///< F Tᵀ [Pa], conjugate to Qbar
+  Mat3<T> Y;  ///< conjugate to Qbar [Pa]
   Mat3<T> S;  ///< second Piola-Kirchhoff stress, elastic and viscous [Pa]
-  Mat3<T> E;  ///< Green-Lagrange strain [-]
 };
 
 /// γ (M − Mᵀ) with M = QbarᵀF, formed from H and Dbar so that small rotations keep their digits.
@@ -36,38 +31,69 @@ FASCIA_HD Mat3<T> drilling_stress(const PointMotion<T>& x, const T& gamma) {
   return (M - transpose(M)) * gamma;
 }
 
-/// Stress of a point. With `Drilling` false, γ is taken as zero and Y stays zero.
+/// K (displacement − target) in the first column.
+template <class T>
+FASCIA_HD Mat3<T> tether_stress(const PointMaterial<T>& material, const Vec3<T>& stretch) {
+  Mat3<T> P;
+  const Vec3<T> force = material.axes * stretch;
+  for (int i = 0; i < 3; ++i) P(i, 0) = force[i];
+  return P;
+}
+
+/// Stress of a point.
 ///
 /// @param E_old  strain at the start of the time step, used where material.viscosity is not zero
-template <bool Drilling, class T>
+template <Stabilization stabilization, class T>
 FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const PointMaterial<T>& material, const Mat3<T>& E_old) {
-  const StVenantKirchhoff<T> law{material.lambda, material.mu};
   PointStress<T> r;
-  r.E = green_strain(x.H);
-  r.S = law.second_piola(r.E + (r.E - E_old) * material.viscosity);
+  if (material.law == Law::tether) {
+    r.P = tether_stress(material, x.H.column(0) - material.target);
+    return r;
+  }
+  const Mat3<T> E = green_strain(x.H);
+  r.S = second_piola(material, E + (E - E_old) * material.viscosity);
   r.P = r.S + x.H * r.S;
-  if constexpr (Drilling) {
-    const Mat3<T> Tm = drilling_stress(x, material.drilling);
+  if constexpr (stabilization == Stabilization::drilling) {
+    const Mat3<T> Tm = drilling_stress(x, material.stabilization);
     r.P += Tm + x.Dbar * Tm;
     const Mat3<T> Tt = transpose(Tm);
     r.Y = Tt + x.H * Tt;
   }
+  if constexpr (stabilization == Stabilization::affine) {
+    const Mat3<T> G = (x.H - x.Dbar) * material.stabilization;
+    r.P += G;
+    r.Y = G * T(-1);
+  }
   return r;
 }
 
-/// Energies of a point [J]: elastic; drilling v/(4γ) T:T; viscous v κ ψ(E − E_old).
+/// Energies of a point [J]: elastic; stabilisation (drilling v/(4γ) T:T, affine v γ/2 |F − Σ w A|²) and tethers;
+/// viscous v κ ψ(E − E_old).
 template <class T>
 struct PointEnergy {
-  T elastic{}, drilling{}, viscous{};
+  T elastic{}, stabilization{}, viscous{};
 };
 
-template <class T>
+template <Stabilization stabilization, class T>
 FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const PointMaterial<T>& material, const Mat3<T>& E_old) {
-  const StVenantKirchhoff<T> law{material.lambda, material.mu};
+  PointEnergy<T> r;
+  if (material.law == Law::tether) {
+    const Vec3<T> stretch = x.H.column(0) - material.target;
+    r.stabilization = material.volume * T(0.5) * dot(stretch, material.axes * stretch);
+    return r;
+  }
   const Mat3<T> E = green_strain(x.H);
-  const Mat3<T> M = drilling_stress(x, T(1));
-  return {material.volume * law.energy_density(E), material.volume * material.drilling * T(0.25) * contract(M, M),
-          material.volume * material.viscosity * law.energy_density(E - E_old)};
+  r.elastic = material.volume * energy_density(material, E);
+  r.viscous = material.volume * material.viscosity * energy_density(material, E - E_old);
+  if constexpr (stabilization == Stabilization::drilling) {
+    const Mat3<T> M = drilling_stress(x, T(1));
+    r.stabilization = material.volume * material.stabilization * T(0.25) * contract(M, M);
+  }
+  if constexpr (stabilization == Stabilization::affine) {
+    const Mat3<T> G = x.H - x.Dbar;
+    r.stabilization = material.volume * material.stabilization * T(0.5) * contract(G, G);
+  }
+  return r;
 }
 
 /// The second derivative, or its positive semidefinite part: without δF S and all that turns with a frame (the 2014
@@ -83,27 +109,35 @@ struct PointStressDifferential {
 ///
 /// @param dH     direction of F, with the frames' rotations
 /// @param dQbar  direction of Qbar
-template <bool Drilling, class T>
+template <Stabilization stabilization, class T>
 FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion<T>& x, const Mat3<T>& S,
                                                                const PointMaterial<T>& material, Tangent tangent,
                                                                const Mat3<T>& dH, const Mat3<T>& dQbar) {
-  const StVenantKirchhoff<T> law{material.lambda, material.mu};
   PointStressDifferential<T> r;
+  if (material.law == Law::tether) {
+    r.dP = tether_stress(material, dH.column(0));
+    return r;
+  }
   const Mat3<T> dE = sym(dH + transpose_times(x.H, dH));
-  const Mat3<T> dS = law.second_piola(dE) * (T(1) + material.viscosity);
+  const Mat3<T> dS = second_piola(material, dE) * (T(1) + material.viscosity);
   r.dP = dS + x.H * dS;
   if (tangent == Tangent::full) r.dP += dH * S;
-  if constexpr (Drilling) {
+  if constexpr (stabilization == Stabilization::drilling) {
     const Mat3<T> dM = transpose(dQbar) + transpose_times(dQbar, x.H) + dH + transpose_times(x.Dbar, dH);
-    const Mat3<T> dT = (dM - transpose(dM)) * material.drilling;
+    const Mat3<T> dT = (dM - transpose(dM)) * material.stabilization;
     const Mat3<T> dTt = transpose(dT);
     r.dP += dT + x.Dbar * dT;
     r.dY = dTt + x.H * dTt;
     if (tangent == Tangent::full) {
-      const Mat3<T> Tm = drilling_stress(x, material.drilling);
+      const Mat3<T> Tm = drilling_stress(x, material.stabilization);
       r.dP += dQbar * Tm;
       r.dY += times_transpose(dH, Tm);
     }
+  }
+  if constexpr (stabilization == Stabilization::affine) {
+    const Mat3<T> dG = (dH - dQbar) * material.stabilization;
+    r.dP += dG;
+    r.dY = dG * T(-1);
   }
   return r;
 }

@@ -4,28 +4,25 @@
 #include "core/model/aligned.hpp"
 #include "core/model/point_set.hpp"
 
-#include <array>
 #include <span>
 #include <vector>
 
 namespace fascia {
 
-/// A 6×6 block by rows: translations, then rotations.
-using Block6 = std::array<double, 36>;
-
-/// Symmetric matrix of 6×6 blocks; both triangles are stored, columns ascending in each row. The pattern is fixed.
+/// Symmetric matrix of blocks, one for each pair of frames that share a group, as large as the frames have degrees of
+/// freedom and stored by rows. Both triangles are stored, columns ascending in each row. The pattern is fixed.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
-  /// The pattern of a point set: a block for each pair of frames that share a group.
   explicit BlockMatrix(const PointSet& set);
 
   int rows() const { return static_cast<int>(row_begin_.size()) - 1; }
   std::size_t block_count() const { return column_.size(); }
+  const DofLayout& dofs() const { return dofs_; }
   std::span<const int> columns(int row) const;
   int row_begin(int row) const { return row_begin_[static_cast<std::size_t>(row)]; }
-  double* block(int index) { return values_.data() + static_cast<std::size_t>(index) * 36; }
-  const double* block(int index) const { return values_.data() + static_cast<std::size_t>(index) * 36; }
+  double* block(int index) { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
+  const double* block(int index) const { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
   int find(int row, int column) const;  ///< index of a block that is in the pattern
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
 
@@ -35,10 +32,14 @@ class BlockMatrix {
   /// y = K x
   void multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
 
-  std::size_t memory_bytes() const { return values_.size() * sizeof(double) + column_.size() * sizeof(int); }
+  std::size_t value_count() const { return values_.size(); }
 
  private:
+  void multiply_row(int row, std::span<const double> x, std::span<double> y) const;
+
+  DofLayout dofs_;
   std::vector<int> row_begin_{0}, column_, diagonal_;
+  std::vector<std::size_t> value_begin_;
   AlignedVector<double> values_;
 };
 

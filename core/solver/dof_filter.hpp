@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/model/model.hpp"
-#include "core/solver/block_matrix.hpp"
 
 #include <span>
 #include <vector>
@@ -9,7 +8,7 @@
 namespace fascia {
 
 /// Coordinates in which prescribed degrees of freedom are single numbers: each constrained frame's increments are
-/// turned into its constraint's axes; the first `translations` (3 + first `rotations`) of its six are prescribed.
+/// turned into its constraint's axes (an affine frame's A into R A Rᵀ).
 class DofFilter {
  public:
   explicit DofFilter(const Model& model);
@@ -21,6 +20,7 @@ class DofFilter {
   void to_local(std::span<double> v) const;   ///< world → constraint axes
   void to_global(std::span<double> v) const;  ///< constraint axes → world
   void clear_fixed(std::span<double> local) const;
+  void keep_fixed(std::span<double> local) const;  ///< clears the free ones
 
   /// The block of a row and a column in constraint axes: T_row K T_colᵀ.
   void rotate_block(int row, int column, const double* in, double* out) const;
@@ -30,6 +30,9 @@ class DofFilter {
     int node;
     Mat3d translation, rotation;
   };
+  void apply(const Turn& turn, bool back, double* v) const;
+
+  DofLayout dofs_;
   std::vector<Turn> turns_;
   std::vector<int> turn_of_node_;  ///< −1: none
   std::vector<bool> fixed_;

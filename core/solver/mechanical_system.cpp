@@ -12,17 +12,9 @@ namespace fascia {
 
 namespace {
 
-/// Adds the force and, through L, the torque of a frame.
-void add(std::span<double> gradient, int node, const Vec3d& force, const Vec3d& torque) {
-  for (int k = 0; k < 3; ++k) {
-    gradient[at(6 * node + k)] += force[k];
-    gradient[at(6 * node + 3 + k)] += torque[k];
-  }
-}
-
-void add_rotation_block(Block6& block, const Mat3d& rr) {
+void add_rotation_block(double* block, const Mat3d& rr) {
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) block[at(6 * (3 + i) + 3 + j)] += rr(i, j);
+    for (int j = 0; j < 3; ++j) block[6 * (3 + i) + 3 + j] += rr(i, j);
 }
 
 Mat3d rotation_tangent(const Mat3d& L) { return sym(L) - Mat3d::diagonal(trace(L)); }
@@ -43,7 +35,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
   inertia_.resize(n);
   direction_.resize(n);
   work_.resize(n);
-  factors_ = zero_factors(model);
+  factors_ = reached_factors_ = zero_factors(model);
 }
 
 std::vector<double> zero_factors(const Model& model) {
@@ -68,14 +60,36 @@ void MechanicalSystem::begin_step(const State& start, double dt) {
   rebuild_state();
 }
 
-void MechanicalSystem::set_factors(std::span<const double> factors) { factors_.assign(factors.begin(), factors.end()); }
+/// Adds a force, what is conjugate to A, and a torque.
+void MechanicalSystem::add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N,
+                           const Vec3d& torque) const {
+  const Mat3d A = Mat3d::identity() + state_.D[at(node)];
+  double* g = out.data() + model_.points.dofs.begin(node);
+  for (int k = 0; k < 3; ++k) g[k] += force[k];
+  add_moment(model_.kind(node), squared_norm(torque) > 0 ? N + moment_of_torque(torque, A) : N, A, g + 3);
+}
+
+void MechanicalSystem::set_factors(std::span<const double> factors) {
+  factors_.assign(factors.begin(), factors.end());
+  const std::span<double> targets = executor_.targets();
+  for (const Tether& t : model_.tethers) {
+    const Vec3d target = t.motion < 0 ? Vec3d{} : displacement(t.motion, t.X);
+    const auto first = at(model_.points.rule[at(t.group)].axes) * 3 * kGroupSize + at(t.lane);
+    for (int k = 0; k < 3; ++k) targets[first + at(k) * kGroupSize] = target[k];
+  }
+}
+
+Vec3d MechanicalSystem::displacement(int motion, const Vec3d& X) const {
+  const PrescribedMotion& m = model_.motions[at(motion)];
+  return m.displacement(X, factors_[at(m.schedule)]);
+}
 
 void MechanicalSystem::rebuild_state() {
   state_.u.resize(start_.u.size());
   state_.D.resize(start_.u.size());
   for (std::size_t i = 0; i < start_.u.size(); ++i) {
     state_.u[i] = start_.u[i] + increment_.du[i];
-    state_.D[i] = compose_increments(increment_.Ds[i], start_.D[i]);
+    state_.D[i] = rigid(i) ? compose_increments(increment_.Ds[i], start_.D[i]) : increment_.Ds[i] + start_.D[i];
   }
 }
 
@@ -89,26 +103,31 @@ void MechanicalSystem::start_from_prediction() {
     const Mat3d Q = Mat3d::identity() + start_.D[i];
     const Vec3d spin = axl(transpose(times_transpose(start_.Q_dot[i], Q))) * 0.5;
     increment_.du[i] = start_.v[i] * dt_;
-    increment_.Ds[i] = rotation_increment(spin * dt_);
+    increment_.Ds[i] = rigid(i) ? rotation_increment(spin * dt_) : start_.Q_dot[i] * dt_;
   }
   rebuild_state();
   const double predicted = evaluate().energy;
   if (!(predicted < at_old_state)) restore();
 }
 
-State MechanicalSystem::finish_step(double end_time) const {
+State MechanicalSystem::finish_step(double end_time) {
+  reached_factors_ = factors_;
   State end = state_;
   end.turned = increment_.turned;
   end.time = end_time;
   end.v.assign(end.u.size(), Vec3d{});
   end.Q_dot.assign(end.u.size(), Mat3d{});
   for (std::size_t i = 0; i < end.u.size(); ++i) {
-    end.D[i] = orthonormalized_increment(end.D[i]);
+    if (rigid(i)) end.D[i] = orthonormalized_increment(end.D[i]);
     if (dt_ <= 0) continue;
     end.v[i] = increment_.du[i] * (1 / dt_);
-    end.Q_dot[i] = (increment_.Ds[i] + increment_.Ds[i] * start_.D[i]) * (1 / dt_);
+    end.Q_dot[i] = motion_of(i) * (1 / dt_);
   }
   return end;
+}
+
+Mat3d MechanicalSystem::motion_of(std::size_t i) const {
+  return rigid(i) ? increment_.Ds[i] + increment_.Ds[i] * start_.D[i] : increment_.Ds[i];
 }
 
 void MechanicalSystem::add_loads() {
@@ -119,13 +138,14 @@ void MechanicalSystem::add_loads() {
     for (const NodeLoad& n : load.nodes) {
       const Mat3d& D = state_.D[at(n.node)];
       load_energy_ -= s * (dot(n.force, state_.u[at(n.node)]) + contract(n.couple, D));
-      const Mat3d L = n.couple + times_transpose(n.couple, D);  // couple Qᵀ
-      add(load_, n.node, n.force * s, (axl(transpose(L)) + n.torque) * s);
+      add(load_, n.node, n.force * s, n.couple * s, n.torque * s);
     }
   }
   for (const FollowerLoad& load : model_.followers)
     for_each_share(load, state_, factors_[at(load.schedule)],
-                   [&](int node, const Vec3d& force, const Vec3d& torque) { add(load_, node, force, torque); });
+                   [&](int node, const Vec3d& force, const Mat3d& couple, const Vec3d& torque) {
+                     add(load_, node, force, couple, torque);
+                   });
 }
 
 /// 1/(2 dt²) |motion − dt velocity|² + α/(2 dt) |motion|², in the pose form of inertia.hpp.
@@ -136,8 +156,7 @@ void MechanicalSystem::add_inertia() {
   if (dt_ <= 0) return;
   const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
   for (int i = 0; i < model_.node_count(); ++i) {
-    const Mat3d Q0 = Mat3d::identity() + start_.D[at(i)];
-    const Mat3d motion = increment_.Ds[at(i)] * Q0, Q = Q0 + motion;
+    const Mat3d motion = motion_of(at(i));
     const Vec3d a = increment_.du[at(i)] - start_.v[at(i)] * dt_;
     const Mat3d A = motion - start_.Q_dot[at(i)] * dt_;
     InertiaForce f = inertia_force(model_.inertia[at(i)], a, A);
@@ -151,7 +170,7 @@ void MechanicalSystem::add_inertia() {
       force += f.force * damping_scale;
       moment += f.moment * damping_scale;
     }
-    add(inertia_, i, force, axl(Q * transpose(moment)));
+    add(inertia_, i, force, moment, {});
     const auto part = at(model_.points.node_part[at(i)]);
     // The motion and what the old velocity predicts of it cancel.
     const double cancelled = norm(increment_.du[at(i)]) + dt_ * norm(start_.v[at(i)]) +
@@ -164,11 +183,14 @@ void MechanicalSystem::add_inertia() {
 
 void MechanicalSystem::add_node_blocks(Linearization& lin) const {
   const bool full = lin.tangent == Tangent::full;
+  const DofLayout& dofs = model_.points.dofs;
   if (full) {
     for (const DeadLoad& load : model_.loads)
       for (const NodeLoad& n : load.nodes)
-        add_rotation_block(lin.node_blocks[at(n.node)], rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) *
-                                                            -factors_[at(load.schedule)]);
+        if (rigid(at(n.node)))
+          add_rotation_block(lin.node_blocks.data() + dofs.block_begin(n.node),
+                             rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) *
+                                 -factors_[at(load.schedule)]);
   }
   if (dt_ <= 0) return;
   const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
@@ -176,7 +198,7 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
     const Mat3d& Q = lin.Q[at(i)];
     FrameInertia total = model_.inertia[at(i)];
     InertiaForce f;
-    const Mat3d Q0 = Mat3d::identity() + start_.D[at(i)], motion = increment_.Ds[at(i)] * Q0;
+    const Mat3d motion = motion_of(at(i));
     if (full) {
       f = inertia_force(total, increment_.du[at(i)] - start_.v[at(i)] * dt_, motion - start_.Q_dot[at(i)] * dt_);
       f.moment *= scale;
@@ -192,17 +214,9 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
       damping.second *= damping_scale;
       total += damping;
     }
-    Block6& block = lin.node_blocks[at(i)];
-    const Mat3d second = times_transpose(Q * total.second, Q), lever = skew(Q * total.first);
-    for (int r = 0; r < 3; ++r) {
-      block[at(7 * r)] += total.mass;
-      for (int c = 0; c < 3; ++c) {
-        block[at(6 * r + 3 + c)] -= lever(r, c);
-        block[at(6 * (3 + r) + c)] += lever(r, c);
-      }
-    }
-    add_rotation_block(block, Mat3d::diagonal(trace(second)) - second);
-    if (full) add_rotation_block(block, rotation_tangent(times_transpose(f.moment, Q)));
+    double* block = lin.node_blocks.data() + dofs.block_begin(i);
+    add_inertia_block(dofs.kind(i), total, Q, block);
+    if (full && rigid(at(i))) add_rotation_block(block, rotation_tangent(times_transpose(f.moment, Q)));
   }
 }
 
@@ -213,10 +227,14 @@ void MechanicalSystem::add_squares(std::span<const double> global, std::vector<d
   filter_.to_local(work_);
   free.assign(at(model_.points.part_count()), 0.0);
   fixed.assign(free.size(), 0.0);
-  for (std::size_t i = 0; i < work_.size(); ++i) {
-    const auto part = at(model_.points.node_part[i / 6]);
-    const double value = i % 6 < 3 ? work_[i] : work_[i] / model_.points.part_length[part];
-    (filter_.is_fixed(i) ? fixed : free)[part] += value * value;
+  const DofLayout& dofs = model_.points.dofs;
+  for (int node = 0; node < model_.node_count(); ++node) {
+    const auto part = at(model_.points.node_part[at(node)]);
+    for (int k = 0; k < dofs.size(node); ++k) {
+      const std::size_t i = at(dofs.begin(node) + k);
+      const double value = k < 3 ? work_[i] : work_[i] / model_.points.part_length[part];
+      (filter_.is_fixed(i) ? fixed : free)[part] += value * value;
+    }
   }
 }
 
@@ -234,8 +252,9 @@ Evaluation MechanicalSystem::evaluate() {
   for (std::size_t p = 0; p < part_squares_.residual.size(); ++p) {
     total += part_squares_.residual[p];
     const double residual = std::sqrt(part_squares_.residual[p]);
-    const double reference = std::sqrt(std::max(
-        {part_squares_.load[p] + part_squares_.held_load[p], part_squares_.inertia[p], part_squares_.reaction[p]}));
+    const double reference =
+        std::sqrt(std::max({part_squares_.load[p] + part_squares_.held_load[p], part_squares_.inertia[p],
+                            part_squares_.reaction[p], executor_.squared_tether_force(static_cast<int>(p))}));
     // 4: sums of a few terms of the estimated size in each entry.
     const double floor = 4 * std::hypot(executor_.rounding(static_cast<int>(p)), inertia_rounding_[p]);
     const double allowed = std::max(settings_.tolerance * reference, floor);
@@ -250,25 +269,43 @@ Evaluation MechanicalSystem::evaluate() {
   return e;
 }
 
+/// The prescribed entries of A of an affine frame, in constraint axes.
+void MechanicalSystem::prescribe_affine(const FrameConstraint& c, double* local) const {
+  const int motion = c.rotation_motion[0];
+  Mat3d target;
+  if (motion >= 0) {
+    const PrescribedMotion& m = model_.motions[at(motion)];
+    target = rotation_increment(m.axis * (m.angle * factors_[at(m.schedule)]));
+  }
+  const Mat3d missing = times_transpose(c.rotation_axes * (target - state_.D[at(c.node)]), c.rotation_axes);
+  for (int q = 0; q < 3; ++q)
+    for (int i = 0; i < 3; ++i) local[3 * q + i] = missing(i, q);
+}
+
 void MechanicalSystem::prescribed_increments(std::span<double> local) const {
   std::fill(local.begin(), local.end(), 0.0);
   for (std::size_t k = 0; k < model_.constraints.size(); ++k) {
     const FrameConstraint& c = model_.constraints[k];
     const Vec3d& X = model_.rest_position[at(c.node)];
-    const auto factor = [&](int motion) { return factors_[at(model_.motions[at(motion)].schedule)]; };
+    double* increment = local.data() + model_.points.dofs.begin(c.node);
     for (int a = 0; a < c.translations; ++a) {
       const int motion = c.translation_motion[at(a)];
-      const Vec3d target = motion < 0 ? Vec3d{} : model_.motions[at(motion)].displacement(X, factor(motion));
-      local[at(6 * c.node + a)] = dot(c.translation_axes.row(a), target - state_.u[at(c.node)]);
+      const Vec3d target = motion < 0 ? Vec3d{} : displacement(motion, X);
+      increment[a] = dot(c.translation_axes.row(a), target - state_.u[at(c.node)]);
+    }
+    if (!rigid(at(c.node))) {
+      if (c.rotations > 0) prescribe_affine(c, increment + 3);
+      continue;
     }
     for (int a = 0; a < c.rotations; ++a) {
       const int motion = c.rotation_motion[at(a)];
       if (motion < 0) continue;
       const PrescribedMotion& m = model_.motions[at(motion)];
-      const double turn = m.angle * factor(motion);
-      local[at(6 * c.node + 3 + a)] = dot(c.rotation_axes.row(a), m.axis) * turn - increment_.turned[k][at(a)];
+      const double turn = m.angle * factors_[at(m.schedule)];
+      increment[3 + a] = dot(c.rotation_axes.row(a), m.axis) * turn - increment_.turned[k][at(a)];
     }
   }
+  filter_.keep_fixed(local);
 }
 
 double MechanicalSystem::largest_angle() const {
@@ -291,9 +328,11 @@ bool MechanicalSystem::has_prescribed_increment() const {
                               model_.motions[at(motion)].angle != 0
                                   ? norm(model_.rest_position[at(c.node)] - model_.motions[at(motion)].center)
                                   : 0.0});
-  for (std::size_t i = 0; i < local.size(); ++i) {
-    const double scale = i % 6 < 3 ? largest_u : largest_angle();
-    if (std::abs(local[i]) > 1e-14 * scale) return true;
+  const double angle = largest_angle();
+  for (const FrameConstraint& c : model_.constraints) {
+    const int first = model_.points.dofs.begin(c.node), size = model_.points.dofs.size(c.node);
+    for (int k = 0; k < size; ++k)
+      if (std::abs(local[at(first + k)]) > 1e-14 * (k < 3 ? largest_u : angle)) return true;
   }
   return false;
 }
@@ -302,9 +341,23 @@ double MechanicalSystem::prescribed_rotation() const {
   std::vector<double> local(gradient_.size());
   prescribed_increments(local);
   double largest = 0;
-  for (std::size_t i = 0; i < local.size(); i += 6)
-    largest = std::max(largest, std::hypot(local[i + 3], local[i + 4], local[i + 5]));
+  for (const FrameConstraint& c : model_.constraints)
+    if (c.rotations > 0) largest = std::max(largest, rotation_in(c.node, local.data()));
+  for (const Tether& t : model_.tethers) {
+    if (t.motion < 0) continue;
+    const PrescribedMotion& m = model_.motions[at(t.motion)];
+    if (m.angle != 0)
+      largest = std::max(largest, std::abs(m.angle * (factors_[at(m.schedule)] - reached_factors_[at(m.schedule)])));
+  }
   return largest;
+}
+
+/// Angle of a frame's increment; of an affine one, the rotation that has an increment of A of that size.
+double MechanicalSystem::rotation_in(int node, const double* vector) const {
+  const double* d = vector + model_.points.dofs.begin(node) + 3;
+  double squared = 0;
+  for (int k = 0; k < model_.points.dofs.size(node) - 3; ++k) squared += d[k] * d[k];
+  return std::sqrt(rigid(at(node)) ? squared : 0.5 * squared);
 }
 
 DirectionReport MechanicalSystem::direction() {
@@ -325,24 +378,26 @@ DirectionReport MechanicalSystem::direction() {
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
   filter_.to_global(direction_);
-  for (std::size_t i = 0; i < direction_.size(); i += 6) {
-    for (std::size_t k = 0; k < 6; ++k) report.slope += gradient_[i + k] * direction_[i + k];
-    report.largest_rotation =
-        std::max(report.largest_rotation, std::hypot(direction_[i + 3], direction_[i + 4], direction_[i + 5]));
-  }
+  for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
+  for (int node = 0; node < model_.node_count(); ++node)
+    report.largest_rotation = std::max(report.largest_rotation, rotation_in(node, direction_.data()));
   return report;
 }
 
 void MechanicalSystem::apply(double step) {
   for (int i = 0; i < model_.node_count(); ++i) {
-    const double* d = direction_.data() + 6 * i;
+    const double* d = direction_.data() + model_.points.dofs.begin(i);
     increment_.du[at(i)] += Vec3d{{d[0], d[1], d[2]}} * step;
-    increment_.Ds[at(i)] =
-        compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}} * step), increment_.Ds[at(i)]);
+    Mat3d& Ds = increment_.Ds[at(i)];
+    if (rigid(at(i)))
+      Ds = compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}} * step), Ds);
+    else
+      Ds += frame_variation(FrameKind::affine, d + 3, {}) * step;
   }
   for (std::size_t k = 0; k < model_.constraints.size(); ++k) {
     const FrameConstraint& c = model_.constraints[k];
-    const double* d = direction_.data() + 6 * c.node + 3;
+    if (!rigid(at(c.node))) continue;
+    const double* d = direction_.data() + model_.points.dofs.begin(c.node) + 3;
     for (int a = 0; a < c.rotations; ++a)
       increment_.turned[k][at(a)] += step * dot(c.rotation_axes.row(a), Vec3d{{d[0], d[1], d[2]}});
   }

@@ -2,6 +2,7 @@
 
 #include "core/cpu/executor.hpp"
 #include "core/math/index.hpp"
+#include "core/physics/inertia.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/dof_filter.hpp"
 
@@ -17,22 +18,6 @@ namespace fascia {
 namespace {
 
 using Dense = Eigen::MatrixXd;
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-Matrix6 mass_block(const FrameInertia& inertia) {
-  Matrix6 m = Matrix6::Zero();
-  const Mat3d lever = skew(inertia.first), second = Mat3d::diagonal(trace(inertia.second)) - inertia.second;
-  for (int i = 0; i < 3; ++i) {
-    m(i, i) = inertia.mass;
-    for (int j = 0; j < 3; ++j) {
-      m(i, 3 + j) = -lever(i, j);
-      m(3 + i, j) = lever(i, j);
-      m(3 + i, 3 + j) = second(i, j);
-    }
-  }
-  return m;
-}
 
 /// K and M in constraint axes, on all degrees of freedom; prescribed ones stay zero.
 class Problem {
@@ -45,7 +30,9 @@ class Problem {
     Linearization lin;
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, K_);
-    for (const FrameInertia& inertia : model.inertia) mass_.push_back(mass_block(inertia));
+    mass_.assign(dofs().block_total(), 0.0);
+    for (int i = 0; i < model.node_count(); ++i)
+      add_inertia_block(model.kind(i), model.inertia[at(i)], Mat3d::identity(), mass_.data() + dofs().block_begin(i));
   }
 
   const DofFilter& filter() const { return filter_; }
@@ -55,7 +42,7 @@ class Problem {
     double stiffness = 0, mass = 0;
     for (int i = 0; i < K_.rows(); ++i) {
       stiffness += K_.block(K_.diagonal(i))[0];
-      mass += mass_[at(i)](0, 0);
+      mass += mass_[dofs().block_begin(i)];
     }
     return stiffness / mass;
   }
@@ -68,7 +55,8 @@ class Problem {
     for (int attempt = 0; attempt < 12; ++attempt) {
       BlockMatrix shifted = K_;
       for (int i = 0; i < K_.rows() && s > 0; ++i)
-        Eigen::Map<Matrix6>(shifted.block(shifted.diagonal(i))) += s * mass_[at(i)];
+        for (int k = 0; k < dofs().size(i) * dofs().size(i); ++k)
+          shifted.block(shifted.diagonal(i))[k] += s * mass_[dofs().block_begin(i) + at(k)];
       if (factor.factorize(shifted)) return factor;
       s = std::max(10 * s, step);
     }
@@ -80,8 +68,14 @@ class Problem {
   }
   void multiply_mass(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
     multiply(x, y, [this](const std::vector<double>& in, std::vector<double>& out) {
-      for (std::size_t i = 0; i < mass_.size(); ++i)
-        Eigen::Map<Vector6>(out.data() + 6 * i) = mass_[i] * Eigen::Map<const Vector6>(in.data() + 6 * i);
+      for (int node = 0; node < dofs().node_count(); ++node) {
+        const int n = dofs().size(node), first = dofs().begin(node);
+        for (int i = 0; i < n; ++i) {
+          out[at(first + i)] = 0;
+          for (int j = 0; j < n; ++j)
+            out[at(first + i)] += mass_[dofs().block_begin(node) + at(n * i + j)] * in[at(first + j)];
+        }
+      }
     });
   }
 
@@ -96,10 +90,12 @@ class Problem {
     y = Eigen::Map<const Eigen::VectorXd>(out.data(), x.size());
   }
 
+  const DofLayout& dofs() const { return K_.dofs(); }
+
   ThreadPool& pool_;
   DofFilter filter_;
   BlockMatrix K_;
-  std::vector<Matrix6, Eigen::aligned_allocator<Matrix6>> mass_;
+  std::vector<double> mass_;  ///< blocks of the frames
 };
 
 }  // namespace
@@ -147,8 +143,10 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     std::vector<double> shape(X.col(k).data(), X.col(k).data() + n);
     problem.filter().to_global(shape);
     double largest = 0;
-    for (std::size_t i = 0; i < shape.size(); ++i)
-      if (i % 6 < 3 && std::abs(shape[i]) > std::abs(largest) * (1 + 1e-6)) largest = shape[i];
+    const DofLayout& dofs = model.points.dofs;
+    for (int node = 0; node < dofs.node_count(); ++node)
+      for (int i = dofs.begin(node); i < dofs.begin(node) + 3; ++i)
+        if (std::abs(shape[at(i)]) > std::abs(largest) * (1 + 1e-6)) largest = shape[at(i)];
     if (largest < 0)
       for (double& v : shape) v = -v;
     modes.shape.push_back(std::move(shape));

@@ -11,7 +11,9 @@ namespace fascia {
 
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+/// A frame's own block, and its part of a vector.
+using NodeMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostDofs, kMostDofs>;
+using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostDofs, 1>;
 
 /// Up to here a factorisation takes a few seconds at most, whatever the conditioning; CG may be 2 to 3 times faster on
 /// a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual.md).
@@ -42,7 +44,7 @@ bool TangentSolver::direct() {
   else if (filter_.free_count() <= kDirectDofs)
     direct_ = true;
   else
-    direct_ = factor().factor_flops() < kFlopsPerNonzero * 36.0 * static_cast<double>(matrix().block_count());
+    direct_ = factor().factor_flops() < kFlopsPerNonzero * static_cast<double>(matrix().value_count());
   if (!*direct_ && settings_.preconditioner != Preconditioner::cholesky) cholesky_.reset();
   return *direct_;
 }
@@ -98,29 +100,30 @@ bool TangentSolver::factorize_with_shifts(const std::function<const Linearizatio
 
 void TangentSolver::build_block_jacobi() {
   const bool blocks = settings_.preconditioner != Preconditioner::jacobi;
-  inverse_blocks_.resize(at(model_.node_count()) * 36);
+  const DofLayout& dofs = model_.points.dofs;
+  inverse_blocks_.resize(dofs.block_total());
   executor_.pool().for_ranges(model_.node_count(), 128, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
-      double turned[36];
-      filter_.rotate_block(node, node, matrix_->block(matrix_->diagonal(node)), turned);
-      Matrix6 block = Eigen::Map<Matrix6>(turned);
-      for (int i = 0; i < 6; ++i) {
-        if (!filter_.is_fixed(at(6 * node + i))) continue;
+      const int n = dofs.size(node);
+      NodeMatrix block(n, n);
+      filter_.rotate_block(node, node, matrix_->block(matrix_->diagonal(node)), block.data());
+      for (int i = 0; i < n; ++i) {
+        if (!filter_.is_fixed(at(dofs.begin(node) + i))) continue;
         block.row(i).setZero();
         block.col(i).setZero();
         block(i, i) = 1;
       }
-      Matrix6 inverse = Matrix6::Zero();
+      NodeMatrix inverse = NodeMatrix::Zero(n, n);
       if (blocks) {
-        const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(block);
+        const Eigen::SelfAdjointEigenSolver<NodeMatrix> eigen(block);
         // Keeps the preconditioner positive where the tangent is not.
         const double least = 1e-12 * eigen.eigenvalues().cwiseAbs().maxCoeff();
-        const Eigen::Matrix<double, 6, 1> values = eigen.eigenvalues().cwiseAbs().cwiseMax(least).cwiseInverse();
+        const NodeVector values = eigen.eigenvalues().cwiseAbs().cwiseMax(least).cwiseInverse();
         inverse = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
       } else {
-        for (int i = 0; i < 6; ++i) inverse(i, i) = block(i, i) != 0 ? 1.0 / std::abs(block(i, i)) : 1.0;
+        for (int i = 0; i < n; ++i) inverse(i, i) = block(i, i) != 0 ? 1.0 / std::abs(block(i, i)) : 1.0;
       }
-      Eigen::Map<Matrix6>(inverse_blocks_.data() + at(node) * 36) = inverse;
+      std::copy(inverse.data(), inverse.data() + n * n, inverse_blocks_.data() + dofs.block_begin(node));
     }
   });
 }
@@ -146,12 +149,18 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
     if (cg.iterations > 30) factor_is_preconditioner_ = false;  // out of date: renewed next time
   } else {
     build_block_jacobi();
+    const DofLayout& dofs = model_.points.dofs;
     const auto precondition = [&](const std::vector<double>& r, std::vector<double>& z) {
       executor_.pool().for_ranges(model_.node_count(), 512, [&](int begin, int end) {
-        for (int node = begin; node < end; ++node)
-          Eigen::Map<Eigen::Matrix<double, 6, 1>>(z.data() + 6 * node) =
-              Eigen::Map<const Matrix6>(inverse_blocks_.data() + at(node) * 36) *
-              Eigen::Map<const Eigen::Matrix<double, 6, 1>>(r.data() + 6 * node);
+        for (int node = begin; node < end; ++node) {
+          const int n = dofs.size(node), first = dofs.begin(node);
+          const double* inverse = inverse_blocks_.data() + dofs.block_begin(node);
+          for (int i = 0; i < n; ++i) {
+            double sum = 0;
+            for (int j = 0; j < n; ++j) sum += inverse[n * i + j] * r[at(first + j)];
+            z[at(first + i)] = sum;
+          }
+        }
       });
     };
     cg = conjugate_gradients(vectors_, apply, precondition, rhs, result, settings_.cg);

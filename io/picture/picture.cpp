@@ -2,23 +2,18 @@
 
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
+#include "io/picture/actors.hpp"
 #include "io/picture/color_map.hpp"
 #include "io/vtk_errors.hpp"
 
-#include <vtkActor.h>
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>
-#include <vtkGlyph3DMapper.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkPointData.h>
-#include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
-#include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
-#include <vtkSphereSource.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
@@ -33,84 +28,43 @@ namespace fascia::io {
 namespace {
 
 constexpr double ink[3]{0.13, 0.13, 0.15};
+constexpr double tube_radius = 0.003;  // of the box's diagonal
+constexpr double ball_radius = 0.006;
 
+/// Around all that is coloured, with its tubes; around the frames where nothing is.
 vtkBoundingBox bounds_of(const std::vector<PictureBody>& bodies) {
-  vtkBoundingBox box;
-  for (const PictureBody& body : bodies) box.AddBounds(body.surface->GetBounds());
+  vtkBoundingBox box, frames;
+  bool lines = false;
+  for (const PictureBody& body : bodies) {
+    lines = lines || has_points(body.lines);
+    if (has_points(body.surface)) box.AddBounds(body.surface->GetBounds());
+    if (has_points(body.lines)) box.AddBounds(body.lines->GetBounds());
+    if (has_points(body.frames)) frames.AddBounds(body.frames->GetBounds());
+  }
+  if (!box.IsValid()) box = frames;
+  if (!(box.GetDiagonalLength() > 0)) {  // a single point: room around it, in its own scale
+    double x[3];
+    box.GetCenter(x);
+    const double distance = std::hypot(x[0], x[1], x[2]);
+    box.Inflate(distance > 0 ? 0.01 * distance : 1);
+  }
+  if (lines) box.Inflate(tube_radius * box.GetDiagonalLength());
   return box;
 }
 
 /// The common range, opened a little where all values are equal.
 std::array<double, 2> range_of(const std::vector<PictureBody>& bodies) {
   std::array<double, 2> range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
-  for (const PictureBody& body : bodies) {
-    double own[2];
-    body.surface->GetPointData()->GetScalars()->GetRange(own);
-    range = {std::min(range[0], own[0]), std::max(range[1], own[1])};
-  }
+  for (const PictureBody& body : bodies)
+    for (const auto& part : {body.surface, body.lines}) {
+      if (!has_points(part)) continue;
+      double own[2];
+      part->GetPointData()->GetScalars()->GetRange(own);
+      range = {std::min(range[0], own[0]), std::max(range[1], own[1])};
+    }
+  if (range[0] > range[1]) return {0, 1};
   if (!(range[0] < range[1])) range[1] = range[0] + std::max(1e-12, 1e-6 * std::abs(range[0]));
   return range;
-}
-
-void add_surface(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable* colors) {
-  constexpr double crease = 35;  // degrees: sharper edges stay sharp
-  vtkNew<vtkPolyDataNormals> normals;
-  normals->SetInputData(body.surface);
-  normals->SetFeatureAngle(crease);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(normals->GetOutputPort());
-  mapper->SetScalarVisibility(colors != nullptr);
-  mapper->SetResolveCoincidentTopologyToPolygonOffset();
-  mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 2);  // behind the lines of its edges
-  if (colors) {
-    mapper->SetLookupTable(colors);
-    mapper->UseLookupTableScalarRangeOn();
-    mapper->InterpolateScalarsBeforeMappingOn();
-  }
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  vtkProperty* look = actor->GetProperty();
-  look->SetColor(0.80, 0.55, 0.50);
-  look->SetAmbient(0.4);
-  look->SetDiffuse(0.65);
-  look->SetSpecular(0.12);
-  look->SetSpecularPower(25);
-  renderer.AddActor(actor);
-}
-
-/// Faint lines along the triangles' edges, lighter where they are many.
-void add_edges(vtkRenderer& renderer, const PictureBody& body) {
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(body.surface);
-  mapper->ScalarVisibilityOff();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetRepresentationToWireframe();
-  actor->GetProperty()->LightingOff();
-  actor->GetProperty()->SetColor(0.05, 0.05, 0.08);
-  const double triangles = static_cast<double>(body.surface->GetNumberOfPolys());
-  actor->GetProperty()->SetOpacity(std::clamp(0.32 - 0.05 * std::log10(1 + triangles), 0.08, 0.25));
-  actor->GetProperty()->SetLineWidth(1);
-  renderer.AddActor(actor);
-}
-
-void add_frames(vtkRenderer& renderer, const PictureBody& body, double radius) {
-  if (body.frames->GetNumberOfPoints() == 0) return;
-  vtkNew<vtkSphereSource> ball;
-  ball->SetRadius(radius);
-  ball->SetThetaResolution(20);
-  ball->SetPhiResolution(14);
-  vtkNew<vtkGlyph3DMapper> mapper;
-  mapper->SetInputData(body.frames);
-  mapper->SetSourceConnection(ball->GetOutputPort());
-  mapper->ScalarVisibilityOff();
-  mapper->ScalingOff();
-  mapper->OrientOff();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.85, 0.20, 0.15);
-  actor->GetProperty()->SetSpecular(0.3);
-  renderer.AddActor(actor);
 }
 
 vtkTextProperty* styled(vtkTextProperty* text, int size, bool bold) {
@@ -211,6 +165,10 @@ void write_png(vtkRenderWindow& window, const std::filesystem::path& png) {
 
 void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& style,
                     const std::filesystem::path& png) {
+  const bool anything = std::any_of(bodies.begin(), bodies.end(), [&](const PictureBody& body) {
+    return has_points(body.surface) || has_points(body.lines) || (style.frames && has_points(body.frames));
+  });
+  if (!anything) throw InputError(png.string() + ": the results have neither triangles nor lines to show");
   VtkErrors errors;
   const vtkBoundingBox box = bounds_of(bodies);
   vtkNew<vtkRenderer> renderer;
@@ -227,7 +185,8 @@ void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& 
   for (const PictureBody& body : bodies) {
     add_surface(*renderer, body, colors);
     add_edges(*renderer, body);
-    if (style.frames) add_frames(*in_front, body, 0.006 * box.GetDiagonalLength());
+    add_lines(*renderer, body, colors, tube_radius * box.GetDiagonalLength());
+    if (style.frames) add_frames(*in_front, body, ball_radius * box.GetDiagonalLength());
   }
   if (!style.title.empty()) add_title(*renderer, style);
 

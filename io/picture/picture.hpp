@@ -14,8 +14,10 @@ struct PictureStyle {
   bool frames = false;  ///< show them as small balls, in front of the surface
 };
 
-/// Renders the bodies, coloured over their common range, into a PNG. Needs a DisplayConnection.
-/// @throws FileError  where the file cannot be written
+/// Renders the bodies, coloured over their common range, into a PNG: surfaces from both sides, lines as tubes whose
+/// diameter is 0.6 % of the bounding box's diagonal. Needs a DisplayConnection.
+/// @throws InputError  where no body has anything to show
+/// @throws FileError   where the file cannot be written
 void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& style,
                     const std::filesystem::path& png);
 

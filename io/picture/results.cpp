@@ -59,7 +59,7 @@ vtkSmartPointer<vtkPolyData> extract(vtkUnstructuredGrid& grid, const std::vecto
                                      vtkDoubleArray* values) {
   std::vector<vtkIdType> number(static_cast<std::size_t>(grid.GetNumberOfPoints()), -1);
   vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> polygons, vertices;
+  vtkNew<vtkCellArray> vertices, lines, polygons;
   vtkNew<vtkDoubleArray> shown;
   vtkNew<vtkIdList> ids;
   shown->SetName(shown_array);
@@ -74,11 +74,13 @@ vtkSmartPointer<vtkPolyData> extract(vtkUnstructuredGrid& grid, const std::vecto
       }
       ids->SetId(n, target);
     }
-    (ids->GetNumberOfIds() == 1 ? vertices : polygons)->InsertNextCell(ids);
+    const vtkIdType size = ids->GetNumberOfIds();
+    (size == 1 ? vertices : size == 2 ? lines : polygons)->InsertNextCell(ids);
   }
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(points);
   data->SetPolys(polygons);
+  data->SetLines(lines);
   data->SetVerts(vertices);
   if (values) data->GetPointData()->SetScalars(shown);
   return data;
@@ -90,14 +92,14 @@ PictureBody read_picture_body(const std::filesystem::path& file, const std::stri
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
   const vtkSmartPointer<vtkDoubleArray> values = field.empty() ? nullptr : shown_values(file, *grid, field);
   vtkDataArray* part = grid->GetCellData()->GetArray("part");
-  std::vector<vtkIdType> triangles, frames;
+  std::vector<vtkIdType> triangles, lines, frames;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     if (grid->GetCellType(c) == VTK_TRIANGLE) triangles.push_back(c);
+    if (grid->GetCellType(c) == VTK_LINE) lines.push_back(c);
     if (grid->GetCellType(c) == VTK_VERTEX && part && static_cast<int>(part->GetComponent(c, 0)) == frame_part)
       frames.push_back(c);
   }
-  if (triangles.empty()) throw InputError(file.string() + ": has no triangles to show");
-  return {extract(*grid, triangles, values), extract(*grid, frames, nullptr)};
+  return {extract(*grid, triangles, values), extract(*grid, lines, values), extract(*grid, frames, nullptr)};
 }
 
 }  // namespace fascia::io

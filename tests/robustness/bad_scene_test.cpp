@@ -37,6 +37,33 @@ const WrongScene kWrongScenes[] = {
     {"grid_of_two_numbers", "grid = [3, 2, 2]", "grid = [3, 2]", "bodies.beam.frames.grid", "3"},
     {"grid_of_fractions", "grid = [3, 2, 2]", "grid = [3.5, 2, 2]", "bodies.beam.frames.grid", "3.5"},
     {"grid_too_large_for_memory", "grid = [3, 2, 2]", "grid = [300, 200, 160]", "bodies.beam.frames.grid", "GB"},
+    {"grid_with_seed", "grid = [3, 2, 2]", "grid = [3, 2, 2], seed = 3", "bodies.beam.frames.seed", "poisson_disk"},
+    {"grid_with_scattered_points", "material = \"soft\"", "material = \"soft\"\npoints = { count = 50 }",
+     "bodies.beam.points.count", "per_cell"},
+    {"grid_with_scattered_weights", "material = \"soft\"", "material = \"soft\"\nweights = { kind = \"mls\" }",
+     "bodies.beam.weights.kind", "trilinear"},
+    {"grid_with_neighbours", "material = \"soft\"", "material = \"soft\"\nweights = { neighbours = 8 }",
+     "bodies.beam.weights.neighbours", "scattered"},
+    {"two_kinds_of_frames", "grid = [3, 2, 2]", "grid = [3, 2, 2], count = 20", "bodies.beam.frames.count", "grid"},
+    {"no_frames", "grid = [3, 2, 2]", "kind = \"rigid\"", "bodies.beam.frames", "poisson_disk"},
+    {"frames_shared", "grid = [3, 2, 2]", "count = 20, share = []", "bodies.beam.frames.share", "not supported yet"},
+    {"spacing_zero", "grid = [3, 2, 2]", "poisson_disk = 0", "bodies.beam.frames.poisson_disk", "above 0"},
+    {"count_zero", "grid = [3, 2, 2]", "count = 0", "bodies.beam.frames.count", "1"},
+    {"rotations_too_few", "grid = [3, 2, 2]", "positions = [[0, 0, 0], [1, 0, 0]], rotations = [[0, 0, 0]]",
+     "bodies.beam.frames.rotations", "positions"},
+    {"box_with_thickness", "material = \"soft\"", "material = \"soft\"\nthickness = 0.1", "bodies.beam.thickness",
+     "solid"},
+    {"box_with_points_through", "material = \"soft\"", "material = \"soft\"\npoints = { through = 2 }",
+     "bodies.beam.points.through", "sheets"},
+    {"rectangle_without_thickness", "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] }",
+     "rectangle = { origin = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 1, 0] }", "bodies.beam.thickness", "missing"},
+    {"rectangle_without_area", "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] }",
+     "rectangle = { origin = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [2, 0, 0] }",
+     "bodies.beam.domain.rectangle.edge_v", "parallel"},
+    {"line_without_radius", "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] }",
+     "line = { from = [0, 0, 0], to = [1, 0, 0] }", "bodies.beam.radius", "missing"},
+    {"line_without_length", "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] }",
+     "line = { from = [0, 0, 0], to = [0, 0, 0] }", "bodies.beam.domain.line.to", "another point"},
     {"box_turned_round", "min = [0, 0, 0], max = [1, 0.2, 0.2]", "min = [1, 0, 0], max = [0, 0.2, 0.2]",
      "bodies.beam.domain.box", ""},
     {"region_selects_nothing", "min = [-0.01, -1, -1], max = [0.01, 1, 1]", "min = [7, 7, 7], max = [8, 8, 8]",
@@ -133,6 +160,18 @@ TEST_F(BadScenes, BodyWithoutSupportIsNamedWithItsFreeMotion) {
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("beam"), std::string::npos) << result.err;
   EXPECT_TRUE(std::regex_search(result.err, std::regex("translation|translate|move|motion"))) << result.err;
+}
+
+TEST_F(BadScenes, TablesOfFramesAreNamedWithTheirPlace) {
+  write("scene.toml", with(kCantilever, "grid = [3, 2, 2]", "file = \"frames.csv\""));
+  EXPECT_EQ(fascia({"run", "scene.toml"}).status, 4);
+  write("frames.csv", "x,y,z\n0,0,oops\n");
+  const auto before = snapshot();
+  const ProgramResult result = fascia({"run", "scene.toml"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("frames.csv:2:5: z is \"oops\"; must be a finite number"), std::string::npos) << result.err;
+  EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+  EXPECT_EQ(snapshot(), before);
 }
 
 TEST_F(BadScenes, GridTooLargeIsRefusedAtOnce) {

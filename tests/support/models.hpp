@@ -1,10 +1,12 @@
 #pragma once
 
+#include "core/geometry/primitives.hpp"
 #include "core/math/rotation.hpp"
 #include "core/model/model.hpp"
 #include "core/physics/st_venant_kirchhoff.hpp"
 #include "core/solver/drivers.hpp"
-#include "meshless/body.hpp"
+#include "meshless/cloud_build.hpp"
+#include "meshless/grid_body.hpp"
 
 #include <random>
 
@@ -18,21 +20,23 @@ struct BlockOptions {
   double density = 1000;
   GridWeightKind weights = GridWeightKind::trilinear;
   bool half_blend = true;
-  double drilling = 0.1;
+  double drilling = 0.1;  ///< of affine frames their own stabilisation
+  bool affine = false;
   double stiffness_damping = 0, mass_damping = 0;
   IntegrationKind integration = IntegrationKind::automatic;
   Mat3d rotation = Mat3d::identity();
   Vec3d translation{};
 };
 
-inline MeshlessSpec block_spec(const BlockOptions& o) {
-  MeshlessSpec spec;
+inline GridSpec block_spec(const BlockOptions& o) {
+  GridSpec spec;
   spec.domain.max = o.size;
   spec.domain.volume = o.size[0] * o.size[1] * o.size[2];
   spec.grid = o.grid;
   spec.weights = o.weights;
   spec.half_blend = o.half_blend;
-  spec.drilling = o.drilling;
+  spec.stabilization = o.drilling;
+  spec.affine = o.affine;
   spec.integration = o.integration;
   spec.density = o.density;
   spec.rotation = o.rotation;
@@ -46,17 +50,70 @@ inline MeshlessSpec block_spec(const BlockOptions& o) {
 
 struct BuiltModel {
   Model model;
-  std::vector<MeshlessBody> bodies;
+  std::vector<GridBody> bodies;
+  std::vector<CloudBody> clouds;
 };
 
-inline BuiltModel build(const std::vector<MeshlessSpec>& specs) {
+inline BuiltModel build(const std::vector<GridSpec>& specs) {
   BuiltModel built;
   PointSetBuilder points;
-  for (const MeshlessSpec& spec : specs) {
+  for (const GridSpec& spec : specs) {
     built.bodies.emplace_back(spec, built.model, points);
   }
-  built.model.points = std::move(points).finish(built.model.node_count());
+  built.model.points = std::move(points).finish(built.model.frame_kind);
   return built;
+}
+
+/// A unit square of 2 cm or a unit line of 1 cm radius on a grid of frames.
+inline CloudSpec thin_spec(const std::vector<int>& grid, const BlockOptions& o = {}) {
+  CloudSpec spec;
+  const GridSpec block = block_spec(o);
+  static_cast<BodyMatter&>(spec) = block;
+  ThinGridSpec thin;
+  thin.parts.rotation = o.rotation;
+  thin.parts.translation = o.translation;
+  thin.grid.count = grid;
+  thin.grid.edge = {Vec3d{{1, 0, 0}}};
+  const double extent = grid.size() == 2 ? 0.02 : 0.01;
+  thin.extent = [extent](const Vec3d&) { return extent; };
+  if (grid.size() == 2) {
+    thin.grid.edge.push_back({{0, 1, 0}});
+    SheetPart sheet;
+    sheet.surface.points = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}};
+    sheet.surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+    sheet.thickness = {extent, extent};
+    thin.parts.sheets.push_back(sheet);
+  } else {
+    thin.parts.lines.push_back({{{{0, 0, 0}}, {{1, 0, 0}}}, {{0, 1}}, extent});
+  }
+  grid_cloud(thin, spec);
+  return spec;
+}
+
+inline BuiltModel build_cloud(const CloudSpec& spec) {
+  BuiltModel built;
+  PointSetBuilder points;
+  built.clouds.emplace_back(spec, built.model, points);
+  built.model.points = std::move(points).finish(built.model.frame_kind);
+  return built;
+}
+
+/// A block filled with scattered frames.
+inline CloudSpec scattered_spec(const BlockOptions& o, double spacing, int seed,
+                                ScatteredKind weights = ScatteredKind::mls) {
+  CloudSpec spec;
+  const GridSpec block = block_spec(o);
+  static_cast<BodyMatter&>(spec) = block;
+  ScatterSpec scatter;
+  scatter.parts.solid = block.domain;
+  scatter.parts.solid->surface = box_surface({}, o.size, 8, 8, 8);
+  scatter.parts.rotation = o.rotation;
+  scatter.parts.translation = o.translation;
+  scatter.frames = SpacedChoice{spacing, seed};
+  scatter.weights = weights;
+  std::vector<std::string> messages;
+  scatter_cloud(scatter, spec, messages);
+  return spec;
 }
 
 inline BuiltModel block(const BlockOptions& o = {}) { return build({block_spec(o)}); }
@@ -75,12 +132,17 @@ inline State random_state(const Model& model, double displacement, double rotati
   return state;
 }
 
-/// u ← u + s dx, Q ← exp(s dr) Q.
-inline State moved(const State& state, const std::vector<double>& d, double s) {
+/// u ← u + s dx, Q ← exp(s dr) Q, A ← A + s dA.
+inline State moved(const Model& model, const State& state, const std::vector<double>& direction, double s) {
   State r = state;
   for (std::size_t i = 0; i < r.u.size(); ++i) {
-    r.u[i] += Vec3d{{d[6 * i], d[6 * i + 1], d[6 * i + 2]}} * s;
-    r.D[i] = compose_increments(rotation_increment(Vec3d{{d[6 * i + 3], d[6 * i + 4], d[6 * i + 5]}} * s), r.D[i]);
+    const int node = static_cast<int>(i);
+    const double* d = direction.data() + model.points.dofs.begin(node);
+    r.u[i] += Vec3d{{d[0], d[1], d[2]}} * s;
+    if (model.kind(node) == FrameKind::rigid)
+      r.D[i] = compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}} * s), r.D[i]);
+    else
+      r.D[i] += frame_variation(FrameKind::affine, d + 3, {}) * s;
   }
   return r;
 }

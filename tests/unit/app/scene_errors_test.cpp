@@ -103,9 +103,12 @@ TEST(SceneErrors, WrongTypes) {
 TEST(SceneErrors, NotSupportedYet) {
   EXPECT_EQ(errors_of(beam_with("\"meshless\"", "\"tetrahedra\"")),
             "a.toml:5:9: bodies.beam.model: \"tetrahedra\" is not supported yet; must be \"meshless\"");
-  EXPECT_EQ(errors_of_beam("thickness = 1\n"), "a.toml:10:13: bodies.beam.thickness: is not supported yet; remove it");
-  EXPECT_EQ(errors_of(beam_with("{ grid = [5, 2, 2] }", "{ poisson_disk = 1 }")),
-            "a.toml:9:27: bodies.beam.frames.poisson_disk: is not supported yet; must be grid");
+  EXPECT_EQ(errors_of_beam("inertia = []\n"), "a.toml:10:11: bodies.beam.inertia: is not supported yet; remove it");
+  EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }", "annulus = {}")),
+            "a.toml:6:22: bodies.beam.domain.annulus: is not supported yet; must be box, cylinder, ellipsoid, file, "
+            "rectangle or line");
+  EXPECT_EQ(errors_of(beam_with("[5, 2, 2] }", "[5, 2, 2], share = [] }")),
+            "a.toml:9:38: bodies.beam.frames.share: is not supported yet; remove it");
   EXPECT_EQ(errors_of_beam("[couplings.a]\nkind = \"weld\"\n"),
             "a.toml:10:1: couplings: is not supported yet; remove it");
   EXPECT_EQ(errors_of_beam("[solver]\nkind = \"newmark\"\n[output]\nevery = 1\n"),

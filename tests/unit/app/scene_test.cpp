@@ -56,8 +56,8 @@ TEST(Scene, ReadsTheExample) {
   EXPECT_EQ(std::get<BoxDomain>(body.domain).max, (Vec3d{{16, 0.5, 0.5}}));
   EXPECT_EQ(body.mass, 5.0);
   EXPECT_FALSE(body.density);
-  EXPECT_EQ(body.grid, (std::array{21, 3, 3}));
-  EXPECT_EQ(body.per_cell, (std::array{2, 2, 2}));
+  EXPECT_EQ(std::get<GridFrames>(body.frames).count, (std::vector{21, 3, 3}));
+  EXPECT_EQ(std::get<PerCell>(body.points).count, (std::vector{2, 2, 2}));
   ASSERT_EQ(body.materials.size(), 1u);
   EXPECT_EQ(body.materials[0].material.name, "silicone");
   EXPECT_NEAR(body.materials[0].material.young(), 4e4, 1e-9);
@@ -78,8 +78,8 @@ TEST(Scene, PlacesPointAtTheText) {
   EXPECT_EQ(where.key, "constraints[0].where");
   EXPECT_EQ(where.line, 23);
   EXPECT_EQ(where.column, 9);
-  EXPECT_EQ(scene.bodies[0].grid_place.key, "bodies.beam.frames.grid");
-  EXPECT_EQ(scene.bodies[0].grid_place.line, 17);
+  EXPECT_EQ(scene.bodies[0].frames_place.key, "bodies.beam.frames.grid");
+  EXPECT_EQ(scene.bodies[0].frames_place.line, 17);
   EXPECT_EQ(scene.bodies[0].domain_place.line, 14);
   EXPECT_EQ(scene.bodies[0].points_place.key, "bodies.beam.points.per_cell");
   EXPECT_EQ(scene.bodies[0].materials[0].material.place.line, 6);
@@ -90,10 +90,10 @@ TEST(Scene, PlacesPointAtTheText) {
 TEST(Scene, DefaultsAreThoseOfTheManual) {
   const Scene scene = parse_scene_text(test::beam, "folder/beam.toml", {});
   const Body& body = scene.bodies[0];
-  EXPECT_FALSE(body.per_cell);
-  EXPECT_EQ(body.weights, WeightKind::trilinear);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(body.points));
+  EXPECT_EQ(body.weights, WeightKind::automatic);
   EXPECT_EQ(body.blend, Blend::automatic);
-  EXPECT_EQ(body.drilling, 0.1);
+  EXPECT_FALSE(body.drilling);
   EXPECT_EQ(body.transform.scale, 1);
   EXPECT_EQ(scene.world.gravity, Vec3d{});
   EXPECT_EQ(scene.solver.kind, SolverKind::statics);

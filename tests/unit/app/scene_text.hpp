@@ -53,4 +53,14 @@ inline std::string beam_with(std::string_view line, std::string_view by) {
   return text;
 }
 
+/// A body "skin" on another domain: keys from line 7 on.
+inline std::string thin_body(std::string_view domain, std::string_view more) {
+  return "[materials.soft]\nyoung = 1\npoisson = 0.3\n[bodies.skin]\nmodel = \"meshless\"\ndomain = { " +
+         std::string(domain) + " }\n" + std::string(more) + "mass = 1\nmaterial = \"soft\"\n";
+}
+inline constexpr std::string_view rectangle =
+    "rectangle = { origin = [0, 0, 0], edge_u = [2, 0, 0], edge_v = [0, 1, 0] }";
+inline constexpr std::string_view line = "line = { from = [0, 0, 0], to = [0, 0, 3] }";
+inline constexpr std::string_view mesh = "file = \"skin.msh\"";
+
 }  // namespace fascia::app::test

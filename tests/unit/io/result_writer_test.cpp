@@ -22,14 +22,15 @@ namespace {
 using samples::content;
 using samples::TemporaryDirectory;
 
-/// A small box, a lone point on it and two fields.
+/// A small box, two lines and two lone points on it, and two fields.
 VisualMesh sample(int n = 2) {
   const TriangleMesh box = box_surface({{0, 0, 0}}, {{1, 2, 3}}, n, n, n);
   VisualMesh mesh;
   mesh.points = box.points;
   mesh.triangles = box.triangles;
+  mesh.lines = {{4, 1}, {1, 2}};
   mesh.vertices = {3, 0};
-  mesh.part.assign(mesh.triangles.size(), 0);
+  mesh.part.assign(mesh.triangles.size() + mesh.lines.size(), 0);
   mesh.part.insert(mesh.part.end(), {1, 2});
   FieldArray displacement{"displacement", 3, {}}, stress{"von_mises", 1, {}};
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
@@ -51,7 +52,7 @@ TEST(WriteVtu, reads_back) {
   reader->Update();
   vtkUnstructuredGrid* grid = reader->GetOutput();
   ASSERT_EQ(grid->GetNumberOfPoints(), static_cast<vtkIdType>(mesh.points.size()));
-  ASSERT_EQ(grid->GetNumberOfCells(), static_cast<vtkIdType>(mesh.triangles.size() + 2));
+  ASSERT_EQ(grid->GetNumberOfCells(), static_cast<vtkIdType>(mesh.triangles.size() + 4));
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
     Vec3d x;
     grid->GetPoint(static_cast<vtkIdType>(p), x.v);
@@ -63,7 +64,14 @@ TEST(WriteVtu, reads_back) {
     EXPECT_EQ(grid->GetCellType(static_cast<vtkIdType>(t)), VTK_TRIANGLE);
     for (vtkIdType n = 0; n < 3; ++n) EXPECT_EQ(ids->GetId(n), mesh.triangles[t][static_cast<std::size_t>(n)]);
   }
-  EXPECT_EQ(grid->GetCellType(grid->GetNumberOfCells() - 1), VTK_VERTEX);
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const auto cell = static_cast<vtkIdType>(mesh.triangles.size() + l);
+    vtkNew<vtkIdList> ids;
+    grid->GetCellPoints(cell, ids);
+    EXPECT_EQ(grid->GetCellType(cell), VTK_LINE);
+    for (vtkIdType n = 0; n < 2; ++n) EXPECT_EQ(ids->GetId(n), mesh.lines[l][static_cast<std::size_t>(n)]);
+  }
+  for (const vtkIdType back : {1, 2}) EXPECT_EQ(grid->GetCellType(grid->GetNumberOfCells() - back), VTK_VERTEX);
   for (const FieldArray& field : mesh.point_fields) {
     vtkDataArray* array = grid->GetPointData()->GetArray(field.name.c_str());
     ASSERT_NE(array, nullptr);
@@ -91,6 +99,19 @@ TEST(WriteVtu, empty_mesh) {
   EXPECT_NO_THROW(write_vtu(directory.path() / "a.vtu", VisualMesh{}));
 }
 
+TEST(WriteVtu, lines_alone) {
+  const TemporaryDirectory directory;
+  VisualMesh mesh;
+  mesh.points = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 2, 0}}};
+  mesh.lines = {{0, 1}, {1, 2}};
+  write_vtu(directory.path() / "a.vtu", mesh);
+  const Mesh read = read_mesh(directory.path() / "a.vtu");
+  EXPECT_EQ(read.points, mesh.points);
+  ASSERT_EQ(read.blocks.size(), 1u);
+  EXPECT_EQ(read.blocks[0].type, CellType::line);
+  EXPECT_EQ(read.blocks[0].nodes, (std::vector<int>{0, 1, 1, 2}));
+}
+
 TEST(WriteVtu, refuses_what_is_not_finite) {
   const TemporaryDirectory directory;
   const auto file = directory.path() / "a.vtu";
@@ -109,6 +130,9 @@ TEST(WriteVtu, refuses_arrays_that_do_not_fit) {
   const TemporaryDirectory directory;
   VisualMesh mesh = sample();
   mesh.part.pop_back();
+  EXPECT_THROW(write_vtu(directory.path() / "a.vtu", mesh), std::logic_error);
+  mesh = sample();
+  mesh.lines[1][0] = -1;
   EXPECT_THROW(write_vtu(directory.path() / "a.vtu", mesh), std::logic_error);
   mesh = sample();
   mesh.vertices[0] = static_cast<int>(mesh.points.size());

@@ -12,10 +12,10 @@ namespace {
 
 using namespace test;
 
-MeshlessSpec cylinder_spec(const std::array<int, 3>& grid) {
+GridSpec cylinder_spec(const std::array<int, 3>& grid) {
   BlockOptions o;
   o.grid = grid;
-  MeshlessSpec spec = block_spec(o);
+  GridSpec spec = block_spec(o);
   spec.domain.min = {{0, -1, -1}};
   spec.domain.max = {{6, 1, 1}};
   spec.domain.volume = 6 * std::numbers::pi;
@@ -23,10 +23,10 @@ MeshlessSpec cylinder_spec(const std::array<int, 3>& grid) {
   return spec;
 }
 
-MeshlessSpec ball_spec(int n) {
+GridSpec ball_spec(int n) {
   BlockOptions o;
   o.grid = {n, n, n};
-  MeshlessSpec spec = block_spec(o);
+  GridSpec spec = block_spec(o);
   spec.domain.min = {{-1, -1, -1}};
   spec.domain.max = {{1, 1, 1}};
   spec.domain.volume = 4.0 / 3 * std::numbers::pi;
@@ -42,8 +42,9 @@ TEST(MeshlessBody, IsFreeOfStrainAtRest) {
     o.rotation = rotation_about(normalized(Vec3d{{1, 2, -1}}), 1.1);
     o.translation = {{5, 6, 7}};
     const BuiltModel built = block(o);
-    for (const BodyPoint& p : built.bodies[0].points()) {
-      const Attachment a = built.bodies[0].attach(p);
+    for (std::size_t q = 0; q < built.bodies[0].points().size(); ++q) {
+      const BodyPoint& p = built.bodies[0].points()[q];
+      const Attachment a = built.bodies[0].attach_point(q);
       Mat3d F;
       Vec3d x;
       for (std::size_t k = 0; k < a.nodes.size(); ++k) {
@@ -93,8 +94,9 @@ TEST(PatchTest, AffineDisplacementIsAnEquilibrium) {
         system, state, [](double t) { return std::vector<double>{t}; }, settings, {}, nullptr);
     ASSERT_EQ(report.status, RunStatus::converged) << report.message;
     double worst = 0;
-    for (const BodyPoint& p : built.bodies[0].points()) {
-      const Attachment at = built.bodies[0].attach(p);
+    for (std::size_t q = 0; q < built.bodies[0].points().size(); ++q) {
+      const BodyPoint& p = built.bodies[0].points()[q];
+      const Attachment at = built.bodies[0].attach_point(q);
       Mat3d H;
       for (std::size_t k = 0; k < at.nodes.size(); ++k)
         H += outer(state.u[static_cast<std::size_t>(at.nodes[k])], at.influences[k].g) +
@@ -107,7 +109,7 @@ TEST(PatchTest, AffineDisplacementIsAnEquilibrium) {
 }
 
 TEST(MeshlessBody, VolumesAddUpToTheDomains) {
-  for (const MeshlessSpec& spec : {cylinder_spec({13, 5, 5}), ball_spec(6)}) {
+  for (const GridSpec& spec : {cylinder_spec({13, 5, 5}), ball_spec(6)}) {
     const BuiltModel built = build({spec});
     double volume = 0, mass = 0;
     for (const BodyPoint& p : built.bodies[0].points()) volume += p.volume;
@@ -119,7 +121,7 @@ TEST(MeshlessBody, VolumesAddUpToTheDomains) {
 
 /// Cut cells leave no frame hanging on too few points, and no frame without mass.
 TEST(ImmersedBody, HasExactlySixZeroModes) {
-  for (const MeshlessSpec& spec : {cylinder_spec({7, 3, 3}), cylinder_spec({9, 5, 5}), cylinder_spec({7, 6, 6}),
+  for (const GridSpec& spec : {cylinder_spec({7, 3, 3}), cylinder_spec({9, 5, 5}), cylinder_spec({7, 6, 6}),
                                    ball_spec(4), ball_spec(5), ball_spec(6), ball_spec(7), ball_spec(9)}) {
     const BuiltModel built = build({spec});
     for (const FrameInertia& i : built.model.inertia) EXPECT_GT(i.mass, 0);
@@ -135,7 +137,7 @@ TEST(ImmersedBody, HasExactlySixZeroModes) {
 }
 
 TEST(ImmersedBody, WithoutAPointInsideIsRefused) {
-  MeshlessSpec spec = ball_spec(2);
+  GridSpec spec = ball_spec(2);
   spec.domain.contains = [](const Vec3d&) { return false; };
   Model model;
   PointSetBuilder points;

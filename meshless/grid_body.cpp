@@ -1,4 +1,4 @@
-#include "meshless/body.hpp"
+#include "meshless/grid_body.hpp"
 
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
@@ -9,18 +9,18 @@
 
 namespace fascia {
 
-MeshlessBody::MeshlessBody(const MeshlessSpec& spec, Model& model, PointSetBuilder& points)
+GridBody::GridBody(const GridSpec& spec, Model& model, PointSetBuilder& points)
     : grid_(spec.grid),
       min_(spec.domain.min),
       rotation_(spec.rotation),
       translation_(spec.translation),
       weights_(spec.weights),
-      blend_factor_(spec.half_blend ? 0.5 : 1.0),
-      volume_(spec.domain.volume),
-      mass_(spec.density * spec.domain.volume),
-      size_(norm(spec.domain.max - spec.domain.min)),
-      surface_(spec.domain.surface),
+      halved_(Mat3d::diagonal(spec.half_blend ? 1.0 : 0.0)),
       distance_(spec.domain.distance) {
+  volume_ = spec.domain.volume;
+  mass_ = spec.density * spec.domain.volume;
+  size_ = norm(spec.domain.max - spec.domain.min);
+  surface_ = spec.domain.surface;
   for (int a = 0; a < 3; ++a) spacing_[a] = (spec.domain.max[a] - spec.domain.min[a]) / (grid_[at(a)] - 1);
   for (Vec3d& p : surface_.points) p = to_world(p);
   for (int k = 0; k < grid_[2] - 1; ++k)
@@ -37,36 +37,36 @@ MeshlessBody::MeshlessBody(const MeshlessSpec& spec, Model& model, PointSetBuild
   int full_count = 0;
   for (const Sample& s : samples) full_count = std::max(full_count, ++cells_[at(s.cell)].point_count);
   find_owners(samples, full_count);
-  number_frames(samples, model);
+  number_frames(spec, samples, model);
   add_points(spec, samples, points);
   add_inertia(spec, samples, model);
 }
 
-int MeshlessBody::grid_node(const std::array<int, 3>& cell, int corner) const {
+int GridBody::grid_node(const std::array<int, 3>& cell, int corner) const {
   return cell[0] + (corner & 1) + grid_[0] * (cell[1] + (corner >> 1 & 1) + grid_[1] * (cell[2] + (corner >> 2)));
 }
 
-Vec3d MeshlessBody::grid_position(int node) const {
+Vec3d GridBody::grid_position(int node) const {
   const std::array<int, 3> i{node % grid_[0], node / grid_[0] % grid_[1], node / (grid_[0] * grid_[1])};
   Vec3d x;
   for (int a = 0; a < 3; ++a) x[a] = min_[a] + i[at(a)] * spacing_[a];
   return x;
 }
 
-int MeshlessBody::cell_at(const Vec3d& x) const {
+int GridBody::cell_at(const Vec3d& x) const {
   std::array<int, 3> index;
   for (int a = 0; a < 3; ++a)
     index[at(a)] = std::clamp(static_cast<int>(std::floor((x[a] - min_[a]) / spacing_[a])), 0, grid_[at(a)] - 2);
   return index[0] + (grid_[0] - 1) * (index[1] + (grid_[1] - 1) * index[2]);
 }
 
-Vec3d MeshlessBody::cell_coordinates(const Vec3d& x, const Cell& cell) const {
+Vec3d GridBody::cell_coordinates(const Vec3d& x, const Cell& cell) const {
   Vec3d xi;
   for (int a = 0; a < 3; ++a) xi[a] = (x[a] - min_[a]) / spacing_[a] - cell.index[at(a)];
   return xi;
 }
 
-std::vector<char> MeshlessBody::frames_on_boundary() const {
+std::vector<char> GridBody::frames_on_boundary() const {
   std::vector<int> active_cells(frame_of_grid_node_.size(), 0);
   for (std::size_t c = 0; c < cells_.size(); ++c)
     for (int corner = 0; corner < 8 && cells_[c].owner == static_cast<int>(c); ++corner)
@@ -77,7 +77,7 @@ std::vector<char> MeshlessBody::frames_on_boundary() const {
   return boundary;
 }
 
-double MeshlessBody::distance(const Vec3d& X) const {
+double GridBody::distance(const Vec3d& X) const {
   const Vec3d x = to_local(X);
   if (distance_) return distance_(x);
   Vec3d outside;
@@ -86,7 +86,7 @@ double MeshlessBody::distance(const Vec3d& X) const {
   return norm(outside);
 }
 
-Attachment MeshlessBody::attach_local(const Vec3d& x, int cell, const std::array<int, 3>* tetrahedron) const {
+Attachment GridBody::attach_local(const Vec3d& x, int cell, const std::array<int, 3>* tetrahedron) const {
   Attachment r;
   r.cell = cells_[at(cell)].owner;
   const Cell& owner = cells_[at(r.cell)];
@@ -97,13 +97,8 @@ Attachment MeshlessBody::attach_local(const Vec3d& x, int cell, const std::array
       const Vec3d d = rotation_ * (x - grid_position(node));
       Vec3d gradient = weights.gradient[k];
       for (int a = 0; a < 3; ++a) gradient[a] /= spacing_[a];
-      Influence i;
-      i.w = weights.w[k];
-      i.g = rotation_ * gradient;
-      i.b = d * (blend_factor_ * i.w);
-      i.B = (outer(d, i.g) + Mat3d::diagonal(i.w)) * blend_factor_;
       r.nodes.push_back(frame_of_grid_node_[at(node)]);
-      r.influences.push_back(i);
+      r.influences.push_back(blended(weights.w[k], rotation_ * gradient, halved_, d));
     }
   };
   if (weights_ == GridWeightKind::trilinear)
@@ -113,16 +108,18 @@ Attachment MeshlessBody::attach_local(const Vec3d& x, int cell, const std::array
   return r;
 }
 
-Attachment MeshlessBody::attach(const Vec3d& X) const {
+Attachment GridBody::attach(const Vec3d& X) const {
   const Vec3d x = to_local(X);
   return attach_local(x, cell_at(x), nullptr);
 }
 
-Attachment MeshlessBody::attach(const BodyPoint& p) const {
-  return attach_local(to_local(p.X), p.cell, weights_ == GridWeightKind::linear ? &p.tetrahedron : nullptr);
+Attachment GridBody::attach_point(std::size_t point) const {
+  const PointCell& p = point_cells_[point];
+  return attach_local(to_local(points_[point].X), p.cell,
+                      weights_ == GridWeightKind::linear ? &p.tetrahedron : nullptr);
 }
 
-Attachment MeshlessBody::attach_volumetric(const Attachment& a) const {
+Attachment GridBody::attach_volumetric(const Attachment& a) const {
   return selective_ ? attach_local(cells_[at(a.cell)].center, a.cell, nullptr) : a;
 }
 

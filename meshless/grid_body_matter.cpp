@@ -1,4 +1,4 @@
-#include "meshless/body.hpp"
+#include "meshless/grid_body.hpp"
 
 #include "core/model/errors.hpp"
 
@@ -18,7 +18,7 @@ constexpr double kSelectivePoisson = 0.45;
 
 }  // namespace
 
-void MeshlessBody::add_points(const MeshlessSpec& spec, const std::vector<Sample>& samples, PointSetBuilder& builder) {
+void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& samples, PointSetBuilder& builder) {
   const double length = std::cbrt(spacing_[0] * spacing_[1] * spacing_[2]);
   std::vector<PointMaterialSpec> materials;
   bool nearly_incompressible = false;
@@ -49,9 +49,10 @@ void MeshlessBody::add_points(const MeshlessSpec& spec, const std::vector<Sample
       Attachment a = attach_local(s.x, s.cell, weights_ == GridWeightKind::linear ? &s.tetrahedron : nullptr);
       const PointMaterialSpec& m = materials[q];
       const Vec3d X = to_world(s.x);
-      points_.push_back({X, s.volume, m.lambda, m.mu, a.cell, s.tetrahedron});
-      points.push_back({X, s.volume, selective_ ? 0.0 : m.lambda, m.mu, spec.drilling * m.mu, m.stiffness_damping,
-                        std::move(a.influences)});
+      points_.push_back({X, s.volume, m.lambda, m.mu, X, Law::solid, Mat3d::identity()});
+      point_cells_.push_back({a.cell, s.tetrahedron});
+      points.push_back({X, s.volume, selective_ ? 0.0 : m.lambda, m.mu, spec.stabilization * m.mu, m.stiffness_damping,
+                        std::move(a.influences), {}});
       nodes = a.nodes;
       volumetric.volume += s.volume;
       volumetric.lambda += s.volume * m.lambda;
@@ -64,7 +65,8 @@ void MeshlessBody::add_points(const MeshlessSpec& spec, const std::vector<Sample
       volumetric.influences = a.influences;
       points.push_back(volumetric);
     }
-    builder.add_points(nodes, points, length);
+    builder.add_points(nodes, points, length,
+                       {Law::solid, spec.affine ? Stabilization::affine : Stabilization::drilling, spec.affine});
   }
 }
 
@@ -72,7 +74,7 @@ void MeshlessBody::add_points(const MeshlessSpec& spec, const std::vector<Sample
 /// that of the weights inside; in cut cells frames take less, as their support is smaller: the weight of much matter on
 /// a long lever would turn a frame that hardly any point ties to the rest. Points lent to a cell count at their nearest
 /// place in it, so that no frame's mass turns negative.
-void MeshlessBody::add_inertia(const MeshlessSpec& spec, const std::vector<Sample>& samples, Model& model) {
+void GridBody::add_inertia(const GridSpec& spec, const std::vector<Sample>& samples, Model& model) {
   model.inertia.resize(model.rest_position.size());
   const std::vector<double> support = frame_support(samples);
   for (const Sample& s : samples) {
@@ -96,7 +98,7 @@ void MeshlessBody::add_inertia(const MeshlessSpec& spec, const std::vector<Sampl
 }
 
 /// Weights of the frames of a point's cell, the point moved to its nearest place in that cell.
-MeshlessBody::CellShare MeshlessBody::cell_share(const Sample& s) const {
+GridBody::CellShare GridBody::cell_share(const Sample& s) const {
   const Cell& owner = cells_[at(cells_[at(s.cell)].owner)];
   Vec3d xi = cell_coordinates(s.x, owner);
   for (int a = 0; a < 3; ++a) xi[a] = std::clamp(xi[a], 0.0, 1.0);
@@ -115,7 +117,7 @@ MeshlessBody::CellShare MeshlessBody::cell_share(const Sample& s) const {
 }
 
 /// Part of a frame's weight function, over the cells around it that have points, that the matter fills: 1 in a box.
-std::vector<double> MeshlessBody::frame_support(const std::vector<Sample>& samples) const {
+std::vector<double> GridBody::frame_support(const std::vector<Sample>& samples) const {
   std::vector<double> filled(at(frame_count_)), full(at(frame_count_));
   for (const Sample& s : samples) {
     const CellShare share = cell_share(s);

@@ -1,4 +1,4 @@
-#include "meshless/body.hpp"
+#include "meshless/grid_body.hpp"
 
 #include "core/model/errors.hpp"
 
@@ -17,9 +17,16 @@ namespace {
 /// that they could turn almost freely (docs/decisions/cut_cells.md).
 constexpr double kSmallCell = 0.3;
 
+/// Where the grid has a single cell, two points see too little of its bending; affine frames then need three in every
+/// direction.
+int points_of_cell(const GridSpec& spec, int axis) {
+  const bool thin = std::find(spec.grid.begin(), spec.grid.end(), 2) != spec.grid.end();
+  return spec.grid[at(axis)] == 2 || (spec.affine && thin) ? 3 : 2;
+}
+
 }  // namespace
 
-std::vector<MeshlessBody::Sample> MeshlessBody::sample(const MeshlessSpec& spec) const {
+std::vector<GridBody::Sample> GridBody::sample(const GridSpec& spec) const {
   const double cell_volume = spacing_[0] * spacing_[1] * spacing_[2];
   // Candidates of the unit cell.
   std::vector<Sample> unit;
@@ -38,7 +45,7 @@ std::vector<MeshlessBody::Sample> MeshlessBody::sample(const MeshlessSpec& spec)
   } else {
     std::array<std::vector<GaussPoint>, 3> rule;
     for (std::size_t a = 0; a < 3; ++a)
-      rule[a] = gauss_legendre(spec.per_cell ? (*spec.per_cell)[a] : (grid_[a] == 2 ? 3 : 2));
+      rule[a] = gauss_legendre(spec.per_cell ? (*spec.per_cell)[a] : points_of_cell(spec, static_cast<int>(a)));
     for (const GaussPoint& z : rule[2])
       for (const GaussPoint& y : rule[1])
         for (const GaussPoint& x : rule[0]) unit.push_back({{{x.x, y.x, z.x}}, x.weight * y.weight * z.weight, 0, {}});
@@ -58,7 +65,7 @@ std::vector<MeshlessBody::Sample> MeshlessBody::sample(const MeshlessSpec& spec)
 
 /// Cells with enough points own themselves; from these, layer by layer, each other cell takes the owner among its
 /// neighbours' that is nearest, of equals the one with most points.
-void MeshlessBody::find_owners(const std::vector<Sample>& samples, int full_count) {
+void GridBody::find_owners(const std::vector<Sample>& samples, int full_count) {
   int least = std::max(1, static_cast<int>(std::ceil(kSmallCell * full_count)));
   if (std::none_of(cells_.begin(), cells_.end(), [&](const Cell& c) { return c.point_count >= least; })) least = 1;
   if (weights_ == GridWeightKind::linear) {
@@ -112,7 +119,7 @@ void MeshlessBody::find_owners(const std::vector<Sample>& samples, int full_coun
 }
 
 /// Best owner among those of the 26 neighbours; −1 where none has one yet.
-int MeshlessBody::nearest_owner(int c) const {
+int GridBody::nearest_owner(int c) const {
   const Cell& cell = cells_[at(c)];
   int best = -1, best_distance = 0;
   for (int n = 0; n < 27; ++n) {
@@ -137,7 +144,7 @@ int MeshlessBody::nearest_owner(int c) const {
   return best;
 }
 
-void MeshlessBody::number_frames(const std::vector<Sample>& samples, Model& model) {
+void GridBody::number_frames(const GridSpec& spec, const std::vector<Sample>& samples, Model& model) {
   frame_of_grid_node_.assign(at(grid_[0] * grid_[1] * grid_[2]), -1);
   for (const Sample& s : samples)
     for (int corner = 0; corner < 8; ++corner)
@@ -152,6 +159,7 @@ void MeshlessBody::number_frames(const std::vector<Sample>& samples, Model& mode
     frame_of_grid_node_[at(node)] = model.node_count();
     model.rest_position.push_back(to_world(grid_position(node)));
     model.rest_orientation.push_back(rotation_);
+    model.frame_kind.push_back(spec.affine ? FrameKind::affine : FrameKind::rigid);
   }
   frame_count_ = model.node_count() - first_frame_;
   if (dropped > 0) messages_.push_back(std::to_string(dropped) + " frames without points were dropped");

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "core/geometry/surface_parts.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+/// Edges, neighbours and connected parts of triangulated surfaces; for surface*.cpp and mesh_parts.cpp only.
+namespace fascia::surface_parts {
+
+/// An edge of a triangle, under the name that all its triangles give it.
+struct Edge {
+  int low = 0, high = 0;
+  int triangle = 0;
+  bool forward = true;  ///< the triangle runs from low to high
+  bool same_as(const Edge& b) const { return low == b.low && high == b.high; }
+};
+
+/// All edges of all triangles; those that are the same lie side by side, by triangle.
+std::vector<Edge> sorted_edges(const std::vector<Triangle>& triangles);
+
+/// For each triangle its neighbours across edges that exactly two triangles have, and whether both run along the edge
+/// in the same direction.
+struct Neighbours {
+  struct Link {
+    int triangle = -1;  ///< −1 for none: the edge is free, or the surface branches there
+    bool same_direction = false;
+  };
+  std::vector<std::array<Link, 3>> of;
+
+  Neighbours(std::size_t triangle_count, const std::vector<Edge>& edges);
+};
+
+/// Components of a surface that hang together across edges of two triangles, and which triangles must turn to agree
+/// with the first of their component.
+struct Components {
+  std::vector<int> of;     ///< component of each triangle
+  std::vector<bool> turn;  ///< of each triangle
+  int count = 0;
+  bool orientable = true;
+  int twisted = -1;  ///< a triangle that must turn and must not, where not orientable
+
+  explicit Components(const Neighbours& neighbours);
+
+ private:
+  void walk(const Neighbours& neighbours, int start, int component);
+};
+
+}  // namespace fascia::surface_parts

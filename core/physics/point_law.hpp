@@ -1,0 +1,68 @@
+#pragma once
+
+#include "core/physics/point_rule.hpp"
+#include "core/physics/st_venant_kirchhoff.hpp"
+
+/// Elastic laws of points: a solid's, and those of points that stand for a slice through a sheet or along a line, whose
+/// stress has no component across (docs/notation.md).
+namespace fascia {
+
+/// Shear correction of a sheet's transverse shear.
+inline constexpr double kSheetShear = 5.0 / 6.0;
+
+template <class T>
+struct PointMaterial {
+  T volume, lambda, mu;  ///< [m³], [Pa], [Pa]; of thin laws see ThinLame
+  T stabilization;       ///< γ [Pa]
+  T viscosity;           ///< κ = β/dt [-]: viscous stress κ C : (E − E_old)
+  Law law = Law::solid;
+  bool transverse = false;  ///< as in PointRule
+  Mat3<T> axes;             ///< thin laws: columns tangents first; tether: stiffness [N/m]
+  Vec3<T> target;           ///< tether: where to [m]
+};
+
+/// The two constants of a thin law, S_tt = λ' tr_t(E) + 2μ E_tt in its tangent directions: a sheet's λ' = 2λμ/(λ + 2μ)
+/// makes plane stress, a line's λ' = E − 2μ makes S₁₁ = E E₁₁.
+constexpr Lame thin_lame(Law law, const Lame& m) {
+  if (law == Law::sheet) return {2 * m.lambda * m.mu / (m.lambda + 2 * m.mu), m.mu};
+  if (law == Law::line) return {m.mu * (3 * m.lambda + 2 * m.mu) / (m.lambda + m.mu) - 2 * m.mu, m.mu};
+  return m;
+}
+
+/// Second Piola-Kirchhoff stress of a thin law: tangent directions as above, transverse shear 2 k μ E with k = 5/6 for
+/// a sheet and 1 for a disc, nothing across unless `transverse` (then 2μ E, uncoupled).
+template <class T>
+FASCIA_HD Mat3<T> thin_second_piola(const PointMaterial<T>& m, const Mat3<T>& E) {
+  const int tangents = m.law == Law::sheet ? 2 : 1;
+  const T shear(m.law == Law::sheet ? kSheetShear : 1.0), across(m.transverse ? 1.0 : 0.0);
+  const Mat3<T> local = transpose_times(m.axes, E * m.axes);
+  Mat3<T> S;
+  T stretch = local(0, 0);
+  if (tangents == 2) stretch += local(1, 1);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const bool in_i = i < tangents, in_j = j < tangents;
+      S(i, j) = local(i, j) * (m.mu * T(2.0));
+      if (in_i != in_j) S(i, j) *= shear;
+      if (!in_i && !in_j) S(i, j) *= across;
+    }
+    if (i < tangents) S(i, i) += m.lambda * stretch;
+  }
+  return m.axes * times_transpose(S, m.axes);
+}
+
+/// S of a strain [Pa]; linear, so it also maps dE to dS.
+template <class T>
+FASCIA_HD Mat3<T> second_piola(const PointMaterial<T>& m, const Mat3<T>& E) {
+  if (m.law == Law::solid) return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(E);
+  return thin_second_piola(m, E);
+}
+
+/// ψ = E : S(E) / 2  [J/m³]
+template <class T>
+FASCIA_HD T energy_density(const PointMaterial<T>& m, const Mat3<T>& E) {
+  if (m.law == Law::solid) return StVenantKirchhoff<T>{m.lambda, m.mu}.energy_density(E);
+  return T(0.5) * contract(E, thin_second_piola(m, E));
+}
+
+}  // namespace fascia

@@ -1,0 +1,25 @@
+#pragma once
+
+namespace fascia {
+
+/// Stress of a point: of a solid; plane stress; that of a rod; or no stress but a spring to a place in space.
+enum class Law : unsigned char { solid, sheet, line, tether };
+
+/// What keeps frames from moving where strain does not see them: nothing; Qbar tied to the rotation in F; affine
+/// frames: the blended A tied to F.
+enum class Stabilization : unsigned char { none, drilling, affine };
+
+/// How a group's points are computed.
+struct PointRule {
+  Law law = Law::solid;
+  Stabilization stabilization = Stabilization::drilling;
+  bool transverse = false;  ///< thin laws: directors may stretch (affine frames), and resist it on their own
+};
+
+/// The same in a point set.
+struct GroupRule {
+  PointRule rule;
+  int axes = -1;  ///< index of the group among those that have axes, −1: none
+};
+
+}  // namespace fascia

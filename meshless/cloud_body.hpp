@@ -1,0 +1,78 @@
+#pragma once
+
+#include "meshless/body.hpp"
+#include "meshless/frame_field.hpp"
+
+namespace fascia {
+
+/// A place where matter is integrated: on a sheet or line it stands for the points through the thickness or across the
+/// section.
+struct CloudPoint {
+  ScatteredPlace place;
+  double volume = 0;  ///< [m³]
+  double extent = 0;  ///< thickness of a sheet, radius of a line [m]
+};
+
+/// Where a rest position lies in a body.
+struct Location {
+  ScatteredPlace place;  ///< on the middle of a sheet or line
+  Vec3d offset{};        ///< from there to the position [m]
+  double distance = 0;   ///< from the body [m]
+};
+
+/// A body of frames that lie anywhere in matter of any dimension. All in world coordinates, at rest.
+struct CloudSpec : BodyMatter {
+  std::vector<CloudFrame> frames;
+  std::vector<CloudPoint> points;
+  FrameField field;         ///< weights
+  FrameField share;         ///< weights that are never negative, for the inertia
+  bool grid = false;        ///< frames of a regular grid, whose weights interpolate
+  int through = 0;          ///< points through a sheet's thickness, 0: 2; 1 on sheets and lines: the 2014 paper's rule
+  double spacing = 0;       ///< mean distance of frames [m]
+  std::function<Location(const Vec3d&)> locate;
+  TriangleMesh surface;     ///< carried along
+  std::vector<std::array<int, 2>> segments;
+};
+
+class CloudBody final : public MeshlessBody {
+ public:
+  /// Appends frames to the model and points to the builder. Frames without points are dropped.
+  /// @throws InputError  a point that no frame reaches, or one that too many reach
+  CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& points);
+
+  bool interpolates() const override { return interpolates_; }
+  Attachment attach(const Vec3d& X) const override;
+  Attachment attach_point(std::size_t point) const override;
+  std::vector<char> frames_on_boundary() const override { return on_boundary_; }
+  double distance(const Vec3d& X) const override { return locate_(X).distance; }
+  std::string quality() const override { return quality_; }
+
+ private:
+  struct PointPlace {
+    ScatteredPlace place;
+    Vec3d offset{};
+  };
+
+  Attachment attach_place(const ScatteredPlace& place, const Vec3d& offset) const;
+  std::vector<PointPlace> split_points(const CloudSpec& spec);
+  void number_frames(const CloudSpec& spec, Model& model);
+  void add_points(const CloudSpec& spec, PointSetBuilder& points);
+  void add_group(const CloudSpec& spec, const std::vector<std::size_t>& members,
+                 const std::vector<Attachment>& attachments, PointSetBuilder& points) const;
+  void split_group(const CloudSpec& spec, std::vector<std::size_t> members, const std::vector<Attachment>& attachments,
+                   PointSetBuilder& points) const;
+  void add_inertia(const CloudSpec& spec, Model& model);
+  void describe(const CloudSpec& spec);
+  Vec3d frame_position(int node) const { return frame_position_[static_cast<std::size_t>(node - first_frame_)]; }
+
+  FrameField field_;
+  std::function<Location(const Vec3d&)> locate_;
+  bool half_blend_, interpolates_;
+  std::vector<int> node_of_frame_;  ///< of the model, −1: dropped
+  std::vector<Vec3d> frame_position_;
+  std::vector<char> on_boundary_;
+  std::vector<PointPlace> places_;  ///< of each integration point
+  std::string quality_;
+};
+
+}  // namespace fascia

@@ -1,0 +1,207 @@
+#include "meshless/cloud_build.hpp"
+
+#include "core/math/index.hpp"
+#include "core/model/errors.hpp"
+#include "meshless/cloud_parts.hpp"
+#include "meshless/gauss.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace fascia {
+
+namespace {
+
+/// Pieces are this many times finer than the samples.
+constexpr double kFinerThanFrames = 6, kFinerThanPoints = 5;
+/// Supports in spacings: short ones integrate best (docs/decisions/scattered_weights.md).
+constexpr double kMlsSupport = 1.8, kKernelSupport = 2.0;
+constexpr int kShepardNeighbours = 8;
+/// Spacing of integration points over that of frames: bending needs the points to see the section (docs/manual.md).
+constexpr double kPointSpacing = 0.4;
+
+double spacing_of(const MatterParts& parts, const SampleChoice& choice, bool features, double fallback) {
+  if (const auto* spaced = std::get_if<SpacedChoice>(&choice)) return spaced->spacing;
+  if (const auto* counted = std::get_if<CountedChoice>(&choice)) {
+    const double rough = rough_spacing(parts, counted->count);
+    const double finer = features ? kFinerThanFrames : kFinerThanPoints;
+    return spacing_for_count(matter_of(parts, rough / finer), counted->count, counted->seed, features);
+  }
+  return fallback;
+}
+
+int seed_of(const SampleChoice& choice, int fallback) {
+  if (const auto* spaced = std::get_if<SpacedChoice>(&choice)) return spaced->seed;
+  if (const auto* counted = std::get_if<CountedChoice>(&choice)) return counted->seed;
+  return fallback;
+}
+
+std::vector<CloudFrame> frames_of(const ScatterSpec& choice, double spacing) {
+  const Matter matter = matter_of(choice.parts, spacing / kFinerThanFrames);
+  const auto* listed = std::get_if<ListedChoice>(&choice.frames);
+  const std::vector<SamplePlace> places =
+      listed ? places_at(matter, listed->position) : poisson_disk(matter, spacing, seed_of(choice.frames, 1), true);
+  std::vector<CloudFrame> frames;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const SamplePlace& p = places[i];
+    Mat3d own = p.axes;
+    if (listed && !listed->rotation.empty()) own = Mat3d::identity() + rotation_increment(listed->rotation[i]);
+    frames.push_back({to_world(choice.parts, p.x), choice.parts.rotation * own, p.dimension,
+                      choice.parts.rotation * p.axes.column(2), p.feature < p.dimension});
+  }
+  return frames;
+}
+
+void check_frames(const ScatterSpec& choice, const std::vector<CloudFrame>& frames, double size) {
+  std::vector<Vec3d> positions;
+  for (const CloudFrame& f : frames) positions.push_back(f.x);
+  const auto pairs = coincident(positions, 1e-9 * size);
+  if (!pairs.empty()) {
+    std::ostringstream out;
+    const Vec3d& x = positions[at(pairs[0].first)];
+    out << "frames " << pairs[0].first << " and " << pairs[0].second << " coincide at (" << x[0] << ", " << x[1] << ", "
+        << x[2] << "); remove one of them";
+    throw InputError(out.str());
+  }
+  const int needed = choice.parts.dimension() + 1;
+  if (choice.weights == ScatteredKind::mls && static_cast<int>(frames.size()) < needed)
+    throw InputError(std::to_string(frames.size()) + " frames cannot carry linear fields in this domain; use at least " +
+                     std::to_string(needed));
+}
+
+Reach reach_of(const ScatterSpec& choice, const std::vector<CloudFrame>& frames) {
+  Reach reach;
+  if (choice.neighbours) reach.neighbours = *choice.neighbours;
+  if (!choice.neighbours && !choice.support && choice.weights == ScatteredKind::shepard)
+    reach.neighbours = kShepardNeighbours;
+  std::vector<Vec3d> positions;
+  std::vector<int> dimension;
+  for (const CloudFrame& f : frames) {
+    positions.push_back(f.x);
+    dimension.push_back(f.dimension);
+  }
+  const double factor = choice.weights == ScatteredKind::mls ? kMlsSupport : kKernelSupport;
+  for (const double s : local_spacing(positions, dimension))
+    reach.support.push_back(choice.support ? *choice.support : factor * s);
+  return reach;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+/// A sheet is thicker than it is curved where its inner face would fold over.
+void check_curvature(const std::vector<CloudPoint>& points, std::vector<std::string>& messages) {
+  std::vector<Vec3d> x, normal;
+  std::vector<double> thickness;
+  for (const CloudPoint& p : points) {
+    if (p.place.dimension != 2) continue;
+    x.push_back(p.place.X);
+    normal.push_back(p.place.axes.column(2));
+    thickness.push_back(p.extent);
+  }
+  if (x.size() < 3) return;
+  const FrameSearch search(x);
+  std::vector<double> folded;  // thickness over curvature radius
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double curvature = 0;
+    for (const int j : search.nearest(x[i], 5)) {
+      const Vec3d turn = normal[at(j)] - normal[i];
+      if (at(j) != i && norm(turn) < 1) curvature = std::max(curvature, norm(turn) / norm(x[at(j)] - x[i]));
+    }
+    folded.push_back(thickness[i] * curvature);
+  }
+  const auto many = std::count_if(folded.begin(), folded.end(), [](double f) { return f > 1; });
+  if (2 * at(static_cast<int>(many)) > folded.size())
+    throw InputError("the sheet's thickness is larger than its curvature radius; use a smaller thickness or a solid");
+  if (20 * at(static_cast<int>(many)) > folded.size())
+    messages.push_back("the sheet is thicker than its curvature radius at " + std::to_string(many) + " of " +
+                       std::to_string(folded.size()) + " points: bending is rough there");
+}
+
+std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing) {
+  const Matter matter = matter_of(parts, spacing / kFinerThanPoints);
+  const auto* listed = std::get_if<ListedChoice>(&choice);
+  const std::vector<SamplePlace> places =
+      listed ? places_at(matter, listed->position) : poisson_disk(matter, spacing, seed_of(choice, 2), false);
+  std::vector<double> volume;
+  if (listed && !listed->volume.empty()) {
+    double sum = 0;
+    for (const double v : listed->volume) sum += v;
+    for (const double v : listed->volume) volume.push_back(v * matter.volume / sum);
+  } else {
+    for (const Share& s : voronoi_shares(matter, places)) volume.push_back(s.volume);
+  }
+  std::vector<CloudPoint> points;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (volume[i] > 0)
+      points.push_back({{to_world(parts, places[i].x), parts.rotation * places[i].axes, places[i].dimension},
+                        volume[i],
+                        places[i].extent});
+  return points;
+}
+
+}  // namespace
+
+void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages) {
+  const auto* listed = std::get_if<ListedChoice>(&choice.frames);
+  const double given = listed ? rough_spacing(choice.parts, static_cast<int>(listed->position.size())) : 0.0;
+  const double asked = spacing_of(choice.parts, choice.frames, true, given);
+  spec.frames = frames_of(choice, asked);
+  check_frames(choice, spec.frames, size_of(choice.parts));
+  const Reach reach = reach_of(choice, spec.frames);
+  std::vector<Vec3d> positions;
+  std::vector<int> dimension;
+  for (const CloudFrame& f : spec.frames) {
+    positions.push_back(f.x);
+    dimension.push_back(f.dimension);
+  }
+  spec.spacing = std::max(mean(local_spacing(positions, dimension)), 1e-9 * size_of(choice.parts));
+  spec.points = points_of(choice.parts, choice.points,
+                          spacing_of(choice.parts, choice.points, false, kPointSpacing * (listed ? spec.spacing : asked)));
+  if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points");
+  check_curvature(spec.points, messages);
+  spec.field = scattered_field(choice.weights, spec.frames, reach);
+  spec.share = choice.weights == ScatteredKind::mls ? scattered_field(ScatteredKind::wendland, spec.frames, reach)
+                                                    : spec.field;
+  finish_cloud(choice.parts, spec);
+}
+
+void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
+  const MatterParts& parts = choice.parts;
+  const ThinGrid& grid = choice.grid;
+  const std::size_t directions = grid.edge.size();
+  const Matter axes_source = matter_of(parts, size_of(parts) / 8);
+  const Mat3d axes = axes_source.pieces.front().axes;
+  for (int i = 0; i < grid.node_count(); ++i) {
+    bool rim = false;
+    int rest = i;
+    for (const int n : grid.count) {
+      rim = rim || rest % n == 0 || rest % n == n - 1;
+      rest /= n;
+    }
+    spec.frames.push_back({to_world(parts, grid.position(i)), parts.rotation * axes, parts.dimension(),
+                           parts.rotation * axes.column(2), rim});
+  }
+  double cells = 1;
+  for (const int n : grid.count) cells *= n - 1;
+  if (!std::holds_alternative<std::monostate>(choice.points)) {
+    const double spacing = rough_spacing(parts, static_cast<int>(4 * cells));
+    spec.points = points_of(parts, choice.points, spacing_of(parts, choice.points, false, spacing));
+  } else {
+    spec.points = gauss_cells(choice, axes);
+  }
+  ThinGrid placed = grid;
+  placed.origin = to_world(parts, grid.origin);
+  for (Vec3d& e : placed.edge) e = parts.rotation * e;
+  spec.field = spec.share = thin_grid_field(placed);
+  spec.grid = true;
+  const double measure = directions == 2 ? norm(cross(grid.edge[0], grid.edge[1])) : norm(grid.edge[0]);
+  spec.spacing = std::pow(measure / cells, 1.0 / static_cast<double>(directions));
+  finish_cloud(parts, spec);
+}
+
+}  // namespace fascia

@@ -1,0 +1,96 @@
+#include "meshless/cloud_body.hpp"
+
+#include "core/math/index.hpp"
+#include "core/model/errors.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace fascia {
+
+namespace {
+
+constexpr std::size_t kFull = kGroupSize;
+
+std::set<int> all_nodes(const std::vector<std::size_t>& members, const std::vector<Attachment>& attachments) {
+  std::set<int> nodes;
+  for (const std::size_t q : members) nodes.insert(attachments[q].nodes.begin(), attachments[q].nodes.end());
+  return nodes;
+}
+
+}  // namespace
+
+/// Points with the same frames make groups of their own; the others are cut into groups by halving their box, since
+/// points near one another share most frames.
+void CloudBody::add_points(const CloudSpec& spec, PointSetBuilder& builder) {
+  std::vector<Attachment> attachments;
+  std::map<std::pair<Law, std::vector<int>>, std::vector<std::size_t>> same;
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    attachments.push_back(attach_point(q));
+    same[{points_[q].law, attachments.back().nodes}].push_back(q);
+  }
+  std::map<Law, std::vector<std::size_t>> rest;
+  for (const auto& [key, members] : same) {
+    if (2 * members.size() >= kFull)
+      split_group(spec, members, attachments, builder);
+    else
+      rest[key.first].insert(rest[key.first].end(), members.begin(), members.end());
+  }
+  for (const auto& [law, members] : rest) split_group(spec, members, attachments, builder);
+}
+
+void CloudBody::split_group(const CloudSpec& spec, std::vector<std::size_t> members,
+                            const std::vector<Attachment>& attachments, PointSetBuilder& builder) const {
+  const bool fits = members.size() <= kFull;
+  if (fits && all_nodes(members, attachments).size() <= at(kMaxSlots))
+    return add_group(spec, members, attachments, builder);
+  if (members.size() == 1)
+    throw InputError(std::to_string(attachments[members[0]].nodes.size()) + " frames reach one point; at most " +
+                     std::to_string(kMaxSlots) + " may: use a smaller weights.radius or fewer neighbours");
+  Vec3d low = points_[members[0]].X, high = low;
+  for (const std::size_t q : members) {
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], points_[q].X[a]);
+      high[a] = std::max(high[a], points_[q].X[a]);
+    }
+  }
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+    if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
+  std::sort(members.begin(), members.end(), [&](std::size_t p, std::size_t q) {
+    const double x = points_[p].X[axis], y = points_[q].X[axis];
+    return x < y || (x == y && p < q);
+  });
+  // Whole groups in the first half.
+  const std::size_t half = members.size() / 2;
+  const auto cut = static_cast<std::ptrdiff_t>(fits ? half : std::max(kFull, (half + kFull / 2) / kFull * kFull));
+  split_group(spec, {members.begin(), members.begin() + cut}, attachments, builder);
+  split_group(spec, {members.begin() + cut, members.end()}, attachments, builder);
+}
+
+void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>& members,
+                          const std::vector<Attachment>& attachments, PointSetBuilder& builder) const {
+  const std::set<int> nodes = all_nodes(members, attachments);
+  std::vector<PointSample> samples;
+  for (const std::size_t q : members) {
+    const BodyPoint& p = points_[q];
+    const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
+    // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
+    const double stabilization = p.law == Law::line && !spec.affine ? 0.0 : spec.stabilization * p.mu;
+    PointSample s{p.X, p.volume, lame.lambda, lame.mu, stabilization,
+                  spec.material(p.middle).stiffness_damping, {}, p.axes};
+    const Attachment& a = attachments[q];
+    for (const int node : nodes) {
+      const auto k = std::lower_bound(a.nodes.begin(), a.nodes.end(), node) - a.nodes.begin();
+      const bool there = at(static_cast<int>(k)) < a.nodes.size() && a.nodes[at(static_cast<int>(k))] == node;
+      s.influences.push_back(there ? a.influences[at(static_cast<int>(k))] : Influence{});
+    }
+    samples.push_back(std::move(s));
+  }
+  builder.add_points(std::vector<int>(nodes.begin(), nodes.end()), samples, spec.spacing,
+                     {points_[members[0]].law, spec.affine ? Stabilization::affine : Stabilization::drilling,
+                      spec.affine});
+}
+
+}  // namespace fascia

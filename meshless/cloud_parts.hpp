@@ -1,0 +1,19 @@
+#pragma once
+
+#include "meshless/cloud_build.hpp"
+#include "meshless/scatter.hpp"
+
+/// Steps of scatter_cloud() and grid_cloud().
+namespace fascia {
+
+Matter matter_of(const MatterParts& parts, double piece_size);
+/// Spacing at which a body without features would have `count` samples [m].
+double rough_spacing(const MatterParts& parts, int count);
+double size_of(const MatterParts& parts);  ///< diagonal of the bounding box [m]
+inline Vec3d to_world(const MatterParts& parts, const Vec3d& x) { return parts.rotation * x + parts.translation; }
+/// Gauss points of the cells of a thin grid. @param axes  of the matter, before placement
+std::vector<CloudPoint> gauss_cells(const ThinGridSpec& choice, const Mat3d& axes);
+/// What is carried along, and where a position lies; wants the points.
+void finish_cloud(const MatterParts& parts, CloudSpec& spec);
+
+}  // namespace fascia

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "meshless/neighbours.hpp"
+#include "meshless/scattered_weights.hpp"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Weights of a body's frames (numbered from 0) at a place.
+using FrameField = std::function<ScatteredWeights(const ScatteredPlace&)>;
+
+enum class ScatteredKind { mls, shepard, wendland, cubic_spline };
+
+/// A frame of a cloud.
+struct CloudFrame {
+  Vec3d x{};  ///< [m]
+  Mat3d orientation = Mat3d::identity();
+  int dimension = 3;         ///< of the matter there
+  Vec3d normal{};            ///< of a sheet
+  bool on_boundary = false;  ///< of the matter
+};
+
+/// Which frames a place follows.
+struct Reach {
+  std::vector<double> support;  ///< of each frame [m]
+  int neighbours = 0;           ///< above 0: the nearest ones, whatever the supports
+};
+
+/// Weights of scattered frames. Frames on the opposite wall of a sheet do not count.
+FrameField scattered_field(ScatteredKind kind, std::vector<CloudFrame> frames, Reach reach);
+
+/// A parallelogram (two directions) or a segment (one) with frames at the nodes of a regular grid.
+struct ThinGrid {
+  Vec3d origin{};
+  std::vector<Vec3d> edge;  ///< whole length of each direction [m]
+  std::vector<int> count;   ///< frames along each
+
+  Vec3d position(int node) const;
+  int node_count() const;
+};
+
+/// Bilinear or linear weights on a thin grid. Frame numbers run along the first direction first.
+FrameField thin_grid_field(const ThinGrid& grid);
+
+}  // namespace fascia

@@ -1,0 +1,187 @@
+#include "meshless/matter.hpp"
+
+#include "core/math/index.hpp"
+#include "core/model/errors.hpp"
+#include "meshless/matter_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+namespace fascia {
+
+void check_pieces(const Matter& matter, double piece_size, double more) {
+  constexpr double most = 5e7;
+  if (!(piece_size > 0) || !std::isfinite(piece_size))
+    throw InputError("the sampling needs a spacing that is positive; give the mean distance of samples in metres");
+  const double count = static_cast<double>(matter.pieces.size()) + more;
+  if (count <= most) return;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2g", count);
+  throw InputError("sampling the domain takes " + std::string(text.data()) +
+                   " pieces, more than 5e7; use a larger spacing");
+}
+
+namespace {
+
+constexpr int kSubdivisions = 3;  // of a voxel at the surface, in each direction
+constexpr int kParts = kSubdivisions * kSubdivisions * kSubdivisions;
+
+/// A whole number of equal cells a direction, so that a box is filled exactly.
+class VoxelGrid {
+ public:
+  VoxelGrid(const SolidDomain& domain, double size) : min_(domain.min) {
+    for (int a = 0; a < 3; ++a) {
+      const double extent = domain.max[a] - domain.min[a];
+      if (!(extent > 0)) throw InputError("the domain has no volume; its bounding box must be wide in each direction");
+      const double count = std::max(1.0, std::ceil(extent / size * (1 - 1e-9)));
+      cell_[a] = extent / count;
+      expected_ *= count;
+      count_[at(a)] = static_cast<int>(std::min(count, 1e9));
+    }
+  }
+  double expected() const { return expected_; }
+  std::size_t size() const { return at(count_[0]) * at(count_[1]) * at(count_[2]); }
+  const std::array<int, 3>& count() const { return count_; }
+  std::size_t number(int i, int j, int k) const { return at(i) + at(count_[0]) * (at(j) + at(count_[1]) * at(k)); }
+  /// The voxel's place at fractions of its edges.
+  Vec3d place(int i, int j, int k, double u = 0.5, double v = 0.5, double w = 0.5) const {
+    return min_ + Vec3d{{(i + u) * cell_[0], (j + v) * cell_[1], (k + w) * cell_[2]}};
+  }
+  std::size_t voxel_of(const Vec3d& x) const {
+    std::array<int, 3> i{};
+    for (int a = 0; a < 3; ++a)
+      i[at(a)] = static_cast<int>(std::clamp((x[a] - min_[a]) / cell_[a], 0.0, count_[at(a)] - 0.5));
+    return number(i[0], i[1], i[2]);
+  }
+  template <class Act>
+  void for_each(Act&& act) const {
+    for (int k = 0; k < count_[2]; ++k)
+      for (int j = 0; j < count_[1]; ++j)
+        for (int i = 0; i < count_[0]; ++i) act(i, j, k);
+  }
+
+ private:
+  Vec3d min_{}, cell_{};
+  std::array<int, 3> count_{};
+  double expected_ = 1;
+};
+
+/// Counted in parts at first: whole numbers, whose sum is exact.
+void add_voxel(Matter& matter, const Vec3d& x, double parts) {
+  matter.pieces.push_back({x, parts, parts, 3, 3, Mat3d::identity(), 0});
+}
+
+/// Marks the voxels that the surface passes: a neighbour on the other side, or a piece of the surface inside.
+std::vector<char> cut_voxels(const VoxelGrid& grid, const std::vector<char>& inside,
+                             std::span<const MatterPiece> surface) {
+  const auto& n = grid.count();
+  std::vector<char> cut(grid.size(), 0);
+  for (const MatterPiece& p : surface) cut[grid.voxel_of(p.x)] = 1;
+  grid.for_each([&](int i, int j, int k) {
+    const std::size_t here = grid.number(i, j, k);
+    const bool outer = i == 0 || j == 0 || k == 0 || i == n[0] - 1 || j == n[1] - 1 || k == n[2] - 1;
+    if (outer && inside[here] != 0) cut[here] = 1;
+    for (int neighbour = 14; neighbour < 27; ++neighbour) {
+      const int a = i + neighbour % 3 - 1, b = j + neighbour / 3 % 3 - 1, c = k + neighbour / 9 - 1;
+      if (a < 0 || b < 0 || a >= n[0] || b >= n[1] || c >= n[2]) continue;
+      const std::size_t there = grid.number(a, b, c);
+      if (inside[here] != inside[there]) cut[here] = cut[there] = 1;
+    }
+  });
+  return cut;
+}
+
+/// The part of a voxel inside, from a fine grid of tests; its centroid, or where that is outside the test next to it.
+std::optional<MatterPiece> voxel_part(const VoxelGrid& grid, int i, int j, int k,
+                                      const std::function<bool(const Vec3d&)>& contains) {
+  std::vector<Vec3d> found;
+  Vec3d sum{};
+  for (int n = 0; n < kParts; ++n) {
+    const auto fraction = [](int m) { return (m % kSubdivisions + 0.5) / kSubdivisions; };
+    const Vec3d x =
+        grid.place(i, j, k, fraction(n), fraction(n / kSubdivisions), fraction(n / (kSubdivisions * kSubdivisions)));
+    if (!contains(x)) continue;
+    found.push_back(x);
+    sum += x;
+  }
+  if (found.empty()) return std::nullopt;
+  MatterPiece piece;
+  piece.volume = static_cast<double>(found.size());
+  const Vec3d centroid = sum * (1.0 / static_cast<double>(found.size()));
+  piece.x = contains(centroid) ? centroid : *std::min_element(found.begin(), found.end(), [&](auto& a, auto& b) {
+    return squared_norm(a - centroid) < squared_norm(b - centroid);
+  });
+  return piece;
+}
+
+void add_faces(Matter& matter, const TriangleMesh& surface, double piece_size) {
+  const SurfaceFeatures features = find_features(surface);
+  std::vector<std::array<int, 2>> edges;
+  for (const SurfaceEdge& e : features.edges) edges.push_back(e.vertices);
+  add_edges(matter, surface.points, edges, std::vector<EdgeMatter>(edges.size()), 3);
+
+  std::vector<TrianglePart> parts;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const Vec3d& normal = features.triangle_normal[t];
+    if (!(squared_norm(normal) > 0)) continue;
+    std::array<Vec3d, 3> corners;
+    for (std::size_t n = 0; n < 3; ++n) corners[n] = surface.points[at(surface.triangles[t][n])];
+    cut_triangle(corners, {normal, normal, normal}, 0.5 * norm(normal), piece_size, parts);
+  }
+  for (const TrianglePart& p : parts) matter.pieces.push_back({p.x, 0, p.area, 3, 2, Mat3d::identity(), 0});
+}
+
+std::function<bool(const Vec3d&)> inside_test(const SolidDomain& domain) {
+  if (domain.contains) return domain.contains;
+  return [low = domain.min, high = domain.max](const Vec3d& x) {
+    for (int a = 0; a < 3; ++a)
+      if (!(x[a] >= low[a] && x[a] <= high[a])) return false;
+    return true;
+  };
+}
+
+}  // namespace
+
+void add_solid(Matter& matter, const SolidDomain& domain, double piece_size) {
+  check_pieces(matter, piece_size, 0);
+  if (!(domain.volume > 0)) throw InputError("the domain has no volume; its surface must enclose some");
+  const VoxelGrid grid(domain, piece_size);
+  check_pieces(matter, piece_size, grid.expected() + expected_parts(domain.surface, piece_size));
+  const std::size_t first_surface = matter.pieces.size();
+  add_faces(matter, domain.surface, piece_size);
+  const std::size_t first = matter.pieces.size();
+
+  if (!domain.contains) {
+    grid.for_each([&](int i, int j, int k) { add_voxel(matter, grid.place(i, j, k), kParts); });
+  } else {
+    std::vector<char> inside(grid.size());
+    grid.for_each(
+        [&](int i, int j, int k) { inside[grid.number(i, j, k)] = domain.contains(grid.place(i, j, k)) ? 1 : 0; });
+    const std::span<const MatterPiece> all(matter.pieces);
+    const std::vector<char> cut = cut_voxels(grid, inside, all.subspan(first_surface));
+    grid.for_each([&](int i, int j, int k) {
+      const std::size_t voxel = grid.number(i, j, k);
+      if (cut[voxel] == 0) {
+        if (inside[voxel] != 0) add_voxel(matter, grid.place(i, j, k), kParts);
+      } else if (const auto part = voxel_part(grid, i, j, k, domain.contains)) {
+        add_voxel(matter, part->x, part->volume);
+      }
+    });
+  }
+
+  double sum = 0;
+  for (std::size_t p = first; p < matter.pieces.size(); ++p) sum += matter.pieces[p].volume;
+  if (!(sum > 0)) throw InputError("no piece of the sampling falls inside the domain; use a smaller spacing");
+  for (std::size_t p = first; p < matter.pieces.size(); ++p) {
+    matter.pieces[p].volume *= domain.volume / sum;
+    matter.pieces[p].measure = matter.pieces[p].volume;
+  }
+  matter.volume += domain.volume;
+  matter.piece_size = std::max(matter.piece_size, piece_size);
+  matter.solids.push_back(inside_test(domain));
+}
+
+}  // namespace fascia

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/math/vec3.hpp"
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace fascia {
+
+/// Which frames are near a point. Results ascend by distance, equal ones by index: they do not depend on the search.
+class FrameSearch {
+ public:
+  /// @param positions  copied
+  explicit FrameSearch(std::span<const Vec3d> positions);
+  ~FrameSearch();
+  FrameSearch(FrameSearch&&) noexcept;
+  FrameSearch& operator=(FrameSearch&&) noexcept;
+  FrameSearch(const FrameSearch&) = delete;
+  FrameSearch& operator=(const FrameSearch&) = delete;
+
+  /// The k nearest; all where there are fewer.
+  std::vector<int> nearest(const Vec3d& x, int k) const;
+  /// Those at most `radius` away [m].
+  std::vector<int> within(const Vec3d& x, double radius) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+/// How far apart the frames are around each of them [m]: mean distance to the 2 × dimension nearest others, kept
+/// between half and twice the median of all. One frame alone has none: 0.
+///
+/// @param dimension  of the matter at each frame: 1, 2 or 3
+std::vector<double> local_spacing(std::span<const Vec3d> positions, std::span<const int> dimension);
+
+/// Pairs i < j not farther apart than the tolerance [m], ascending.
+std::vector<std::pair<int, int>> coincident(std::span<const Vec3d> positions, double tolerance);
+
+}  // namespace fascia

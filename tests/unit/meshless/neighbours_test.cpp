@@ -1,0 +1,100 @@
+#include "meshless/neighbours.hpp"
+
+#include "core/math/index.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace fascia {
+namespace {
+
+std::vector<Vec3d> lattice(int n) {
+  std::vector<Vec3d> points;
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        points.push_back({{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}});
+  return points;
+}
+
+std::vector<Vec3d> scattered(int count) {
+  std::mt19937 random(7);
+  std::vector<Vec3d> points(at(count));
+  for (Vec3d& x : points)
+    for (int a = 0; a < 3; ++a) x[a] = static_cast<double>(random()) * 0x1p-32;
+  return points;
+}
+
+std::vector<int> sorted_by_distance(const std::vector<Vec3d>& points, const Vec3d& x) {
+  std::vector<int> order;
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int i, int j) { return squared_norm(points[at(i)] - x) < squared_norm(points[at(j)] - x); });
+  return order;
+}
+
+/// Lattices have many equal distances: the lowest indices win, also at the last of k and at the very radius.
+TEST(FrameSearch, AgreesWithComparingAll) {
+  for (const auto& points : {lattice(7), scattered(300)}) {
+    const FrameSearch search(points);
+    std::vector<Vec3d> places = scattered(20);
+    for (Vec3d& x : places) x = x * 6;
+    places.insert(places.end(), {points[0], points[100], {{3, 3, 3}}, {{2.5, 2.5, 2.5}}, {{2.5, 3, 3}}, {{50, -9, 2}}});
+    for (const Vec3d& x : places) {
+      const std::vector<int> all = sorted_by_distance(points, x);
+      for (const int k : {1, 2, 5, 8, 20, 1000}) {
+        const auto count = static_cast<std::ptrdiff_t>(std::min(at(k), points.size()));
+        EXPECT_EQ(search.nearest(x, k), std::vector<int>(all.begin(), all.begin() + count));
+      }
+      for (const double radius : {0.0, 0.3, 1.0, 2.0, 100.0}) {
+        std::vector<int> expected;
+        for (const int i : all)
+          if (squared_norm(points[at(i)] - x) <= radius * radius) expected.push_back(i);
+        EXPECT_EQ(search.within(x, radius), expected);
+      }
+    }
+  }
+}
+
+TEST(FrameSearch, OfNothingFindsNothing) {
+  const FrameSearch search({});
+  EXPECT_TRUE(search.nearest({}, 3).empty());
+  EXPECT_TRUE(search.within({}, 3).empty());
+  EXPECT_TRUE(FrameSearch(lattice(2)).nearest({}, 0).empty());
+}
+
+TEST(LocalSpacing, IsTheMeanDistanceOfNearestNeighbours) {
+  const std::vector<Vec3d> points = lattice(5);
+  const std::vector<double> spacing = local_spacing(points, std::vector<int>(points.size(), 3));
+  EXPECT_DOUBLE_EQ(spacing[62], 1);                            // the middle
+  EXPECT_DOUBLE_EQ(spacing[0], (3 + 3 * std::sqrt(2.0)) / 6);  // a corner
+  EXPECT_DOUBLE_EQ(local_spacing(points, std::vector<int>(points.size(), 1))[0], 1);
+}
+
+TEST(LocalSpacing, StaysNearTheMedian) {
+  std::vector<Vec3d> line;
+  for (int i = 0; i < 9; ++i) line.push_back({{static_cast<double>(i), 0, 0}});
+  line.push_back({{100, 0, 0}});
+  line.push_back({{100.01, 0, 0}});
+  line.push_back({{100.02, 0, 0}});
+  const std::vector<double> spacing = local_spacing(line, std::vector<int>(line.size(), 1));
+  EXPECT_DOUBLE_EQ(spacing[10], 0.5);
+  EXPECT_LE(*std::max_element(spacing.begin(), spacing.end()), 2);
+  EXPECT_EQ(local_spacing(std::vector<Vec3d>(1), std::vector<int>{3}), std::vector<double>{0.0});
+  EXPECT_EQ(local_spacing(std::vector<Vec3d>(3), std::vector<int>{3, 3, 3}), std::vector<double>(3, 0.0));
+}
+
+TEST(Coincident, ListsPairsInOrder) {
+  std::vector<Vec3d> points = lattice(3);
+  points.push_back(points[4] + Vec3d{{0, 1e-7, 0}});
+  points.push_back(points[1]);
+  points.push_back(points[4]);
+  const std::vector<std::pair<int, int>> expected{{1, 28}, {4, 27}, {4, 29}, {27, 29}};
+  EXPECT_EQ(coincident(points, 1e-6), expected);
+  EXPECT_EQ(coincident(points, 1e-8).size(), 2U);
+}
+
+}  // namespace
+}  // namespace fascia
