@@ -153,8 +153,6 @@ std::unique_ptr<MeshlessBody> build_body(const Body& body, Model& model, PointSe
     for (const CloudPoint& p : spec.points) volume += p.volume;
     fill_matter(body, volume, spec);
     built = std::make_unique<CloudBody>(spec, model, points);
-    messages.push_back(built->quality());
-    if (messages.back().empty()) messages.pop_back();
   }
   check_material_regions(body, *built);
   return built;
@@ -209,7 +207,7 @@ SampleEstimate estimated_samples(const Body& body) {
     if (const auto* listed = std::get_if<ListedFrames>(&body.frames))
       e.frames = static_cast<double>(listed->positions.size());
     e.points = e.frames * std::pow(2, dimension) * virtual_points;
-    e.pieces = e.frames * std::pow(10, dimension);
+    e.pieces = std::min(4e6, e.points * std::pow(6, dimension));
   }
   if (const auto* counted = std::get_if<CountedSamples>(&body.points)) e.points = counted->count * virtual_points;
   return e;

@@ -140,7 +140,8 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
     for (const int node : tied > 0 ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
       const Vec3d& X = s.model.rest_position[at(node)];
       for (int k = 0; k < 3; ++k) {
-        if (c.fixed[at(k)] && interpolates) add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
+        if (c.fixed[at(k)] && interpolates)
+          add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
         if (c.fixed[at(3 + k)]) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
       }
     }

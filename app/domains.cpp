@@ -195,7 +195,8 @@ MatterParts make_domain(const Body& body, std::vector<std::string>& messages) {
   parts.translation = body.transform.translate;
   if (const auto* box = std::get_if<BoxDomain>(&body.domain)) parts.solid = make_box(*box, body);
   if (const auto* cylinder = std::get_if<CylinderDomain>(&body.domain)) parts.solid = make_cylinder(*cylinder, body);
-  if (const auto* ellipsoid = std::get_if<EllipsoidDomain>(&body.domain)) parts.solid = make_ellipsoid(*ellipsoid, scale);
+  if (const auto* ellipsoid = std::get_if<EllipsoidDomain>(&body.domain))
+    parts.solid = make_ellipsoid(*ellipsoid, scale);
   if (const auto* r = std::get_if<RectangleDomain>(&body.domain))
     parts.sheets.push_back(make_sheet(rectangle_mesh(*r, body, scale), body, parts));
   if (const auto* line = std::get_if<LineDomain>(&body.domain)) parts.lines.push_back(line_part(*line, body, scale));

@@ -72,8 +72,8 @@ std::vector<Share> frame_shares(const Simulation& s, int body, const Region& reg
   return shares;
 }
 
-/// By frames where the region picks single ones, or holds no more than frames; by area where it asks for the boundary or
-/// holds faces but no material point; else by volume. Parts add to 1.
+/// By frames where the region picks single ones, or holds no more than frames; by area where it asks for the boundary
+/// or holds faces but no material point; else by volume. Parts add to 1.
 std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
   const SimulatedBody& body = s.bodies[at(index)];
   std::vector<Share> shares;

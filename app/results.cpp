@@ -51,8 +51,8 @@ BodyTensors tensors(const MeshlessBody& body, const State& state) {
     const Mat3d H = field_at(a, state).H, Hv = body.selective() ? field_at(body.attach_volumetric(a), state).H : H;
     const Mat3d E = green_strain(H), stress = cauchy_stress(H, Hv, p);
     const double tr = trace(green_strain(Hv));
-    const double density = p.law == Law::solid ? 0.5 * p.lambda * tr * tr + p.mu * contract(E, E)
-                                               : energy_density(stress_material(p), E);
+    const double density =
+        p.law == Law::solid ? 0.5 * p.lambda * tr * tr + p.mu * contract(E, E) : energy_density(stress_material(p), E);
     t.points.strain.push_back(E);
     t.points.stress.push_back(stress);
     t.points.energy_density.push_back(density);
@@ -152,8 +152,8 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
   }
   for (int i = 0; i < body.frame_count(); ++i) {
     const auto node = at(body.first_frame() + i);
-    const Mat3d turn = simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node]
-                                                                              : polar_increment(state.D[node]);
+    const Mat3d turn =
+        simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node] : polar_increment(state.D[node]);
     values.push_back({b.frames[at(i)], state.u[node], rotation_vector(turn),
                       (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node],
                       t.frames.strain[at(i)], t.frames.stress[at(i)], t.frames.energy_density[at(i)]});

@@ -193,6 +193,15 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
     out.run.status = RunStatus::not_converged;
     out.run.message = "the subspace iteration did not settle; ask for fewer modes";
   }
+  int hollow = 0, first_hollow = 0;
+  for (std::size_t m = 0; m < modes.stabilization.size(); ++m)
+    if (modes.stabilization[m] > 0.5 && hollow++ == 0) first_hollow = static_cast<int>(m) + 1;
+  if (hollow > 0)
+    out.warnings.push_back(
+        fmt::format("{} modes (the first: number {}) are motions of frames that the material hardly feels, held by "
+                    "stabilisation: they are no modes of the body; use more frames on a grid, or a larger "
+                    "weights.drilling",
+                    hollow, first_hollow));
   std::vector<nlohmann::json> frequencies(s.probes.size(), nlohmann::json::array());
   double size = 0;
   for (const SimulatedBody& b : s.bodies) size = std::max(size, b.meshless->size());
@@ -280,7 +289,10 @@ int check_scene(const RunOptions& options) {
   for (const SimulatedBody& b : s.bodies)
     fmt::print("body {}: meshless, {} frames, {} integration points{}, {:.6g} m3, {:.6g} kg\n", b.name,
                b.meshless->frame_count(), b.meshless->points().size(),
-               b.meshless->selective() ? " (lambda at one point a cell)" : "", b.meshless->volume(), b.meshless->mass());
+               b.meshless->selective() ? " (lambda at one point a cell)" : "", b.meshless->volume(),
+               b.meshless->mass());
+  for (const SimulatedBody& b : s.bodies)
+    if (!b.meshless->quality().empty()) fmt::print("body {}: {}\n", b.name, b.meshless->quality());
   const int free = s.model.dof_count() - s.model.constrained_dof_count();
   fmt::print("{} unknowns ({} prescribed), {} loads, {} probes\n", free, s.model.constrained_dof_count(),
              s.scene.loads.size(), s.probes.size());

@@ -34,10 +34,11 @@ void check_memory(const Scene& scene) {
   const auto largest = std::max_element(scene.bodies.begin(), scene.bodies.end(), [](const Body& a, const Body& b) {
     return estimated_samples(a).frames < estimated_samples(b).frames;
   });
-  throw SceneError({{largest->frames_place,
-                     fmt::format("{:.6g} frames need about {:.3g} GB, {:.3g} GB are free; use {}",
-                                 estimated_samples(*largest).frames, need / 1e9, have / 1e9,
-                                 std::holds_alternative<GridFrames>(largest->frames) ? "a smaller grid" : "fewer frames")}});
+  throw SceneError(
+      {{largest->frames_place,
+        fmt::format("{:.6g} frames need about {:.3g} GB, {:.3g} GB are free; use {}",
+                    estimated_samples(*largest).frames, need / 1e9, have / 1e9,
+                    std::holds_alternative<GridFrames>(largest->frames) ? "a smaller grid" : "fewer frames")}});
 }
 
 void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& built) {

@@ -27,7 +27,7 @@ struct ProbePoint {
 
 /// Material that a constraint ties to where it belongs.
 struct TetheredMaterial {
-  int tether = 0;  ///< of the model
+  int tether = 0;           ///< of the model
   int body = 0, frame = 0;  ///< model node of the nearest frame
   std::vector<Vec3d> axes;  ///< directions that are held
   Attachment field;
@@ -40,7 +40,7 @@ struct ResolvedProbe {
   std::vector<ProbePoint> points;
   std::vector<int> nodes;     ///< of the model, by `where`
   std::vector<int> tethered;  ///< of Simulation::tethered
-  Vec3d about{};           ///< of moments and angular momentum
+  Vec3d about{};              ///< of moments and angular momentum
 };
 
 /// A scene ready to run.
@@ -73,9 +73,9 @@ Simulation build_simulation(Scene scene);
 /// @returns how many places it ties
 int add_tethers(Simulation& simulation, PointSetBuilder& points, int body, const Constraint& constraint, int motion);
 void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< constraints.cpp
-void add_loads(Simulation& simulation);            ///< loads.cpp
-void check_support(const Simulation& simulation);  ///< support.cpp
-void resolve_probes(Simulation& simulation);       ///< probe_setup.cpp
+void add_loads(Simulation& simulation);                                 ///< loads.cpp
+void check_support(const Simulation& simulation);                       ///< support.cpp
+void resolve_probes(Simulation& simulation);                            ///< probe_setup.cpp
 /// Registers a schedule. @throws SceneError a sine in statics, which has no time
 int new_schedule(Simulation& simulation, const Schedule& schedule, const Place& place);
 int body_index(const Simulation& simulation, const std::string& name);

@@ -12,6 +12,10 @@ add_library(udunits2 INTERFACE)
 target_include_directories(udunits2 SYSTEM INTERFACE ${UDUNITS2_INCLUDE})
 target_link_libraries(udunits2 INTERFACE ${UDUNITS2_LIBRARY})
 
+find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
+add_library(nanoflann INTERFACE)
+target_include_directories(nanoflann SYSTEM INTERFACE ${NANOFLANN_INCLUDE})
+
 if(FASCIA_WITH_CHOLMOD)
   find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
   find_library(CHOLMOD_LIBRARY cholmod REQUIRED)

@@ -19,10 +19,10 @@ struct PointMaterialSpec {
 
 /// What a body is made of and how it is discretised, whatever its frames.
 struct BodyMatter {
-  bool affine = false;         ///< frames of 12 degrees of freedom
-  bool half_blend = true;      ///< the paper's rule otherwise
-  double stabilization = 0.1;  ///< γ/μ
-  double density = 0;          ///< [kg/m³]
+  bool affine = false;                                      ///< frames of 12 degrees of freedom
+  bool half_blend = true;                                   ///< the paper's rule otherwise
+  double stabilization = 0.1;                               ///< γ/μ
+  double density = 0;                                       ///< [kg/m³]
   std::function<PointMaterialSpec(const Vec3d&)> material;  ///< by rest position
 };
 

@@ -102,8 +102,7 @@ Attachment CloudBody::attach_place(const ScatteredPlace& place, const Vec3d& off
     const int node = node_of_frame_[at(weights.frame[k])];
     if (node < 0) continue;  // a dropped frame, beside the matter
     a.nodes.push_back(node);
-    a.influences.push_back(
-        blended(weights.w[k], weights.gradient[k], halved, place.X + offset - frame_position(node)));
+    a.influences.push_back(blended(weights.w[k], weights.gradient[k], halved, place.X + offset - frame_position(node)));
   }
   return a;
 }
@@ -117,8 +116,8 @@ Attachment CloudBody::attach_point(std::size_t point) const {
   return attach_place(places_[point].place, places_[point].offset);
 }
 
-/// Any partition of unity gives a rigid motion its exact kinetic energy, since each frame takes the full lever; one that
-/// is never negative gives every frame a positive mass.
+/// Any partition of unity gives a rigid motion its exact kinetic energy, since each frame takes the full lever; one
+/// that is never negative gives every frame a positive mass.
 void CloudBody::add_inertia(const CloudSpec& spec, Model& model) {
   model.inertia.resize(model.rest_position.size());
   std::size_t q = 0;
@@ -162,15 +161,18 @@ void CloudBody::describe(const CloudSpec& spec) {
     if (!weights.back().lowered) continue;
     if (lowered++ == 0) lowered_at = p.place.X;
   }
+  const bool consistent = trace(weights.front().consistent) > 0;
   const Consistency c = consistency(weights, positions, places, spec.spacing);
   std::ostringstream out;
   out.precision(2);
   out << "weights: " << least << " to " << most << " frames a point; ";
-  if (c.gradient < 1e-10)
-    out << "linear fields are reproduced to rounding";
+  if (consistent)
+    out << "linear fields along the matter are reproduced";
   else
-    out << "linear fields are off by " << c.position << " spacings, a uniform stretch by " << 100 * c.gradient << " %";
+    out << "linear fields are off by " << c.position << " spacings (rms), a uniform stretch by " << 100 * c.gradient
+        << " %";
   quality_ = out.str();
+  if (!consistent) messages_.push_back(quality_ + "; use kind = \"mls\" where the stiffness matters");
   if (lowered > 0)
     messages_.push_back(std::to_string(lowered) +
                         " points have too few frames around them, or all in a plane, for linear weights in every "

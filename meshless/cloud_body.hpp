@@ -24,13 +24,13 @@ struct Location {
 struct CloudSpec : BodyMatter {
   std::vector<CloudFrame> frames;
   std::vector<CloudPoint> points;
-  FrameField field;         ///< weights
-  FrameField share;         ///< weights that are never negative, for the inertia
-  bool grid = false;        ///< frames of a regular grid, whose weights interpolate
-  int through = 0;          ///< points through a sheet's thickness, 0: 2; 1 on sheets and lines: the 2014 paper's rule
-  double spacing = 0;       ///< mean distance of frames [m]
+  FrameField field;    ///< weights
+  FrameField share;    ///< weights that are never negative, for the inertia
+  bool grid = false;   ///< frames of a regular grid, whose weights interpolate
+  int through = 0;     ///< points through a sheet's thickness, 0: 2; 1 on sheets and lines: the 2014 paper's rule
+  double spacing = 0;  ///< mean distance of frames [m]
   std::function<Location(const Vec3d&)> locate;
-  TriangleMesh surface;     ///< carried along
+  TriangleMesh surface;  ///< carried along
   std::vector<std::array<int, 2>> segments;
 };
 

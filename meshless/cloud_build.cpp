@@ -13,35 +13,42 @@ namespace fascia {
 
 namespace {
 
-/// Pieces are this many times finer than the samples.
-constexpr double kFinerThanFrames = 6, kFinerThanPoints = 5;
 /// Supports in spacings: short ones integrate best (docs/decisions/scattered_weights.md).
 constexpr double kMlsSupport = 1.8, kKernelSupport = 2.0;
 constexpr int kShepardNeighbours = 8;
 /// Spacing of integration points over that of frames: bending needs the points to see the section (docs/manual.md).
 constexpr double kPointSpacing = 0.4;
 
-double spacing_of(const MatterParts& parts, const SampleChoice& choice, bool features, double fallback) {
-  if (const auto* spaced = std::get_if<SpacedChoice>(&choice)) return spaced->spacing;
-  if (const auto* counted = std::get_if<CountedChoice>(&choice)) {
-    const double rough = rough_spacing(parts, counted->count);
-    const double finer = features ? kFinerThanFrames : kFinerThanPoints;
-    return spacing_for_count(matter_of(parts, rough / finer), counted->count, counted->seed, features);
+/// Samples of matter as a choice asks for.
+struct Samples {
+  Matter matter;
+  double spacing = 0;
+  std::vector<SamplePlace> places;
+};
+
+/// @param fallback  spacing where the choice has none
+Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool frames, double fallback, int seed) {
+  Samples s;
+  s.spacing = fallback;
+  const auto* counted = std::get_if<CountedChoice>(&choice);
+  const auto* listed = std::get_if<ListedChoice>(&choice);
+  if (const auto* spaced = std::get_if<SpacedChoice>(&choice)) {
+    s.spacing = spaced->spacing;
+    seed = spaced->seed;
+  } else if (counted) {
+    s.spacing = rough_spacing(parts, counted->count);
+    seed = counted->seed;
+  } else if (listed) {
+    s.spacing = rough_spacing(parts, static_cast<int>(listed->position.size()));
   }
-  return fallback;
+  s.matter = matter_for(parts, s.spacing);
+  if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames);
+  s.places = listed ? places_at(s.matter, listed->position) : poisson_disk(s.matter, s.spacing, seed, frames);
+  return s;
 }
 
-int seed_of(const SampleChoice& choice, int fallback) {
-  if (const auto* spaced = std::get_if<SpacedChoice>(&choice)) return spaced->seed;
-  if (const auto* counted = std::get_if<CountedChoice>(&choice)) return counted->seed;
-  return fallback;
-}
-
-std::vector<CloudFrame> frames_of(const ScatterSpec& choice, double spacing) {
-  const Matter matter = matter_of(choice.parts, spacing / kFinerThanFrames);
+std::vector<CloudFrame> frames_of(const ScatterSpec& choice, const std::vector<SamplePlace>& places) {
   const auto* listed = std::get_if<ListedChoice>(&choice.frames);
-  const std::vector<SamplePlace> places =
-      listed ? places_at(matter, listed->position) : poisson_disk(matter, spacing, seed_of(choice.frames, 1), true);
   std::vector<CloudFrame> frames;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const SamplePlace& p = places[i];
@@ -66,8 +73,8 @@ void check_frames(const ScatterSpec& choice, const std::vector<CloudFrame>& fram
   }
   const int needed = choice.parts.dimension() + 1;
   if (choice.weights == ScatteredKind::mls && static_cast<int>(frames.size()) < needed)
-    throw InputError(std::to_string(frames.size()) + " frames cannot carry linear fields in this domain; use at least " +
-                     std::to_string(needed));
+    throw InputError(std::to_string(frames.size()) +
+                     " frames cannot carry linear fields in this domain; use at least " + std::to_string(needed));
 }
 
 Reach reach_of(const ScatterSpec& choice, const std::vector<CloudFrame>& frames) {
@@ -122,35 +129,37 @@ void check_curvature(const std::vector<CloudPoint>& points, std::vector<std::str
                        std::to_string(folded.size()) + " points: bending is rough there");
 }
 
+/// Points with their shares of the matter; sampled ones move along the tangents to the middle of their share, where
+/// linear fields are integrated exactly.
 std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing) {
-  const Matter matter = matter_of(parts, spacing / kFinerThanPoints);
+  Samples s = samples_of(parts, choice, false, spacing, 2);
   const auto* listed = std::get_if<ListedChoice>(&choice);
-  const std::vector<SamplePlace> places =
-      listed ? places_at(matter, listed->position) : poisson_disk(matter, spacing, seed_of(choice, 2), false);
-  std::vector<double> volume;
+  std::vector<Share> shares = voronoi_shares(s.matter, s.places);
   if (listed && !listed->volume.empty()) {
     double sum = 0;
     for (const double v : listed->volume) sum += v;
-    for (const double v : listed->volume) volume.push_back(v * matter.volume / sum);
-  } else {
-    for (const Share& s : voronoi_shares(matter, places)) volume.push_back(s.volume);
+    for (std::size_t i = 0; i < shares.size(); ++i) shares[i].volume = listed->volume[i] * s.matter.volume / sum;
   }
   std::vector<CloudPoint> points;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (volume[i] > 0)
-      points.push_back({{to_world(parts, places[i].x), parts.rotation * places[i].axes, places[i].dimension},
-                        volume[i],
-                        places[i].extent});
+  for (std::size_t i = 0; i < s.places.size(); ++i) {
+    SamplePlace& p = s.places[i];
+    if (!(shares[i].volume > 0)) continue;
+    if (!listed) {
+      Vec3d centered = p.x;
+      for (int a = 0; a < p.dimension; ++a)
+        centered += p.axes.column(a) * dot(p.axes.column(a), shares[i].centroid - p.x);
+      if (p.dimension < 3 || !parts.solid->contains || parts.solid->contains(centered)) p.x = centered;
+    }
+    points.push_back({{to_world(parts, p.x), parts.rotation * p.axes, p.dimension}, shares[i].volume, p.extent});
+  }
   return points;
 }
 
 }  // namespace
 
 void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages) {
-  const auto* listed = std::get_if<ListedChoice>(&choice.frames);
-  const double given = listed ? rough_spacing(choice.parts, static_cast<int>(listed->position.size())) : 0.0;
-  const double asked = spacing_of(choice.parts, choice.frames, true, given);
-  spec.frames = frames_of(choice, asked);
+  const Samples frames = samples_of(choice.parts, choice.frames, true, 0, 1);
+  spec.frames = frames_of(choice, frames.places);
   check_frames(choice, spec.frames, size_of(choice.parts));
   const Reach reach = reach_of(choice, spec.frames);
   std::vector<Vec3d> positions;
@@ -160,13 +169,13 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
     dimension.push_back(f.dimension);
   }
   spec.spacing = std::max(mean(local_spacing(positions, dimension)), 1e-9 * size_of(choice.parts));
-  spec.points = points_of(choice.parts, choice.points,
-                          spacing_of(choice.parts, choice.points, false, kPointSpacing * (listed ? spec.spacing : asked)));
+  const bool listed = std::holds_alternative<ListedChoice>(choice.frames);
+  spec.points = points_of(choice.parts, choice.points, kPointSpacing * (listed ? spec.spacing : frames.spacing));
   if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points");
   check_curvature(spec.points, messages);
   spec.field = scattered_field(choice.weights, spec.frames, reach);
-  spec.share = choice.weights == ScatteredKind::mls ? scattered_field(ScatteredKind::wendland, spec.frames, reach)
-                                                    : spec.field;
+  spec.share =
+      choice.weights == ScatteredKind::mls ? scattered_field(ScatteredKind::wendland, spec.frames, reach) : spec.field;
   finish_cloud(choice.parts, spec);
 }
 
@@ -189,8 +198,7 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   double cells = 1;
   for (const int n : grid.count) cells *= n - 1;
   if (!std::holds_alternative<std::monostate>(choice.points)) {
-    const double spacing = rough_spacing(parts, static_cast<int>(4 * cells));
-    spec.points = points_of(parts, choice.points, spacing_of(parts, choice.points, false, spacing));
+    spec.points = points_of(parts, choice.points, rough_spacing(parts, static_cast<int>(4 * cells)));
   } else {
     spec.points = gauss_cells(choice, axes);
   }

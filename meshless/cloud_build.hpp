@@ -53,8 +53,8 @@ struct ScatterSpec {
 void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages);
 
 struct ThinGridSpec {
-  MatterParts parts;  ///< one flat sheet or one straight line
-  ThinGrid grid;      ///< in the axes of the parts
+  MatterParts parts;          ///< one flat sheet or one straight line
+  ThinGrid grid;              ///< in the axes of the parts
   std::vector<int> per_cell;  ///< Gauss points of a cell along each direction; empty: 2, and 3 where there is one cell
   SampleChoice points;        ///< instead of per_cell
   std::function<double(const Vec3d&)> extent;  ///< thickness or radius by rest position [m]

@@ -78,8 +78,8 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
     const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
     const double stabilization = p.law == Law::line && !spec.affine ? 0.0 : spec.stabilization * p.mu;
-    PointSample s{p.X, p.volume, lame.lambda, lame.mu, stabilization,
-                  spec.material(p.middle).stiffness_damping, {}, p.axes};
+    PointSample s{p.X, p.volume, lame.lambda, lame.mu, stabilization, spec.material(p.middle).stiffness_damping,
+                  {},  p.axes};
     const Attachment& a = attachments[q];
     for (const int node : nodes) {
       const auto k = std::lower_bound(a.nodes.begin(), a.nodes.end(), node) - a.nodes.begin();
@@ -88,9 +88,9 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
     }
     samples.push_back(std::move(s));
   }
-  builder.add_points(std::vector<int>(nodes.begin(), nodes.end()), samples, spec.spacing,
-                     {points_[members[0]].law, spec.affine ? Stabilization::affine : Stabilization::drilling,
-                      spec.affine});
+  builder.add_points(
+      std::vector<int>(nodes.begin(), nodes.end()), samples, spec.spacing,
+      {points_[members[0]].law, spec.affine ? Stabilization::affine : Stabilization::drilling, spec.affine});
 }
 
 }  // namespace fascia

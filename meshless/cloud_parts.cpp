@@ -24,6 +24,8 @@ Vec3d nearest_on_segment(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
   return a + e * std::clamp(dot(x - a, e) / squared_norm(e), 0.0, 1.0);
 }
 
+constexpr double kLeaning = 0.2;
+
 /// Where positions lie in parts of matter. Axes are those of the nearest integration point of the same dimension.
 class Locator {
  public:
@@ -76,7 +78,8 @@ class Locator {
     const double along = dimension == 2 ? std::hypot(d[0], d[1]) : std::abs(d[0]);
     const double across = dimension == 2 ? std::abs(d[2]) : std::hypot(d[1], d[2]);
     const double reach = dimension == 2 ? 0.5 * near.extent : near.extent;
-    const double distance = std::hypot(along, std::max(0.0, across - reach));
+    // Smooth normals lean a little against those of the facets.
+    const double distance = std::hypot(std::max(0.0, along - kLeaning * across), std::max(0.0, across - reach));
     if (distance < best.distance) best = {{middle, T, dimension}, X - middle, distance};
   }
 
@@ -94,6 +97,13 @@ Matter matter_of(const MatterParts& parts, double piece_size) {
   for (const SheetPart& s : parts.sheets) add_sheet(matter, s, piece_size);
   for (const LinePart& l : parts.lines) add_line(matter, l, piece_size);
   return matter;
+}
+
+Matter matter_for(const MatterParts& parts, double spacing) {
+  constexpr int kMostPieces = 4'000'000;
+  constexpr double kFinest = 6, kCoarsest = 2.5;
+  const double affordable = rough_spacing(parts, kMostPieces);
+  return matter_of(parts, std::clamp(affordable, spacing / kFinest, spacing / kCoarsest));
 }
 
 double rough_spacing(const MatterParts& parts, int count) {
@@ -168,8 +178,7 @@ void finish_cloud(const MatterParts& parts, CloudSpec& spec) {
   };
   const auto carry_triangles = [&](const TriangleMesh& mesh) {
     const int first = carry(mesh.points);
-    for (const auto& t : mesh.triangles)
-      spec.surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const auto& t : mesh.triangles) spec.surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   };
   if (parts.solid) carry_triangles(parts.solid->surface);
   for (const SheetPart& s : parts.sheets) carry_triangles(s.surface);

@@ -7,6 +7,8 @@
 namespace fascia {
 
 Matter matter_of(const MatterParts& parts, double piece_size);
+/// Pieces fine enough for samples of this spacing: a sixth of it, more where there would be too many.
+Matter matter_for(const MatterParts& parts, double spacing);
 /// Spacing at which a body without features would have `count` samples [m].
 double rough_spacing(const MatterParts& parts, int count);
 double size_of(const MatterParts& parts);  ///< diagonal of the bounding box [m]

@@ -51,8 +51,14 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       const Vec3d X = to_world(s.x);
       points_.push_back({X, s.volume, m.lambda, m.mu, X, Law::solid, Mat3d::identity()});
       point_cells_.push_back({a.cell, s.tetrahedron});
-      points.push_back({X, s.volume, selective_ ? 0.0 : m.lambda, m.mu, spec.stabilization * m.mu, m.stiffness_damping,
-                        std::move(a.influences), {}});
+      points.push_back({X,
+                        s.volume,
+                        selective_ ? 0.0 : m.lambda,
+                        m.mu,
+                        spec.stabilization * m.mu,
+                        m.stiffness_damping,
+                        std::move(a.influences),
+                        {}});
       nodes = a.nodes;
       volumetric.volume += s.volume;
       volumetric.lambda += s.volume * m.lambda;

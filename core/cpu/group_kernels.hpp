@@ -77,7 +77,8 @@ inline Mat3<Lanes> broadcast(const Mat3d& a) {
   return m;
 }
 
-/// H += u gᵀ + D B and, where blended rotations matter, Dbar += w D of one slot; u and D may be a direction (dx, [dr]× Q).
+/// H += u gᵀ + D B and, where blended rotations matter, Dbar += w D of one slot; u and D may be a direction (dx, [dr]×
+/// Q).
 template <bool Blend>
 inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const Mat3<Lanes>& D,
                      PointMotion<Lanes>& x) {

@@ -2,6 +2,7 @@
 
 #include "core/cpu/executor.hpp"
 #include "core/math/index.hpp"
+#include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/dof_filter.hpp"
@@ -100,6 +101,30 @@ class Problem {
 
 }  // namespace
 
+namespace {
+
+/// Stabilisation's part of the energy of a small motion along a shape; 0 of a free motion.
+double stabilization_part(const Model& model, CpuExecutor& executor, const std::vector<double>& shape, double frequency,
+                          double highest) {
+  if (frequency < 1e-5 * highest) return 0;
+  State state = State::at_rest(model);
+  const DofLayout& dofs = model.points.dofs;
+  double largest = 0;
+  for (const double v : shape) largest = std::max(largest, std::abs(v));
+  const double small = 1e-6 / largest;
+  for (int i = 0; i < dofs.node_count(); ++i) {
+    const double* d = shape.data() + dofs.begin(i);
+    state.u[at(i)] = Vec3d{{d[0], d[1], d[2]}} * small;
+    state.D[at(i)] = dofs.kind(i) == FrameKind::rigid ? rotation_increment(Vec3d{{d[3], d[4], d[5]}} * small)
+                                                      : frame_variation(FrameKind::affine, d + 3, {}) * small;
+  }
+  std::vector<double> unused(shape.size());
+  const InternalEnergy energy = executor.gradient(state, {}, unused);
+  return energy.total() > 0 ? energy.stabilization / energy.total() : 0.0;
+}
+
+}  // namespace
+
 Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   Problem problem(model, pool);
   const auto n = static_cast<Eigen::Index>(model.dof_count());
@@ -151,6 +176,10 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
       for (double& v : shape) v = -v;
     modes.shape.push_back(std::move(shape));
   }
+  CpuExecutor executor(model.points, pool);
+  for (std::size_t k = 0; k < modes.shape.size(); ++k)
+    modes.stabilization.push_back(
+        stabilization_part(model, executor, modes.shape[k], modes.frequency[k], modes.frequency.back()));
   return modes;
 }
 

@@ -11,7 +11,9 @@ namespace fascia {
 /// Natural frequencies and shapes about the rest state, without loads.
 struct Modes {
   std::vector<double> frequency;           ///< ascending [Hz]; a free motion has 0
-  std::vector<std::vector<double>> shape;  ///< 6 a frame, mass-normalised, largest translation positive
+  std::vector<std::vector<double>> shape;  ///< by degrees of freedom, mass-normalised, largest translation positive
+  /// Part of the elastic energy that stabilisation holds; a large one is a motion of frames that matter hardly feels.
+  std::vector<double> stabilization;
   int iterations = 0;
   bool converged = true;
 };

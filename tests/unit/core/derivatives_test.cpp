@@ -147,7 +147,8 @@ class Derivatives : public testing::TestWithParam<Case> {
 TEST_P(Derivatives, GradientIsThatOfTheEnergy) {
   const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
   const double h = 1e-6;  // truncation h² and rounding eps/h balance near here
-  const double numeric = (energy(moved(built_.model, state_, d, h)) - energy(moved(built_.model, state_, d, -h))) / (2 * h);
+  const double numeric =
+      (energy(moved(built_.model, state_, d, h)) - energy(moved(built_.model, state_, d, -h))) / (2 * h);
   const double error = std::abs(numeric - test::dot(g, d)) / (test::norm(g) * test::norm(d));
   std::printf("%-12s gradient against differences of the energy: %.1e\n", GetParam().name.c_str(), error);
   EXPECT_LT(error, 1e-8);
@@ -159,7 +160,9 @@ TEST_P(Derivatives, TangentIsTheSecondDerivativeAlongExponentials) {
   std::vector<double> Kd(size());
   executor_.multiply(lin, d, Kd);
   const double h = 1e-4;
-  const double numeric = (energy(moved(built_.model, state_, d, h)) - 2 * energy(state_) + energy(moved(built_.model, state_, d, -h))) / (h * h);
+  const double numeric =
+      (energy(moved(built_.model, state_, d, h)) - 2 * energy(state_) + energy(moved(built_.model, state_, d, -h))) /
+      (h * h);
   const double error = std::abs(numeric - test::dot(d, Kd)) / std::abs(numeric);
   std::printf("%-12s dᵀKd against second differences: %.1e\n", GetParam().name.c_str(), error);
   EXPECT_LT(error, 1e-6);
@@ -179,7 +182,8 @@ TEST_P(Derivatives, DifferencesOfTheGradientAreTangentMinusHalfTorque) {
     for (std::size_t k = 0; k < 3; ++k) Kd[i + 3 + k] -= correction[static_cast<int>(k)];
   }
   const double h = 1e-6;
-  const std::vector<double> plus = gradient(moved(built_.model, state_, d, h)), minus = gradient(moved(built_.model, state_, d, -h));
+  const std::vector<double> plus = gradient(moved(built_.model, state_, d, h)),
+                            minus = gradient(moved(built_.model, state_, d, -h));
   std::vector<double> difference(size());
   for (std::size_t i = 0; i < size(); ++i) difference[i] = (plus[i] - minus[i]) / (2 * h) - Kd[i];
   const double error = test::norm(difference) / test::norm(Kd);

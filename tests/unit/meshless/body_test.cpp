@@ -95,7 +95,6 @@ TEST(PatchTest, AffineDisplacementIsAnEquilibrium) {
     ASSERT_EQ(report.status, RunStatus::converged) << report.message;
     double worst = 0;
     for (std::size_t q = 0; q < built.bodies[0].points().size(); ++q) {
-      const BodyPoint& p = built.bodies[0].points()[q];
       const Attachment at = built.bodies[0].attach_point(q);
       Mat3d H;
       for (std::size_t k = 0; k < at.nodes.size(); ++k)
@@ -122,7 +121,7 @@ TEST(MeshlessBody, VolumesAddUpToTheDomains) {
 /// Cut cells leave no frame hanging on too few points, and no frame without mass.
 TEST(ImmersedBody, HasExactlySixZeroModes) {
   for (const GridSpec& spec : {cylinder_spec({7, 3, 3}), cylinder_spec({9, 5, 5}), cylinder_spec({7, 6, 6}),
-                                   ball_spec(4), ball_spec(5), ball_spec(6), ball_spec(7), ball_spec(9)}) {
+                               ball_spec(4), ball_spec(5), ball_spec(6), ball_spec(7), ball_spec(9)}) {
     const BuiltModel built = build({spec});
     for (const FrameInertia& i : built.model.inertia) EXPECT_GT(i.mass, 0);
     ThreadPool pool(2);
@@ -141,7 +140,7 @@ TEST(ImmersedBody, WithoutAPointInsideIsRefused) {
   spec.domain.contains = [](const Vec3d&) { return false; };
   Model model;
   PointSetBuilder points;
-  EXPECT_ANY_THROW(MeshlessBody(spec, model, points));
+  EXPECT_ANY_THROW(GridBody(spec, model, points));
 }
 
 /// Frames along other axes, another place, another numbering: the same energy for the same motion.
