@@ -208,9 +208,9 @@ FieldValue field_at(const Attachment& a, const State& state) {
   return f;
 }
 
-PointMaterial<double> stress_material(const BodyPoint& p) {
+ThinMaterial<double> stress_material(const BodyPoint& p) {
   const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
-  PointMaterial<double> m{};
+  ThinMaterial<double> m{};
   m.volume = p.volume;
   m.lambda = lame.lambda;
   m.mu = lame.mu;

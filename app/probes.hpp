@@ -36,6 +36,6 @@ FieldValue field_at(const Attachment& attachment, const State& state);
 Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, const BodyPoint& point);
 
 /// The point's material as the mechanics use it, without stabilisation and damping.
-PointMaterial<double> stress_material(const BodyPoint& point);
+ThinMaterial<double> stress_material(const BodyPoint& point);
 
 }  // namespace fascia::app

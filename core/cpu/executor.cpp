@@ -63,9 +63,9 @@ void CpuExecutor::note_motion(const State& state) {
   }
 }
 
-template <Stabilization stabilization>
+template <PointKind kind>
 void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& history, int group) {
-  constexpr bool kBlend = stabilization != Stabilization::none;
+  constexpr bool kBlend = kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int first_slot = set_.slot_begin[at(group)];
   Mat3<Lanes> P[kBatches], Y[kBatches];
@@ -76,17 +76,17 @@ void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& his
     for (std::size_t s = 0; s < nodes.size(); ++s)
       add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(state.u[at(nodes[s])]),
                        broadcast(state.D[at(nodes[s])]), x);
-    const PointMaterial<Lanes> m = material(set_, group, b, history.inverse_step, targets_);
+    const auto m = material<kind>(set_, group, b, history.inverse_step, targets_);
     const Mat3<Lanes> E_old =
         history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
-    const PointStress<Lanes> stress = point_stress<stabilization>(x, m, E_old);
+    const PointStress<Lanes> stress = point_stress<kind.stabilization>(x, m, E_old);
     P[b] = stress.P * m.volume;
     Y[b] = stress.Y * m.volume;
-    const PointEnergy<Lanes> energy = point_energy<stabilization>(x, m, E_old);
+    const PointEnergy<Lanes> energy = point_energy<kind.stabilization>(x, m, E_old);
     elastic += lane_sum(energy.elastic);
     stabilizing += lane_sum(energy.stabilization);
     viscous += lane_sum(energy.viscous);
-    if (m.law == Law::tether) tether += lane_sum(squared(P[b]));
+    if (is_tether(m)) tether += lane_sum(squared(P[b]));
     // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
     const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
     const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0));
@@ -108,7 +108,7 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
   note_motion(state);
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
-      with_stabilization(group, [&](auto kind) { gradient_of_group<kind()>(state, history, group); });
+      with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group); });
   });
   pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
@@ -182,23 +182,28 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
       for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);
   }
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
-    for (int group = begin; group < end; ++group) {
-      const auto nodes = set_.nodes(group);
-      double* point = out.points.data() + at(group) * 24 * kGroupSize;
-      for (int b = 0; b < kBatches; ++b) {
-        PointMotion<Lanes> x;
-        for (std::size_t s = 0; s < nodes.size(); ++s)
-          add_slot<true>(set_.shape_of_slot(set_.slot_begin[at(group)] + static_cast<int>(s)), b,
-                         broadcast(state.u[at(nodes[s])]), broadcast(state.D[at(nodes[s])]), x);
-        const Mat3<Lanes> E_old =
-            history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
-        const PointMaterial<Lanes> m = material(set_, group, b, history.inverse_step, targets_);
-        store_matrix(point, 0, b, x.H);
-        store_matrix(point, 9, b, x.Dbar);
-        store_symmetric(point, 18, b, point_stress<Stabilization::none>(x, m, E_old).S);
-      }
-    }
+    for (int group = begin; group < end; ++group)
+      with_kind(group, [&](auto kind) { linearize_group<kind.value>(state, history, group, out); });
   });
+}
+
+template <PointKind kind>
+void CpuExecutor::linearize_group(const State& state, const StrainHistory& history, int group,
+                                  Linearization& out) const {
+  const auto nodes = set_.nodes(group);
+  double* point = out.points.data() + at(group) * 24 * kGroupSize;
+  for (int b = 0; b < kBatches; ++b) {
+    PointMotion<Lanes> x;
+    for (std::size_t s = 0; s < nodes.size(); ++s)
+      add_slot<true>(set_.shape_of_slot(set_.slot_begin[at(group)] + static_cast<int>(s)), b,
+                     broadcast(state.u[at(nodes[s])]), broadcast(state.D[at(nodes[s])]), x);
+    const Mat3<Lanes> E_old =
+        history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
+    const auto m = material<kind>(set_, group, b, history.inverse_step, targets_);
+    store_matrix(point, 0, b, x.H);
+    store_matrix(point, 9, b, x.Dbar);
+    store_symmetric(point, 18, b, point_stress<Stabilization::none>(x, m, E_old).S);
+  }
 }
 
 }  // namespace fascia

@@ -71,16 +71,18 @@ class CpuExecutor {
   ThreadPool& pool() { return pool_; }
 
  private:
-  template <Stabilization stabilization>
+  template <PointKind kind>
   void gradient_of_group(const State& state, const StrainHistory& history, int group);
+  template <PointKind kind>
+  void linearize_group(const State& state, const StrainHistory& history, int group, Linearization& out) const;
   void note_motion(const State& state);
-  template <Stabilization stabilization>
+  template <PointKind kind>
   void multiply_group(const Linearization& at, int group);
-  template <Stabilization stabilization>
+  template <PointKind kind>
   void assemble_group(const Linearization& at, int group, BlockMatrix& matrix) const;
-  /// Calls act with the stabilisation of a group as a constant.
+  /// Calls act with the kind of a group as a constant.
   template <class Act>
-  void with_stabilization(int group, const Act& act) const;
+  void with_kind(int group, const Act& act) const;
 
   const PointSet& set_;
   ThreadPool& pool_;
@@ -92,16 +94,31 @@ class CpuExecutor {
   AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), dA (9)
 };
 
+namespace kernels {
+
+template <PointKind kind>
+struct Constant {
+  static constexpr PointKind value = kind;
+};
+
+}  // namespace kernels
+
 template <class Act>
-void CpuExecutor::with_stabilization(int group, const Act& act) const {
-  switch (set_.rule[static_cast<std::size_t>(group)].rule.stabilization) {
-    case Stabilization::none:
-      return act(std::integral_constant<Stabilization, Stabilization::none>{});
-    case Stabilization::drilling:
-      return act(std::integral_constant<Stabilization, Stabilization::drilling>{});
-    case Stabilization::affine:
-      return act(std::integral_constant<Stabilization, Stabilization::affine>{});
-  }
+void CpuExecutor::with_kind(int group, const Act& act) const {
+  const auto with_law = [&]<bool solid>() {
+    switch (set_.rule[static_cast<std::size_t>(group)].rule.stabilization) {
+      case Stabilization::none:
+        return act(kernels::Constant<PointKind{Stabilization::none, solid}>{});
+      case Stabilization::drilling:
+        return act(kernels::Constant<PointKind{Stabilization::drilling, solid}>{});
+      case Stabilization::affine:
+        return act(kernels::Constant<PointKind{Stabilization::affine, solid}>{});
+    }
+  };
+  if (set_.rule[static_cast<std::size_t>(group)].rule.law == Law::solid)
+    with_law.template operator()<true>();
+  else
+    with_law.template operator()<false>();
 }
 
 }  // namespace fascia

@@ -3,6 +3,8 @@
 #include "core/cpu/executor.hpp"
 #include "core/math/batch.hpp"
 
+#include <type_traits>
+
 /// Loads of a batch of lanes from the arrays of a point set.
 namespace fascia::kernels {
 
@@ -45,23 +47,25 @@ inline void store_symmetric(double* base, int first_row, int batch, const Mat3<L
 }
 
 /// @param targets  of tethers: (groups with axes × 3 × 8) [m]
-inline PointMaterial<Lanes> material(const PointSet& set, int group, int batch, double inverse_step,
-                                     const AlignedVector<double>& targets) {
+template <PointKind kind>
+inline auto material(const PointSet& set, int group, int batch, double inverse_step,
+                     const AlignedVector<double>& targets) {
   const double* base = set.material_of_group(group);
-  const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];
-  PointMaterial<Lanes> m;
+  std::conditional_t<kind.solid, SolidMaterial<Lanes>, ThinMaterial<Lanes>> m;
   m.volume = row(base, kVolume, batch);
   m.lambda = row(base, kLambda, batch);
   m.mu = row(base, kMu, batch);
   m.stabilization = row(base, kStabilization, batch);
   m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(inverse_step);
-  m.law = rule.rule.law;
-  if (m.law == Law::solid) return m;
-  const auto index = static_cast<std::size_t>(rule.axes);
-  m.transverse = rule.rule.transverse;
-  m.axes = matrix(set.axes.data() + index * 9 * kGroupSize, 0, batch);
-  if (m.law == Law::tether)
-    for (int k = 0; k < 3; ++k) m.target[k] = row(targets.data() + index * 3 * kGroupSize, k, batch);
+  if constexpr (!kind.solid) {
+    const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];
+    const auto index = static_cast<std::size_t>(rule.axes);
+    m.law = rule.rule.law;
+    m.transverse = rule.rule.transverse;
+    m.axes = matrix(set.axes.data() + index * 9 * kGroupSize, 0, batch);
+    if (m.law == Law::tether)
+      for (int k = 0; k < 3; ++k) m.target[k] = row(targets.data() + index * 3 * kGroupSize, k, batch);
+  }
   return m;
 }
 

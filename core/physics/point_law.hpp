@@ -11,15 +11,29 @@ namespace fascia {
 inline constexpr double kSheetShear = 5.0 / 6.0;
 
 template <class T>
-struct PointMaterial {
-  T volume, lambda, mu;  ///< [m³], [Pa], [Pa]; of thin laws see ThinLame
+struct SolidMaterial {
+  T volume, lambda, mu;  ///< [m³], [Pa], [Pa]; of thin laws see thin_lame()
   T stabilization;       ///< γ [Pa]
   T viscosity;           ///< κ = β/dt [-]: viscous stress κ C : (E − E_old)
-  Law law = Law::solid;
+};
+
+/// Of a sheet, a line or a tether. A type of its own, so that solids do not ask at every point which law they have.
+template <class T>
+struct ThinMaterial : SolidMaterial<T> {
+  Law law = Law::sheet;
   bool transverse = false;  ///< as in PointRule
-  Mat3<T> axes;             ///< thin laws: columns tangents first; tether: stiffness [N/m]
+  Mat3<T> axes;             ///< columns: tangents first; tether: stiffness [N/m]
   Vec3<T> target;           ///< tether: where to [m]
 };
+
+template <class T>
+FASCIA_HD constexpr bool is_tether(const SolidMaterial<T>&) {
+  return false;
+}
+template <class T>
+FASCIA_HD constexpr bool is_tether(const ThinMaterial<T>& m) {
+  return m.law == Law::tether;
+}
 
 /// The two constants of a thin law, S_tt = λ' tr_t(E) + 2μ E_tt in its tangent directions: a sheet's λ' = 2λμ/(λ + 2μ)
 /// makes plane stress, a line's λ' = E − 2μ makes S₁₁ = E E₁₁.
@@ -32,7 +46,7 @@ constexpr Lame thin_lame(Law law, const Lame& m) {
 /// Second Piola-Kirchhoff stress of a thin law: tangent directions as above, transverse shear 2 k μ E with k = 5/6 for
 /// a sheet and 1 for a disc, nothing across unless `transverse` (then 2μ E, uncoupled).
 template <class T>
-FASCIA_HD Mat3<T> thin_second_piola(const PointMaterial<T>& m, const Mat3<T>& E) {
+FASCIA_HD Mat3<T> second_piola(const ThinMaterial<T>& m, const Mat3<T>& E) {
   const int tangents = m.law == Law::sheet ? 2 : 1;
   const T shear(m.law == Law::sheet ? kSheetShear : 1.0), across(m.transverse ? 1.0 : 0.0);
   const Mat3<T> local = transpose_times(m.axes, E * m.axes);
@@ -53,16 +67,18 @@ FASCIA_HD Mat3<T> thin_second_piola(const PointMaterial<T>& m, const Mat3<T>& E)
 
 /// S of a strain [Pa]; linear, so it also maps dE to dS.
 template <class T>
-FASCIA_HD Mat3<T> second_piola(const PointMaterial<T>& m, const Mat3<T>& E) {
-  if (m.law == Law::solid) return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(E);
-  return thin_second_piola(m, E);
+FASCIA_HD Mat3<T> second_piola(const SolidMaterial<T>& m, const Mat3<T>& E) {
+  return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(E);
 }
 
 /// ψ = E : S(E) / 2  [J/m³]
 template <class T>
-FASCIA_HD T energy_density(const PointMaterial<T>& m, const Mat3<T>& E) {
-  if (m.law == Law::solid) return StVenantKirchhoff<T>{m.lambda, m.mu}.energy_density(E);
-  return T(0.5) * contract(E, thin_second_piola(m, E));
+FASCIA_HD T energy_density(const SolidMaterial<T>& m, const Mat3<T>& E) {
+  return StVenantKirchhoff<T>{m.lambda, m.mu}.energy_density(E);
+}
+template <class T>
+FASCIA_HD T energy_density(const ThinMaterial<T>& m, const Mat3<T>& E) {
+  return T(0.5) * contract(E, second_piola(m, E));
 }
 
 }  // namespace fascia

@@ -2,6 +2,8 @@
 
 #include "core/physics/point_law.hpp"
 
+#include <type_traits>
+
 /// What happens at one integration point: elastic stress, viscous stress and stabilisation. Drilling ties the blended
 /// rotation Qbar = Σ w Q to the rotation in F; with affine frames the blended A is tied to all of F. Everything that a
 /// frame feels follows from P and Y:
@@ -33,7 +35,7 @@ FASCIA_HD Mat3<T> drilling_stress(const PointMotion<T>& x, const T& gamma) {
 
 /// K (displacement − target) in the first column.
 template <class T>
-FASCIA_HD Mat3<T> tether_stress(const PointMaterial<T>& material, const Vec3<T>& stretch) {
+FASCIA_HD Mat3<T> tether_stress(const ThinMaterial<T>& material, const Vec3<T>& stretch) {
   Mat3<T> P;
   const Vec3<T> force = material.axes * stretch;
   for (int i = 0; i < 3; ++i) P(i, 0) = force[i];
@@ -43,12 +45,14 @@ FASCIA_HD Mat3<T> tether_stress(const PointMaterial<T>& material, const Vec3<T>&
 /// Stress of a point.
 ///
 /// @param E_old  strain at the start of the time step, used where material.viscosity is not zero
-template <Stabilization stabilization, class T>
-FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const PointMaterial<T>& material, const Mat3<T>& E_old) {
+template <Stabilization stabilization, class T, template <class> class Material>
+FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
   PointStress<T> r;
-  if (material.law == Law::tether) {
-    r.P = tether_stress(material, x.H.column(0) - material.target);
-    return r;
+  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
+    if (material.law == Law::tether) {
+      r.P = tether_stress(material, x.H.column(0) - material.target);
+      return r;
+    }
   }
   const Mat3<T> E = green_strain(x.H);
   r.S = second_piola(material, E + (E - E_old) * material.viscosity);
@@ -74,13 +78,15 @@ struct PointEnergy {
   T elastic{}, stabilization{}, viscous{};
 };
 
-template <Stabilization stabilization, class T>
-FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const PointMaterial<T>& material, const Mat3<T>& E_old) {
+template <Stabilization stabilization, class T, template <class> class Material>
+FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
   PointEnergy<T> r;
-  if (material.law == Law::tether) {
-    const Vec3<T> stretch = x.H.column(0) - material.target;
-    r.stabilization = material.volume * T(0.5) * dot(stretch, material.axes * stretch);
-    return r;
+  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
+    if (material.law == Law::tether) {
+      const Vec3<T> stretch = x.H.column(0) - material.target;
+      r.stabilization = material.volume * T(0.5) * dot(stretch, material.axes * stretch);
+      return r;
+    }
   }
   const Mat3<T> E = green_strain(x.H);
   r.elastic = material.volume * energy_density(material, E);
@@ -109,14 +115,16 @@ struct PointStressDifferential {
 ///
 /// @param dH     direction of F, with the frames' rotations
 /// @param dQbar  direction of Qbar
-template <Stabilization stabilization, class T>
+template <Stabilization stabilization, class T, template <class> class Material>
 FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion<T>& x, const Mat3<T>& S,
-                                                               const PointMaterial<T>& material, Tangent tangent,
+                                                               const Material<T>& material, Tangent tangent,
                                                                const Mat3<T>& dH, const Mat3<T>& dQbar) {
   PointStressDifferential<T> r;
-  if (material.law == Law::tether) {
-    r.dP = tether_stress(material, dH.column(0));
-    return r;
+  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
+    if (material.law == Law::tether) {
+      r.dP = tether_stress(material, dH.column(0));
+      return r;
+    }
   }
   const Mat3<T> dE = sym(dH + transpose_times(x.H, dH));
   const Mat3<T> dS = second_piola(material, dE) * (T(1) + material.viscosity);

@@ -16,6 +16,12 @@ struct PointRule {
   bool transverse = false;  ///< thin laws: directors may stretch (affine frames), and resist it on their own
 };
 
+/// What the compiler must know of a rule to leave out what it does not need.
+struct PointKind {
+  Stabilization stabilization = Stabilization::none;
+  bool solid = true;
+};
+
 /// The same in a point set.
 struct GroupRule {
   PointRule rule;
