@@ -29,7 +29,8 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
     if (spec.integration == IntegrationKind::selective && materials.back().lambda < 0)
       throw InputError("selective integration needs a Poisson ratio that is not negative; use integration = \"full\"");
   }
-  const bool thick = *std::min_element(grid_.begin(), grid_.end()) >= 3;
+  // Affine frames do not lock; one point a cell would take a part of their bending away.
+  const bool thick = !spec.affine && *std::min_element(grid_.begin(), grid_.end()) >= 3;
   selective_ = weights_ == GridWeightKind::trilinear &&
                (spec.integration == IntegrationKind::selective ||
                 (spec.integration == IntegrationKind::automatic && nearly_incompressible && thick));

@@ -124,7 +124,7 @@ std::string_view trimmed(std::string_view text) {
 
 struct Split {
   double number;
-  std::string_view number_text, unit;
+  std::string_view unit;
 };
 
 /// "-5 mm" → −5 and "mm"; nothing where the text does not start with a finite number.
@@ -136,7 +136,7 @@ std::optional<Split> split(std::string_view text) {
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
   if (error != std::errc{} || !std::isfinite(number)) return std::nullopt;
   const auto length = static_cast<std::size_t>(end - text.data());
-  return Split{number, text.substr(0, length), trimmed(text.substr(length))};
+  return Split{number, trimmed(text.substr(length))};
 }
 
 Unit parse_unit(const Database& database, std::string_view text) {
@@ -170,7 +170,7 @@ std::variant<double, UnitError> parse_quantity(std::string_view text, std::strin
   if (parts->unit.empty()) {
     const Dimension* d = find_dimension(si_unit);
     const std::string example = d ? fmt::format(" (SI) or, with a unit, \"{}\"", d->example) : "";
-    return UnitError{fmt::format("{} has no unit; write {}{}", shown, parts->number_text, example)};
+    return UnitError{fmt::format("{} has no unit; write {}{}", shown, parts->number, example)};
   }
   Database& database = Database::instance();
   const std::lock_guard lock(database.mutex);

@@ -72,6 +72,7 @@ TEST(Units, AnglesAreNoPureNumbers) {
 TEST(Units, BareNumberHasNoUnit) {
   EXPECT_EQ(error("5", "m"), "\"5\" has no unit; write 5 (SI) or, with a unit, \"5 mm\"");
   EXPECT_EQ(error("0.3", "1"), "\"0.3\" has no unit; write 0.3");
+  EXPECT_EQ(error(".3", "1"), "\".3\" has no unit; write 0.3");
 }
 
 TEST(Units, UnknownUnitsAndGarbage) {
