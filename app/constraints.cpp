@@ -135,6 +135,8 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
     const int motion = add_motion(s, c);
     const int body = body_index(s, c.body);
     const bool interpolates = s.bodies[at(body)].meshless->interpolates();
+    const Body& described = s.scene.bodies[at(body)];
+    const bool thin = described.radius || !described.thickness.empty();
     const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion);
     check_affine_turn(s, body, c);
     for (const int node : tied > 0 ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
@@ -142,7 +144,8 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
       for (int k = 0; k < 3; ++k) {
         if (c.fixed[at(k)] && interpolates)
           add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
-        if (c.fixed[at(3 + k)]) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
+        if (c.fixed[at(3 + k)] && (interpolates || !thin))
+          add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
       }
     }
     if (moves_positions_only(c))

@@ -102,7 +102,7 @@ void spread_torque(std::vector<Share>& shares, const Vec3d& torque) {
     const Vec3d r = s.X - center;
     inertia += (Mat3d::diagonal(squared_norm(r)) - outer(r, r)) * s.part;
   }
-  if (determinant(inertia) < 1e-9 * std::pow(trace(inertia), 3)) {
+  if (determinant(inertia) <= 1e-9 * std::pow(trace(inertia), 3)) {
     for (Share& s : shares) s.torque += torque * s.part;
     return;
   }

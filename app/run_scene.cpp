@@ -100,6 +100,9 @@ struct Outcome {
   double stabilization = 0;
 };
 
+/// Determinant of the mean of two rotations a right angle apart: below, a blend no longer follows them.
+constexpr double kResolved = 0.5;
+
 /// What a user must know of a result that converged.
 void add_result_warnings(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
   if (run.status == RunStatus::converged && !run.trouble.empty())
@@ -108,14 +111,23 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     warnings.push_back(fmt::format(
         "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
   for (const SimulatedBody& b : s.bodies) {
-    int inverted = 0;
-    for (std::size_t q = 0; q < b.meshless->points().size(); ++q)
-      inverted += determinant(Mat3d::identity() + field_at(b.meshless->attach_point(q), end).H) <= 0 ? 1 : 0;
+    int inverted = 0, unresolved = 0;
+    const bool rigid = s.model.kind(b.meshless->first_frame()) == FrameKind::rigid;
+    for (std::size_t q = 0; q < b.meshless->points().size(); ++q) {
+      const FieldValue f = field_at(b.meshless->attach_point(q), end);
+      inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
+      unresolved += rigid && determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
+    }
     if (inverted > 0)
       warnings.push_back(
           fmt::format("body \"{}\" is turned inside out at {} of {} integration points: St Venant-Kirchhoff does "
                       "not resist that; the result is no physical state",
                       b.name, inverted, b.meshless->points().size()));
+    if (unresolved > 0)
+      warnings.push_back(
+          fmt::format("body \"{}\": neighbouring frames are turned against each other by more than a right angle at {} "
+                      "of {} integration points: their blend does not resolve that; use more frames",
+                      b.name, unresolved, b.meshless->points().size()));
   }
   if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
     run.status = RunStatus::not_converged;

@@ -29,7 +29,7 @@ struct ProbePoint {
 struct TetheredMaterial {
   int tether = 0;           ///< of the model
   int body = 0, frame = 0;  ///< model node of the nearest frame
-  std::vector<Vec3d> axes;  ///< directions that are held
+  std::vector<Vec3d> axes;  ///< directions, of a tether with an arm rotations, that are held
   Attachment field;
 };
 

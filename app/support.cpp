@@ -86,9 +86,10 @@ void check_support(const Simulation& s) {
       for (const TetheredMaterial& t : s.tethered) {
         if (part[at(t.field.nodes[0])] != r) continue;
         const Vec3d arm = (s.model.tethers[at(t.tether)].X - center) * (1 / size);
+        const bool turn = squared_norm(s.model.tethers[at(t.tether)].arm) > 0;
         for (const Vec3d& a : t.axes) {
-          const Vec3d moment = cross(arm, a);
-          const Motion6 row{{a[0], a[1], a[2], moment[0], moment[1], moment[2]}};
+          const Vec3d force = turn ? Vec3d{} : a, moment = turn ? a : cross(arm, a);
+          const Motion6 row{{force[0], force[1], force[2], moment[0], moment[1], moment[2]}};
           resistance += row * row.transpose();
         }
       }

@@ -60,10 +60,10 @@ int nearest_frame(const SimulatedBody& b, const Vec3d& x) {
 }
 
 /// A tether as a point: the first column of its H is the displacement of the material (core/physics/point_physics.hpp).
-PointSample tether_sample(const Attachment& a, const std::vector<int>& nodes, const Mat3d& stiffness, double scale) {
+PointSample tether_sample(const Attachment& a, const std::vector<int>& nodes, const Mat3d& stiffness) {
   PointSample sample;
   sample.volume = 1;
-  sample.lambda = scale;  // for the rounding estimate
+  sample.lambda = trace(stiffness);  // for the rounding estimate
   sample.axes = stiffness;
   for (const int node : nodes) {
     Influence i;
@@ -77,49 +77,110 @@ PointSample tether_sample(const Attachment& a, const std::vector<int>& nodes, co
   return sample;
 }
 
+/// Collects tethers into groups of points.
+class TetherBuilder {
+ public:
+  TetherBuilder(Simulation& s, PointSetBuilder& points, int body, int motion)
+      : s_(s), points_(points), body_(body), motion_(motion), spacing_(mean_spacing(s.bodies[at(body)])) {
+    const SimulatedBody& b = s.bodies[at(body)];
+    double young = 0;
+    for (const MaterialUse& use : s.scene.bodies[at(body)].materials) young = std::max(young, use.material.young());
+    stiffness_ = kPenalty * young * b.meshless->volume() / (static_cast<double>(b.frames.size()) * spacing_ * spacing_);
+  }
+
+  double spacing() const { return spacing_; }
+
+  /// @param shape  selects the directions, a sum of projectors; axes: the same for the check of supports
+  void add(const Vec3d& X, const Vec3d& arm, Attachment a, const Mat3d& shape, std::vector<Vec3d> axes) {
+    std::set<int> joined = nodes_;
+    joined.insert(a.nodes.begin(), a.nodes.end());
+    if (!pending_.empty() && (pending_.size() == kGroupSize || joined.size() > kMaxSlots)) flush();
+    nodes_.insert(a.nodes.begin(), a.nodes.end());
+    s_.tethered.push_back(
+        {static_cast<int>(s_.model.tethers.size()), body_, nearest_frame(s_.bodies[at(body_)], X), std::move(axes), a});
+    s_.model.tethers.push_back({0, 0, X, motion_, arm});
+    pending_.push_back(std::move(a));
+    shapes_.push_back(shape * stiffness_);
+  }
+
+  void flush() {
+    if (pending_.empty()) return;
+    const std::vector<int> list(nodes_.begin(), nodes_.end());
+    std::vector<PointSample> samples;
+    const std::size_t first = s_.model.tethers.size() - pending_.size();
+    for (std::size_t k = 0; k < pending_.size(); ++k) {
+      samples.push_back(tether_sample(pending_[k], list, shapes_[k]));
+      s_.model.tethers[first + k].group = points_.group_count();
+      s_.model.tethers[first + k].lane = static_cast<int>(k);
+    }
+    points_.add_points(list, samples, spacing_, {Law::tether, Stabilization::none, false});
+    pending_.clear();
+    shapes_.clear();
+    nodes_.clear();
+  }
+
+ private:
+  Simulation& s_;
+  PointSetBuilder& points_;
+  int body_, motion_;
+  double spacing_, stiffness_ = 0;
+  std::vector<Attachment> pending_;
+  std::vector<Mat3d> shapes_;
+  std::set<int> nodes_;
+};
+
+/// How far the matter of a thin body reaches off its middle [m].
+double arm_length(const Body& body) {
+  double arm = body.radius.value_or(0);
+  for (const ThicknessUse& use : body.thickness) arm = std::max(arm, 0.5 * use.value);
+  return arm;
+}
+
+/// The blended rotation, seen as the displacement of an arm: Σ (Q − I) w arm.
+Attachment director(const Attachment& field, const Vec3d& arm) {
+  Attachment a = field;
+  for (Influence& i : a.influences) {
+    i.b = arm * i.w;
+    i.w = 0;
+  }
+  return a;
+}
+
+/// Arms across each held axis: one that turns far keeps the plane of its turn, one that is held only its direction.
+void add_rotation_tethers(TetherBuilder& builder, const Constraint& c, const Vec3d& X, const Attachment& field,
+                          double length) {
+  const bool turns = c.motion && c.motion->angle != 0;
+  for (int k = 0; k < 3; ++k) {
+    if (!c.fixed[at(3 + k)]) continue;
+    const Vec3d axis = c.axes.row(k);
+    for (const int other : {(k + 1) % 3, (k + 2) % 3}) {
+      const Vec3d arm = c.axes.row(other) * length, across = normalized(cross(axis, arm));
+      const Mat3d shape = turns ? Mat3d::identity() - outer(axis, axis) : outer(across, across);
+      builder.add(X, arm, director(field, arm), shape, {axis});
+    }
+  }
+}
+
 }  // namespace
 
 int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constraint& c, int motion) {
   const SimulatedBody& b = s.bodies[at(body)];
   std::vector<Vec3d> axes;
-  for (int k = 0; k < 3; ++k)
-    if (c.fixed[at(k)]) axes.push_back(c.axes.row(k));
-  if (axes.empty()) return 0;
-  const double spacing = mean_spacing(b);
-  const std::vector<Vec3d> places = places_in(b, c.where, spacing);
-  double young = 0;
-  for (const MaterialUse& use : s.scene.bodies[at(body)].materials) young = std::max(young, use.material.young());
-  const double scale =
-      kPenalty * young * b.meshless->volume() / (static_cast<double>(b.frames.size()) * spacing * spacing);
-  Mat3d stiffness;
-  for (const Vec3d& a : axes) stiffness += outer(a, a) * scale;
-
-  std::vector<Attachment> pending;
-  std::set<int> nodes;
-  const auto flush = [&] {
-    const std::vector<int> list(nodes.begin(), nodes.end());
-    std::vector<PointSample> samples;
-    const std::size_t first = s.model.tethers.size() - pending.size();
-    for (std::size_t k = 0; k < pending.size(); ++k) {
-      samples.push_back(tether_sample(pending[k], list, stiffness, scale));
-      s.model.tethers[first + k].group = points.group_count();
-      s.model.tethers[first + k].lane = static_cast<int>(k);
-    }
-    points.add_points(list, samples, spacing, {Law::tether, Stabilization::none, false});
-    pending.clear();
-    nodes.clear();
-  };
-  for (const Vec3d& X : places) {
-    Attachment a = b.meshless->attach(X);
-    std::set<int> joined = nodes;
-    joined.insert(a.nodes.begin(), a.nodes.end());
-    if (!pending.empty() && (pending.size() == kGroupSize || joined.size() > kMaxSlots)) flush();
-    nodes.insert(a.nodes.begin(), a.nodes.end());
-    s.tethered.push_back({static_cast<int>(s.model.tethers.size()), body, nearest_frame(b, X), axes, a});
-    s.model.tethers.push_back({0, 0, X, motion});
-    pending.push_back(std::move(a));
+  Mat3d shape;
+  for (int k = 0; k < 3; ++k) {
+    if (!c.fixed[at(k)]) continue;
+    axes.push_back(c.axes.row(k));
+    shape += outer(c.axes.row(k), c.axes.row(k));
   }
-  if (!pending.empty()) flush();
+  TetherBuilder builder(s, points, body, motion);
+  const double arm = arm_length(s.scene.bodies[at(body)]);
+  const std::vector<Vec3d> places = places_in(b, c.where, builder.spacing());
+  for (const Vec3d& X : places) {
+    const Attachment field = b.meshless->attach(X);
+    if (!axes.empty()) builder.add(X, {}, field, shape, axes);
+    if (arm > 0) add_rotation_tethers(builder, c, X, field, arm);
+  }
+  builder.flush();
   return static_cast<int>(places.size());
 }
 

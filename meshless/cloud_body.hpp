@@ -61,6 +61,7 @@ class CloudBody final : public MeshlessBody {
                  const std::vector<Attachment>& attachments, PointSetBuilder& points) const;
   void split_group(const CloudSpec& spec, std::vector<std::size_t> members, const std::vector<Attachment>& attachments,
                    PointSetBuilder& points) const;
+  void add_middle_ties(const CloudSpec& spec, PointSetBuilder& points) const;
   void add_inertia(const CloudSpec& spec, Model& model);
   void describe(const CloudSpec& spec);
   Vec3d frame_position(int node) const { return frame_position_[static_cast<std::size_t>(node - first_frame_)]; }

@@ -38,6 +38,21 @@ void CloudBody::add_points(const CloudSpec& spec, PointSetBuilder& builder) {
       rest[key.first].insert(rest[key.first].end(), members.begin(), members.end());
   }
   for (const auto& [law, members] : rest) split_group(spec, members, attachments, builder);
+  if (spec.affine) add_middle_ties(spec, builder);
+}
+
+/// Affine frames of thin matter are tied to F on its middle, where neither bending nor torsion turns it against them.
+void CloudBody::add_middle_ties(const CloudSpec& spec, PointSetBuilder& builder) const {
+  std::size_t q = 0;
+  for (const CloudPoint& p : spec.points) {
+    const std::size_t first = q;
+    while (q < places_.size() && places_[q].place.X == p.place.X && places_[q].place.dimension == p.place.dimension)
+      ++q;
+    if (points_[first].law == Law::solid) continue;
+    const Attachment a = attach_place(p.place, {});
+    const PointSample tie{p.place.X, p.volume, 0, 0, spec.stabilization * points_[first].mu, 0, a.influences, {}};
+    builder.add_points(a.nodes, std::span(&tie, 1), spec.spacing, {Law::solid, Stabilization::affine, true});
+  }
 }
 
 void CloudBody::split_group(const CloudSpec& spec, std::vector<std::size_t> members,
@@ -77,7 +92,8 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
     const BodyPoint& p = points_[q];
     const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
-    const double stabilization = p.law == Law::line && !spec.affine ? 0.0 : spec.stabilization * p.mu;
+    const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine);
+    const double stabilization = none ? 0.0 : spec.stabilization * p.mu;
     PointSample s{p.X, p.volume, lame.lambda, lame.mu, stabilization, spec.material(p.middle).stiffness_damping,
                   {},  p.axes};
     const Attachment& a = attachments[q];

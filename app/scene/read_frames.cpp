@@ -97,7 +97,7 @@ void read_frames(const TableReader& frames, const std::filesystem::path& folder,
 void check_points(const TableReader& points, std::optional<Extent> extent, std::optional<Layout> layout) {
   if (layout == Layout::scattered && points.has("per_cell"))
     points.error("per_cell", "needs the cells of grid frames; use poisson_disk, count or file for scattered frames");
-  if (layout != Layout::grid || !extent) return;
+  if (layout != Layout::grid || extent != Extent::solid) return;
   for (const char* key : {"poisson_disk", "count", "file"})
     if (points.has(key))
       points.error(key, fmt::format("grid frames of {} take per_cell; use it, or scattered frames", noun(*extent)));
@@ -134,6 +134,8 @@ void read_points(const TableReader& points, const std::filesystem::path& folder,
   const std::string integration = points.text("integration").value_or("auto");
   if (integration == "full") body.integration = Integration::full;
   if (integration == "selective") body.integration = Integration::selective;
+  if (integration == "selective" && (layout == Layout::scattered || (extent && *extent != Extent::solid)))
+    points.error("integration", "\"selective\" needs the grid of a solid; must be \"auto\" or \"full\"");
 }
 
 WeightKind weight_kind(const std::string& word) {

@@ -63,9 +63,9 @@ void CpuExecutor::note_motion(const State& state) {
   }
 }
 
-template <PointKind kind>
+template <PointKind Kind>
 void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& history, int group) {
-  constexpr bool kBlend = kind.stabilization != Stabilization::none;
+  constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int first_slot = set_.slot_begin[at(group)];
   Mat3<Lanes> P[kBatches], Y[kBatches];
@@ -76,13 +76,13 @@ void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& his
     for (std::size_t s = 0; s < nodes.size(); ++s)
       add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(state.u[at(nodes[s])]),
                        broadcast(state.D[at(nodes[s])]), x);
-    const auto m = material<kind>(set_, group, b, history.inverse_step, targets_);
+    const auto m = material<Kind>(set_, group, b, history.inverse_step, targets_);
     const Mat3<Lanes> E_old =
         history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
-    const PointStress<Lanes> stress = point_stress<kind.stabilization>(x, m, E_old);
+    const PointStress<Lanes> stress = point_stress<Kind.stabilization>(x, m, E_old);
     P[b] = stress.P * m.volume;
     Y[b] = stress.Y * m.volume;
-    const PointEnergy<Lanes> energy = point_energy<kind.stabilization>(x, m, E_old);
+    const PointEnergy<Lanes> energy = point_energy<Kind.stabilization>(x, m, E_old);
     elastic += lane_sum(energy.elastic);
     stabilizing += lane_sum(energy.stabilization);
     viscous += lane_sum(energy.viscous);
@@ -187,7 +187,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   });
 }
 
-template <PointKind kind>
+template <PointKind Kind>
 void CpuExecutor::linearize_group(const State& state, const StrainHistory& history, int group,
                                   Linearization& out) const {
   const auto nodes = set_.nodes(group);
@@ -199,7 +199,7 @@ void CpuExecutor::linearize_group(const State& state, const StrainHistory& histo
                      broadcast(state.u[at(nodes[s])]), broadcast(state.D[at(nodes[s])]), x);
     const Mat3<Lanes> E_old =
         history.E.empty() ? Mat3<Lanes>{} : symmetric_matrix(history.E.data() + at(group) * 6 * kGroupSize, 0, b);
-    const auto m = material<kind>(set_, group, b, history.inverse_step, targets_);
+    const auto m = material<Kind>(set_, group, b, history.inverse_step, targets_);
     store_matrix(point, 0, b, x.H);
     store_matrix(point, 9, b, x.Dbar);
     store_symmetric(point, 18, b, point_stress<Stabilization::none>(x, m, E_old).S);

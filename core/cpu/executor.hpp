@@ -71,14 +71,14 @@ class CpuExecutor {
   ThreadPool& pool() { return pool_; }
 
  private:
-  template <PointKind kind>
+  template <PointKind Kind>
   void gradient_of_group(const State& state, const StrainHistory& history, int group);
-  template <PointKind kind>
+  template <PointKind Kind>
   void linearize_group(const State& state, const StrainHistory& history, int group, Linearization& out) const;
   void note_motion(const State& state);
-  template <PointKind kind>
+  template <PointKind Kind>
   void multiply_group(const Linearization& at, int group);
-  template <PointKind kind>
+  template <PointKind Kind>
   void assemble_group(const Linearization& at, int group, BlockMatrix& matrix) const;
   /// Calls act with the kind of a group as a constant.
   template <class Act>
@@ -96,23 +96,23 @@ class CpuExecutor {
 
 namespace kernels {
 
-template <PointKind kind>
+template <PointKind Kind>
 struct Constant {
-  static constexpr PointKind value = kind;
+  static constexpr PointKind value = Kind;
 };
 
 }  // namespace kernels
 
 template <class Act>
 void CpuExecutor::with_kind(int group, const Act& act) const {
-  const auto with_law = [&]<bool solid>() {
+  const auto with_law = [&]<bool Solid>() {
     switch (set_.rule[static_cast<std::size_t>(group)].rule.stabilization) {
       case Stabilization::none:
-        return act(kernels::Constant<PointKind{Stabilization::none, solid}>{});
+        return act(kernels::Constant<PointKind{Stabilization::none, Solid}>{});
       case Stabilization::drilling:
-        return act(kernels::Constant<PointKind{Stabilization::drilling, solid}>{});
+        return act(kernels::Constant<PointKind{Stabilization::drilling, Solid}>{});
       case Stabilization::affine:
-        return act(kernels::Constant<PointKind{Stabilization::affine, solid}>{});
+        return act(kernels::Constant<PointKind{Stabilization::affine, Solid}>{});
     }
   };
   if (set_.rule[static_cast<std::size_t>(group)].rule.law == Law::solid)

@@ -29,9 +29,9 @@ Mat3d stored_matrix(const double* rows) {
 
 }  // namespace
 
-template <PointKind kind>
+template <PointKind Kind>
 void CpuExecutor::multiply_group(const Linearization& lin, int group) {
-  constexpr bool kBlend = kind.stabilization != Stabilization::none;
+  constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int first_slot = set_.slot_begin[at(group)];
   Mat3<Lanes> dP[kBatches], dY[kBatches];
@@ -42,8 +42,8 @@ void CpuExecutor::multiply_group(const Linearization& lin, int group) {
       add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(d),
                        broadcast(stored_matrix(d + 3)), direction);
     }
-    const auto m = material<kind>(set_, group, b, lin.inverse_step, targets_);
-    const auto r = point_stress_differential<kind.stabilization>(motion_of(lin, group, b), stress_of(lin, group, b), m,
+    const auto m = material<Kind>(set_, group, b, lin.inverse_step, targets_);
+    const auto r = point_stress_differential<Kind.stabilization>(motion_of(lin, group, b), stress_of(lin, group, b), m,
                                                                  lin.tangent, direction.H, direction.Dbar);
     dP[b] = r.dP * m.volume;
     dY[b] = r.dY * m.volume;
@@ -142,15 +142,15 @@ void add_column(FrameKind kind, const double* shape, int batch, const Mat3d& Q, 
 
 /// Column by column: the unit motion of one degree of freedom of slot b gives dP and dY, and these the forces on slots
 /// a ≥ b.
-template <PointKind kind>
+template <PointKind Kind>
 void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatrix& matrix_out) const {
-  constexpr bool kBlend = kind.stabilization != Stabilization::none;
+  constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
   std::array<double*, kMaxSlots> block;  // of (a, column slot)
   std::array<Mat3<Lanes>, kMaxSlots> A;  // Q B
   for (int batch = 0; batch < kBatches; ++batch) {
-    const auto m = material<kind>(set_, group, batch, lin.inverse_step, targets_);
+    const auto m = material<Kind>(set_, group, batch, lin.inverse_step, targets_);
     const PointMotion<Lanes> x = motion_of(lin, group, batch);
     const Mat3<Lanes> S = stress_of(lin, group, batch);
     for (int a = 0; a < n; ++a)
@@ -162,7 +162,7 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
         const PointMotion<Lanes> unit =
             unit_motion<kBlend>(set_.dofs.kind(column_node), k, set_.shape_of_slot(first_slot + b), batch,
                                 lin.Q[at(column_node)], A[at(b)]);
-        const auto d = point_stress_differential<kind.stabilization>(x, S, m, lin.tangent, unit.H, unit.Dbar);
+        const auto d = point_stress_differential<Kind.stabilization>(x, S, m, lin.tangent, unit.H, unit.Dbar);
         const Mat3<Lanes> dP = d.dP * m.volume, dY = d.dY * m.volume;
         for (int a = b; a < n; ++a)
           add_column<kBlend>(set_.dofs.kind(nodes[at(a)]), set_.shape_of_slot(first_slot + a), batch,

@@ -47,17 +47,17 @@ inline void store_symmetric(double* base, int first_row, int batch, const Mat3<L
 }
 
 /// @param targets  of tethers: (groups with axes × 3 × 8) [m]
-template <PointKind kind>
+template <PointKind Kind>
 inline auto material(const PointSet& set, int group, int batch, double inverse_step,
                      const AlignedVector<double>& targets) {
   const double* base = set.material_of_group(group);
-  std::conditional_t<kind.solid, SolidMaterial<Lanes>, ThinMaterial<Lanes>> m;
+  std::conditional_t<Kind.solid, SolidMaterial<Lanes>, ThinMaterial<Lanes>> m;
   m.volume = row(base, kVolume, batch);
   m.lambda = row(base, kLambda, batch);
   m.mu = row(base, kMu, batch);
   m.stabilization = row(base, kStabilization, batch);
   m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(inverse_step);
-  if constexpr (!kind.solid) {
+  if constexpr (!Kind.solid) {
     const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];
     const auto index = static_cast<std::size_t>(rule.axes);
     m.law = rule.rule.law;

@@ -59,12 +59,13 @@ struct FrameConstraint {
   std::array<int, 3> rotation_motion{-1, -1, -1};
 };
 
-/// Ties a material point to where a motion takes it: the point of a group of law `tether`. The field of weights that do
-/// not interpolate is held so.
+/// Ties a material point, or the direction of an arm there, to where a motion takes it: the point of a group of law
+/// `tether`. The field of weights that do not interpolate is held so.
 struct Tether {
   int group = 0, lane = 0;  ///< of the point set
   Vec3d X{};                ///< rest position [m]
   int motion = -1;          ///< −1: held where it is
+  Vec3d arm{};              ///< not 0: not X itself is tied, but the place X + arm relative to X [m]
 };
 
 /// x → centre + R(axis, s·angle)(x − centre) + s·translation, with s the factor of its schedule.

@@ -45,7 +45,7 @@ FASCIA_HD Mat3<T> tether_stress(const ThinMaterial<T>& material, const Vec3<T>& 
 /// Stress of a point.
 ///
 /// @param E_old  strain at the start of the time step, used where material.viscosity is not zero
-template <Stabilization stabilization, class T, template <class> class Material>
+template <Stabilization Tie, class T, template <class> class Material>
 FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
   PointStress<T> r;
   if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
@@ -57,13 +57,13 @@ FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>
   const Mat3<T> E = green_strain(x.H);
   r.S = second_piola(material, E + (E - E_old) * material.viscosity);
   r.P = r.S + x.H * r.S;
-  if constexpr (stabilization == Stabilization::drilling) {
+  if constexpr (Tie == Stabilization::drilling) {
     const Mat3<T> Tm = drilling_stress(x, material.stabilization);
     r.P += Tm + x.Dbar * Tm;
     const Mat3<T> Tt = transpose(Tm);
     r.Y = Tt + x.H * Tt;
   }
-  if constexpr (stabilization == Stabilization::affine) {
+  if constexpr (Tie == Stabilization::affine) {
     const Mat3<T> G = (x.H - x.Dbar) * material.stabilization;
     r.P += G;
     r.Y = G * T(-1);
@@ -78,7 +78,7 @@ struct PointEnergy {
   T elastic{}, stabilization{}, viscous{};
 };
 
-template <Stabilization stabilization, class T, template <class> class Material>
+template <Stabilization Tie, class T, template <class> class Material>
 FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
   PointEnergy<T> r;
   if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
@@ -91,11 +91,11 @@ FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const Material<T>
   const Mat3<T> E = green_strain(x.H);
   r.elastic = material.volume * energy_density(material, E);
   r.viscous = material.volume * material.viscosity * energy_density(material, E - E_old);
-  if constexpr (stabilization == Stabilization::drilling) {
+  if constexpr (Tie == Stabilization::drilling) {
     const Mat3<T> M = drilling_stress(x, T(1));
     r.stabilization = material.volume * material.stabilization * T(0.25) * contract(M, M);
   }
-  if constexpr (stabilization == Stabilization::affine) {
+  if constexpr (Tie == Stabilization::affine) {
     const Mat3<T> G = x.H - x.Dbar;
     r.stabilization = material.volume * material.stabilization * T(0.5) * contract(G, G);
   }
@@ -115,7 +115,7 @@ struct PointStressDifferential {
 ///
 /// @param dH     direction of F, with the frames' rotations
 /// @param dQbar  direction of Qbar
-template <Stabilization stabilization, class T, template <class> class Material>
+template <Stabilization Tie, class T, template <class> class Material>
 FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion<T>& x, const Mat3<T>& S,
                                                                const Material<T>& material, Tangent tangent,
                                                                const Mat3<T>& dH, const Mat3<T>& dQbar) {
@@ -130,7 +130,7 @@ FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion
   const Mat3<T> dS = second_piola(material, dE) * (T(1) + material.viscosity);
   r.dP = dS + x.H * dS;
   if (tangent == Tangent::full) r.dP += dH * S;
-  if constexpr (stabilization == Stabilization::drilling) {
+  if constexpr (Tie == Stabilization::drilling) {
     const Mat3<T> dM = transpose(dQbar) + transpose_times(dQbar, x.H) + dH + transpose_times(x.Dbar, dH);
     const Mat3<T> dT = (dM - transpose(dM)) * material.stabilization;
     const Mat3<T> dTt = transpose(dT);
@@ -142,7 +142,7 @@ FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion
       r.dY += times_transpose(dH, Tm);
     }
   }
-  if constexpr (stabilization == Stabilization::affine) {
+  if constexpr (Tie == Stabilization::affine) {
     const Mat3<T> dG = (dH - dQbar) * material.stabilization;
     r.dP += dG;
     r.dY = dG * T(-1);

@@ -65,10 +65,10 @@ void BlockMatrix::mirror_lower() {
 namespace {
 
 /// y += B x of a block whose size is known to the compiler.
-template <int n, int m>
+template <int N, int M>
 void add_product(const double* b, const double* x, double* y) {
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < m; ++j) y[i] += b[m * i + j] * x[j];
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < M; ++j) y[i] += b[M * i + j] * x[j];
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "core/math/index.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fascia {
@@ -39,6 +40,7 @@ FreeMatrix::FreeMatrix(const BlockMatrix& pattern, const DofFilter& filter) : nu
 }
 
 void FreeMatrix::fill(const BlockMatrix& matrix, const DofFilter& filter, double shift, const BlockMatrix* shift_from) {
+  constexpr double kLeast = 1e-3;                        // rows that nothing resists need a shift too
   constexpr std::size_t kBlock = kMostDofs * kMostDofs;  // room for the largest
   std::size_t next = 0;
   const auto turn_row = [&](int r, int j) {
@@ -52,7 +54,10 @@ void FreeMatrix::fill(const BlockMatrix& matrix, const DofFilter& filter, double
     double diagonal[kBlock];
     filter.rotate_block(r, r, shift_from->block(shift_from->diagonal(r)), diagonal);
     const int n = matrix.dofs().size(r);
-    for (int i = 0; i < n; ++i) turned_[at((n + 1) * i)] += shift * std::abs(diagonal[(n + 1) * i]);
+    double largest[2] = {0, 0};  // of displacements, of rotations
+    for (int i = 0; i < n; ++i) largest[i / 3 > 0] = std::max(largest[i / 3 > 0], std::abs(diagonal[(n + 1) * i]));
+    for (int i = 0; i < n; ++i)
+      turned_[at((n + 1) * i)] += shift * std::max(std::abs(diagonal[(n + 1) * i]), kLeast * largest[i / 3 > 0]);
   };
   visit(matrix, turn_row, [&](std::size_t k, int place, int) { value[next++] = turned_[kBlock * k + at(place)]; });
 }

@@ -73,7 +73,9 @@ void MechanicalSystem::set_factors(std::span<const double> factors) {
   factors_.assign(factors.begin(), factors.end());
   const std::span<double> targets = executor_.targets();
   for (const Tether& t : model_.tethers) {
-    const Vec3d target = t.motion < 0 ? Vec3d{} : displacement(t.motion, t.X);
+    Vec3d target;
+    if (t.motion >= 0) target = displacement(t.motion, t.X + t.arm);
+    if (t.motion >= 0 && squared_norm(t.arm) > 0) target -= displacement(t.motion, t.X);
     const auto first = at(model_.points.rule[at(t.group)].axes) * 3 * kGroupSize + at(t.lane);
     for (int k = 0; k < 3; ++k) targets[first + at(k) * kGroupSize] = target[k];
   }
