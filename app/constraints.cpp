@@ -22,6 +22,7 @@ struct Directions {
 
 struct Held {
   Directions translation, rotation;
+  bool whole = false;  ///< by one constraint
 };
 
 /// The prescribed value along a direction at a factor.
@@ -127,6 +128,20 @@ void check_affine_turn(const Simulation& s, int body, const Constraint& c) {
     throw SceneError({{c.place, "turns affine frames about some axes only; let it hold all six axes (remove axes)"}});
 }
 
+void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<int, Held>& held) {
+  if (!moves_positions_only(c)) return;
+  const std::vector<int> nodes = find_nodes(s, body_index(s, c.body), c.where);
+  const auto turns = [&](int node) {
+    const auto found = held.find(node);
+    return found == held.end() || found->second.rotation.axis.size() < 3;
+  };
+  if (std::none_of(nodes.begin(), nodes.end(), turns)) return;
+  s.warnings.push_back(
+      fmt::format("{}: prescribes positions without rotations, which leaves the displacement between "
+                  "frames free (the force comes out too small); add \"rx\", \"ry\", \"rz\" to axes",
+                  c.place.key));
+}
+
 }  // namespace
 
 void add_constraints(Simulation& s, PointSetBuilder& points) {
@@ -139,8 +154,10 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
     const bool thin = described.radius || !described.thickness.empty();
     const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion);
     check_affine_turn(s, body, c);
+    const bool whole = std::all_of(c.fixed.begin(), c.fixed.end(), [](bool f) { return f; });
     for (const int node : tied > 0 ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
       const Vec3d& X = s.model.rest_position[at(node)];
+      held[node].whole = held[node].whole || (whole && interpolates);
       for (int k = 0; k < 3; ++k) {
         if (c.fixed[at(k)] && interpolates)
           add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
@@ -148,15 +165,12 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
           add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
       }
     }
-    if (moves_positions_only(c))
-      s.warnings.push_back(
-          fmt::format("{}: prescribes positions without rotations, which leaves the displacement between "
-                      "frames free (the force comes out too small); add \"rx\", \"ry\", \"rz\" to axes",
-                      c.place.key));
   }
+  for (const Constraint& c : s.scene.constraints) warn_of_free_rotations(s, c, held);
   for (const auto& [node, h] : held) {
     FrameConstraint c;
     c.node = node;
+    c.whole = h.whole;
     c.translations = static_cast<int>(h.translation.axis.size());
     c.rotations = static_cast<int>(h.rotation.axis.size());
     c.translation_axes = c.translations == 0 ? Mat3d::identity() : completed(h.translation);

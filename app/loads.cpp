@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace fascia::app {
 
@@ -59,6 +60,30 @@ std::vector<Share> volume_shares(const MeshlessBody& body, const Region& region)
   return shares;
 }
 
+/// Edges of the surface's triangles, and segments of lines, whose ends are selected; two Gauss points each.
+std::vector<Share> edge_shares(const MeshlessBody& body, const Region& region) {
+  const std::vector<Vec3d>& points = body.surface().points;
+  if (points.empty()) return {};
+  const std::vector<char> all(points.size(), 1);
+  const std::vector<bool> chosen = select(region, points, all);
+  std::set<std::pair<int, int>> edges;
+  const auto add = [&](int a, int b) {
+    if (chosen[at(a)] && chosen[at(b)]) edges.insert(std::minmax(a, b));
+  };
+  for (const auto& t : body.surface().triangles)
+    for (std::size_t k = 0; k < 3; ++k) add(t[k], t[(k + 1) % 3]);
+  for (const auto& s : body.segments()) add(s[0], s[1]);
+  std::vector<Share> shares;
+  for (const auto& [i, j] : edges) {
+    const Vec3d &a = points[at(i)], &b = points[at(j)];
+    for (const double t : {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)}) {
+      const Vec3d X = a + (b - a) * t;
+      shares.push_back({X, body.attach(X), 0.5 * norm(b - a), {}, {}});
+    }
+  }
+  return shares;
+}
+
 /// The frames that `nearest` or `ids` pick, each with the same part.
 std::vector<Share> frame_shares(const Simulation& s, int body, const Region& region) {
   std::vector<Share> shares;
@@ -72,8 +97,8 @@ std::vector<Share> frame_shares(const Simulation& s, int body, const Region& reg
   return shares;
 }
 
-/// By frames where the region picks single ones, or holds no more than frames; by area where it asks for the boundary
-/// or holds faces but no material point; else by volume. Parts add to 1.
+/// By frames where the region picks single ones; by volume where it holds material points, unless it asks for the
+/// boundary; else by area of the faces, by length of the edges, by frames: the first that it holds. Parts add to 1.
 std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
   const SimulatedBody& body = s.bodies[at(index)];
   std::vector<Share> shares;
@@ -82,6 +107,7 @@ std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
   else if (!names_boundary(*load.where))
     shares = volume_shares(*body.meshless, *load.where);
   if (shares.empty()) shares = surface_shares(*body.meshless, *load.where);
+  if (shares.empty()) shares = edge_shares(*body.meshless, *load.where);
   if (shares.empty() && !find_nodes(s, index, *load.where).empty()) shares = frame_shares(s, index, *load.where);
   if (shares.empty())
     throw SceneError({{load.where->place,

@@ -194,6 +194,9 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
   return out;
 }
 
+/// Stabilisation holds a hundredth of a body's own modes, and a tenth and more of those of badly coupled frames.
+constexpr double kHollow = 0.1;
+
 Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
   Outcome out;
   const Clock::time_point start = Clock::now();
@@ -207,12 +210,11 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
   }
   int hollow = 0, first_hollow = 0;
   for (std::size_t m = 0; m < modes.stabilization.size(); ++m)
-    if (modes.stabilization[m] > 0.5 && hollow++ == 0) first_hollow = static_cast<int>(m) + 1;
+    if (modes.stabilization[m] > kHollow && hollow++ == 0) first_hollow = static_cast<int>(m) + 1;
   if (hollow > 0)
     out.warnings.push_back(
         fmt::format("{} modes (the first: number {}) are motions of frames that the material hardly feels, held by "
-                    "stabilisation: they are no modes of the body; use more frames on a grid, or a larger "
-                    "weights.drilling",
+                    "stabilisation: they are no modes of the body; use more rigid frames, on a grid",
                     hollow, first_hollow));
   std::vector<nlohmann::json> frequencies(s.probes.size(), nlohmann::json::array());
   double size = 0;

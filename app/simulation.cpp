@@ -32,13 +32,18 @@ void check_memory(const Scene& scene) {
   const double need = estimated_memory(scene), have = available_memory();
   if (need <= have && need < 2e11) return;
   const auto largest = std::max_element(scene.bodies.begin(), scene.bodies.end(), [](const Body& a, const Body& b) {
-    return estimated_samples(a).frames < estimated_samples(b).frames;
+    return estimated_samples(a).frames + estimated_samples(a).points <
+           estimated_samples(b).frames + estimated_samples(b).points;
   });
-  throw SceneError(
-      {{largest->frames_place,
-        fmt::format("{:.6g} frames need about {:.3g} GB, {:.3g} GB are free; use {}",
-                    estimated_samples(*largest).frames, need / 1e9, have / 1e9,
-                    std::holds_alternative<GridFrames>(largest->frames) ? "a smaller grid" : "fewer frames")}});
+  const SampleEstimate e = estimated_samples(*largest);
+  const bool grid = std::holds_alternative<GridFrames>(largest->frames);
+  const bool by_points = !std::holds_alternative<std::monostate>(largest->points) && e.points > 100 * e.frames;
+  throw SceneError({{by_points ? largest->points_place : largest->frames_place,
+                     fmt::format("{:.6g} frames and {:.6g} points need about {:.3g} GB, {:.3g} GB are free; use {}",
+                                 e.frames, e.points, need / 1e9, have / 1e9,
+                                 by_points ? "fewer points"
+                                 : grid    ? "a smaller grid"
+                                           : "fewer frames")}});
 }
 
 void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& built) {

@@ -102,7 +102,7 @@ Attachment CloudBody::attach_place(const ScatteredPlace& place, const Vec3d& off
     const int node = node_of_frame_[at(weights.frame[k])];
     if (node < 0) continue;  // a dropped frame, beside the matter
     a.nodes.push_back(node);
-    a.influences.push_back(blended(weights.w[k], weights.gradient[k], halved, place.X + offset - frame_position(node)));
+    a.influences.push_back(blended(weights.w[k], weights.gradient[k], halved, place.X - frame_position(node), offset));
   }
   return a;
 }

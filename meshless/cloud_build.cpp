@@ -7,13 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 namespace fascia {
 
 namespace {
 
-/// Supports in spacings: short ones integrate best (docs/decisions/scattered_weights.md).
+/// Supports in spacings: short ones integrate best (docs/decisions/scattered_frames.md).
 constexpr double kMlsSupport = 1.8, kKernelSupport = 2.0;
 constexpr int kShepardNeighbours = 8;
 /// Spacing of integration points over that of frames: bending needs the points to see the section (docs/manual.md).
@@ -61,8 +62,8 @@ std::vector<CloudFrame> frames_of(const ScatterSpec& choice, const std::vector<S
 }
 
 void check_frames(const ScatterSpec& choice, const std::vector<CloudFrame>& frames, double size) {
-  std::vector<Vec3d> positions;
-  for (const CloudFrame& f : frames) positions.push_back(f.x);
+  std::vector<Vec3d> positions(frames.size());
+  std::transform(frames.begin(), frames.end(), positions.begin(), [](const CloudFrame& f) { return f.x; });
   const auto pairs = coincident(positions, 1e-9 * size);
   if (!pairs.empty()) {
     std::ostringstream out;
@@ -179,6 +180,37 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   finish_cloud(choice.parts, spec);
 }
 
+namespace {
+
+/// Lets the points of each cell of a grid stand for the volume of that cell, so that all cells are equally stiff.
+void balance_cells(const MatterParts& parts, const ThinGrid& grid, std::vector<CloudPoint>& points) {
+  const FrameField weights = thin_grid_field(grid);
+  std::map<int, std::vector<std::size_t>> members;  // by the cell's first frame
+  double volume = 0, balanced = 0;
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const Vec3d x = transpose(parts.rotation) * (points[q].place.X - parts.translation);
+    members[weights({x, Mat3d::identity(), 3}).frame.front()].push_back(q);
+    volume += points[q].volume;
+  }
+  std::size_t cells = 1;
+  for (const int n : grid.count) cells *= at(n - 1);
+  if (members.size() < cells)
+    throw InputError(std::to_string(cells - members.size()) + " of " + std::to_string(cells) +
+                     " cells of the grid of frames hold no integration point; use more points");
+  for (const auto& [cell, inside] : members) {
+    double share = 0, across = 0;
+    for (const std::size_t q : inside) {
+      share += points[q].volume;
+      across += std::pow(points[q].extent, 3 - points[q].place.dimension) / static_cast<double>(inside.size());
+    }
+    for (const std::size_t q : inside) points[q].volume *= across / share;
+    balanced += across;
+  }
+  for (CloudPoint& p : points) p.volume *= volume / balanced;
+}
+
+}  // namespace
+
 void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   const MatterParts& parts = choice.parts;
   const ThinGrid& grid = choice.grid;
@@ -199,6 +231,7 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   for (const int n : grid.count) cells *= n - 1;
   if (!std::holds_alternative<std::monostate>(choice.points)) {
     spec.points = points_of(parts, choice.points, rough_spacing(parts, static_cast<int>(4 * cells)));
+    balance_cells(parts, grid, spec.points);
   } else {
     spec.points = gauss_cells(choice, axes);
   }

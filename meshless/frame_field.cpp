@@ -32,8 +32,8 @@ class NearFrames {
 
  private:
   static std::vector<Vec3d> positions(const std::vector<CloudFrame>& frames) {
-    std::vector<Vec3d> x;
-    for (const CloudFrame& f : frames) x.push_back(f.x);
+    std::vector<Vec3d> x(frames.size());
+    std::transform(frames.begin(), frames.end(), x.begin(), [](const CloudFrame& f) { return f.x; });
     return x;
   }
 

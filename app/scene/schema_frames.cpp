@@ -79,8 +79,10 @@ Shape weights_schema() {
   return table(
       {key("kind", choice(weight_choices()), "Weight functions; always a partition of unity.")
            .defaults("\"trilinear\" on a grid, \"mls\" for scattered frames"),
-       key("neighbours", integer(between(1, 1000)), "Scattered frames that a point follows.").defaults("8"),
-       key("radius", number("m", above(0)), "Reach of a scattered frame, in the place of `neighbours`."),
+       key("neighbours", integer(between(1, 1000)), "Scattered frames that a point follows.")
+           .defaults("8 with `shepard`; the others go by reach"),
+       key("radius", number("m", above(0)), "Reach of a scattered frame, in the place of `neighbours`.")
+           .defaults("1.8 local spacings with `mls`, otherwise 2"),
        key("blend",
            choice({{"auto", "`half` where the weights reproduce linear fields."},
                    {"half", "Half blend; only for weights that reproduce linear fields: trilinear, linear, mls."},

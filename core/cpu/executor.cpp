@@ -21,9 +21,11 @@ struct NodeSum {
   Mat3d N{};
 };
 
-NodeSum gather(const PointSet& set, const AlignedVector<double>& slot_sums, int node) {
+template <class Take>
+NodeSum gather(const PointSet& set, const AlignedVector<double>& slot_sums, int node, const Take& take) {
   NodeSum sum;
   for (int k = set.node_slot_begin[at(node)]; k < set.node_slot_begin[at(node + 1)]; ++k) {
+    if (!take(set.node_slot[at(k)])) continue;
     const double* s = slot_sums.data() + at(set.node_slot[at(k)]) * 12;
     for (int i = 0; i < 3; ++i) {
       sum.force[i] += s[i];
@@ -51,7 +53,15 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
       part_tether_(at(set.part_count())),
       targets_(set.axes.size() / 3),
       node_L_(at(set.node_count())),
-      directions_(at(set.node_count()) * 12) {}
+      directions_(at(set.node_count()) * 12) {
+  for (int group = 0; group < set.group_count(); ++group) {
+    if (set.rule[at(group)].rule.law != Law::tether) continue;
+    slot_is_tether_.resize(at(set.slot_count()));
+    tether_L_.resize(at(set.node_count()));
+    std::fill(slot_is_tether_.begin() + set.slot_begin[at(group)],
+              slot_is_tether_.begin() + set.slot_begin[at(group + 1)], 1);
+  }
+}
 
 /// Displacements and rotations (taken at the part's length) of each part, kept as a running maximum: a state that came
 /// back to rest still carries the rounding of where it was.
@@ -112,8 +122,12 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
   });
   pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
-      const NodeSum sum = gather(set_, slot_sums_, node);
+      const NodeSum sum = gather(set_, slot_sums_, node, [](int) { return true; });
       node_L_[at(node)] = sum.N + times_transpose(sum.N, state.D[at(node)]);  // N Qᵀ
+      if (!tether_L_.empty()) {
+        const Mat3d N = gather(set_, slot_sums_, node, [&](int slot) { return slot_is_tether_[at(slot)] != 0; }).N;
+        tether_L_[at(node)] = N + times_transpose(N, state.D[at(node)]);
+      }
       double* g = gradient.data() + set_.dofs.begin(node);
       for (int k = 0; k < 3; ++k) g[k] = sum.force[k];
       std::fill(g + 3, g + set_.dofs.size(node), 0.0);
@@ -167,7 +181,8 @@ void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
   });
 }
 
-void CpuExecutor::linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out) {
+void CpuExecutor::linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out,
+                            bool tethers_turn) {
   out.tangent = tangent;
   out.inverse_step = history.inverse_step;
   out.Q.resize(at(set_.node_count()));
@@ -176,7 +191,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   for (int node = 0; node < set_.node_count(); ++node) {
     out.Q[at(node)] = Mat3d::identity() + state.D[at(node)];
     if (tangent == Tangent::material || set_.dofs.kind(node) == FrameKind::affine) continue;
-    const Mat3d& L = node_L_[at(node)];
+    const Mat3d L = tethers_turn || tether_L_.empty() ? node_L_[at(node)] : node_L_[at(node)] - tether_L_[at(node)];
     const Mat3d rr = sym(L) - Mat3d::diagonal(trace(L));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);

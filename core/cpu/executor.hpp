@@ -45,7 +45,10 @@ class CpuExecutor {
   InternalEnergy gradient(const State& state, const StrainHistory& history, std::span<double> gradient);
 
   /// Tangent at the state of the last call of gradient(), which must have been `state`.
-  void linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out);
+  /// @param tethers_turn  false leaves out what the pull of tethers does to turning frames: a place that is still far
+  ///                      from its target pulls so hard that the full tangent is indefinite
+  void linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out,
+                 bool tethers_turn = true);
 
   /// y = K x without a matrix.
   void multiply(const Linearization& at, std::span<const double> x, std::span<double> y);
@@ -91,6 +94,8 @@ class CpuExecutor {
   std::vector<double> part_motion_, part_rounding_, part_tether_;
   AlignedVector<double> targets_;
   std::vector<Mat3d> node_L_;         ///< L of the last gradient, of rigid frames
+  std::vector<char> slot_is_tether_;  ///< empty where there are none
+  std::vector<Mat3d> tether_L_;       ///< the part of tethers; empty where there are none
   AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), dA (9)
 };
 

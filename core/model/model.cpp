@@ -16,7 +16,7 @@ int Model::constrained_dof_count() const {
     if (kind(c.node) == FrameKind::rigid)
       count += c.translations + c.rotations;
     else
-      count += c.translations + (c.holds_all() ? 9 : 2 * c.rotations);
+      count += c.translations + (c.whole ? 9 : 2 * c.rotations);
   }
   return count;
 }

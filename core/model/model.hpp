@@ -47,16 +47,21 @@ struct FollowerLoad {
 };
 
 /// What holds a frame: the first `translations` rows of `translation_axes` (and likewise rotations) are prescribed.
-/// Of an affine frame, a rotation about a row k holds the entries (i, j) and (j, i) of A in these axes, i, j ≠ k; all
-/// six together hold all of A.
+/// Of an affine frame, a rotation about a row k holds the entries (i, j) and (j, i) of A in these axes, i, j ≠ k.
 struct FrameConstraint {
   int node = 0;
   Mat3d translation_axes = Mat3d::identity();
   Mat3d rotation_axes = Mat3d::identity();
   int translations = 0, rotations = 0;
-  bool holds_all() const { return translations == 3 && rotations == 3; }
+  bool whole = false;                                 ///< affine frames: all of A is held
   std::array<int, 3> translation_motion{-1, -1, -1};  ///< index into Model::motions, −1: held
   std::array<int, 3> rotation_motion{-1, -1, -1};
+  /// The motion that turns the frame, −1 where none does.
+  int turning_motion() const {
+    for (const int motion : rotation_motion)
+      if (motion >= 0) return motion;
+    return -1;
+  }
 };
 
 /// Ties a material point, or the direction of an arm there, to where a motion takes it: the point of a group of law

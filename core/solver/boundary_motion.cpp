@@ -9,7 +9,7 @@ namespace fascia {
 
 /// The prescribed entries of A of an affine frame, in constraint axes.
 void MechanicalSystem::prescribe_affine(const FrameConstraint& c, double* local) const {
-  const int motion = c.rotation_motion[0];
+  const int motion = c.turning_motion();
   Mat3d target;
   if (motion >= 0) {
     const PrescribedMotion& m = model_.motions[at(motion)];
@@ -79,14 +79,16 @@ double MechanicalSystem::prescribed_rotation() const {
   std::vector<double> local(gradient_.size());
   prescribed_increments(local);
   double largest = 0;
+  // A turn of affine frames or tethers shows in no increment that tells it from a shorter one.
+  const auto turn_of = [&](int motion) {
+    if (motion < 0) return 0.0;
+    const PrescribedMotion& m = model_.motions[at(motion)];
+    return std::abs(m.angle * (factors_[at(m.schedule)] - reached_factors_[at(m.schedule)]));
+  };
   for (const FrameConstraint& c : model_.constraints)
-    if (c.rotations > 0) largest = std::max(largest, rotation_in(c.node, local.data()));
-  for (const Tether& t : model_.tethers) {
-    if (t.motion < 0) continue;
-    const PrescribedMotion& m = model_.motions[at(t.motion)];
-    if (m.angle != 0)
-      largest = std::max(largest, std::abs(m.angle * (factors_[at(m.schedule)] - reached_factors_[at(m.schedule)])));
-  }
+    if (c.rotations > 0)
+      largest = std::max(largest, rigid(at(c.node)) ? rotation_in(c.node, local.data()) : turn_of(c.turning_motion()));
+  for (const Tether& t : model_.tethers) largest = std::max(largest, turn_of(t.motion));
   return largest;
 }
 

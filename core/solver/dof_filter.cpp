@@ -31,7 +31,7 @@ DofFilter::DofFilter(const Model& model)
     }
     for (int q = 0; q < 3; ++q)
       for (int i = 0; i < 3; ++i)
-        if (c.holds_all() || (i != q && 3 - i - q < c.rotations)) fixed_[at(first + 3 + 3 * q + i)] = true;
+        if (c.whole || (i != q && 3 - i - q < c.rotations)) fixed_[at(first + 3 + 3 * q + i)] = true;
   }
   free_count_ = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), false));
 }

@@ -287,11 +287,13 @@ DirectionReport MechanicalSystem::direction() {
   filter_.to_local(rhs);
   if (has_prescribed_increment()) prescribed = work_;
   Linearization fallback;
-  const TangentReport solved = tangent_.solve(lin_, prescribed, rhs, direction_, [&]() -> const Linearization& {
-    executor_.linearize(state_, history_, Tangent::material, fallback);
-    add_node_blocks(fallback);
-    return fallback;
-  });
+  const TangentReport solved = tangent_.solve(
+      lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
+        const bool material = kind == TamerTangent::material;
+        executor_.linearize(state_, history_, material ? Tangent::material : settings_.tangent, fallback, false);
+        add_node_blocks(fallback);
+        return fallback;
+      });
   DirectionReport report;
   report.usable = solved.usable;
   report.linear_iterations = solved.iterations;

@@ -57,8 +57,7 @@ void TangentSolver::apply_matrix(std::span<const double> local, std::span<double
 }
 
 TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed,
-                                   std::span<const double> b, std::span<double> x,
-                                   const std::function<const Linearization&()>& relinearize) {
+                                   std::span<const double> b, std::span<double> x, const Relinearize& relinearize) {
   const std::size_t n = b.size();
   work_.resize(n);
   executor_.assemble(lin, matrix());
@@ -73,10 +72,14 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   if (filter_.free_count() == 0) {
     std::fill(x.begin(), x.end(), 0.0);
   } else if (direct()) {
-    if (!factor().factorize(matrix()) && !factorize_with_shifts(relinearize, report)) return report;
+    if (!factorize(relinearize, report)) return report;
     factor().solve(rhs_, x);
   } else {
     report = solve_cg(rhs_, x);
+    if (!report.trouble.empty() && !model_.tethers.empty()) {
+      executor_.assemble(relinearize(TamerTangent::without_tethers), matrix());
+      report = solve_cg(rhs_, x);
+    }
   }
   if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))
     return {false, report.iterations, "the linear solver returned a number that is not finite"};
@@ -86,11 +89,15 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   return report;
 }
 
-bool TangentSolver::factorize_with_shifts(const std::function<const Linearization&()>& relinearize,
-                                          TangentReport& report) {
+bool TangentSolver::factorize(const Relinearize& relinearize, TangentReport& report) {
+  if (factor().factorize(matrix())) return true;
+  if (!model_.tethers.empty()) {
+    executor_.assemble(relinearize(TamerTangent::without_tethers), matrix());
+    if (factor().factorize(matrix())) return true;
+  }
   report.trouble = "the tangent was not positive definite (buckling, or parts that nothing holds); it was shifted";
   if (!material_matrix_) material_matrix_.emplace(model_.points);
-  executor_.assemble(relinearize(), *material_matrix_);
+  executor_.assemble(relinearize(TamerTangent::material), *material_matrix_);
   for (shift_ = std::max(1e-3, 0.1 * shift_); shift_ < 1e3; shift_ *= 4)
     if (factor().factorize(matrix(), shift_, &*material_matrix_)) return true;
   report.usable = false;

@@ -18,16 +18,20 @@ struct TangentReport {
   std::string trouble;
 };
 
+/// Tangents that are positive definite where the full one is not: without the pull of tethers on turning frames, and
+/// without all that stress does.
+enum class TamerTangent { without_tethers, material };
+using Relinearize = std::function<const Linearization&(TamerTangent)>;
+
 /// Solves K x = b on the free degrees of freedom, directly or by CG, and finds a descent direction where K is not
 /// positive definite. Vectors are in constraint axes.
 class TangentSolver {
  public:
   TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter, const SolverSettings& settings);
 
-  /// @param relinearize  fills a linearisation with the positive semidefinite tangent at the same state; called only
-  ///                     where the full tangent fails
+  /// @param relinearize  gives a tamer tangent at the same state; called only where the full one fails
   TangentReport solve(const Linearization& at, std::span<const double> prescribed, std::span<const double> b,
-                      std::span<double> x, const std::function<const Linearization&()>& relinearize);
+                      std::span<double> x, const Relinearize& relinearize);
 
   /// Cholesky is used, and not CG.
   bool direct();
@@ -35,7 +39,7 @@ class TangentSolver {
   BlockCholesky& factor();
 
  private:
-  bool factorize_with_shifts(const std::function<const Linearization&()>& relinearize, TangentReport& report);
+  bool factorize(const Relinearize& relinearize, TangentReport& report);
   TangentReport solve_cg(std::span<const double> b, std::span<double> x);
   void build_block_jacobi();
   void apply_matrix(std::span<const double> local, std::span<double> out);

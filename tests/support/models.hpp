@@ -180,6 +180,7 @@ inline void hold_face(Model& model, double x = 0) {
     FrameConstraint c;
     c.node = i;
     c.translations = c.rotations = 3;
+    c.whole = true;
     model.constraints.push_back(c);
   }
 }

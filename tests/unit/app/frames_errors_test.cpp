@@ -169,15 +169,12 @@ TEST(PointErrors, PerCellFollowsTheGrid) {
       "for scattered frames");
 }
 
-TEST(PointErrors, GridsTakeNoScatteredPoints) {
+TEST(PointErrors, GridsOfSolidsTakeNoScatteredPoints) {
   EXPECT_EQ(errors_of_beam("points = { poisson_disk = 1 }\n"),
             "a.toml:10:27: bodies.beam.points.poisson_disk: grid frames of a solid take per_cell; use it, or scattered "
             "frames");
-  EXPECT_EQ(errors_of_sheet(std::string(sheet_grid) + "points = { count = 9 }\n"),
-            "a.toml:9:20: bodies.skin.points.count: grid frames of a rectangle take per_cell; use it, or scattered "
-            "frames");
-  EXPECT_EQ(errors_of_line(std::string(line_grid) + "points = { file = \"p.csv\" }\n"),
-            "a.toml:9:19: bodies.skin.points.file: grid frames of a line take per_cell; use it, or scattered frames");
+  EXPECT_EQ(errors_of_sheet(std::string(sheet_grid) + "points = { count = 9 }\n"), "");
+  EXPECT_EQ(errors_of_line(std::string(line_grid) + "points = { file = \"p.csv\" }\n"), "");
   EXPECT_EQ(errors_of_frames("{ count = 5 }", "points = { count = 100000001 }\n"),
             "a.toml:10:20: bodies.beam.points.count: 100000001 is out of range; must be from 1 to 100000000");
 }
