@@ -1,6 +1,5 @@
+#include "app/directions.hpp"
 #include "app/scene/errors.hpp"
-#include "app/schedule.hpp"
-
 #include "app/simulation.hpp"
 #include "core/math/index.hpp"
 
@@ -14,85 +13,10 @@ namespace fascia::app {
 
 namespace {
 
-/// Prescribed directions of a frame's translation or rotation, orthonormal.
-struct Directions {
-  std::vector<Vec3d> axis;
-  std::vector<int> motion;  ///< −1: held
-};
-
 struct Held {
   Directions translation, rotation;
   bool whole = false;  ///< by one constraint
 };
-
-/// The prescribed value along a direction at a factor.
-double value(const Simulation& s, int motion, bool rotation, const Vec3d& X, const Vec3d& direction, double factor) {
-  if (motion < 0) return 0;
-  const PrescribedMotion& m = s.model.motions[at(motion)];
-  return dot(direction, rotation ? m.axis * (m.angle * factor) : m.displacement(X, factor));
-}
-
-/// Factors at which motions are compared: no motion comes back to its start at all of them.
-constexpr double kSamples[] = {0.371943, 0.718282, 1.0};
-
-/// Size of what a motion prescribes: rounding is judged against it.
-double scale_of(const Simulation& s, int motion, bool rotation, const Vec3d& X) {
-  if (motion < 0) return 1e-300;
-  const PrescribedMotion& m = s.model.motions[at(motion)];
-  return rotation ? std::abs(m.angle) : norm(m.translation) + (m.angle != 0 ? norm(X - m.center) : 0.0);
-}
-
-bool same_schedule(const Simulation& s, int a, int b) {
-  const Schedule &first = s.schedules[at(s.model.motions[at(a)].schedule)],
-                 &second = s.schedules[at(s.model.motions[at(b)].schedule)];
-  const bool statics = s.scene.solver.kind == SolverKind::statics;
-  for (const double t : {0.0, 0.013, 0.11, 0.371943, 0.718282, 1.0, 3.7, 41.0})
-    if (std::abs(schedule_factor(first, t, statics) - schedule_factor(second, t, statics)) > 1e-12) return false;
-  return true;
-}
-
-/// Adds a direction; one that is already there must ask for the same.
-void add_direction(const Simulation& s, Directions& d, const Vec3d& direction, int motion, bool rotation,
-                   const Vec3d& X, const Constraint& constraint) {
-  const auto moves = [&](int m) {
-    double largest = 0;
-    for (const double f : kSamples) largest = std::max(largest, std::abs(value(s, m, rotation, X, direction, f)));
-    return largest > 1e-12 * scale_of(s, m, rotation, X);
-  };
-  if (!moves(motion)) motion = -1;
-  Vec3d rest = direction;
-  bool oblique_motion = false;
-  double difference = 0;
-  for (const double factor : kSamples) {
-    double known = 0;
-    for (std::size_t k = 0; k < d.axis.size(); ++k)
-      known += dot(direction, d.axis[k]) * value(s, d.motion[k], rotation, X, d.axis[k], factor);
-    difference = std::max(difference, std::abs(known - value(s, motion, rotation, X, direction, factor)));
-  }
-  for (std::size_t k = 0; k < d.axis.size(); ++k) {
-    const double overlap = dot(direction, d.axis[k]);
-    rest -= d.axis[k] * overlap;
-    oblique_motion = oblique_motion || (std::abs(overlap) > 1e-9 && (motion >= 0 || d.motion[k] >= 0));
-  }
-  if (norm(rest) < 1e-6) {
-    const bool other_time = std::any_of(d.motion.begin(), d.motion.end(), [&](int other) {
-      return motion >= 0 && other >= 0 && !same_schedule(s, motion, other);
-    });
-    if (other_time || difference > 1e-9 * scale_of(s, motion, rotation, X))
-      throw SceneError(
-          {{constraint.place, fmt::format("prescribes another value than an earlier constraint on the same axis "
-                                          "of the frame at ({:.6g}, {:.6g}, {:.6g}); name each axis once",
-                                          X[0], X[1], X[2])}});
-    return;
-  }
-  if (oblique_motion)
-    throw SceneError(
-        {{constraint.place, fmt::format("moves the frame at ({:.6g}, {:.6g}, {:.6g}) along an axis that is neither "
-                                        "parallel nor perpendicular to that of another constraint; use one set of axes",
-                                        X[0], X[1], X[2])}});
-  d.axis.push_back(normalized(rest));
-  d.motion.push_back(motion);
-}
 
 /// Rows: the prescribed directions, completed to an orthonormal basis.
 Mat3d completed(const Directions& d) {
@@ -146,23 +70,25 @@ void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<i
 
 void add_constraints(Simulation& s, PointSetBuilder& points) {
   std::map<int, Held> held;
+  TiedPlaces places;
   for (const Constraint& c : s.scene.constraints) {
     const int motion = add_motion(s, c);
     const int body = body_index(s, c.body);
     const bool interpolates = s.bodies[at(body)].meshless->interpolates();
     const Body& described = s.scene.bodies[at(body)];
     const bool thin = described.radius || !described.thickness.empty();
-    const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion);
+    const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion, places);
+    const bool enough = tied > 0 && (thin || c.fixed[0] || c.fixed[1] || c.fixed[2]);
     check_affine_turn(s, body, c);
     const bool whole = std::all_of(c.fixed.begin(), c.fixed.end(), [](bool f) { return f; });
-    for (const int node : tied > 0 ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
+    for (const int node : enough ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
       const Vec3d& X = s.model.rest_position[at(node)];
-      held[node].whole = held[node].whole || (whole && interpolates);
+      if (!interpolates && thin) break;  // tethers hold all of it
+      held[node].whole = held[node].whole || whole;
       for (int k = 0; k < 3; ++k) {
         if (c.fixed[at(k)] && interpolates)
           add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
-        if (c.fixed[at(3 + k)] && (interpolates || !thin))
-          add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
+        if (c.fixed[at(3 + k)]) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
       }
     }
   }

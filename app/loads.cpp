@@ -150,7 +150,13 @@ void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, 
       n.node = a.nodes[k];
       n.force += f.force * i.w;
       n.couple += outer(f.force, i.b);
-      n.torque += f.torque * i.w;
+      if (s.model.kind(n.node) == FrameKind::rigid) {
+        n.torque += f.torque * i.w;
+      } else {  // through the spin of the field: that of one A alone is held by stabilisation only
+        const Mat3d P = skew(f.torque) * 0.5;
+        n.force += P * i.g;
+        n.couple += times_transpose(P, i.B);
+      }
     }
     if (follower) s.model.followers.push_back(std::move(f));
   }

@@ -216,6 +216,7 @@ ThinMaterial<double> stress_material(const BodyPoint& p) {
   m.mu = lame.mu;
   m.law = p.law;
   m.axes = p.axes;
+  m.transverse = p.transverse;
   return m;
 }
 

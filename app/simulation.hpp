@@ -69,9 +69,6 @@ double estimated_memory(const Scene& scene);
 Simulation build_simulation(Scene scene);
 
 // Parts of build_simulation, in files of their own.
-/// Ties the positions of a region's material, for bodies whose weights do not interpolate. tethers.cpp
-/// @returns how many places it ties
-int add_tethers(Simulation& simulation, PointSetBuilder& points, int body, const Constraint& constraint, int motion);
 void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< constraints.cpp
 void add_loads(Simulation& simulation);                                 ///< loads.cpp
 void check_support(const Simulation& simulation);                       ///< support.cpp

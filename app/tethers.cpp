@@ -1,10 +1,11 @@
+#include "app/directions.hpp"
 #include "app/regions.hpp"
 #include "app/simulation.hpp"
 #include "core/math/index.hpp"
+#include "meshless/neighbours.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace fascia::app {
@@ -18,14 +19,11 @@ constexpr double kPenalty = 1e4;
 constexpr double kApart = 0.3;
 
 double mean_spacing(const SimulatedBody& b) {
+  if (b.frames.size() < 2) return b.meshless->size();
+  const FrameSearch search(b.frames);
   double sum = 0;
-  for (const Vec3d& x : b.frames) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec3d& y : b.frames)
-      if (const double d = norm(x - y); d > 0) nearest = std::min(nearest, d);
-    sum += nearest;
-  }
-  return b.frames.size() > 1 ? sum / static_cast<double>(b.frames.size()) : b.meshless->size();
+  for (const Vec3d& x : b.frames) sum += norm(b.frames[at(search.nearest(x, 2)[1])] - x);
+  return sum / static_cast<double>(b.frames.size());
 }
 
 /// Frames, vertices of the surface and integration points in the region, thinned out.
@@ -146,12 +144,18 @@ Attachment director(const Attachment& field, const Vec3d& arm) {
   return a;
 }
 
-/// Arms across each held axis: one that turns far keeps the plane of its turn, one that is held only its direction.
+/// All rotations: three arms, which hold every entry of the blended rotation. Single ones: arms across each held axis;
+/// one that turns far keeps the plane of its turn, one that is held only its direction.
 void add_rotation_tethers(TetherBuilder& builder, const Constraint& c, const Vec3d& X, const Attachment& field,
                           double length) {
-  const bool turns = c.motion && c.motion->angle != 0;
+  const bool turns = c.motion && c.motion->angle != 0, all = c.fixed[3] && c.fixed[4] && c.fixed[5];
   for (int k = 0; k < 3; ++k) {
     if (!c.fixed[at(3 + k)]) continue;
+    if (all) {
+      const Vec3d arm = c.axes.row(k) * length;
+      builder.add(X, arm, director(field, arm), Mat3d::identity(), {c.axes.row(k)});
+      continue;
+    }
     const Vec3d axis = c.axes.row(k);
     for (const int other : {(k + 1) % 3, (k + 2) % 3}) {
       const Vec3d arm = c.axes.row(other) * length, across = normalized(cross(axis, arm));
@@ -163,7 +167,7 @@ void add_rotation_tethers(TetherBuilder& builder, const Constraint& c, const Vec
 
 }  // namespace
 
-int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constraint& c, int motion) {
+int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constraint& c, int motion, TiedPlaces& tied) {
   const SimulatedBody& b = s.bodies[at(body)];
   std::vector<Vec3d> axes;
   Mat3d shape;
@@ -176,6 +180,8 @@ int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constrai
   const double arm = arm_length(s.scene.bodies[at(body)]);
   const std::vector<Vec3d> places = places_in(b, c.where, builder.spacing());
   for (const Vec3d& X : places) {
+    Directions& known = tied[{body, {X[0], X[1], X[2]}}];
+    for (const Vec3d& axis : axes) add_direction(s, known, axis, motion, false, X, c);
     const Attachment field = b.meshless->attach(X);
     if (!axes.empty()) builder.add(X, {}, field, shape, axes);
     if (arm > 0) add_rotation_tethers(builder, c, X, field, arm);

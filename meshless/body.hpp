@@ -41,6 +41,7 @@ struct BodyPoint {
   Vec3d middle{};  ///< its place on the middle of a sheet or line; X in a solid [m]
   Law law = Law::solid;
   Mat3d axes = Mat3d::identity();  ///< of a thin law: columns, tangents first
+  bool transverse = false;         ///< as in PointRule
 };
 
 /// Lever and gradient of a frame with weight w and gradient g: half of its rotation acts along the directions in which

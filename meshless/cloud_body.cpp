@@ -52,7 +52,7 @@ std::vector<CloudBody::PointPlace> CloudBody::split_points(const CloudSpec& spec
     const PointMaterialSpec m = spec.material(p.place.X);
     const auto add = [&](const Vec3d& offset, double part, Law law) {
       places.push_back({p.place, offset});
-      points_.push_back({p.place.X + offset, p.volume * part, m.lambda, m.mu, p.place.X, law, T});
+      points_.push_back({p.place.X + offset, p.volume * part, m.lambda, m.mu, p.place.X, law, T, spec.affine});
     };
     if (p.place.dimension == 3 || spec.through == 1) {
       add({}, 1, Law::solid);
@@ -145,7 +145,31 @@ void CloudBody::add_inertia(const CloudSpec& spec, Model& model) {
   if (!model.mass_damping.empty()) model.mass_damping.resize(model.rest_position.size());
 }
 
+/// Sheets, and lines of scattered frames, lock in bending where the spacing h of frames is large beside the thickness
+/// t: a clamped square plate sags 2 % too little at h²/(L t) = 0.3, 12 % at 1.4, 26 % at 2.8, L its diagonal
+/// (docs/decisions/thin_bodies.md).
+void CloudBody::warn_of_locking(const CloudSpec& spec) {
+  constexpr double kLocking = 0.5;
+  double worst = 0, thickness = 0;
+  for (const CloudPoint& p : spec.points) {
+    if (p.place.dimension == 3 || (p.place.dimension == 1 && spec.grid) || spec.through == 1) continue;
+    const double t = p.place.dimension == 2 ? p.extent : 2 * p.extent;
+    const double ratio = spec.spacing * spec.spacing / (size_ * t);
+    if (ratio <= worst) continue;
+    worst = ratio;
+    thickness = t;
+  }
+  if (worst < kLocking) return;
+  std::ostringstream out;
+  out.precision(2);
+  out << "frames " << spec.spacing << " m apart are far for matter " << thickness
+      << " m thick: clamped bending comes out too stiff; put them less than " << std::sqrt(kLocking * size_ * thickness)
+      << " m apart";
+  messages_.push_back(out.str());
+}
+
 void CloudBody::describe(const CloudSpec& spec) {
+  warn_of_locking(spec);
   if (spec.grid) return;
   std::vector<ScatteredWeights> weights;
   std::vector<ScatteredPlace> places;

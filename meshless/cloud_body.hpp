@@ -64,6 +64,7 @@ class CloudBody final : public MeshlessBody {
   void add_middle_ties(const CloudSpec& spec, PointSetBuilder& points) const;
   void add_inertia(const CloudSpec& spec, Model& model);
   void describe(const CloudSpec& spec);
+  void warn_of_locking(const CloudSpec& spec);
   Vec3d frame_position(int node) const { return frame_position_[static_cast<std::size_t>(node - first_frame_)]; }
 
   FrameField field_;

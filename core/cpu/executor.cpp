@@ -100,8 +100,9 @@ void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& his
     // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
     const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
     const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0));
-    const Lanes strain = squared(x.H) + (g * motion) * (g * motion);
-    rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * strain * (Lanes(1.0) + squared(x.H))));
+    const Lanes strain = is_tether(m) ? Lanes{} : squared(x.H);  // a tether's H is a displacement
+    rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
+                                                        (Lanes(1.0) + strain)));
   }
   group_elastic_[at(group)] = elastic;
   group_stabilization_[at(group)] = stabilizing;

@@ -41,12 +41,12 @@ void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const Poin
     set_.damped = set_.damped || p.stiffness_damping > 0;
     set_.lane_point.push_back(used ? set_.point_count++ : -1);
   }
-  add_rule(points, rule);
+  add_rule(points, length, rule);
   set_.slot_node.insert(set_.slot_node.end(), nodes.begin(), nodes.end());
   set_.slot_begin.push_back(set_.slot_count());
 }
 
-void PointSetBuilder::add_rule(std::span<const PointSample> points, PointRule rule) {
+void PointSetBuilder::add_rule(std::span<const PointSample> points, double length, PointRule rule) {
   if (std::none_of(points.begin(), points.end(), [](const PointSample& p) { return p.stabilization > 0; }))
     rule.stabilization = Stabilization::none;
   GroupRule group{rule, -1};
@@ -60,6 +60,7 @@ void PointSetBuilder::add_rule(std::span<const PointSample> points, PointRule ru
             points[std::min(lane, points.size() - 1)].axes(static_cast<int>(k / 3), static_cast<int>(k % 3));
   }
   set_.rule.push_back(group);
+  group_length_.push_back(length);
 }
 
 namespace {
@@ -78,7 +79,7 @@ void transpose_incidence(PointSet& set) {
 }
 
 /// Numbers the connected parts in the order of their first nodes.
-void find_parts(PointSet& set) {
+void find_parts(PointSet& set, const std::vector<double>& group_length) {
   const auto n = static_cast<std::size_t>(set.node_count());
   std::vector<int> parent(n);
   std::iota(parent.begin(), parent.end(), 0);
@@ -108,12 +109,17 @@ void find_parts(PointSet& set) {
     nodes[static_cast<std::size_t>(set.node_part[static_cast<std::size_t>(i)])] += 1;
   }
   volume.resize(nodes.size());
-  for (int group = 0; group < set.group_count(); ++group)
-    for (int lane = 0; lane < kGroupSize; ++lane)
-      volume[static_cast<std::size_t>(set.part_of_group(group))] +=
-          set.material_of_group(group)[kVolume * kGroupSize + lane];
-  for (std::size_t p = 0; p < nodes.size(); ++p)
-    set.part_length.push_back(volume[p] > 0 ? std::cbrt(volume[p] / nodes[p]) : 1.0);
+  std::vector<double> length(nodes.size());
+  for (int group = 0; group < set.group_count(); ++group) {
+    if (set.rule[static_cast<std::size_t>(group)].rule.law == Law::tether) continue;
+    const auto part = static_cast<std::size_t>(set.part_of_group(group));
+    for (int lane = 0; lane < kGroupSize; ++lane) {
+      const double v = set.material_of_group(group)[kVolume * kGroupSize + lane];
+      volume[part] += v;
+      length[part] += v * group_length[static_cast<std::size_t>(group)];
+    }
+  }
+  for (std::size_t p = 0; p < nodes.size(); ++p) set.part_length.push_back(volume[p] > 0 ? length[p] / volume[p] : 1.0);
 }
 
 /// Greedy colouring: the lowest colour that no group with a common frame has.
@@ -145,7 +151,7 @@ void color_groups(PointSet& set) {
 PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   set_.dofs = DofLayout(std::move(frames));
   transpose_incidence(set_);
-  find_parts(set_);
+  find_parts(set_, group_length_);
   color_groups(set_);
   return std::move(set_);
 }

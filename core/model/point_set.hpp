@@ -86,7 +86,7 @@ class PointSetBuilder {
  public:
   /// Adds points that share `nodes` and their rule; they are cut into groups of eight. Each point's F at rest must be
   /// I (Σ w = 1, Σ X gᵀ + B = I), which is checked by the caller's weights.
-  /// @param length  converts B's rows to those of g in the rounding estimate [m]
+  /// @param length  spacing of the frames: converts torques to forces where residuals and rounding are judged [m]
   void add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
                   const PointRule& rule = {});
 
@@ -96,8 +96,9 @@ class PointSetBuilder {
 
  private:
   void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
-  void add_rule(std::span<const PointSample> points, PointRule rule);
+  void add_rule(std::span<const PointSample> points, double length, PointRule rule);
   PointSet set_;
+  std::vector<double> group_length_;  ///< spacing of the frames [m]
 };
 
 }  // namespace fascia

@@ -79,15 +79,17 @@ double MechanicalSystem::prescribed_rotation() const {
   std::vector<double> local(gradient_.size());
   prescribed_increments(local);
   double largest = 0;
-  // A turn of affine frames or tethers shows in no increment that tells it from a shorter one.
+  // A turn of places, affine frames or tethers shows in no increment that tells it from a shorter one.
   const auto turn_of = [&](int motion) {
     if (motion < 0) return 0.0;
     const PrescribedMotion& m = model_.motions[at(motion)];
     return std::abs(m.angle * (factors_[at(m.schedule)] - reached_factors_[at(m.schedule)]));
   };
-  for (const FrameConstraint& c : model_.constraints)
+  for (const FrameConstraint& c : model_.constraints) {
     if (c.rotations > 0)
       largest = std::max(largest, rigid(at(c.node)) ? rotation_in(c.node, local.data()) : turn_of(c.turning_motion()));
+    for (const int motion : c.translation_motion) largest = std::max(largest, turn_of(motion));
+  }
   for (const Tether& t : model_.tethers) largest = std::max(largest, turn_of(t.motion));
   return largest;
 }

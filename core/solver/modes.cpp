@@ -31,27 +31,22 @@ class Problem {
     Linearization lin;
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, K_);
+    sum_stiffness(model.points);
     mass_.assign(dofs().block_total(), 0.0);
     for (int i = 0; i < model.node_count(); ++i)
       add_inertia_block(model.kind(i), model.inertia[at(i)], Mat3d::identity(), mass_.data() + dofs().block_begin(i));
+    for (const FrameInertia& inertia : model.inertia) mass_sum_ += inertia.mass;
   }
 
   const DofFilter& filter() const { return filter_; }
 
-  /// Σ diag K / Σ diag M: the scale of the largest eigenvalues [1/s²].
-  double stiffness_to_mass() const {
-    double stiffness = 0, mass = 0;
-    for (int i = 0; i < K_.rows(); ++i) {
-      stiffness += K_.block(K_.diagonal(i))[0];
-      mass += mass_[dofs().block_begin(i)];
-    }
-    return stiffness / mass;
-  }
+  /// Σ diag K / Σ diag M over the displacements, without tethers: the scale of the largest eigenvalues [1/s²].
+  double stiffness_to_mass() const { return stiffness_ / mass_sum_; }
 
   /// A factor of K + s M; the smallest s that the factorisation accepts.
   BlockCholesky factorize() {
     BlockCholesky factor(K_, filter_);
-    const double step = 1e-6 * stiffness_to_mass();
+    const double step = 1e-12 * stiffness_to_mass();
     double s = filter_.free_count() < static_cast<int>(filter_.size()) ? 0.0 : step;
     for (int attempt = 0; attempt < 12; ++attempt) {
       BlockMatrix shifted = K_;
@@ -93,10 +88,24 @@ class Problem {
 
   const DofLayout& dofs() const { return K_.dofs(); }
 
+  /// Σ v (λ + 2μ) |g|² over points and frames.
+  void sum_stiffness(const PointSet& set) {
+    for (int group = 0; group < set.group_count(); ++group) {
+      if (set.rule[at(group)].rule.law == Law::tether) continue;
+      const double* material = set.material_of_group(group);
+      for (int lane = 0; lane < kGroupSize; ++lane) {
+        const double g = material[kGradientNorm * kGroupSize + lane];
+        stiffness_ += material[kVolume * kGroupSize + lane] *
+                      (material[kLambda * kGroupSize + lane] + 2 * material[kMu * kGroupSize + lane]) * g * g;
+      }
+    }
+  }
+
   ThreadPool& pool_;
   DofFilter filter_;
   BlockMatrix K_;
   std::vector<double> mass_;  ///< blocks of the frames
+  double stiffness_ = 0, mass_sum_ = 0;
 };
 
 }  // namespace
