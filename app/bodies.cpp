@@ -104,6 +104,19 @@ ScatteredKind scattered_kind(WeightKind kind) {
   }
 }
 
+/// What a user may not have meant.
+void warn_of_thin_choices(const Body& body, const MeshlessBody& built, std::vector<std::string>& messages) {
+  double extent = 2 * body.radius.value_or(0);
+  for (const ThicknessUse& use : body.thickness) extent = std::max(extent, use.value);
+  if (extent > 0.5 * built.size())
+    messages.push_back(fmt::format("is {:.3g} m thick and {:.3g} m across; write lengths with their unit, as \"2 mm\"",
+                                   extent, built.size()));
+  if (body.through == 1)
+    messages.push_back(
+        "points.through = 1 is the 2014 paper's rule: nothing resists bending and torsion but an artefact "
+        "of the spacing");
+}
+
 void describe_thin_grid(const Body& body, const MatterParts& parts, CloudSpec& spec) {
   ThinGridSpec thin;
   thin.parts = parts;
@@ -153,7 +166,10 @@ std::unique_ptr<MeshlessBody> build_body(const Body& body, Model& model, PointSe
     for (const CloudPoint& p : spec.points) volume += p.volume;
     fill_matter(body, volume, spec);
     built = std::make_unique<CloudBody>(spec, model, points);
+    warn_of_thin_choices(body, *built, messages);
   }
+  if (body.blend == Blend::full && body.drilling.value_or(1) > 0)
+    messages.push_back("blend = \"full\" with a drilling stiffness locks; add drilling = 0 to weights");
   check_material_regions(body, *built);
   return built;
 }

@@ -8,6 +8,7 @@
 #include "core/geometry/surface.hpp"
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/model/errors.hpp"
 #include "io/mesh_reader.hpp"
 
 #include <fmt/format.h>
@@ -154,12 +155,23 @@ LinePart line_part(const LineDomain& l, const Body& body, double scale) {
   return line;
 }
 
+/// A surface that does not close may be meant as a sheet.
+ClosedSurface closed_or_thin(const Mesh& mesh) {
+  try {
+    return closed_surface(mesh);
+  } catch (const InputError& e) {
+    const std::string message = e.what();
+    if (message.find("hole") == std::string::npos) throw;
+    throw InputError(message + ", or give the body a thickness to make it a sheet");
+  }
+}
+
 /// Solids, sheets and lines of a mesh.
 void add_mesh(const FileDomain& file, const Body& body, MatterParts& parts, std::vector<std::string>& messages) {
   const double scale = body.transform.scale;
   const Mesh mesh = io::read_mesh(file.path);
   if (body.thickness.empty() && !body.radius) {
-    ClosedSurface closed = closed_surface(mesh);
+    ClosedSurface closed = closed_or_thin(mesh);
     messages.insert(messages.end(), closed.messages.begin(), closed.messages.end());
     parts.solid = make_solid(std::move(closed), scale);
     return;

@@ -308,10 +308,12 @@ int check_scene(const RunOptions& options) {
   for (const SimulatedBody& b : s.bodies)
     if (!b.meshless->quality().empty()) fmt::print("body {}: {}\n", b.name, b.meshless->quality());
   const int free = s.model.dof_count() - s.model.constrained_dof_count();
-  fmt::print("{} unknowns ({} prescribed), {} loads, {} probes\n", free, s.model.constrained_dof_count(),
+  const std::string tethers = s.model.tethers.empty() ? "" : fmt::format("{} tethers, ", s.model.tethers.size());
+  fmt::print("{} unknowns ({} prescribed), {}{} loads, {} probes\n", free, s.model.constrained_dof_count(), tethers,
              s.scene.loads.size(), s.probes.size());
-  fmt::print("memory: about {:.3g} MB\n", estimated_memory(s.scene) / 1e6);
-  fmt::print("{} is sound; {} warnings\n", options.scene.string(), s.warnings.size());
+  fmt::print("memory: about {:.3g} MB\n", model_memory(s) / 1e6);
+  fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
+             s.warnings.size() == 1 ? "" : "s");
   return kDone;
 }
 

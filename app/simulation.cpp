@@ -8,6 +8,7 @@
 #include "core/math/rotation.hpp"
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
+#include "core/solver/block_matrix.hpp"
 
 #include <fmt/format.h>
 
@@ -75,7 +76,11 @@ void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
     std::vector<char> boundary = built->frames_on_boundary();
     s.bodies.push_back({body.name, std::move(built), std::move(frames), std::move(boundary)});
   } catch (const InputError& e) {
-    throw SceneError({{body.domain_place, e.what()}});
+    const Place& place = e.blame == Blame::frames    ? body.frames_place
+                         : e.blame == Blame::points  ? body.points_place
+                         : e.blame == Blame::weights ? body.weights_place
+                                                     : body.domain_place;
+    throw SceneError({{place, e.what()}});
   }
 }
 
@@ -94,6 +99,17 @@ double estimated_memory(const Scene& scene) {
              e.pieces * 160;
   }
   return bytes;
+}
+
+double model_memory(const Simulation& s) {
+  const PointSet& set = s.model.points;
+  const BlockMatrix pattern(set);
+  // Shapes, sums and states of points; results; the matrix and what a factor fills in.
+  const double points = 1.0 * set.slot_count() * (13 * kGroupSize + 12) * 8 + set.group_count() * 45.0 * kGroupSize * 8;
+  const double results = set.point_count * (600.0 + 120.0 * set.slot_count() / std::max(1, set.group_count()));
+  const double matrix = 8.0 * static_cast<double>(pattern.value_count());
+  const bool factor = s.scene.solver.linear == LinearKind::cholesky || s.model.dof_count() <= 15000;
+  return 30e6 + points + results + matrix * (factor ? 4 : 1) + s.model.dof_count() * 200.0;
 }
 
 std::vector<double> Simulation::factors(double time) const {

@@ -62,6 +62,9 @@ struct Simulation {
 /// Rough memory of a scene [bytes], known before anything is allocated.
 double estimated_memory(const Scene& scene);
 
+/// The same from the built model, closer: a run's peak [bytes].
+double model_memory(const Simulation& simulation);
+
 /// Turns a scene into a model.
 /// @throws SceneError  what only the geometry shows: a region that selects nothing, contradicting constraints, a static
 ///                     problem that nothing holds, more memory than there is

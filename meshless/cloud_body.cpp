@@ -38,6 +38,7 @@ CloudBody::CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& point
   size_ = norm(high - low);
   places_ = split_points(spec);
   number_frames(spec, model);
+  check_points(spec);
   add_points(spec, points);
   add_inertia(spec, model);
   describe(spec);
@@ -75,7 +76,8 @@ void CloudBody::number_frames(const CloudSpec& spec, Model& model) {
     const ScatteredWeights w = field_(p.place);
     if (w.frame.empty())
       throw InputError("the matter at " + text(p.place.X) +
-                       " is out of reach of every frame; use more frames or a larger weights.radius");
+                           " is out of reach of every frame; use more frames or a larger weights.radius",
+                       Blame::weights);
     for (const int f : w.frame) used[at(f)] = 1;
   }
   first_frame_ = model.node_count();
@@ -92,6 +94,17 @@ void CloudBody::number_frames(const CloudSpec& spec, Model& model) {
   frame_count_ = model.node_count() - first_frame_;
   const auto dropped = std::count(used.begin(), used.end(), 0);
   if (dropped > 0) messages_.push_back(std::to_string(dropped) + " frames that reach no point were dropped");
+}
+
+/// A point resists six strains: with fewer of these than degrees of freedom, frames would be loose.
+void CloudBody::check_points(const CloudSpec& spec) const {
+  const std::size_t dofs = at(frame_count_) * (spec.affine ? 12 : 6);
+  if (6 * places_.size() >= dofs) return;
+  const bool thin = points_[0].law != Law::solid;
+  throw InputError(std::to_string(places_.size()) + " integration points cannot hold " + std::to_string(frame_count_) +
+                       (spec.affine ? " affine" : "") + " frames; use at least " + std::to_string(dofs / 6) +
+                       (thin ? ", those through the matter included" : "") + ", and several times as many for accuracy",
+                   Blame::points);
 }
 
 Attachment CloudBody::attach_place(const ScatteredPlace& place, const Vec3d& offset) const {
@@ -190,8 +203,10 @@ void CloudBody::describe(const CloudSpec& spec) {
   std::ostringstream out;
   out.precision(2);
   out << "weights: " << least << " to " << most << " frames a point; ";
-  if (consistent)
+  if (consistent && lowered == 0)
     out << "linear fields along the matter are reproduced";
+  else if (consistent)
+    out << "linear fields along the matter are reproduced but at " << lowered << " of " << places.size() << " points";
   else
     out << "linear fields are off by " << c.position << " spacings (rms), a uniform stretch by " << 100 * c.gradient
         << " %";

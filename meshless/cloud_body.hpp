@@ -56,6 +56,7 @@ class CloudBody final : public MeshlessBody {
   Attachment attach_place(const ScatteredPlace& place, const Vec3d& offset) const;
   std::vector<PointPlace> split_points(const CloudSpec& spec);
   void number_frames(const CloudSpec& spec, Model& model);
+  void check_points(const CloudSpec& spec) const;
   void add_points(const CloudSpec& spec, PointSetBuilder& points);
   void add_group(const CloudSpec& spec, const std::vector<std::size_t>& members,
                  const std::vector<Attachment>& attachments, PointSetBuilder& points) const;

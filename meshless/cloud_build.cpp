@@ -27,6 +27,16 @@ struct Samples {
   std::vector<SamplePlace> places;
 };
 
+/// Runs a step whose errors are due to one part of the description.
+template <class Step>
+auto blaming(Blame blame, const Step& step) {
+  try {
+    return step();
+  } catch (const InputError& e) {
+    throw InputError(e.what(), blame);
+  }
+}
+
 /// @param fallback  spacing where the choice has none
 Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool frames, double fallback, int seed) {
   Samples s;
@@ -70,12 +80,17 @@ void check_frames(const ScatterSpec& choice, const std::vector<CloudFrame>& fram
     const Vec3d& x = positions[at(pairs[0].first)];
     out << "frames " << pairs[0].first << " and " << pairs[0].second << " coincide at (" << x[0] << ", " << x[1] << ", "
         << x[2] << "); remove one of them";
-    throw InputError(out.str());
+    throw InputError(out.str(), Blame::frames);
   }
   const int needed = choice.parts.dimension() + 1;
   if (choice.weights == ScatteredKind::mls && static_cast<int>(frames.size()) < needed)
     throw InputError(std::to_string(frames.size()) +
-                     " frames cannot carry linear fields in this domain; use at least " + std::to_string(needed));
+                         " frames cannot carry linear fields in this domain; use at least " + std::to_string(needed),
+                     Blame::frames);
+  if (choice.neighbours && *choice.neighbours < needed)
+    throw InputError("a point that follows " + std::to_string(*choice.neighbours) +
+                         " frames cannot be held in this domain; neighbours must be at least " + std::to_string(needed),
+                     Blame::weights);
 }
 
 Reach reach_of(const ScatterSpec& choice, const std::vector<CloudFrame>& frames) {
@@ -133,7 +148,7 @@ void check_curvature(const std::vector<CloudPoint>& points, std::vector<std::str
 /// Points with their shares of the matter; sampled ones move along the tangents to the middle of their share, where
 /// linear fields are integrated exactly.
 std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing) {
-  Samples s = samples_of(parts, choice, false, spacing, 2);
+  Samples s = blaming(Blame::points, [&] { return samples_of(parts, choice, false, spacing, 2); });
   const auto* listed = std::get_if<ListedChoice>(&choice);
   std::vector<Share> shares = voronoi_shares(s.matter, s.places);
   if (listed && !listed->volume.empty()) {
@@ -159,7 +174,7 @@ std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& 
 }  // namespace
 
 void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages) {
-  const Samples frames = samples_of(choice.parts, choice.frames, true, 0, 1);
+  const Samples frames = blaming(Blame::frames, [&] { return samples_of(choice.parts, choice.frames, true, 0, 1); });
   spec.frames = frames_of(choice, frames.places);
   check_frames(choice, spec.frames, size_of(choice.parts));
   const Reach reach = reach_of(choice, spec.frames);
@@ -172,7 +187,7 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   spec.spacing = std::max(mean(local_spacing(positions, dimension)), 1e-9 * size_of(choice.parts));
   const bool listed = std::holds_alternative<ListedChoice>(choice.frames);
   spec.points = points_of(choice.parts, choice.points, kPointSpacing * (listed ? spec.spacing : frames.spacing));
-  if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points");
+  if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points", Blame::points);
   check_curvature(spec.points, messages);
   spec.field = scattered_field(choice.weights, spec.frames, reach);
   spec.share =
@@ -196,7 +211,8 @@ void balance_cells(const MatterParts& parts, const ThinGrid& grid, std::vector<C
   for (const int n : grid.count) cells *= at(n - 1);
   if (members.size() < cells)
     throw InputError(std::to_string(cells - members.size()) + " of " + std::to_string(cells) +
-                     " cells of the grid of frames hold no integration point; use more points");
+                         " cells of the grid of frames hold no integration point; use more points",
+                     Blame::points);
   for (const auto& [cell, inside] : members) {
     double share = 0, across = 0;
     for (const std::size_t q : inside) {

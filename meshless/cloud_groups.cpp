@@ -62,7 +62,8 @@ void CloudBody::split_group(const CloudSpec& spec, std::vector<std::size_t> memb
     return add_group(spec, members, attachments, builder);
   if (members.size() == 1)
     throw InputError(std::to_string(attachments[members[0]].nodes.size()) + " frames reach one point; at most " +
-                     std::to_string(kMaxSlots) + " may: use a smaller weights.radius or fewer neighbours");
+                         std::to_string(kMaxSlots) + " may: use a smaller weights.radius or fewer neighbours",
+                     Blame::weights);
   Vec3d low = points_[members[0]].X, high = low;
   for (const std::size_t q : members) {
     for (int a = 0; a < 3; ++a) {

@@ -21,7 +21,7 @@ void check_pieces(const Matter& matter, double piece_size, double more) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.2g", count);
   throw InputError("sampling the domain takes " + std::string(text.data()) +
-                   " pieces, more than 5e7; use a larger spacing");
+                   " pieces, more than 5e7; use a larger spacing, or transform.scale where a file is not in metres");
 }
 
 namespace {

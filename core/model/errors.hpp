@@ -11,10 +11,15 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What of a body's description is to blame.
+enum class Blame { domain, frames, points, weights };
+
 /// Input whose content is wrong: the message names the place and a remedy. Exit status 2.
 class InputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit InputError(const std::string& message, Blame to_blame = Blame::domain)
+      : std::runtime_error(message), blame(to_blame) {}
+  Blame blame;
 };
 
 }  // namespace fascia

@@ -1,8 +1,7 @@
 #include "core/solver/tangent_solver.hpp"
 
 #include "core/math/index.hpp"
-
-#include <Eigen/Dense>
+#include "core/solver/positive_inverse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +9,6 @@
 namespace fascia {
 
 namespace {
-
-/// A frame's own block, and its part of a vector.
-using NodeMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostDofs, kMostDofs>;
-using NodeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostDofs, 1>;
 
 /// Up to here a factorisation takes a few seconds at most, whatever the conditioning; CG may be 2 to 3 times faster on
 /// a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual.md).
@@ -112,25 +107,15 @@ void TangentSolver::build_block_jacobi() {
   executor_.pool().for_ranges(model_.node_count(), 128, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       const int n = dofs.size(node);
-      NodeMatrix block(n, n);
-      filter_.rotate_block(node, node, matrix_->block(matrix_->diagonal(node)), block.data());
+      double* block = inverse_blocks_.data() + dofs.block_begin(node);
+      filter_.rotate_block(node, node, matrix_->block(matrix_->diagonal(node)), block);
       for (int i = 0; i < n; ++i) {
-        if (!filter_.is_fixed(at(dofs.begin(node) + i))) continue;
-        block.row(i).setZero();
-        block.col(i).setZero();
-        block(i, i) = 1;
+        for (int j = 0; j < n; ++j) {
+          const bool held = filter_.is_fixed(at(dofs.begin(node) + i)) || filter_.is_fixed(at(dofs.begin(node) + j));
+          if (held || (!blocks && i != j)) block[n * i + j] = i == j ? 1 : 0;
+        }
       }
-      NodeMatrix inverse = NodeMatrix::Zero(n, n);
-      if (blocks) {
-        const Eigen::SelfAdjointEigenSolver<NodeMatrix> eigen(block);
-        // Keeps the preconditioner positive where the tangent is not.
-        const double least = 1e-12 * eigen.eigenvalues().cwiseAbs().maxCoeff();
-        const NodeVector values = eigen.eigenvalues().cwiseAbs().cwiseMax(least).cwiseInverse();
-        inverse = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-      } else {
-        for (int i = 0; i < n; ++i) inverse(i, i) = block(i, i) != 0 ? 1.0 / std::abs(block(i, i)) : 1.0;
-      }
-      std::copy(inverse.data(), inverse.data() + n * n, inverse_blocks_.data() + dofs.block_begin(node));
+      positive_inverse(block, n);
     }
   });
 }
