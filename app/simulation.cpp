@@ -109,7 +109,14 @@ double model_memory(const Simulation& s) {
   const double results = set.point_count * (600.0 + 120.0 * set.slot_count() / std::max(1, set.group_count()));
   const double matrix = 8.0 * static_cast<double>(pattern.value_count());
   const bool factor = s.scene.solver.linear == LinearKind::cholesky || s.model.dof_count() <= 15000;
-  return 30e6 + points + results + matrix * (factor ? 4 : 1) + s.model.dof_count() * 200.0;
+  double pieces = 0;  // of matter, while scattered bodies are sampled
+  for (const SimulatedBody& b : s.bodies) {
+    if (b.meshless->interpolates()) continue;
+    const Law law = b.meshless->points().front().law;
+    const double of_point = law == Law::solid ? 216 : law == Law::sheet ? 18 : 1.5;
+    pieces = std::max(pieces, std::min(4e6, of_point * static_cast<double>(b.meshless->points().size())));
+  }
+  return 30e6 + points + results + matrix * (factor ? 4 : 1) + s.model.dof_count() * 200.0 + pieces * 160;
 }
 
 std::vector<double> Simulation::factors(double time) const {

@@ -34,6 +34,10 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
   selective_ = weights_ == GridWeightKind::trilinear &&
                (spec.integration == IntegrationKind::selective ||
                 (spec.integration == IntegrationKind::automatic && nearly_incompressible && thick));
+  if (selective_ && spec.affine)
+    messages_.push_back(
+        "selective integration takes a part of the bending stiffness of affine frames away, which do not "
+        "lock; use integration = \"auto\"");
   if (selective_ && spec.integration == IntegrationKind::automatic)
     messages_.push_back("Poisson ratio above 0.45: lambda is integrated at one point a cell (selective integration)");
 
