@@ -13,8 +13,7 @@ namespace fascia::app {
 
 namespace {
 
-struct Held {
-  Directions translation, rotation;
+struct Held : HeldDirections {
   bool whole = false;  ///< by one constraint
 };
 

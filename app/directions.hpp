@@ -15,8 +15,13 @@ struct Directions {
   std::vector<int> motion;  ///< −1: held
 };
 
-/// Directions in which places of a body's matter are tied already: by body and rest position.
-using TiedPlaces = std::map<std::pair<int, std::array<double, 3>>, Directions>;
+/// Prescribed directions of a frame or of a place in the matter.
+struct HeldDirections {
+  Directions translation, rotation;
+};
+
+/// What is tied of a body's matter already: by body and rest position.
+using TiedPlaces = std::map<std::pair<int, std::array<double, 3>>, HeldDirections>;
 
 /// Ties the positions of a region's material, for bodies whose weights do not interpolate, and of thin ones the
 /// rotations (tethers.cpp).

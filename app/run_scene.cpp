@@ -100,6 +100,37 @@ struct Outcome {
   double stabilization = 0;
 };
 
+/// Looks for load steps in which the elastic energy falls by half although every load and motion grew: the body found
+/// another equilibrium, which may lack a turn that it was given.
+class SnapWatch {
+ public:
+  explicit SnapWatch(const Simulation& s) : simulation_(s), factors_(s.factors(0)) {
+    for (const SimulatedBody& b : s.bodies)
+      for (const BodyPoint& p : b.meshless->points()) scale_ += p.mu * p.volume;
+  }
+
+  void look(double time, double energy) {
+    const std::vector<double> factors = simulation_.factors(time);
+    bool grew = true;
+    for (std::size_t i = 0; i < factors.size(); ++i) grew = grew && std::abs(factors[i]) >= std::abs(factors_[i]);
+    // Energies of rounding are no energies: strains of 1e-8.
+    if (grew && energy < 0.5 * energy_ && energy_ > 1e-16 * scale_ && warning_.empty())
+      warning_ = fmt::format(
+          "the elastic energy fell from {:.3g} J to {:.3g} J on the way to load factor {:.4g}, though nothing was "
+          "unloaded: the body snapped to another equilibrium, perhaps one that lost a turn; compare with more frames",
+          energy_, energy, time);
+    energy_ = energy;
+    factors_ = factors;
+  }
+  const std::string& warning() const { return warning_; }
+
+ private:
+  const Simulation& simulation_;
+  std::vector<double> factors_;
+  double scale_ = 0, energy_ = 0;
+  std::string warning_;
+};
+
 /// Determinant of the mean of two rotations a right angle apart: below, a blend no longer follows them.
 constexpr double kResolved = 0.5;
 
@@ -148,6 +179,7 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
   SaveRule rule(s.scene.output, statics);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   double output_seconds = 0, saved_time = -1;
+  SnapWatch snaps(s);
   const auto save = [&](double time, const State& at, bool fields) {
     const Clock::time_point start = Clock::now();
     files.add_probes(time, {&at, &system, 0});
@@ -161,6 +193,7 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     const bool due = rule.save(step);
     if (due || statics) save(step.time, at, due);
     out.stabilization = system.internal_energy().stabilization;
+    if (statics) snaps.look(step.time, system.internal_energy().elastic);
     return interrupted == 0;
   };
   const Clock::time_point start = Clock::now();
@@ -188,6 +221,7 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     }
   }
   add_result_warnings(s, state, out.run, out.warnings);
+  if (!snaps.warning().empty()) out.warnings.push_back(snaps.warning());
   out.times.output = output_seconds;
   if (out.run.status == RunStatus::interrupted) out.run.message = fmt::format("interrupted at {:.6g}", out.run.time);
   for (std::size_t i = 0; i < s.probes.size(); ++i) out.probes.push_back(probe_json(s.probes[i], files.last_values(i)));

@@ -180,8 +180,10 @@ int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constrai
   const double arm = arm_length(s.scene.bodies[at(body)]);
   const std::vector<Vec3d> places = places_in(b, c.where, builder.spacing());
   for (const Vec3d& X : places) {
-    Directions& known = tied[{body, {X[0], X[1], X[2]}}];
-    for (const Vec3d& axis : axes) add_direction(s, known, axis, motion, false, X, c);
+    HeldDirections& known = tied[{body, {X[0], X[1], X[2]}}];
+    for (const Vec3d& axis : axes) add_direction(s, known.translation, axis, motion, false, X, c);
+    for (int k = 0; k < 3 && arm > 0; ++k)
+      if (c.fixed[at(3 + k)]) add_direction(s, known.rotation, c.axes.row(k), motion, true, X, c);
     const Attachment field = b.meshless->attach(X);
     if (!axes.empty()) builder.add(X, {}, field, shape, axes);
     if (arm > 0) add_rotation_tethers(builder, c, X, field, arm);

@@ -36,8 +36,8 @@ struct CloudSpec : BodyMatter {
 
 class CloudBody final : public MeshlessBody {
  public:
-  /// Appends frames to the model and points to the builder. Frames without points are dropped.
-  /// @throws InputError  a point that no frame reaches, or one that too many reach
+  /// Appends frames to the model and points to the builder.
+  /// @throws InputError  a point that too many frames reach, points that are too few
   CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& points);
 
   bool interpolates() const override { return interpolates_; }
@@ -48,33 +48,35 @@ class CloudBody final : public MeshlessBody {
   std::string quality() const override { return quality_; }
 
  private:
+  /// Of an integration point: the place that it stands at, and how far across the matter.
   struct PointPlace {
-    ScatteredPlace place;
+    std::size_t place = 0;  ///< index into places_
     Vec3d offset{};
   };
 
-  Attachment attach_place(const ScatteredPlace& place, const Vec3d& offset) const;
-  std::vector<PointPlace> split_points(const CloudSpec& spec);
+  Attachment attach_place(const ScatteredPlace& place, const ScatteredWeights& weights, const Vec3d& offset) const;
+  void split_points(const CloudSpec& spec);
   void number_frames(const CloudSpec& spec, Model& model);
   void check_points(const CloudSpec& spec) const;
-  void add_points(const CloudSpec& spec, PointSetBuilder& points);
+  void add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights, PointSetBuilder& points);
   void add_group(const CloudSpec& spec, const std::vector<std::size_t>& members,
                  const std::vector<Attachment>& attachments, PointSetBuilder& points) const;
   void split_group(const CloudSpec& spec, std::vector<std::size_t> members, const std::vector<Attachment>& attachments,
                    PointSetBuilder& points) const;
-  void add_middle_ties(const CloudSpec& spec, PointSetBuilder& points) const;
+  void add_middle_ties(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights,
+                       PointSetBuilder& points) const;
   void add_inertia(const CloudSpec& spec, Model& model);
-  void describe(const CloudSpec& spec);
+  void describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights);
   void warn_of_locking(const CloudSpec& spec);
   Vec3d frame_position(int node) const { return frame_position_[static_cast<std::size_t>(node - first_frame_)]; }
 
   FrameField field_;
   std::function<Location(const Vec3d&)> locate_;
   bool half_blend_, interpolates_;
-  std::vector<int> node_of_frame_;  ///< of the model, −1: dropped
   std::vector<Vec3d> frame_position_;
   std::vector<char> on_boundary_;
-  std::vector<PointPlace> places_;  ///< of each integration point
+  std::vector<ScatteredPlace> places_;
+  std::vector<PointPlace> point_places_;  ///< of each integration point
   std::string quality_;
 };
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 namespace fascia {
 
@@ -63,10 +62,10 @@ std::vector<CloudFrame> frames_of(const ScatterSpec& choice, const std::vector<S
   std::vector<CloudFrame> frames;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const SamplePlace& p = places[i];
-    Mat3d own = p.axes;
+    Mat3d own = choice.parts.rotation * p.axes;  // a user's are those of the placed body
     if (listed && !listed->rotation.empty()) own = Mat3d::identity() + rotation_increment(listed->rotation[i]);
-    frames.push_back({to_world(choice.parts, p.x), choice.parts.rotation * own, p.dimension,
-                      choice.parts.rotation * p.axes.column(2), p.feature < p.dimension});
+    frames.push_back({to_world(choice.parts, p.x), own, p.dimension, choice.parts.rotation * p.axes.column(2),
+                      p.feature < p.dimension});
   }
   return frames;
 }
@@ -76,11 +75,9 @@ void check_frames(const ScatterSpec& choice, const std::vector<CloudFrame>& fram
   std::transform(frames.begin(), frames.end(), positions.begin(), [](const CloudFrame& f) { return f.x; });
   const auto pairs = coincident(positions, 1e-9 * size);
   if (!pairs.empty()) {
-    std::ostringstream out;
-    const Vec3d& x = positions[at(pairs[0].first)];
-    out << "frames " << pairs[0].first << " and " << pairs[0].second << " coincide at (" << x[0] << ", " << x[1] << ", "
-        << x[2] << "); remove one of them";
-    throw InputError(out.str(), Blame::frames);
+    throw InputError("frames " + std::to_string(pairs[0].first) + " and " + std::to_string(pairs[0].second) +
+                         " coincide at " + text(positions[at(pairs[0].first)]) + "; remove one of them",
+                     Blame::frames);
   }
   const int needed = choice.parts.dimension() + 1;
   if (choice.weights == ScatteredKind::mls && static_cast<int>(frames.size()) < needed)
@@ -93,20 +90,14 @@ void check_frames(const ScatterSpec& choice, const std::vector<CloudFrame>& fram
                      Blame::weights);
 }
 
-Reach reach_of(const ScatterSpec& choice, const std::vector<CloudFrame>& frames) {
+/// @param spacing  around each frame [m]
+Reach reach_of(const ScatterSpec& choice, const std::vector<double>& spacing) {
   Reach reach;
   if (choice.neighbours) reach.neighbours = *choice.neighbours;
   if (!choice.neighbours && !choice.support && choice.weights == ScatteredKind::shepard)
     reach.neighbours = kShepardNeighbours;
-  std::vector<Vec3d> positions;
-  std::vector<int> dimension;
-  for (const CloudFrame& f : frames) {
-    positions.push_back(f.x);
-    dimension.push_back(f.dimension);
-  }
   const double factor = choice.weights == ScatteredKind::mls ? kMlsSupport : kKernelSupport;
-  for (const double s : local_spacing(positions, dimension))
-    reach.support.push_back(choice.support ? *choice.support : factor * s);
+  for (const double s : spacing) reach.support.push_back(choice.support ? *choice.support : factor * s);
   return reach;
 }
 
@@ -171,28 +162,77 @@ std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& 
   return points;
 }
 
+std::vector<double> spacing_around(const std::vector<CloudFrame>& frames) {
+  std::vector<Vec3d> positions;
+  std::vector<int> dimension;
+  for (const CloudFrame& f : frames) {
+    positions.push_back(f.x);
+    dimension.push_back(f.dimension);
+  }
+  return local_spacing(positions, dimension);
+}
+
+/// Frames that move no point would be free: they are left out.
+void drop_idle_frames(const ScatterSpec& choice, CloudSpec& spec, Reach& reach, std::vector<std::string>& messages) {
+  std::size_t dropped = 0;
+  for (bool all_used = false; !all_used;) {
+    const FrameField field = scattered_field(choice.weights, spec.frames, reach);
+    std::vector<char> used(spec.frames.size(), 0);
+    for (const CloudPoint& p : spec.points) {
+      const ScatteredWeights w = field(p.place);
+      if (w.frame.empty()) {
+        throw InputError("the matter at " + text(p.place.X) +
+                             " is out of reach of every frame; use more frames or a larger weights.radius",
+                         Blame::weights);
+      }
+      for (const int f : w.frame) used[at(f)] = 1;
+    }
+    all_used = std::find(used.begin(), used.end(), 0) == used.end();
+    if (all_used) break;
+    CloudSpec kept;
+    Reach kept_reach{{}, reach.neighbours};
+    for (std::size_t f = 0; f < used.size(); ++f) {
+      if (used[f] == 0) continue;
+      kept.frames.push_back(spec.frames[f]);
+      kept_reach.support.push_back(reach.support[f]);
+    }
+    dropped += spec.frames.size() - kept.frames.size();
+    spec.frames = std::move(kept.frames);
+    reach = std::move(kept_reach);
+  }
+  if (dropped > 0) messages.push_back(std::to_string(dropped) + " frames that reach no point were dropped");
+}
+
+/// A user's points must lie in the matter, to a thousandth of its size.
+void check_inside(const CloudSpec& spec, double size) {
+  for (const CloudPoint& p : spec.points) {
+    const double distance = spec.locate(p.place.X).distance;
+    if (distance <= 1e-3 * size) continue;
+    throw InputError("the point at " + text(p.place.X) + " lies " + std::to_string(distance) +
+                         " m outside the body; give points of its rest shape",
+                     Blame::points);
+  }
+}
+
 }  // namespace
 
 void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages) {
   const Samples frames = blaming(Blame::frames, [&] { return samples_of(choice.parts, choice.frames, true, 0, 1); });
   spec.frames = frames_of(choice, frames.places);
   check_frames(choice, spec.frames, size_of(choice.parts));
-  const Reach reach = reach_of(choice, spec.frames);
-  std::vector<Vec3d> positions;
-  std::vector<int> dimension;
-  for (const CloudFrame& f : spec.frames) {
-    positions.push_back(f.x);
-    dimension.push_back(f.dimension);
-  }
-  spec.spacing = std::max(mean(local_spacing(positions, dimension)), 1e-9 * size_of(choice.parts));
+  const std::vector<double> spacing = spacing_around(spec.frames);
+  Reach reach = reach_of(choice, spacing);
+  spec.spacing = std::max(mean(spacing), 1e-9 * size_of(choice.parts));
   const bool listed = std::holds_alternative<ListedChoice>(choice.frames);
   spec.points = points_of(choice.parts, choice.points, kPointSpacing * (listed ? spec.spacing : frames.spacing));
   if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points", Blame::points);
+  finish_cloud(choice.parts, spec);
+  if (std::holds_alternative<ListedChoice>(choice.points)) check_inside(spec, size_of(choice.parts));
   check_curvature(spec.points, messages);
+  drop_idle_frames(choice, spec, reach, messages);
   spec.field = scattered_field(choice.weights, spec.frames, reach);
   spec.share =
       choice.weights == ScatteredKind::mls ? scattered_field(ScatteredKind::wendland, spec.frames, reach) : spec.field;
-  finish_cloud(choice.parts, spec);
 }
 
 namespace {
@@ -231,8 +271,9 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   const MatterParts& parts = choice.parts;
   const ThinGrid& grid = choice.grid;
   const std::size_t directions = grid.edge.size();
-  const Matter axes_source = matter_of(parts, size_of(parts) / 8);
-  const Mat3d axes = axes_source.pieces.front().axes;
+  const Vec3d tangent = normalized(grid.edge[0]);
+  const Vec3d normal = directions == 2 ? normalized(cross(grid.edge[0], grid.edge[1])) : basis_from(tangent).row(2);
+  const Mat3d axes = Mat3d::from_columns(tangent, cross(normal, tangent), normal);
   for (int i = 0; i < grid.node_count(); ++i) {
     bool rim = false;
     int rest = i;

@@ -23,11 +23,13 @@ std::set<int> all_nodes(const std::vector<std::size_t>& members, const std::vect
 
 /// Points with the same frames make groups of their own; the others are cut into groups by halving their box, since
 /// points near one another share most frames.
-void CloudBody::add_points(const CloudSpec& spec, PointSetBuilder& builder) {
+void CloudBody::add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights,
+                           PointSetBuilder& builder) {
   std::vector<Attachment> attachments;
   std::map<std::pair<Law, std::vector<int>>, std::vector<std::size_t>> same;
   for (std::size_t q = 0; q < points_.size(); ++q) {
-    attachments.push_back(attach_point(q));
+    const PointPlace& p = point_places_[q];
+    attachments.push_back(attach_place(places_[p.place], weights[p.place], p.offset));
     same[{points_[q].law, attachments.back().nodes}].push_back(q);
   }
   std::map<Law, std::vector<std::size_t>> rest;
@@ -38,19 +40,17 @@ void CloudBody::add_points(const CloudSpec& spec, PointSetBuilder& builder) {
       rest[key.first].insert(rest[key.first].end(), members.begin(), members.end());
   }
   for (const auto& [law, members] : rest) split_group(spec, members, attachments, builder);
-  if (spec.affine) add_middle_ties(spec, builder);
+  if (spec.affine) add_middle_ties(spec, weights, builder);
 }
 
 /// Affine frames of thin matter are tied to F on its middle, where neither bending nor torsion turns it against them.
-void CloudBody::add_middle_ties(const CloudSpec& spec, PointSetBuilder& builder) const {
-  std::size_t q = 0;
-  for (const CloudPoint& p : spec.points) {
-    const std::size_t first = q;
-    while (q < places_.size() && places_[q].place.X == p.place.X && places_[q].place.dimension == p.place.dimension)
-      ++q;
-    if (points_[first].law == Law::solid) continue;
-    const Attachment a = attach_place(p.place, {});
-    const PointSample tie{p.place.X, p.volume, 0, 0, spec.stabilization * points_[first].mu, 0, a.influences, {}};
+void CloudBody::add_middle_ties(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights,
+                                PointSetBuilder& builder) const {
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    if (places_[p].dimension == 3 || spec.through == 1) continue;  // tied at their points
+    const Attachment a = attach_place(places_[p], weights[p], {});
+    const double mu = spec.material(places_[p].X).mu;
+    const PointSample tie{places_[p].X, spec.points[p].volume, 0, 0, spec.stabilization * mu, 0, a.influences, {}};
     builder.add_points(a.nodes, std::span(&tie, 1), spec.spacing, {Law::solid, Stabilization::affine, true});
   }
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <sstream>
 
 namespace fascia {
 
@@ -90,6 +91,12 @@ class Locator {
 };
 
 }  // namespace
+
+std::string text(const Vec3d& x) {
+  std::ostringstream out;
+  out << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+  return out.str();
+}
 
 Matter matter_of(const MatterParts& parts, double piece_size) {
   Matter matter;

@@ -6,6 +6,8 @@
 /// Steps of scatter_cloud() and grid_cloud().
 namespace fascia {
 
+std::string text(const Vec3d& x);  ///< "(x, y, z)", for messages
+
 Matter matter_of(const MatterParts& parts, double piece_size);
 /// Pieces fine enough for samples of this spacing: a sixth of it, more where there would be too many.
 Matter matter_for(const MatterParts& parts, double spacing);

@@ -166,5 +166,39 @@ TEST(Constraints, ModesOfAVerySlenderRod) {
   EXPECT_NE(scattered["warnings"].dump().find("clamped bending comes out too stiff"), std::string::npos);
 }
 
+/// A bar twisted by a whole turn between too few frames unwinds: zero energy is an equilibrium, and no answer.
+TEST(Constraints, ALostTurnIsSaid) {
+  std::string twisted =
+      bar("grid = [13, 3, 3]", move_end("move = { rotate = { axis = [1, 0, 0], angle = \"360 degree\", "
+                                        "center = [0, 0.125, 0.125] } }"));
+  const nlohmann::json s = solve(twisted);
+  const bool lost = energy(s) < 1e-6;
+  std::printf("whole turn of a thick bar: %.3g J, %s\n", energy(s), lost ? "lost" : "kept");
+  EXPECT_EQ(s["warnings"].dump().find("snapped to another equilibrium") != std::string::npos, lost);
+  const nlohmann::json kept = solve(bar("grid = [13, 3, 3]", move_end("move = { translate = [0, 0.05, 0] }")));
+  EXPECT_EQ(kept["warnings"].dump().find("snapped"), std::string::npos);
+}
+
+/// Frames that reach no point leave; what remains still carries a rigid motion at any place.
+TEST(Constraints, DroppedFramesLeaveNoHoleInTheField) {
+  const std::string far =
+      "positions = [[0, 0, 0], [1, 0, 0], [0, 0.25, 0], [1, 0.25, 0], [0, 0, 0.25], [1, 0, 0.25], "
+      "[0, 0.25, 0.25], [1, 0.25, 0.25], [0.5, 0.125, 0.125], [0.25, 0.12, 0.1], [0.75, 0.1, 0.12], "
+      "[0.5, 0.755, 0.125]]";
+  std::string moved = bar(far,
+                          "[bodies.bar.points]\ncount = 300\n[bodies.bar.weights]\nradius = 0.52\n"
+                          "[probes.there]\nbody = \"bar\"\nat = [[0.5, 0.25, 0.125], [0.4, 0.25, 0.2]]\n"
+                          "quantity = \"displacement\"\n");
+  const std::string held = kStart + "fix = \"all\"";
+  moved.replace(moved.find(held), held.size(), region(-1, 2) + "move = { translate = [0.1, 0.2, 0] }");
+  const nlohmann::json s = solve(moved);
+  EXPECT_EQ(s["status"], "converged");
+  EXPECT_EQ(s["bodies"]["bar"]["frames"], 11) << "one of the twelve is out of reach";
+  for (const nlohmann::json& u : s["probes"]["there"]["value"]) {
+    EXPECT_NEAR(u[0].get<double>(), 0.1, 1e-9);
+    EXPECT_NEAR(u[1].get<double>(), 0.2, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace fascia::test
