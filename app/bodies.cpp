@@ -23,14 +23,14 @@ std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body) {
     for (const MaterialUse& use : body.materials)
       if (contains(use.where, X))
         return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
-                                 use.material.stiffness_damping};
+                                 use.material.stiffness_damping, use.material.law == MaterialLaw::neo_hookean};
     throw SceneError(
         {{body.place,
           fmt::format("no material at ({}, {}, {}); let the last entry of material have no where", X[0], X[1], X[2])}});
   };
 }
 
-void check_material_regions(const Body& body, const MeshlessBody& built) {
+void check_material_regions(const Body& body, const ModelBody& built) {
   for (const MaterialUse& use : body.materials) {
     const auto& points = built.points();
     if (!std::any_of(points.begin(), points.end(), [&](const BodyPoint& p) { return contains(use.where, p.middle); }))
@@ -48,8 +48,8 @@ void fill_matter(const Body& body, double volume, BodyMatter& matter) {
   matter.material = material_of(body);
 }
 
-std::unique_ptr<MeshlessBody> build_grid(const Body& body, const MatterParts& parts, Model& model,
-                                         PointSetBuilder& points) {
+std::unique_ptr<ModelBody> build_grid(const Body& body, const MatterParts& parts, Model& model,
+                                      PointSetBuilder& points) {
   GridSpec spec;
   spec.domain = *parts.solid;
   const std::vector<int>& count = std::get<GridFrames>(body.frames).count;
@@ -105,7 +105,7 @@ ScatteredKind scattered_kind(WeightKind kind) {
 }
 
 /// What a user may not have meant.
-void warn_of_thin_choices(const Body& body, const MeshlessBody& built, std::vector<std::string>& messages) {
+void warn_of_thin_choices(const Body& body, const ModelBody& built, std::vector<std::string>& messages) {
   double extent = 2 * body.radius.value_or(0);
   for (const ThicknessUse& use : body.thickness) extent = std::max(extent, use.value);
   if (extent > 0.5 * built.size())
@@ -141,11 +141,12 @@ void describe_thin_grid(const Body& body, const MatterParts& parts, CloudSpec& s
 
 }  // namespace
 
-std::unique_ptr<MeshlessBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
-                                         std::vector<std::string>& messages) {
+std::unique_ptr<ModelBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
+                                      std::vector<std::string>& messages) {
+  if (is_mesh_model(body)) return build_element_body(body, model, points);
   const MatterParts parts = make_domain(body, messages);
   const bool grid = std::holds_alternative<GridFrames>(body.frames);
-  std::unique_ptr<MeshlessBody> built;
+  std::unique_ptr<ModelBody> built;
   if (grid && parts.dimension() == 3) {
     built = build_grid(body, parts, model, points);
   } else {
@@ -202,6 +203,7 @@ double measure_of(const Body& body) {
 }  // namespace
 
 SampleEstimate estimated_samples(const Body& body) {
+  if (is_mesh_model(body)) return estimated_elements(body);
   SampleEstimate e;
   const bool line = std::holds_alternative<LineDomain>(body.domain);
   const bool sheet = std::holds_alternative<RectangleDomain>(body.domain) || !body.thickness.empty();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/scene/scene.hpp"
-#include "meshless/body.hpp"
+#include "core/model/model_body.hpp"
 
 #include <memory>
 #include <string>
@@ -11,8 +11,11 @@ namespace fascia::app {
 
 /// Adds a body's frames to the model and its points to the builder. The body refers to the scene's.
 /// @throws SceneError, InputError, FileError
-std::unique_ptr<MeshlessBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
-                                         std::vector<std::string>& messages);
+std::unique_ptr<ModelBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
+                                      std::vector<std::string>& messages);
+
+/// The same for finite elements.
+std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, PointSetBuilder& points);
 
 /// How much a body will be, roughly, before anything is allocated.
 struct SampleEstimate {
@@ -21,5 +24,6 @@ struct SampleEstimate {
   double coupled = 27;    ///< frames that a frame shares points with
 };
 SampleEstimate estimated_samples(const Body& body);
+SampleEstimate estimated_elements(const Body& body);
 
 }  // namespace fascia::app

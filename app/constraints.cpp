@@ -53,7 +53,9 @@ void check_affine_turn(const Simulation& s, int body, const Constraint& c) {
 
 void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<int, Held>& held) {
   if (!moves_positions_only(c)) return;
-  const std::vector<int> nodes = find_nodes(s, body_index(s, c.body), c.where);
+  const int body = body_index(s, c.body);
+  if (is_mesh_model(s.scene.bodies[at(body)])) return;
+  const std::vector<int> nodes = find_nodes(s, body, c.where);
   const auto turns = [&](int node) {
     const auto found = held.find(node);
     return found == held.end() || found->second.rotation.axis.size() < 3;
@@ -73,9 +75,15 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
   for (const Constraint& c : s.scene.constraints) {
     const int motion = add_motion(s, c);
     const int body = body_index(s, c.body);
-    const bool interpolates = s.bodies[at(body)].meshless->interpolates();
+    const bool interpolates = s.bodies[at(body)].body->interpolates();
     const Body& described = s.scene.bodies[at(body)];
     const bool thin = described.radius || !described.thickness.empty();
+    const bool vertices = is_mesh_model(described);
+    if (vertices && !(c.fixed[0] || c.fixed[1] || c.fixed[2]))
+      throw SceneError(
+          {{c.place, fmt::format("holds rotations only, which nodes of {} do not have; fix \"position\", or "
+                                 "two places apart",
+                                 s.bodies[at(body)].body->model_name())}});
     const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion, places);
     const bool enough = tied > 0 && (thin || c.fixed[0] || c.fixed[1] || c.fixed[2]);
     check_affine_turn(s, body, c);
@@ -87,7 +95,7 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
       for (int k = 0; k < 3; ++k) {
         if (c.fixed[at(k)] && interpolates)
           add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
-        if (c.fixed[at(3 + k)]) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
+        if (c.fixed[at(3 + k)] && !vertices) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
       }
     }
   }

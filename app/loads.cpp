@@ -30,15 +30,19 @@ void add_gravity(Simulation& s) {
     const FrameInertia& inertia = s.model.inertia[at(i)];
     load.nodes.push_back({i, g * inertia.mass, outer(g, inertia.first), {}});
   }
+  // Free fall must not strain a body: in dynamics weight is shared as mass is.
+  for (const SimulatedBody& b : s.bodies)
+    for (std::size_t i = 0; i < b.body->weights().size() && s.scene.solver.kind == SolverKind::statics; ++i)
+      load.nodes[at(b.body->first_node()) + i].force = g * b.body->weights()[i];
   s.gravity_load = static_cast<int>(s.model.loads.size());
   s.model.loads.push_back(std::move(load));
 }
 
 /// Faces of the body's surface whose three vertices are selected; three points each, exact for quadratic weights.
-std::vector<Share> surface_shares(const MeshlessBody& body, const Region& region) {
+std::vector<Share> surface_shares(const SimulatedBody& owner, const Region& region) {
+  const ModelBody& body = *owner.body;
   const TriangleMesh& surface = body.surface();
-  const std::vector<char> all(surface.points.size(), 1);
-  const std::vector<bool> chosen = select(region, surface.points, all);
+  const std::vector<bool> chosen = select(region, owner.selectable_surface());
   std::vector<Share> shares;
   for (const auto& t : surface.triangles) {
     if (!(chosen[at(t[0])] && chosen[at(t[1])] && chosen[at(t[2])])) continue;
@@ -50,10 +54,15 @@ std::vector<Share> surface_shares(const MeshlessBody& body, const Region& region
   return shares;
 }
 
-std::vector<Share> volume_shares(const MeshlessBody& body, const Region& region) {
+std::vector<Share> volume_shares(const SimulatedBody& owner, const Region& region) {
+  const ModelBody& body = *owner.body;
   std::vector<Vec3d> positions;
-  for (const BodyPoint& p : body.points()) positions.push_back(p.middle);
-  const std::vector<bool> chosen = select(region, positions, {});
+  std::vector<int> cells;
+  for (const BodyPoint& p : body.points()) {
+    positions.push_back(p.middle);
+    cells.push_back(p.cell);
+  }
+  const std::vector<bool> chosen = select(region, {positions, {}, owner.groups(), cells});
   std::vector<Share> shares;
   for (std::size_t q = 0; q < positions.size(); ++q)
     if (chosen[q]) shares.push_back({body.points()[q].X, body.attach_point(q), body.points()[q].volume, {}, {}});
@@ -61,11 +70,11 @@ std::vector<Share> volume_shares(const MeshlessBody& body, const Region& region)
 }
 
 /// Edges of the surface's triangles, and segments of lines, whose ends are selected; two Gauss points each.
-std::vector<Share> edge_shares(const MeshlessBody& body, const Region& region) {
+std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region) {
+  const ModelBody& body = *owner.body;
   const std::vector<Vec3d>& points = body.surface().points;
   if (points.empty()) return {};
-  const std::vector<char> all(points.size(), 1);
-  const std::vector<bool> chosen = select(region, points, all);
+  const std::vector<bool> chosen = select(region, owner.selectable_surface());
   std::set<std::pair<int, int>> edges;
   const auto add = [&](int a, int b) {
     if (chosen[at(a)] && chosen[at(b)]) edges.insert(std::minmax(a, b));
@@ -105,9 +114,9 @@ std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
   if (names_frames(*load.where))
     shares = frame_shares(s, index, *load.where);
   else if (!names_boundary(*load.where))
-    shares = volume_shares(*body.meshless, *load.where);
-  if (shares.empty()) shares = surface_shares(*body.meshless, *load.where);
-  if (shares.empty()) shares = edge_shares(*body.meshless, *load.where);
+    shares = volume_shares(body, *load.where);
+  if (shares.empty()) shares = surface_shares(body, *load.where);
+  if (shares.empty()) shares = edge_shares(body, *load.where);
   if (shares.empty() && !find_nodes(s, index, *load.where).empty()) shares = frame_shares(s, index, *load.where);
   if (shares.empty())
     throw SceneError({{load.where->place,
@@ -152,7 +161,8 @@ void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, 
       n.couple += outer(f.force, i.b);
       if (s.model.kind(n.node) == FrameKind::rigid) {
         n.torque += f.torque * i.w;
-      } else {  // through the spin of the field: that of one A alone is held by stabilisation only
+      } else {  // of affine frames and vertices through the spin of the field: that of one A alone is held by
+                // stabilisation only
         const Mat3d P = skew(f.torque) * 0.5;
         n.force += P * i.g;
         n.couple += times_transpose(P, i.B);
@@ -193,10 +203,19 @@ void add_loads(Simulation& s) {
       if (load.total_torque) spread_torque(shares, *load.total_torque);
       add_shares(s, shares, load.follower, schedule);
     }
+    if (load.traction) {
+      std::vector<Share> shares = surface_shares(b, *load.where);
+      if (shares.empty())
+        throw SceneError({{load.where->place, fmt::format("the region holds no face of body \"{}\" with all its "
+                                                          "corners; enlarge it",
+                                                          b.name)}});
+      for (Share& share : shares) share.force = *load.traction * share.part;
+      add_shares(s, shares, false, schedule);
+    }
     if (load.force_per_node) add_node_forces(s, body, load, schedule);
     if (load.at) {
       const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
-      add_shares(s, {{X, b.meshless->attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
+      add_shares(s, {{X, b.body->attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
                  load.follower, schedule);
     }
   }

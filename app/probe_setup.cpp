@@ -13,16 +13,18 @@ namespace fascia::app {
 
 namespace {
 
-const BodyPoint& nearest_point(const MeshlessBody& body, const Vec3d& X) {
-  const BodyPoint* best = nullptr;
+/// The integration point whose material counts at a place: the nearest of its cell, or of the body.
+std::size_t nearest_point(const ModelBody& body, const Vec3d& X, int cell) {
+  std::size_t best = 0;
   double least = std::numeric_limits<double>::max();
-  for (const BodyPoint& p : body.points()) {
+  for (std::size_t q = 0; q < body.points().size(); ++q) {
+    const BodyPoint& p = body.points()[q];
     const double distance = squared_norm(p.X - X);
-    if (distance >= least) continue;
+    if (distance >= least || (p.cell >= 0 && p.cell != cell)) continue;
     least = distance;
-    best = &p;
+    best = q;
   }
-  return *best;
+  return best;
 }
 
 /// Tethers of the probe's region; of all its bodies without one.
@@ -37,7 +39,7 @@ void select_tethers(const Simulation& s, ResolvedProbe& r) {
       chosen = std::find(nodes.begin(), nodes.end(), m.frame) != nodes.end();
     } else if (r.probe->where) {
       const char on_boundary = 1;
-      chosen = select(*r.probe->where, std::span(&s.model.tethers[at(m.tether)].X, 1), std::span(&on_boundary, 1))[0];
+      chosen = select(*r.probe->where, {std::span(&s.model.tethers[at(m.tether)].X, 1), std::span(&on_boundary, 1)})[0];
     }
     if (chosen) r.tethered.push_back(static_cast<int>(t));
   }
@@ -48,7 +50,7 @@ bool over_time_only(Quantity q) { return q == Quantity::velocity || q == Quantit
 }  // namespace
 
 Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place) {
-  const MeshlessBody& b = *s.bodies[at(body)].meshless;
+  const ModelBody& b = *s.bodies[at(body)].body;
   const double distance = b.distance(X);
   if (distance <= 1e-9 * b.size()) return X;
   if (distance > 1e-3 * b.size())
@@ -71,18 +73,17 @@ void resolve_probes(Simulation& s) {
     for (const Vec3d& X0 : probe.at) {
       ProbePoint p;
       p.X = place_on_body(s, r.body, X0, probe.at_place);
-      const MeshlessBody& body = *s.bodies[at(r.body)].meshless;
+      const ModelBody& body = *s.bodies[at(r.body)].body;
       p.field = body.attach(p.X);
-      p.volumetric = body.attach_volumetric(p.field);
-      p.material = nearest_point(body, p.X);
+      p.nearest = nearest_point(body, p.X, p.field.cell);
       r.points.push_back(std::move(p));
     }
     select_tethers(s, r);
     if (probe.where) {
       r.nodes = r.tethered.empty() ? select_nodes(s, r.body, *probe.where) : find_nodes(s, r.body, *probe.where);
     } else {
-      const int first = r.body >= 0 ? s.bodies[at(r.body)].meshless->first_frame() : 0;
-      const int count = r.body >= 0 ? s.bodies[at(r.body)].meshless->frame_count() : s.model.node_count();
+      const int first = r.body >= 0 ? s.bodies[at(r.body)].body->first_node() : 0;
+      const int count = r.body >= 0 ? s.bodies[at(r.body)].body->node_count() : s.model.node_count();
       for (int i = first; i < first + count; ++i) r.nodes.push_back(i);
     }
     r.about = probe.about.value_or(Vec3d{});

@@ -52,9 +52,8 @@ void push(std::vector<double>& out, const Mat3d& m) {
   for (int i = 0; i < 3; ++i) push(out, m.row(i));
 }
 
-Mat3d displacement_gradient(const Attachment& a, const State& state) { return field_at(a, state).H; }
-
-void push_point_value(std::vector<double>& out, Quantity q, const ProbePoint& p, const State& state) {
+void push_point_value(std::vector<double>& out, Quantity q, const ModelBody& body, const ProbePoint& p,
+                      const State& state) {
   const FieldValue f = field_at(p.field, state);
   switch (q) {
     case Quantity::displacement:
@@ -78,7 +77,7 @@ void push_point_value(std::vector<double>& out, Quantity q, const ProbePoint& p,
       push(out, green_strain(f.H));
       break;
     default:
-      push(out, cauchy_stress(f.H, displacement_gradient(p.volumetric, state), p.material));
+      push(out, body.tensors_at(p.field, p.nearest, state).stress);
       break;
   }
 }
@@ -88,9 +87,9 @@ double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const St
   double volume = 0;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
-    const MeshlessBody& body = *s.bodies[b].meshless;
+    const ModelBody& body = *s.bodies[b].body;
     for (std::size_t q = 0; q < body.points().size(); ++q) {
-      const Mat3d H = displacement_gradient(body.attach_point(q), state);
+      const Mat3d H = field_at(body.attach_point(q), state).H;
       volume += body.points()[q].volume * determinant(Mat3d::identity() + H);
     }
   }
@@ -105,11 +104,13 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
   Energies e;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
-    const MeshlessBody& body = *s.bodies[b].meshless;
+    const ModelBody& body = *s.bodies[b].body;
     for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
       e.elastic += snap.system->executor().group_elastic()[at(g)];
       e.stabilization += snap.system->executor().group_stabilization()[at(g)];
     }
+    for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
+      e.elastic += snap.system->executor().block_elastic(block);
   }
   for (const int i : probe.nodes)
     e.kinetic += 0.5 * inertia_product(s.model.inertia[at(i)], snap.state->v[at(i)], snap.state->Q_dot[at(i)]);
@@ -159,7 +160,7 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     const Mat3d A = Mat3d::identity() + snap.state->D[at(c.node)];
     if (s.model.kind(c.node) == FrameKind::rigid)
       for (int k = 0; k < 3; ++k) t[k] = g[3 + k];
-    else
+    else if (s.model.kind(c.node) == FrameKind::affine)
       t = axl(A * transpose(frame_variation(FrameKind::affine, g + 3, A)));
     add(c.node, f, t);
   }
@@ -195,47 +196,12 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
 
 }  // namespace
 
-FieldValue field_at(const Attachment& a, const State& state) {
-  FieldValue f;
-  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
-    const Influence& i = a.influences[k];
-    const Vec3d& u = state.u[at(a.nodes[k])];
-    const Mat3d& D = state.D[at(a.nodes[k])];
-    f.u += u * i.w + D * i.b;
-    f.D += D * i.w;
-    f.H += outer(u, i.g) + D * i.B;
-  }
-  return f;
-}
-
-ThinMaterial<double> stress_material(const BodyPoint& p) {
-  const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
-  ThinMaterial<double> m{};
-  m.volume = p.volume;
-  m.lambda = lame.lambda;
-  m.mu = lame.mu;
-  m.law = p.law;
-  m.axes = p.axes;
-  m.transverse = p.transverse;
-  return m;
-}
-
-Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, const BodyPoint& point) {
-  const Mat3d F = Mat3d::identity() + H, Fv = Mat3d::identity() + H_volumetric;
-  if (point.law != Law::solid)
-    return times_transpose(F * second_piola(stress_material(point), green_strain(H)), F) * (1 / determinant(F));
-  const Mat3d shear = green_strain(H) * (2 * point.mu);
-  const Mat3d pressure = Mat3d::diagonal(point.lambda * trace(green_strain(H_volumetric)));
-  return times_transpose(F * shear, F) * (1 / determinant(F)) +
-         times_transpose(Fv * pressure, Fv) * (1 / determinant(Fv));
-}
-
 std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
   std::vector<double> out;
   const Quantity q = probe.probe->quantity;
   const State& state = *snap.state;
   if (!probe.points.empty()) {
-    for (const ProbePoint& p : probe.points) push_point_value(out, q, p, state);
+    for (const ProbePoint& p : probe.points) push_point_value(out, q, *s.bodies[at(probe.body)].body, p, state);
     return out;
   }
   switch (q) {

@@ -25,17 +25,4 @@ std::string quantity_name(Quantity quantity);
 /// Column names of a probe in probes.csv: tip.x, tip.y, ...
 std::vector<std::string> probe_columns(const ResolvedProbe& probe);
 
-/// Displacement, rotation and displacement gradient of the field at an attachment.
-struct FieldValue {
-  Vec3d u{};
-  Mat3d D{}, H{};  ///< blended rotation − I, F − I
-};
-FieldValue field_at(const Attachment& attachment, const State& state);
-
-/// Cauchy stress at a point, from F there and the volumetric strain at its stand-in.
-Mat3d cauchy_stress(const Mat3d& H, const Mat3d& H_volumetric, const BodyPoint& point);
-
-/// The point's material as the mechanics use it, without stabilisation and damping.
-ThinMaterial<double> stress_material(const BodyPoint& point);
-
 }  // namespace fascia::app

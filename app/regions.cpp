@@ -1,6 +1,9 @@
 #include "app/regions.hpp"
 
 #include "app/scene/errors.hpp"
+#include "core/math/index.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
@@ -53,7 +56,37 @@ int nearest_point(const Vec3d& target, std::span<const Vec3d> points) {
 
 }  // namespace
 
-std::vector<bool> select(const Region& region, std::span<const Vec3d> points, std::span<const char> on_boundary) {
+namespace {
+
+/// Marks what a group of the mesh has: its nodes, or the points in its cells.
+void select_group(const Region& region, const std::string& name, const Selectable& from, std::vector<bool>& chosen) {
+  if (from.groups == nullptr)
+    fail(region, "a meshless body has no mesh groups; select by box, sphere, cylinder or halfspace");
+  bool known = false;
+  std::vector<std::string> names;
+  std::vector<char> marked;
+  for (const BodyGroup& g : *from.groups) {
+    names.push_back("\"" + g.name + "\"");
+    if (g.name != name && std::to_string(g.number) != name) continue;
+    known = true;
+    const std::vector<int>& members = from.cell.empty() ? g.nodes : g.cells;
+    if (!members.empty()) marked.resize(std::max(marked.size(), at(members.back()) + 1));
+    for (const int member : members) marked[at(member)] = 1;
+  }
+  if (!known)
+    fail(region, names.empty() ? "the mesh has no groups; select by box, sphere, cylinder or halfspace"
+                               : fmt::format("the mesh has no group \"{}\"; it has {}", name, fmt::join(names, ", ")));
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const std::size_t member = from.cell.empty() ? i : at(from.cell[i]);
+    chosen[i] = member < marked.size() && marked[member] != 0;
+  }
+}
+
+}  // namespace
+
+std::vector<bool> select(const Region& region, const Selectable& from) {
+  const std::span<const Vec3d> points = from.points;
+  const std::span<const char> on_boundary = from.on_boundary;
   std::vector<bool> chosen(points.size(), false);
   const auto by_position = [&](const auto& test) {
     for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = test(points[i]);
@@ -61,7 +94,7 @@ std::vector<bool> select(const Region& region, std::span<const Vec3d> points, st
   const auto combine = [&](const std::vector<Region>& parts, bool all) {
     chosen.assign(points.size(), all);
     for (const Region& part : parts) {
-      const std::vector<bool> other = select(part, points, on_boundary);
+      const std::vector<bool> other = select(part, from);
       for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = all ? chosen[i] && other[i] : chosen[i] || other[i];
     }
   };
@@ -84,9 +117,7 @@ std::vector<bool> select(const Region& region, std::span<const Vec3d> points, st
                  [&](const NearestRegion& n) {
                    if (const int i = nearest_point(n.point, points); i >= 0) chosen[static_cast<std::size_t>(i)] = true;
                  },
-                 [&](const GroupRegion&) {
-                   fail(region, "a meshless body has no mesh groups; select by box, sphere, cylinder or halfspace");
-                 },
+                 [&](const GroupRegion& g) { select_group(region, g.name, from, chosen); },
                  [&](const IdsRegion& ids) {
                    for (const int id : ids.ids) {
                      if (id < 0 || static_cast<std::size_t>(id) >= points.size())
@@ -98,7 +129,7 @@ std::vector<bool> select(const Region& region, std::span<const Vec3d> points, st
                  [&](const AllOfRegion& r) { combine(r.parts, true); },
                  [&](const AnyOfRegion& r) { combine(r.parts, false); },
                  [&](const NotRegion& r) {
-                   chosen = select(*r.part, points, on_boundary);
+                   chosen = select(*r.part, from);
                    chosen.flip();
                  },
              },
@@ -106,16 +137,18 @@ std::vector<bool> select(const Region& region, std::span<const Vec3d> points, st
   return chosen;
 }
 
-bool contains(const Region& region, const Vec3d& X) {
+bool contains(const Region& region, const Vec3d& X, const std::vector<BodyGroup>* groups, int cell) {
   const bool shape =
       !std::holds_alternative<NearestRegion>(region.shape) && !std::holds_alternative<IdsRegion>(region.shape);
-  if (!shape) fail(region, "nearest and ids select frames, not material; use a box, sphere, cylinder or halfspace");
+  if (!shape) fail(region, "nearest and ids select nodes, not material; use a box, sphere, cylinder or halfspace");
   if (const auto* all = std::get_if<AllOfRegion>(&region.shape))
-    return std::all_of(all->parts.begin(), all->parts.end(), [&](const Region& r) { return contains(r, X); });
+    return std::all_of(all->parts.begin(), all->parts.end(),
+                       [&](const Region& r) { return contains(r, X, groups, cell); });
   if (const auto* any = std::get_if<AnyOfRegion>(&region.shape))
-    return std::any_of(any->parts.begin(), any->parts.end(), [&](const Region& r) { return contains(r, X); });
-  if (const auto* inner = std::get_if<NotRegion>(&region.shape)) return !contains(*inner->part, X);
-  return select(region, std::span(&X, 1), {})[0];
+    return std::any_of(any->parts.begin(), any->parts.end(),
+                       [&](const Region& r) { return contains(r, X, groups, cell); });
+  if (const auto* inner = std::get_if<NotRegion>(&region.shape)) return !contains(*inner->part, X, groups, cell);
+  return select(region, {std::span(&X, 1), {}, groups, std::span(&cell, 1)})[0];
 }
 
 namespace {

@@ -17,8 +17,8 @@ using Clock = std::chrono::steady_clock;
 /// What the fields of a .vtu are made of, at one point.
 struct PointValue {
   Vec3d rest{}, u{}, rotation{};
-  Mat3d axes = Mat3d::identity(), strain{}, stress{};
-  double energy_density = 0;
+  Mat3d axes = Mat3d::identity();
+  PointTensors tensors{};
 };
 
 double von_mises(const Mat3d& s) {
@@ -27,65 +27,64 @@ double von_mises(const Mat3d& s) {
   return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
-/// Strain, stress and energy density at the integration points, and their averages at the frames (weighted with w v):
-/// the averages are smooth, which the field's own gradient is not across the faces of cells.
-struct Tensors {
-  std::vector<Mat3d> strain, stress;
-  std::vector<double> energy_density;
-};
-
+/// Of the integration points, and their averages at the nodes (weighted with w v): the averages are smooth, which the
+/// field's own gradient is not across the faces of cells.
 struct BodyTensors {
-  Tensors points, frames;
+  std::vector<PointTensors> points, nodes;
 };
 
-BodyTensors tensors(const MeshlessBody& body, const State& state) {
-  BodyTensors t;
-  const auto n = at(body.frame_count());
-  t.frames.strain.resize(n);
-  t.frames.stress.resize(n);
-  t.frames.energy_density.resize(n);
-  std::vector<double> weight(n);
+void add_share(PointTensors& sum, const PointTensors& t, double share) {
+  sum.strain += t.strain * share;
+  sum.stress += t.stress * share;
+  sum.energy_density += t.energy_density * share;
+}
+
+BodyTensors tensors(const ModelBody& body, const State& state) {
+  BodyTensors t{body.tensors(state), std::vector<PointTensors>(at(body.node_count()))};
+  std::vector<double> weight(t.nodes.size());
   for (std::size_t q = 0; q < body.points().size(); ++q) {
-    const BodyPoint& p = body.points()[q];
     const Attachment a = body.attach_point(q);
-    const Mat3d H = field_at(a, state).H, Hv = body.selective() ? field_at(body.attach_volumetric(a), state).H : H;
-    const Mat3d E = green_strain(H), stress = cauchy_stress(H, Hv, p);
-    const double tr = trace(green_strain(Hv));
-    const double density =
-        p.law == Law::solid ? 0.5 * p.lambda * tr * tr + p.mu * contract(E, E) : energy_density(stress_material(p), E);
-    t.points.strain.push_back(E);
-    t.points.stress.push_back(stress);
-    t.points.energy_density.push_back(density);
     for (std::size_t k = 0; k < a.nodes.size(); ++k) {
-      const double share = p.volume * std::max(a.influences[k].w, 1e-3);
-      const std::size_t frame = at(a.nodes[k] - body.first_frame());
-      weight[frame] += share;
-      t.frames.strain[frame] += E * share;
-      t.frames.stress[frame] += stress * share;
-      t.frames.energy_density[frame] += density * share;
+      const double share = body.points()[q].volume * std::max(a.influences[k].w, 1e-3);
+      const std::size_t node = at(a.nodes[k] - body.first_node());
+      weight[node] += share;
+      add_share(t.nodes[node], t.points[q], share);
     }
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    t.frames.strain[i] *= 1 / weight[i];
-    t.frames.stress[i] *= 1 / weight[i];
-    t.frames.energy_density[i] /= weight[i];
+  for (std::size_t i = 0; i < t.nodes.size(); ++i) {
+    PointTensors mean;
+    add_share(mean, t.nodes[i], 1 / weight[i]);
+    t.nodes[i] = mean;
   }
   return t;
 }
 
-void add_fields(io::VisualMesh& mesh, const std::vector<PointValue>& values, const std::vector<std::string>& names) {
+/// Means over the points of each cell, weighted with volume.
+std::vector<PointTensors> cell_means(const ModelBody& body, const std::vector<PointTensors>& points) {
+  std::vector<PointTensors> cells(body.cells().nodes.size() / at(body.cells().nodes_per_cell));
+  std::vector<double> volume(cells.size());
+  for (std::size_t q = 0; q < points.size(); ++q) volume[at(body.points()[q].cell)] += body.points()[q].volume;
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const std::size_t cell = at(body.points()[q].cell);
+    add_share(cells[cell], points[q], body.points()[q].volume / volume[cell]);
+  }
+  return cells;
+}
+
+void add_fields(std::vector<io::FieldArray>& fields, const std::vector<PointValue>& values,
+                const std::vector<std::string>& names) {
   const auto add = [&](const char* name, int components, const auto& fill) {
     io::FieldArray array{name, components, {}};
     array.values.reserve(values.size() * at(components));
     for (const PointValue& v : values) fill(v, array.values);
-    mesh.point_fields.push_back(std::move(array));
+    fields.push_back(std::move(array));
   };
   const auto push = [](std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); };
   const auto push_matrix = [&](std::vector<double>& out, const Mat3d& m) {
     for (int i = 0; i < 3; ++i) push(out, m.row(i));
   };
-  add("rest_position", 3, [&](const PointValue& v, auto& out) { push(out, v.rest); });
   for (const std::string& name : names) {
+    if (name == "rest_position") add("rest_position", 3, [&](const PointValue& v, auto& out) { push(out, v.rest); });
     if (name == "displacement") add("displacement", 3, [&](const PointValue& v, auto& out) { push(out, v.u); });
     if (name == "rotation") {
       add("rotation", 3, [&](const PointValue& v, auto& out) { push(out, v.rotation); });
@@ -94,12 +93,12 @@ void add_fields(io::VisualMesh& mesh, const std::vector<PointValue>& values, con
         add(axis.c_str(), 3, [&](const PointValue& v, auto& out) { push(out, v.axes.column(a)); });
       }
     }
-    if (name == "strain") add("strain", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.strain); });
-    if (name == "stress") add("stress", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.stress); });
+    if (name == "strain") add("strain", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.tensors.strain); });
+    if (name == "stress") add("stress", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.tensors.stress); });
     if (name == "von_mises")
-      add("von_mises", 1, [&](const PointValue& v, auto& out) { out.push_back(von_mises(v.stress)); });
+      add("von_mises", 1, [&](const PointValue& v, auto& out) { out.push_back(von_mises(v.tensors.stress)); });
     if (name == "energy_density")
-      add("energy_density", 1, [&](const PointValue& v, auto& out) { out.push_back(v.energy_density); });
+      add("energy_density", 1, [&](const PointValue& v, auto& out) { out.push_back(v.tensors.energy_density); });
   }
 }
 
@@ -116,7 +115,9 @@ ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path dir
   csv_ += "\n";
   for (const SimulatedBody& b : simulation.bodies) {
     surface_.emplace_back();
-    for (const Vec3d& X : b.meshless->surface().points) surface_.back().push_back(b.meshless->attach(X));
+    if (b.groups() != nullptr) continue;  // a mesh is written as it is
+    for (std::size_t i = 0; i < b.body->surface().points.size(); ++i)
+      surface_.back().push_back(b.body->attach_surface(i));
   }
 }
 
@@ -129,40 +130,62 @@ void ResultFiles::add_probes(double time, const Snapshot& snap) {
   csv_ += "\n";
 }
 
+/// Volume cells on the nodes, with tensors by cell and averaged at the nodes.
+io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) const {
+  const ModelBody& body = *b.body;
+  const BodyTensors t = tensors(body, state);
+  std::vector<PointValue> values;
+  io::VisualMesh mesh;
+  for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+    values.push_back({b.nodes[i], state.u[at(body.first_node()) + i], {}, {}, t.nodes[i]});
+    mesh.points.push_back(values.back().rest + values.back().u);
+  }
+  const BodyCells& cells = body.cells();
+  const bool quadratic = cells.nodes_per_cell > node_count(cells.type);
+  mesh.volumes.push_back({cells.type, quadratic, cells.nodes});
+  std::vector<std::string> of_nodes{"rest_position"}, of_cells;
+  for (const std::string& name : simulation_.scene.output.fields) {
+    if (name == "rotation") continue;  // nodes have none
+    of_nodes.push_back(name);
+    if (name != "displacement") of_cells.push_back(name);
+  }
+  add_fields(mesh.point_fields, values, of_nodes);
+  std::vector<PointValue> means;
+  for (const PointTensors& mean : cell_means(body, t.points)) means.push_back({{}, {}, {}, {}, mean});
+  add_fields(mesh.cell_fields, means, of_cells);
+  return mesh;
+}
+
 io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) const {
-  const MeshlessBody& body = *b.meshless;
+  if (b.groups() != nullptr) return visual_mesh(b, state);
+  const ModelBody& body = *b.body;
   const BodyTensors t = tensors(body, state);
   const std::vector<Attachment>& surface = surface_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
   std::vector<PointValue> values;
   const auto at_field = [&](const Vec3d& X, const Attachment& a) {
     const FieldValue f = field_at(a, state);
     const Mat3d D = polar_increment(f.D);
-    return PointValue{X, f.u, rotation_vector(D), Mat3d::identity() + D, {}, {}, 0};
+    return PointValue{X, f.u, rotation_vector(D), Mat3d::identity() + D, {}};
   };
   for (std::size_t i = 0; i < surface.size(); ++i) {
     PointValue v = at_field(body.surface().points[i], surface[i]);
     for (std::size_t k = 0; k < surface[i].nodes.size(); ++k) {
-      const std::size_t frame = at(surface[i].nodes[k] - body.first_frame());
+      const std::size_t frame = at(surface[i].nodes[k] - body.first_node());
       const double w = surface[i].influences[k].w;
-      v.strain += t.frames.strain[frame] * w;
-      v.stress += t.frames.stress[frame] * w;
-      v.energy_density += t.frames.energy_density[frame] * w;
+      add_share(v.tensors, t.nodes[frame], w);
     }
     values.push_back(v);
   }
-  for (int i = 0; i < body.frame_count(); ++i) {
-    const auto node = at(body.first_frame() + i);
+  for (int i = 0; i < body.node_count(); ++i) {
+    const auto node = at(body.first_node() + i);
     const Mat3d turn =
         simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node] : polar_increment(state.D[node]);
-    values.push_back({b.frames[at(i)], state.u[node], rotation_vector(turn),
-                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node],
-                      t.frames.strain[at(i)], t.frames.stress[at(i)], t.frames.energy_density[at(i)]});
+    values.push_back({b.nodes[at(i)], state.u[node], rotation_vector(turn),
+                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node], t.nodes[at(i)]});
   }
   for (std::size_t q = 0; q < body.points().size(); ++q) {
     PointValue v = at_field(body.points()[q].X, body.attach_point(q));
-    v.strain = t.points.strain[q];
-    v.stress = t.points.stress[q];
-    v.energy_density = t.points.energy_density[q];
+    v.tensors = t.points[q];
     values.push_back(v);
   }
   io::VisualMesh mesh;
@@ -172,9 +195,11 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
   mesh.part.assign(mesh.triangles.size() + mesh.lines.size(), 0);
   for (std::size_t i = surface.size(); i < values.size(); ++i) {
     mesh.vertices.push_back(static_cast<int>(i));
-    mesh.part.push_back(i < surface.size() + b.frames.size() ? 1 : 2);
+    mesh.part.push_back(i < surface.size() + b.nodes.size() ? 1 : 2);
   }
-  add_fields(mesh, values, simulation_.scene.output.fields);
+  std::vector<std::string> names = simulation_.scene.output.fields;
+  names.insert(names.begin(), "rest_position");
+  add_fields(mesh.point_fields, values, names);
   return mesh;
 }
 

@@ -28,6 +28,7 @@ class ResultFiles {
   double seconds() const { return seconds_; }
 
  private:
+  io::VisualMesh visual_mesh(const SimulatedBody& b, const State& state) const;
   io::VisualMesh visual(const SimulatedBody& body, const State& state) const;
   const Simulation& simulation_;
   std::filesystem::path directory_;

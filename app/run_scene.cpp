@@ -2,10 +2,12 @@
 
 #include "app/picture.hpp"
 #include "app/progress.hpp"
+#include "app/result_warnings.hpp"
 #include "app/results.hpp"
 #include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
 #include "core/math/rotation.hpp"
+#include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
 
 #include <fmt/format.h>
@@ -57,6 +59,19 @@ SolverSettings settings_of(const Solver& solver) {
   return s;
 }
 
+TimeScheme scheme_of(SolverKind kind) {
+  switch (kind) {
+    case SolverKind::bdf2:
+      return TimeScheme::bdf2;
+    case SolverKind::newmark:
+      return TimeScheme::newmark;
+    case SolverKind::midpoint:
+      return TimeScheme::midpoint;
+    default:
+      return TimeScheme::implicit_euler;
+  }
+}
+
 Simulation load(const RunOptions& options) {
   Scene scene = parse_scene_file(options.scene, options.overrides);
   if (options.output) scene.output.directory = *options.output;
@@ -64,6 +79,11 @@ Simulation load(const RunOptions& options) {
   if (options.threads) scene.solver.threads = *options.threads;
   if (scene.solver.backend == "cuda") throw BackendError("backend \"cuda\" is not in this build; use --backend cpu");
   Simulation s = build_simulation(std::move(scene));
+  if (s.scene.solver.kind == SolverKind::central_differences) {
+    ThreadPool pool(s.scene.solver.threads);
+    MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
+    settle_time_step(s, system);
+  }
   for (const std::string& w : s.warnings) fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
   return s;
 }
@@ -99,73 +119,6 @@ struct Outcome {
   std::vector<nlohmann::json> probes;
   double stabilization = 0;
 };
-
-/// Looks for load steps in which the elastic energy falls by half although every load and motion grew: the body found
-/// another equilibrium, which may lack a turn that it was given.
-class SnapWatch {
- public:
-  explicit SnapWatch(const Simulation& s) : simulation_(s), factors_(s.factors(0)) {
-    for (const SimulatedBody& b : s.bodies)
-      for (const BodyPoint& p : b.meshless->points()) scale_ += p.mu * p.volume;
-  }
-
-  void look(double time, double energy) {
-    const std::vector<double> factors = simulation_.factors(time);
-    bool grew = true;
-    for (std::size_t i = 0; i < factors.size(); ++i) grew = grew && std::abs(factors[i]) >= std::abs(factors_[i]);
-    // Energies of rounding are no energies: strains of 1e-8.
-    if (grew && energy < 0.5 * energy_ && energy_ > 1e-16 * scale_ && warning_.empty())
-      warning_ = fmt::format(
-          "the elastic energy fell from {:.3g} J to {:.3g} J on the way to load factor {:.4g}, though nothing was "
-          "unloaded: the body snapped to another equilibrium, perhaps one that lost a turn; compare with more frames",
-          energy_, energy, time);
-    energy_ = energy;
-    factors_ = factors;
-  }
-  const std::string& warning() const { return warning_; }
-
- private:
-  const Simulation& simulation_;
-  std::vector<double> factors_;
-  double scale_ = 0, energy_ = 0;
-  std::string warning_;
-};
-
-/// Determinant of the mean of two rotations a right angle apart: below, a blend no longer follows them.
-constexpr double kResolved = 0.5;
-
-/// What a user must know of a result that converged.
-void add_result_warnings(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
-  if (run.status == RunStatus::converged && !run.trouble.empty())
-    warnings.push_back("the end state may be an unstable equilibrium: " + run.trouble);
-  if (run.residual_floor > 1e-3 && !s.model.loads.empty())
-    warnings.push_back(fmt::format(
-        "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
-  for (const SimulatedBody& b : s.bodies) {
-    int inverted = 0, unresolved = 0;
-    const bool rigid = s.model.kind(b.meshless->first_frame()) == FrameKind::rigid;
-    for (std::size_t q = 0; q < b.meshless->points().size(); ++q) {
-      const FieldValue f = field_at(b.meshless->attach_point(q), end);
-      inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
-      unresolved += rigid && determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
-    }
-    if (inverted > 0)
-      warnings.push_back(
-          fmt::format("body \"{}\" is turned inside out at {} of {} integration points: St Venant-Kirchhoff does "
-                      "not resist that; the result is no physical state",
-                      b.name, inverted, b.meshless->points().size()));
-    if (unresolved > 0)
-      warnings.push_back(
-          fmt::format("body \"{}\": neighbouring frames are turned against each other by more than a right angle at {} "
-                      "of {} integration points: their blend does not resolve that; use more frames",
-                      b.name, unresolved, b.meshless->points().size()));
-  }
-  if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
-    run.status = RunStatus::not_converged;
-    run.message =
-        fmt::format("{} steps were accepted above the tolerance (newton.on_limit = \"continue\")", run.steps_at_limit);
-  }
-}
 
 Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, const RunOptions& options) {
   Outcome out;
@@ -204,8 +157,22 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     system.begin_step(state, 0);
     system.evaluate();
     save(0, state, true);
-    out.run =
-        run_implicit_euler(system, state, factors, settings, {s.scene.solver.time_step, s.scene.solver.steps}, observe);
+    if (s.scene.solver.kind == SolverKind::central_differences) {
+      const auto observed = [&](const StepInfo& step) {
+        out.times.steps.push_back(step.seconds);
+        progress.update(step);
+        return rule.save(step) || interrupted != 0;
+      };
+      out.run = run_explicit(system, state, factors, {s.scene.solver.time_step, s.scene.solver.steps, observed},
+                             [&](const StepInfo& step, const State& at, MechanicalSystem&) {
+                               save(step.time, at, true);
+                               out.stabilization = system.internal_energy().stabilization;
+                               return interrupted == 0;
+                             });
+    } else {
+      out.run = run_implicit(system, state, factors, settings,
+                             {scheme_of(s.scene.solver.kind), s.scene.solver.time_step, s.scene.solver.steps}, observe);
+    }
   }
   progress.finish();
   out.times.solve = seconds_since(start) - output_seconds;
@@ -252,7 +219,7 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
                     hollow, first_hollow));
   std::vector<nlohmann::json> frequencies(s.probes.size(), nlohmann::json::array());
   double size = 0;
-  for (const SimulatedBody& b : s.bodies) size = std::max(size, b.meshless->size());
+  for (const SimulatedBody& b : s.bodies) size = std::max(size, b.body->size());
   for (std::size_t m = 0; m < modes.frequency.size(); ++m) {
     State state = State::at_rest(s.model);
     double largest = 0;
@@ -332,19 +299,32 @@ int run_scene(const RunOptions& options) {
   return exit_status(out.run.status);
 }
 
+/// The model, and how many cells it has.
+std::string describe(const SimulatedBody& b) {
+  const BodyCells& cells = b.body->cells();
+  if (cells.nodes.empty()) return b.body->model_name();
+  return fmt::format("{} {}{}", cells.nodes.size() / static_cast<std::size_t>(cells.nodes_per_cell),
+                     cells.nodes_per_cell > node_count(cells.type) ? "quadratic " : "", b.body->model_name());
+}
+
 int check_scene(const RunOptions& options) {
   const Simulation s = load(options);
   for (const SimulatedBody& b : s.bodies)
-    fmt::print("body {}: meshless, {} frames, {} integration points{}, {:.6g} m3, {:.6g} kg\n", b.name,
-               b.meshless->frame_count(), b.meshless->points().size(),
-               b.meshless->selective() ? " (lambda at one point a cell)" : "", b.meshless->volume(),
-               b.meshless->mass());
+    fmt::print("body {}: {}, {} {}s, {} integration points{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
+               b.body->node_count(), b.node_word(), b.body->points().size(),
+               b.body->selective() ? " (lambda at one point a cell)" : "", b.body->volume(), b.body->mass());
   for (const SimulatedBody& b : s.bodies)
-    if (!b.meshless->quality().empty()) fmt::print("body {}: {}\n", b.name, b.meshless->quality());
+    if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
   const int free = s.model.dof_count() - s.model.constrained_dof_count();
   const std::string tethers = s.model.tethers.empty() ? "" : fmt::format("{} tethers, ", s.model.tethers.size());
   fmt::print("{} unknowns ({} prescribed), {}{} loads, {} probes\n", free, s.model.constrained_dof_count(), tethers,
              s.scene.loads.size(), s.probes.size());
+  if (s.stable_step > 0)
+    fmt::print("stable time step {:.4g} s, {} steps of {:.4g} s\n", s.stable_step, s.scene.solver.steps,
+               s.scene.solver.time_step);
+  for (const SimulatedBody& b : s.bodies)
+    if (s.stable_step > 0 && b.body->fastest_cell() > 0)
+      fmt::print("body {}: element {} limits the time step\n", b.name, b.body->fastest_cell());
   fmt::print("memory: about {:.3g} MB\n", model_memory(s) / 1e6);
   fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
              s.warnings.size() == 1 ? "" : "s");

@@ -39,6 +39,12 @@ void check_memory(const Scene& scene) {
   const SampleEstimate e = estimated_samples(*largest);
   const bool grid = std::holds_alternative<GridFrames>(largest->frames);
   const bool by_points = !std::holds_alternative<std::monostate>(largest->points) && e.points > 100 * e.frames;
+  if (is_mesh_model(*largest))
+    throw SceneError(
+        {{largest->cells_place,
+          fmt::format("{:.6g} nodes and {:.6g} integration points need about {:.3g} GB, {:.3g} GB are free; "
+                      "use fewer cells",
+                      e.frames, e.points, need / 1e9, have / 1e9)}});
   throw SceneError({{by_points ? largest->points_place : largest->frames_place,
                      fmt::format("{:.6g} frames and {:.6g} points need about {:.3g} GB, {:.3g} GB are free; use {}",
                                  e.frames, e.points, need / 1e9, have / 1e9,
@@ -48,7 +54,7 @@ void check_memory(const Scene& scene) {
 }
 
 void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& built) {
-  const int first = built.meshless->first_frame(), count = built.meshless->frame_count();
+  const int first = built.body->first_node(), count = built.body->node_count();
   Vec3d center{};
   double mass = 0;
   for (int i = first; i < first + count; ++i) {
@@ -56,25 +62,26 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
     center += s.model.rest_position[at(i)] * s.model.inertia[at(i)].mass + s.model.inertia[at(i)].first;
   }
   const bool moves = squared_norm(body.initial.velocity) + squared_norm(body.initial.angular_velocity) > 0;
-  if (moves && s.scene.solver.kind != SolverKind::implicit_euler)
+  if (moves && !is_dynamic(s.scene.solver.kind))
     throw SceneError(
         {{body.place, "initial motion needs a dynamic solver; remove initial, or use kind = \"implicit-euler\""}});
   const Vec3d about = body.initial.about.value_or(center * (1 / mass)), w = body.initial.angular_velocity;
   for (int i = first; i < first + count; ++i) {
     s.initial.v[at(i)] = body.initial.velocity + cross(w, s.model.rest_position[at(i)] - about);
-    s.initial.Q_dot[at(i)] = skew(w);
+    if (s.model.kind(i) != FrameKind::vertex) s.initial.Q_dot[at(i)] = skew(w);
   }
 }
 
 void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
   try {
     std::vector<std::string> messages;
-    std::unique_ptr<MeshlessBody> built = build_body(body, s.model, points, messages);
+    std::unique_ptr<ModelBody> built = build_body(body, s.model, points, messages);
     messages.insert(messages.end(), built->messages().begin(), built->messages().end());
     for (const std::string& m : messages) s.warnings.push_back("bodies." + body.name + ": " + m);
-    std::vector<Vec3d> frames(s.model.rest_position.begin() + built->first_frame(), s.model.rest_position.end());
-    std::vector<char> boundary = built->frames_on_boundary();
-    s.bodies.push_back({body.name, std::move(built), std::move(frames), std::move(boundary)});
+    std::vector<Vec3d> nodes(s.model.rest_position.begin() + built->first_node(), s.model.rest_position.end());
+    std::vector<char> boundary = built->nodes_on_boundary();
+    std::vector<char> surface(built->surface().points.size(), 1);
+    s.bodies.push_back({body.name, std::move(built), std::move(nodes), std::move(boundary), std::move(surface)});
   } catch (const InputError& e) {
     const Place& place = e.blame == Blame::frames    ? body.frames_place
                          : e.blame == Blame::points  ? body.points_place
@@ -92,9 +99,10 @@ double estimated_memory(const Scene& scene) {
     const SampleEstimate e = estimated_samples(b);
     // Per point: shapes of its frames, stress and strain, results. Per frame: blocks of the matrix, vectors; and the
     // fill of a factor, which grows with the section, where one is made whatever its size.
-    const double dofs = (b.affine ? 12 : 6) * e.frames, block = b.affine ? 4 : 1;
+    const double dofs = (is_mesh_model(b) ? 3 : b.affine ? 12 : 6) * e.frames;
+    const double block = is_mesh_model(b) ? 0.25 : b.affine ? 4 : 1;
     const bool factor = scene.solver.linear == LinearKind::cholesky || dofs <= 15000;
-    bytes += e.points * (500 + 250.0 * e.neighbours) +
+    bytes += e.points * (is_mesh_model(b) ? 300 + 60.0 * e.neighbours : 500 + 250.0 * e.neighbours) +
              e.frames * (e.coupled * 300 * block + 1000 + (factor ? 36 * 8 * 6 * block * std::cbrt(e.frames) : 0.0)) +
              e.pieces * 160;
   }
@@ -111,10 +119,10 @@ double model_memory(const Simulation& s) {
   const bool factor = s.scene.solver.linear == LinearKind::cholesky || s.model.dof_count() <= 15000;
   double pieces = 0;  // of matter, while scattered bodies are sampled
   for (const SimulatedBody& b : s.bodies) {
-    if (b.meshless->interpolates()) continue;
-    const Law law = b.meshless->points().front().law;
-    const double of_point = law == Law::solid ? 216 : law == Law::sheet ? 18 : 1.5;
-    pieces = std::max(pieces, std::min(4e6, of_point * static_cast<double>(b.meshless->points().size())));
+    if (b.body->interpolates()) continue;
+    const Law law = b.body->points().front().law;
+    const double of_point = is_solid(law) ? 216 : law == Law::sheet ? 18 : 1.5;
+    pieces = std::max(pieces, std::min(4e6, of_point * static_cast<double>(b.body->points().size())));
   }
   return 30e6 + points + results + matrix * (factor ? 4 : 1) + s.model.dof_count() * 200.0 + pieces * 160;
 }
@@ -138,12 +146,20 @@ int body_index(const Simulation& s, const std::string& name) {
   return static_cast<int>(found - s.bodies.begin());
 }
 
+const std::vector<BodyGroup>* SimulatedBody::groups() const {
+  return body->cells().nodes.empty() ? nullptr : &body->groups();
+}
+
+Selectable SimulatedBody::selectable_nodes() const { return {nodes, node_on_boundary, groups()}; }
+
+Selectable SimulatedBody::selectable_surface() const { return {body->surface().points, surface_on_boundary, groups()}; }
+
 std::vector<int> find_nodes(const Simulation& s, int body, const Region& region) {
   const SimulatedBody& b = s.bodies[at(body)];
-  const std::vector<bool> chosen = select(region, b.frames, b.frame_on_boundary);
+  const std::vector<bool> chosen = select(region, b.selectable_nodes());
   std::vector<int> nodes;
   for (std::size_t i = 0; i < chosen.size(); ++i)
-    if (chosen[i]) nodes.push_back(b.meshless->first_frame() + static_cast<int>(i));
+    if (chosen[i]) nodes.push_back(b.body->first_node() + static_cast<int>(i));
   return nodes;
 }
 
@@ -151,16 +167,17 @@ std::vector<int> select_nodes(const Simulation& s, int body, const Region& regio
   std::vector<int> nodes = find_nodes(s, body, region);
   if (nodes.empty()) {
     const SimulatedBody& b = s.bodies[at(body)];
-    Vec3d low = b.frames.front(), high = low;
-    for (const Vec3d& p : b.frames)
+    Vec3d low = b.nodes.front(), high = low;
+    for (const Vec3d& p : b.nodes)
       for (int a = 0; a < 3; ++a) {
         low[a] = std::min(low[a], p[a]);
         high[a] = std::max(high[a], p[a]);
       }
     throw SceneError(
-        {{region.place, fmt::format("the region selects no frame of body \"{}\"; its frames lie between ({:.6g}, "
-                                    "{:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
-                                    b.name, low[0], low[1], low[2], high[0], high[1], high[2])}});
+        {{region.place,
+          fmt::format("the region selects no {} of body \"{}\"; its {}s lie between ({:.6g}, "
+                      "{:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
+                      b.node_word(), b.name, b.node_word(), low[0], low[1], low[2], high[0], high[1], high[2])}});
   }
   return nodes;
 }
@@ -172,10 +189,12 @@ Simulation build_simulation(Scene scene) {
   PointSetBuilder points;
   s.bodies.reserve(s.scene.bodies.size());
   for (const Body& body : s.scene.bodies) {
-    const int group = points.group_count();
+    const int group = points.group_count(), block = points.block_count();
     add_body(s, body, points);
-    s.bodies.back().meshless->first_group = group;
-    s.bodies.back().meshless->group_count = points.group_count() - group;
+    s.bodies.back().body->first_group = group;
+    s.bodies.back().body->group_count = points.group_count() - group;
+    s.bodies.back().body->first_block = block;
+    s.bodies.back().body->block_count = points.block_count() - block;
   }
   add_constraints(s, points);
   s.model.points = std::move(points).finish(s.model.frame_kind);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "app/regions.hpp"
 #include "app/scene/scene.hpp"
 #include "core/model/model.hpp"
-#include "meshless/body.hpp"
+#include "core/model/model_body.hpp"
+#include "core/solver/mechanical_system.hpp"
 
 #include <memory>
 #include <string>
@@ -13,16 +15,24 @@ namespace fascia::app {
 /// A body of the scene in the model.
 struct SimulatedBody {
   std::string name;
-  std::unique_ptr<MeshlessBody> meshless;
-  std::vector<Vec3d> frames;  ///< rest positions [m]
-  std::vector<char> frame_on_boundary;
+  std::unique_ptr<ModelBody> body;
+  std::vector<Vec3d> nodes;  ///< rest positions [m]
+  std::vector<char> node_on_boundary;
+  std::vector<char> surface_on_boundary;  ///< ones, for each point of the surface
+
+  /// The nodes, for regions.
+  Selectable selectable_nodes() const;
+  /// Points of the surface, all on the boundary.
+  Selectable selectable_surface() const;
+  const char* node_word() const { return groups() == nullptr ? "frame" : "node"; }
+  const std::vector<BodyGroup>* groups() const;  ///< null where the body has no mesh
 };
 
-/// Where a probe's point is attached: the field there, and the point whose volumetric strain stands for it.
+/// Where a probe's point is attached.
 struct ProbePoint {
   Vec3d X{};
-  Attachment field, volumetric;
-  BodyPoint material;  ///< nearest integration point
+  Attachment field;
+  std::size_t nearest = 0;  ///< integration point
 };
 
 /// Material that a constraint ties to where it belongs.
@@ -53,7 +63,8 @@ struct Simulation {
   std::vector<TetheredMaterial> tethered;
   State initial;
   std::vector<std::string> warnings;
-  int gravity_load = -1;  ///< index of gravity in Model::loads
+  int gravity_load = -1;   ///< index of gravity in Model::loads
+  double stable_step = 0;  ///< of central differences [s]
 
   /// Factors of all schedules at a time.
   std::vector<double> factors(double time) const;
@@ -64,6 +75,11 @@ double estimated_memory(const Scene& scene);
 
 /// The same from the built model, closer: a run's peak [bytes].
 double model_memory(const Simulation& simulation);
+
+/// Of central differences: the largest time step that is stable at the start [s], into Simulation::stable_step; an
+/// automatic step takes it, with as many steps as the duration needs.
+/// @throws SceneError  where time_step is larger
+void settle_time_step(Simulation& simulation, MechanicalSystem& system);
 
 /// Turns a scene into a model.
 /// @throws SceneError  what only the geometry shows: a region that selects nothing, contradicting constraints, a static

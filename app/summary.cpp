@@ -53,13 +53,17 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   j["bodies"] = nlohmann::ordered_json::object();
   for (const SimulatedBody& b : s.bodies) {
     j["bodies"][b.name] = {
-        {"model", "meshless"}, {"frames", b.meshless->frame_count()}, {"points", b.meshless->points().size()},
-        {"cells", 0},          {"volume", b.meshless->volume()},      {"mass", b.meshless->mass()}};
+        {"model", b.body->model_name()},
+        {b.groups() == nullptr ? "frames" : "nodes", b.body->node_count()},
+        {"points", b.body->points().size()},
+        {"cells", b.body->cells().nodes.size() / static_cast<std::size_t>(b.body->cells().nodes_per_cell)},
+        {"volume", b.body->volume()},
+        {"mass", b.body->mass()}};
   }
   j["couplings"] = nlohmann::ordered_json::object();
   j["dofs"] = s.model.dof_count() - s.model.constrained_dof_count();
   j["steps"] = run.steps;
-  j["simulated_time"] = s.scene.solver.kind == SolverKind::implicit_euler ? run.time : 0.0;
+  j["simulated_time"] = is_dynamic(s.scene.solver.kind) ? run.time : 0.0;
   j["newton_iterations"] = run.newton_iterations;
   j["linear_iterations"] = run.linear_iterations;
   j["residual"] = finite(run.residual);

@@ -55,9 +55,9 @@ void check_support(const Simulation& s) {
   const std::vector<int>& part = s.model.points.node_part;
   std::vector<Diagnostic> errors;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const MeshlessBody& body = *s.bodies[b].meshless;
+    const ModelBody& body = *s.bodies[b].body;
     std::set<int> parts;
-    for (int i = body.first_frame(); i < body.first_frame() + body.frame_count(); ++i) parts.insert(part[at(i)]);
+    for (int i = body.first_node(); i < body.first_node() + body.node_count(); ++i) parts.insert(part[at(i)]);
     for (const int r : parts) {
       Vec3d center{};
       int count = 0;
@@ -95,7 +95,7 @@ void check_support(const Simulation& s) {
       }
       const std::string free = free_motions(resistance);
       if (free.empty()) continue;
-      const bool whole = count == body.frame_count();
+      const bool whole = count == body.node_count();
       errors.push_back(
           {s.scene.bodies[b].place,
            fmt::format("nothing holds {} in a static solve ({}); add a constraint, or use kind = \"implicit-euler\"",

@@ -19,11 +19,11 @@ constexpr double kPenalty = 1e4;
 constexpr double kApart = 0.3;
 
 double mean_spacing(const SimulatedBody& b) {
-  if (b.frames.size() < 2) return b.meshless->size();
-  const FrameSearch search(b.frames);
+  if (b.nodes.size() < 2) return b.body->size();
+  const FrameSearch search(b.nodes);
   double sum = 0;
-  for (const Vec3d& x : b.frames) sum += norm(b.frames[at(search.nearest(x, 2)[1])] - x);
-  return sum / static_cast<double>(b.frames.size());
+  for (const Vec3d& x : b.nodes) sum += norm(b.nodes[at(search.nearest(x, 2)[1])] - x);
+  return sum / static_cast<double>(b.nodes.size());
 }
 
 /// Frames, vertices of the surface and integration points in the region, thinned out.
@@ -31,16 +31,16 @@ std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, doubl
   std::vector<Vec3d> candidates;
   const auto add = [&](const std::vector<Vec3d>& positions, const std::vector<char>& boundary) {
     if (positions.empty()) return;
-    const std::vector<bool> chosen = select(region, positions, boundary);
+    const std::vector<bool> chosen = select(region, {positions, boundary});
     for (std::size_t i = 0; i < positions.size(); ++i)
       if (chosen[i]) candidates.push_back(positions[i]);
   };
-  add(b.frames, b.frame_on_boundary);
+  add(b.nodes, b.node_on_boundary);
   if (!names_frames(region)) {
-    const std::vector<Vec3d>& surface = b.meshless->surface().points;
+    const std::vector<Vec3d>& surface = b.body->surface().points;
     add(surface, std::vector<char>(surface.size(), 1));
     std::vector<Vec3d> middles;
-    for (const BodyPoint& p : b.meshless->points()) middles.push_back(p.middle);
+    for (const BodyPoint& p : b.body->points()) middles.push_back(p.middle);
     add(middles, std::vector<char>(middles.size(), 0));
   }
   std::vector<Vec3d> places;
@@ -53,8 +53,8 @@ std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, doubl
 
 int nearest_frame(const SimulatedBody& b, const Vec3d& x) {
   const auto nearer = [&](const Vec3d& p, const Vec3d& q) { return squared_norm(p - x) < squared_norm(q - x); };
-  const auto found = std::min_element(b.frames.begin(), b.frames.end(), nearer);
-  return b.meshless->first_frame() + static_cast<int>(found - b.frames.begin());
+  const auto found = std::min_element(b.nodes.begin(), b.nodes.end(), nearer);
+  return b.body->first_node() + static_cast<int>(found - b.nodes.begin());
 }
 
 /// A tether as a point: the first column of its H is the displacement of the material (core/physics/point_physics.hpp).
@@ -83,7 +83,7 @@ class TetherBuilder {
     const SimulatedBody& b = s.bodies[at(body)];
     double young = 0;
     for (const MaterialUse& use : s.scene.bodies[at(body)].materials) young = std::max(young, use.material.young());
-    stiffness_ = kPenalty * young * b.meshless->volume() / (static_cast<double>(b.frames.size()) * spacing_ * spacing_);
+    stiffness_ = kPenalty * young * b.body->volume() / (static_cast<double>(b.nodes.size()) * spacing_ * spacing_);
   }
 
   double spacing() const { return spacing_; }
@@ -184,7 +184,7 @@ int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constrai
     for (const Vec3d& axis : axes) add_direction(s, known.translation, axis, motion, false, X, c);
     for (int k = 0; k < 3 && arm > 0; ++k)
       if (c.fixed[at(3 + k)]) add_direction(s, known.rotation, c.axes.row(k), motion, true, X, c);
-    const Attachment field = b.meshless->attach(X);
+    const Attachment field = b.body->attach(X);
     if (!axes.empty()) builder.add(X, {}, field, shape, axes);
     if (arm > 0) add_rotation_tethers(builder, c, X, field, arm);
   }

@@ -4,7 +4,7 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(VTK 9.1 REQUIRED
   COMPONENTS CommonCore CommonDataModel IOXML IOLegacy IOGeometry IOPLY
-  OPTIONAL_COMPONENTS FiltersCore FiltersSources IOImage RenderingAnnotation RenderingFreeType RenderingOpenGL2)
+  OPTIONAL_COMPONENTS FiltersCore FiltersGeometry FiltersSources IOImage RenderingAnnotation RenderingFreeType RenderingOpenGL2)
 
 find_path(UDUNITS2_INCLUDE udunits2.h REQUIRED)
 find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)

@@ -10,7 +10,8 @@ namespace {
 
 class GmshParser {
  public:
-  GmshParser(std::string_view text, const std::string& name) : name_(name), input_(text, name), builder_(input_) {}
+  GmshParser(std::string_view text, const std::string& name, MidNodes mid_nodes)
+      : name_(name), input_(text, name), builder_(input_, mid_nodes) {}
 
   Mesh parse() {
     if (input_.word() != "$MeshFormat")
@@ -103,6 +104,8 @@ class GmshParser {
 
 }  // namespace
 
-Mesh parse_gmsh(std::string_view text, const std::string& name) { return GmshParser(text, name).parse(); }
+Mesh parse_gmsh(std::string_view text, const std::string& name, MidNodes mid_nodes) {
+  return GmshParser(text, name, mid_nodes).parse();
+}
 
 }  // namespace fascia::io

@@ -4,6 +4,7 @@
 #include "io/mesh_edit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -12,6 +13,17 @@ namespace fascia::io {
 namespace {
 
 constexpr std::int64_t largest_group = std::numeric_limits<int>::max();
+
+constexpr std::array<int, 12> usual_order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+constexpr std::array<int, 12> tetrahedron_order{0, 1, 2, 3, 5, 4};  // Gmsh: 01 12 20 03 23 13
+// Gmsh: 01 03 04 12 15 23 26 37 45 47 56 67
+constexpr std::array<int, 12> hexahedron_order{0, 3, 5, 1, 8, 10, 11, 9, 2, 4, 6, 7};
+
+/// Places of a cell's mid-side nodes in Gmsh's list of them.
+const std::array<int, 12>& mid_node_order(CellType type) {
+  if (type == CellType::tetrahedron) return tetrahedron_order;
+  return type == CellType::hexahedron ? hexahedron_order : usual_order;
+}
 
 }  // namespace
 
@@ -33,15 +45,15 @@ GmshElement gmsh_element(std::int64_t number, const GmshInput& input) {
     case 7:
       return {pyramid, 5};
     case 8:
-      return {line, 3};
+      return {line, 3, true};
     case 9:
-      return {triangle, 6};
+      return {triangle, 6, true};
     case 10:
-      return {quadrilateral, 9};
+      return {quadrilateral, 9, true};
     case 11:
-      return {tetrahedron, 10};
+      return {tetrahedron, 10, true};
     case 12:
-      return {hexahedron, 27};
+      return {hexahedron, 27, true};
     case 13:
       return {wedge, 18};
     case 14:
@@ -49,9 +61,9 @@ GmshElement gmsh_element(std::int64_t number, const GmshInput& input) {
     case 15:
       return {vertex, 1};
     case 16:
-      return {quadrilateral, 8};
+      return {quadrilateral, 8, true};
     case 17:
-      return {hexahedron, 20};
+      return {hexahedron, 20, true};
     case 18:
       return {wedge, 15};
     case 19:
@@ -91,7 +103,7 @@ void GmshBuilder::add_node(std::int64_t tag, const Vec3d& x) {
     input_.fail("node " + std::to_string(tag) + " appears twice; number the nodes anew");
   mesh_.points.push_back(x);
   mesh_.point_file_number.push_back(tag);
-  corner_.push_back(false);
+  kept_.push_back(false);
   between_.push_back(false);
 }
 
@@ -117,21 +129,28 @@ std::size_t GmshBuilder::index_of(std::int64_t tag, std::int64_t cell) const {
   return static_cast<std::size_t>(found->second);
 }
 
-CellBlock& GmshBuilder::block(CellType type) {
+CellBlock& GmshBuilder::block(CellType type, int mid_nodes_per_cell) {
   for (CellBlock& block : mesh_.blocks)
-    if (block.type == type) return block;
-  mesh_.blocks.push_back({type, {}, {}, {}});
+    if (block.type == type && block.mid_nodes_per_cell == mid_nodes_per_cell) return block;
+  mesh_.blocks.push_back({type, {}, {}, {}, mid_nodes_per_cell, {}});
   return mesh_.blocks.back();
 }
 
 void GmshBuilder::add_cell(const GmshElement& element, std::int64_t number, std::span<const std::int64_t> node_tags,
                            int group) {
-  CellBlock& cells = block(element.type);
+  const bool quadratic = element.quadratic && mid_nodes_ == MidNodes::keep;
+  CellBlock& cells = block(element.type, quadratic ? mid_node_count(element.type) : 0);
   const auto corners = static_cast<std::size_t>(node_count(element.type));
+  const std::size_t kept = corners + static_cast<std::size_t>(cells.mid_nodes_per_cell);
   for (std::size_t n = 0; n < node_tags.size(); ++n) {
     const std::size_t node = index_of(node_tags[n], number);
-    (n < corners ? corner_ : between_)[node] = true;
+    (n < kept ? kept_ : between_)[node] = true;
     if (n < corners) cells.nodes.push_back(static_cast<int>(node));
+  }
+  const std::array<int, 12>& order = mid_node_order(element.type);
+  for (std::size_t m = 0; m < kept - corners; ++m) {
+    const std::size_t place = corners + static_cast<std::size_t>(order[m]);
+    cells.mid_nodes.push_back(static_cast<int>(index_of(node_tags[place], number)));
   }
   cells.group.push_back(group);
   cells.file_number.push_back(number);
@@ -139,8 +158,8 @@ void GmshBuilder::add_cell(const GmshElement& element, std::int64_t number, std:
 
 Mesh GmshBuilder::finish(const std::string& name) {
   if (mesh_.blocks.empty()) throw InputError(name + ": the mesh has no cells; save the elements with the nodes");
-  std::vector<bool> keep(corner_.size());
-  for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = corner_[i] || !between_[i];
+  std::vector<bool> keep(kept_.size());
+  for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = kept_[i] || !between_[i];
   keep_points(mesh_, keep);
   mesh_.file = name;
   return std::move(mesh_);

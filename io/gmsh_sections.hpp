@@ -2,7 +2,6 @@
 
 #include "io/gmsh_builder.hpp"
 
-#include <array>
 #include <map>
 
 /// The sections of a Gmsh file; each function starts behind the section's first line and stops before its last.
@@ -17,11 +16,5 @@ void read_elements_22(GmshInput& input, GmshBuilder& builder);
 GmshEntities read_entities_41(GmshInput& input, GmshBuilder& builder);
 void read_nodes_41(GmshInput& input, GmshBuilder& builder);
 void read_elements_41(GmshInput& input, GmshBuilder& builder, const GmshEntities& entities);
-
-/// Topological dimension of a cell, 0 to 3.
-constexpr int dimension_of(CellType type) {
-  constexpr std::array<int, 8> dimensions{0, 1, 2, 2, 3, 3, 3, 3};
-  return dimensions[static_cast<std::size_t>(type)];
-}
 
 }  // namespace fascia::io

@@ -33,6 +33,10 @@ class Packer {
     add(values.size());
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
+  void add(const std::string& text) {
+    add(text.size());
+    bytes_.append(text);
+  }
   std::string take() { return std::move(bytes_); }
 
  private:
@@ -55,6 +59,13 @@ class Unpacker {
     values.resize(size);
     copy(values.data(), size * sizeof(T));
   }
+  void get(std::string& text) {
+    std::size_t size = 0;
+    get(size);
+    if (size > bytes_.size()) throw std::length_error("cut off");
+    text = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+  }
 
  private:
   void copy(void* target, std::size_t size) {
@@ -65,7 +76,6 @@ class Unpacker {
   std::string_view bytes_;
 };
 
-/// Points, their numbers and the cells; the readers that run in a child know no groups.
 std::string pack(const Mesh& mesh) {
   Packer packer;
   packer.add(mesh.points);
@@ -76,6 +86,14 @@ std::string pack(const Mesh& mesh) {
     packer.add(block.nodes);
     packer.add(block.group);
     packer.add(block.file_number);
+    packer.add(block.mid_nodes_per_cell);
+    packer.add(block.mid_nodes);
+  }
+  packer.add(mesh.groups.size());
+  for (const MeshGroup& group : mesh.groups) {
+    packer.add(group.name);
+    packer.add(group.number);
+    packer.add(group.dimension);
   }
   return packer.take();
 }
@@ -93,6 +111,16 @@ Mesh unpack(std::string_view bytes) {
     unpacker.get(block.nodes);
     unpacker.get(block.group);
     unpacker.get(block.file_number);
+    unpacker.get(block.mid_nodes_per_cell);
+    unpacker.get(block.mid_nodes);
+  }
+  std::size_t groups = 0;
+  unpacker.get(groups);
+  for (std::size_t g = 0; g < groups; ++g) {
+    MeshGroup& group = mesh.groups.emplace_back();
+    unpacker.get(group.name);
+    unpacker.get(group.number);
+    unpacker.get(group.dimension);
   }
   return mesh;
 }

@@ -19,7 +19,8 @@ void keep_points(Mesh& mesh, const std::vector<bool>& keep) {
   mesh.points.resize(next);
   mesh.point_file_number.resize(next);
   for (CellBlock& block : mesh.blocks)
-    for (int& node : block.nodes) node = number[static_cast<std::size_t>(node)];
+    for (std::vector<int>* nodes : {&block.nodes, &block.mid_nodes})
+      for (int& node : *nodes) node = number[static_cast<std::size_t>(node)];
 }
 
 }  // namespace fascia::io

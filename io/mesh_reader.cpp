@@ -12,17 +12,17 @@
 
 namespace fascia::io {
 
-Mesh read_mesh(const std::filesystem::path& path) {
+Mesh read_mesh(const std::filesystem::path& path, MidNodes mid_nodes) {
   constexpr std::array<std::string_view, 6> vtk_endings{".vtk", ".vtu", ".vtp", ".stl", ".obj", ".ply"};
   std::string ending = path.extension().string();
   for (char& c : ending)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  if (ending == ".msh") return parse_gmsh(read_file(path), path.string());
+  if (ending == ".msh") return parse_gmsh(read_file(path), path.string(), mid_nodes);
   check_readable(path);
   if (std::find(vtk_endings.begin(), vtk_endings.end(), ending) == vtk_endings.end())
     throw InputError(path.string() + ": the ending \"" + ending +
                      "\" names no known mesh format; must be .msh, .vtk, .vtu, .vtp, .stl, .obj or .ply");
-  return read_vtk_mesh(path, ending);
+  return read_vtk_mesh(path, ending, mid_nodes);
 }
 
 }  // namespace fascia::io

@@ -23,34 +23,54 @@
 namespace fascia::io {
 namespace {
 
+std::size_t volume_count(const VisualMesh& mesh) {
+  std::size_t count = 0;
+  for (const VisualCells& cells : mesh.volumes) count += cells.size();
+  return count;
+}
+
+std::size_t cell_count(const VisualMesh& mesh) {
+  return volume_count(mesh) + mesh.triangles.size() + mesh.lines.size() + mesh.vertices.size();
+}
+
 /// Sizes and indices are the caller's business: a mismatch is a bug, not input.
 void check_sizes(const VisualMesh& mesh) {
   const auto n_points = static_cast<int>(mesh.points.size());
   const auto valid = [&](int node) { return node >= 0 && node < n_points; };
-  const std::size_t n_cells = mesh.triangles.size() + mesh.lines.size() + mesh.vertices.size();
-  bool right = mesh.part.empty() || mesh.part.size() == n_cells;
+  bool right = mesh.part.empty() || mesh.part.size() == cell_count(mesh);
+  for (const VisualCells& cells : mesh.volumes) {
+    right = right && (cells.type == CellType::tetrahedron || cells.type == CellType::hexahedron) &&
+            cells.nodes.size() % cells.nodes_per_cell() == 0;
+    for (const int node : cells.nodes) right = right && valid(node);
+  }
   for (const auto& triangle : mesh.triangles)
     for (const int node : triangle) right = right && valid(node);
   for (const auto& line : mesh.lines)
     for (const int node : line) right = right && valid(node);
   for (const int node : mesh.vertices) right = right && valid(node);
-  for (const FieldArray& field : mesh.point_fields)
-    right = right && field.components > 0 &&
-            field.values.size() == mesh.points.size() * static_cast<std::size_t>(field.components);
+  const auto fits = [](const FieldArray& field, std::size_t count) {
+    return field.components > 0 && field.values.size() == count * static_cast<std::size_t>(field.components);
+  };
+  for (const FieldArray& field : mesh.point_fields) right = right && fits(field, mesh.points.size());
+  for (const FieldArray& field : mesh.cell_fields) right = right && fits(field, volume_count(mesh));
   if (!right) throw std::logic_error("write_vtu: arrays and indices do not fit the points and cells");
 }
 
 void check_finite(const std::filesystem::path& file, const VisualMesh& mesh) {
-  const auto fail = [&](const std::string& name, std::size_t point) {
-    throw InputError(fmt::format("{}: \"{}\" is not finite at point {}; the state that it shows is wrong",
-                                 file.string(), name, point));
+  const auto fail = [&](const std::string& name, const char* place, std::size_t index) {
+    throw InputError(fmt::format("{}: \"{}\" is not finite at {} {}; the state that it shows is wrong", file.string(),
+                                 name, place, index));
+  };
+  const auto check = [&](const std::vector<FieldArray>& fields, const char* place) {
+    for (const FieldArray& field : fields)
+      for (std::size_t i = 0; i < field.values.size(); ++i)
+        if (!std::isfinite(field.values[i])) fail(field.name, place, i / static_cast<std::size_t>(field.components));
   };
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
     for (const double x : mesh.points[p].v)
-      if (!std::isfinite(x)) fail("points", p);
-  for (const FieldArray& field : mesh.point_fields)
-    for (std::size_t i = 0; i < field.values.size(); ++i)
-      if (!std::isfinite(field.values[i])) fail(field.name, i / static_cast<std::size_t>(field.components));
+      if (!std::isfinite(x)) fail("points", "point", p);
+  check(mesh.point_fields, "point");
+  check(mesh.cell_fields, "cell");
 }
 
 void add_points(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
@@ -61,9 +81,20 @@ void add_points(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   grid.SetPoints(points);
 }
 
+int vtk_type(const VisualCells& cells) {
+  if (cells.type == CellType::tetrahedron) return cells.quadratic ? VTK_QUADRATIC_TETRA : VTK_TETRA;
+  return cells.quadratic ? VTK_QUADRATIC_HEXAHEDRON : VTK_HEXAHEDRON;
+}
+
 void add_cells(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkUnsignedCharArray> types;
+  for (const VisualCells& block : mesh.volumes)
+    for (std::size_t first = 0; first < block.nodes.size(); first += block.nodes_per_cell()) {
+      cells->InsertNextCell(static_cast<int>(block.nodes_per_cell()));
+      for (std::size_t n = 0; n < block.nodes_per_cell(); ++n) cells->InsertCellPoint(block.nodes[first + n]);
+      types->InsertNextValue(static_cast<unsigned char>(vtk_type(block)));
+    }
   for (const auto& triangle : mesh.triangles) {
     cells->InsertNextCell({triangle[0], triangle[1], triangle[2]});
     types->InsertNextValue(VTK_TRIANGLE);
@@ -79,15 +110,20 @@ void add_cells(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   grid.SetCells(types, cells);
 }
 
+/// @param count  of points or cells; those beyond the field's own get zeros
+void add_field(vtkFieldData& data, const FieldArray& field, std::size_t count) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(field.name.c_str());
+  array->SetNumberOfComponents(field.components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  array->Fill(0);
+  for (std::size_t i = 0; i < field.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), field.values[i]);
+  data.AddArray(array);
+}
+
 void add_fields(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
-  for (const FieldArray& field : mesh.point_fields) {
-    vtkNew<vtkDoubleArray> array;
-    array->SetName(field.name.c_str());
-    array->SetNumberOfComponents(field.components);
-    array->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
-    for (std::size_t i = 0; i < field.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), field.values[i]);
-    grid.GetPointData()->AddArray(array);
-  }
+  for (const FieldArray& field : mesh.point_fields) add_field(*grid.GetPointData(), field, mesh.points.size());
+  for (const FieldArray& field : mesh.cell_fields) add_field(*grid.GetCellData(), field, cell_count(mesh));
   if (mesh.part.empty()) return;
   vtkNew<vtkIntArray> part;
   part->SetName("part");

@@ -1,29 +1,46 @@
 #pragma once
 
+#include "core/geometry/mesh.hpp"
 #include "core/math/vec3.hpp"
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace fascia::io {
 
-/// A named array on points: `components` values a point.
+/// A named array on points or cells: `components` values each.
 struct FieldArray {
   std::string name;
   int components = 1;
   std::vector<double> values;
 };
 
-/// What one .vtu holds: triangles first, then lines, then single points ("vertices").
+/// Volume cells of one type and order.
+struct VisualCells {
+  CellType type = CellType::tetrahedron;  ///< tetrahedron or hexahedron
+  bool quadratic = false;
+  std::vector<int> nodes;  ///< point indices, cell by cell: corners, then mid-side nodes in the order of CellBlock
+
+  std::size_t nodes_per_cell() const {
+    const int mid_nodes = quadratic ? mid_node_count(type) : 0;
+    return static_cast<std::size_t>(node_count(type)) + static_cast<std::size_t>(mid_nodes);
+  }
+  std::size_t size() const { return nodes.size() / nodes_per_cell(); }
+};
+
+/// What one .vtu holds: volume cells first, then triangles, lines and single points ("vertices").
 struct VisualMesh {
   std::vector<Vec3d> points;
+  std::vector<VisualCells> volumes;
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<int, 2>> lines;
   std::vector<int> vertices;  ///< point indices, one vertex cell each
   std::vector<FieldArray> point_fields;
-  std::vector<int> part;  ///< cell array "part", one a cell (triangles, lines, vertices); may be empty
+  std::vector<FieldArray> cell_fields;  ///< values for the volume cells only; the file has zeros for the other cells
+  std::vector<int> part;  ///< cell array "part", one a cell (volumes, triangles, lines, vertices); may be empty
 };
 
 /// Writes an unstructured grid (XML, appended and compressed).

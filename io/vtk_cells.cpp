@@ -1,7 +1,10 @@
 #include "io/vtk_cells.hpp"
 
+#include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "io/mesh_edit.hpp"
+#include "io/vtk_groups.hpp"
+#include "io/vtk_kinds.hpp"
 
 #include <vtkCell.h>
 #include <vtkCellType.h>
@@ -13,110 +16,20 @@
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace fascia::io {
 namespace {
 
-/// A kind of VTK cell: the corners' places in VTK's list of nodes, and the least number of its nodes.
-struct VtkKind {
-  CellType type = CellType::vertex;
-  std::array<int, 8> order{0, 1, 2, 3, 4, 5, 6, 7};
-  int least_nodes = 1;
-  bool corners_only = true;  ///< it has no nodes between its corners
-};
-
-constexpr std::array<int, 8> usual{0, 1, 2, 3, 4, 5, 6, 7};
-constexpr std::array<int, 8> pixel_order{0, 1, 3, 2, 4, 5, 7, 6};  // of voxels, too
-constexpr std::array<int, 8> wedge_order{0, 2, 1, 3, 5, 4, 6, 7};  // VTK's first triangle faces outward
-
-constexpr VtkKind linear(CellType type, const std::array<int, 8>& order = usual) {
-  return {type, order, node_count(type), true};
-}
-constexpr VtkKind curved(CellType type, const std::array<int, 8>& order = usual) {
-  return {type, order, node_count(type), false};
-}
-
-/// False for a kind that is not supported; strips, polylines and polygons are dealt with elsewhere.
-bool find_kind(int vtk_type, VtkKind& kind) {
-  using enum CellType;
-  switch (vtk_type) {
-    case VTK_VERTEX:
-      kind = linear(vertex);
-      return true;
-    case VTK_LINE:
-      kind = linear(line);
-      return true;
-    case VTK_TRIANGLE:
-      kind = linear(triangle);
-      return true;
-    case VTK_QUAD:
-      kind = linear(quadrilateral);
-      return true;
-    case VTK_PIXEL:
-      kind = linear(quadrilateral, pixel_order);
-      return true;
-    case VTK_TETRA:
-      kind = linear(tetrahedron);
-      return true;
-    case VTK_HEXAHEDRON:
-      kind = linear(hexahedron);
-      return true;
-    case VTK_VOXEL:
-      kind = linear(hexahedron, pixel_order);
-      return true;
-    case VTK_WEDGE:
-      kind = linear(wedge, wedge_order);
-      return true;
-    case VTK_PYRAMID:
-      kind = linear(pyramid);
-      return true;
-    case VTK_QUADRATIC_EDGE:
-    case VTK_CUBIC_LINE:
-    case VTK_LAGRANGE_CURVE:
-      kind = curved(line);
-      return true;
-    case VTK_QUADRATIC_TRIANGLE:
-    case VTK_BIQUADRATIC_TRIANGLE:
-    case VTK_LAGRANGE_TRIANGLE:
-      kind = curved(triangle);
-      return true;
-    case VTK_QUADRATIC_QUAD:
-    case VTK_BIQUADRATIC_QUAD:
-    case VTK_QUADRATIC_LINEAR_QUAD:
-    case VTK_LAGRANGE_QUADRILATERAL:
-      kind = curved(quadrilateral);
-      return true;
-    case VTK_QUADRATIC_TETRA:
-    case VTK_LAGRANGE_TETRAHEDRON:
-      kind = curved(tetrahedron);
-      return true;
-    case VTK_QUADRATIC_HEXAHEDRON:
-    case VTK_TRIQUADRATIC_HEXAHEDRON:
-    case VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON:
-    case VTK_LAGRANGE_HEXAHEDRON:
-      kind = curved(hexahedron);
-      return true;
-    case VTK_QUADRATIC_WEDGE:
-    case VTK_QUADRATIC_LINEAR_WEDGE:
-    case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
-      kind = curved(wedge, wedge_order);
-      return true;
-    case VTK_QUADRATIC_PYRAMID:
-      kind = curved(pyramid);
-      return true;
-    default:
-      return false;
-  }
-}
-
 class Converter {
  public:
-  Converter(vtkDataSet& data, const std::string& name, int first_cell, int first_point)
-      : data_(data), first_cell_(first_cell), first_point_(first_point) {
+  Converter(vtkDataSet& data, const std::string& name, int first_cell, int first_point, MidNodes mid_nodes)
+      : data_(data), first_cell_(first_cell), first_point_(first_point), mid_nodes_(mid_nodes) {
     mesh_.file = name;
   }
 
@@ -126,8 +39,10 @@ class Converter {
     if (data_.GetNumberOfPoints() > std::numeric_limits<int>::max())
       throw InputError(mesh_.file + ": the mesh has more than 2147483647 points");
     read_points();
+    groups_ = VtkGroups(data_, mesh_.file, first_cell_);
     for (vtkIdType c = 0; c < data_.GetNumberOfCells(); ++c) read_cell(c);
     drop_points_between();
+    mesh_.groups = groups_.take();
     return std::move(mesh_);
   }
 
@@ -148,7 +63,7 @@ class Converter {
           throw InputError(mesh_.file + ": node " + std::to_string(p + first_point_) +
                            " has a coordinate that is not finite; must be a finite number");
     }
-    corner_.assign(mesh_.points.size(), false);
+    kept_.assign(mesh_.points.size(), false);
     between_.assign(mesh_.points.size(), false);
   }
 
@@ -165,35 +80,49 @@ class Converter {
     } else if (type == VTK_TRIANGLE_STRIP || type == VTK_POLYGON) {
       read_triangles(c, size);
     } else {
-      VtkKind kind;
-      if (!find_kind(type, kind))
+      const std::optional<VtkKind> kind = vtk_kind(type);
+      if (!kind)
         fail(c, "is of VTK's type " + std::to_string(type) + ", which is not supported; give triangles, " +
                     "quadrilaterals, tetrahedra, hexahedra, wedges or pyramids");
-      if (size < kind.least_nodes || (kind.corners_only && size != kind.least_nodes))
-        fail(c, "has " + std::to_string(size) + " nodes; must have " + std::to_string(kind.least_nodes));
-      add(kind, c);
-      for (vtkIdType n = kind.least_nodes; n < size; ++n) between_[static_cast<std::size_t>(ids_->GetId(n))] = true;
+      read_plain(*kind, c);
     }
   }
 
-  void add(const VtkKind& kind, vtkIdType cell) {
-    std::array<int, 8> nodes{};
-    const auto size = static_cast<std::size_t>(node_count(kind.type));
-    for (std::size_t n = 0; n < size; ++n) nodes[n] = static_cast<int>(ids_->GetId(kind.order[n]));
-    append(kind.type, std::span(nodes).first(size), cell);
+  /// A cell whose first nodes are its corners.
+  void read_plain(const VtkKind& kind, vtkIdType cell) {
+    using enum VtkKind::Between;
+    const auto size = static_cast<int>(ids_->GetNumberOfIds());
+    const bool keep = mid_nodes_ == MidNodes::keep;
+    const bool exact = kind.between == none || (kind.between == mid_sides && keep);
+    const int least = exact ? kind.size : node_count(kind.type);
+    if (size < least || (exact && size != least))
+      fail(cell, "has " + std::to_string(size) + " nodes; must have " + std::to_string(least));
+
+    const bool quadratic =
+        keep && (kind.between == mid_sides || (kind.between == mid_sides_if_size && size == kind.size));
+    std::array<int, 8> corners{};
+    std::array<int, 12> mid_nodes{};
+    const int n_corners = node_count(kind.type), n_mid_nodes = quadratic ? mid_node_count(kind.type) : 0;
+    for (int n = 0; n < n_corners; ++n) corners[at(n)] = static_cast<int>(ids_->GetId(kind.order[at(n)]));
+    for (int n = 0; n < n_mid_nodes; ++n) mid_nodes[at(n)] = static_cast<int>(ids_->GetId(n_corners + n));
+    append(kind.type, std::span(corners).first(at(n_corners)), cell, std::span(mid_nodes).first(at(n_mid_nodes)));
+    for (int n = n_corners + n_mid_nodes; n < size; ++n) between_[static_cast<std::size_t>(ids_->GetId(n))] = true;
   }
 
-  void append(CellType type, std::span<const int> nodes, vtkIdType cell) {
-    CellBlock* block = nullptr;
-    for (CellBlock& b : mesh_.blocks)
-      if (b.type == type) block = &b;
-    if (!block) block = &mesh_.blocks.emplace_back(CellBlock{type, {}, {}, {}});
-    for (const int node : nodes) {
-      block->nodes.push_back(node);
-      corner_[static_cast<std::size_t>(node)] = true;
-    }
-    block->group.push_back(-1);
-    block->file_number.push_back(cell + first_cell_);
+  CellBlock& block(CellType type, int mid_nodes_per_cell) {
+    for (CellBlock& block : mesh_.blocks)
+      if (block.type == type && block.mid_nodes_per_cell == mid_nodes_per_cell) return block;
+    return mesh_.blocks.emplace_back(CellBlock{type, {}, {}, {}, mid_nodes_per_cell, {}});
+  }
+
+  void append(CellType type, std::span<const int> corners, vtkIdType cell, std::span<const int> mid_nodes = {}) {
+    CellBlock& cells = block(type, static_cast<int>(mid_nodes.size()));
+    cells.nodes.insert(cells.nodes.end(), corners.begin(), corners.end());
+    cells.mid_nodes.insert(cells.mid_nodes.end(), mid_nodes.begin(), mid_nodes.end());
+    for (const auto& nodes : {corners, mid_nodes})
+      for (const int node : nodes) kept_[at(node)] = true;
+    cells.group.push_back(groups_.of(cell, dimension_of(type)));
+    cells.file_number.push_back(cell + first_cell_);
   }
 
   /// Several vertices (length 1) or the lines of a polyline (length 2).
@@ -218,23 +147,25 @@ class Converter {
   }
 
   void drop_points_between() {
-    std::vector<bool> keep(corner_.size());
-    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = corner_[i] || !between_[i];
+    std::vector<bool> keep(kept_.size());
+    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = kept_[i] || !between_[i];
     keep_points(mesh_, keep);
   }
 
   vtkDataSet& data_;
   int first_cell_, first_point_;
+  MidNodes mid_nodes_;
   Mesh mesh_;
+  VtkGroups groups_;
   vtkNew<vtkIdList> ids_;
   vtkNew<vtkPoints> points_;
-  std::vector<bool> corner_, between_;  ///< uses of each point
+  std::vector<bool> kept_, between_;  ///< uses of each point: as a node of the mesh, as one that is dropped
 };
 
 }  // namespace
 
-Mesh mesh_of_vtk(vtkDataSet& data, const std::string& name, int first_cell, int first_point) {
-  return Converter(data, name, first_cell, first_point).convert();
+Mesh mesh_of_vtk(vtkDataSet& data, const std::string& name, int first_cell, int first_point, MidNodes mid_nodes) {
+  return Converter(data, name, first_cell, first_point, mid_nodes).convert();
 }
 
 }  // namespace fascia::io

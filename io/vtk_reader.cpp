@@ -29,6 +29,11 @@ namespace {
 
 /// Triangles keep their own points: closed_surface() welds, and says so.
 void configure(vtkSTLReader& reader) { reader.MergingOff(); }
+/// Any array of the file may number the groups.
+void configure(vtkDataSetReader& reader) {
+  reader.ReadAllScalarsOn();
+  reader.ReadAllFieldsOn();
+}
 void configure(vtkAlgorithm&) {}
 
 template <class Reader>
@@ -49,7 +54,7 @@ vtkSmartPointer<vtkDataSet> read_data(const std::string& file, const std::string
   return read_with<vtkPLYReader>(file);
 }
 
-Mesh read_by_vtk(const std::string& file, const std::string& ending) {
+Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mid_nodes) {
   VtkErrors errors;
   try {
     const vtkSmartPointer<vtkDataSet> data = read_data(file, ending);
@@ -57,7 +62,7 @@ Mesh read_by_vtk(const std::string& file, const std::string& ending) {
     if (!vtkPolyData::SafeDownCast(data) && !vtkUnstructuredGrid::SafeDownCast(data))
       fail(file, ending, "must hold an unstructured grid or polygonal data");
     const int first = ending == ".stl" ? 1 : 0;
-    return mesh_of_vtk(*data, file, first, first);
+    return mesh_of_vtk(*data, file, first, first, mid_nodes);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {
@@ -67,13 +72,13 @@ Mesh read_by_vtk(const std::string& file, const std::string& ending) {
 
 }  // namespace
 
-Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending) {
+Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending, MidNodes mid_nodes) {
   const std::string file = path.string();
   if (ending == ".obj") {
     VtkErrors silence;
-    return mesh_of_vtk(*parse_obj(read_file(path), file), file, 1, 1);
+    return mesh_of_vtk(*parse_obj(read_file(path), file), file, 1, 1, mid_nodes);
   }
-  return read_isolated(file, [&] { return read_by_vtk(file, ending); });
+  return read_isolated(file, [&] { return read_by_vtk(file, ending, mid_nodes); });
 }
 
 }  // namespace fascia::io

@@ -52,7 +52,7 @@ void CloudBody::split_points(const CloudSpec& spec) {
       points_.push_back({p.place.X + offset, p.volume * part, m.lambda, m.mu, p.place.X, law, T, spec.affine});
     };
     if (p.place.dimension == 3 || spec.through == 1) {
-      add({}, 1, Law::solid);
+      add({}, 1, m.neo_hookean ? Law::neo_hookean : Law::solid);
     } else if (p.place.dimension == 2) {
       for (const GaussPoint& g : gauss_legendre(spec.through > 0 ? spec.through : 2))
         add(T.column(2) * ((g.x - 0.5) * p.extent), g.weight, Law::sheet);
@@ -65,8 +65,8 @@ void CloudBody::split_points(const CloudSpec& spec) {
 }
 
 void CloudBody::number_frames(const CloudSpec& spec, Model& model) {
-  first_frame_ = model.node_count();
-  frame_count_ = static_cast<int>(spec.frames.size());
+  first_node_ = model.node_count();
+  node_count_ = static_cast<int>(spec.frames.size());
   for (const CloudFrame& f : spec.frames) {
     model.rest_position.push_back(f.x);
     model.rest_orientation.push_back(f.orientation);
@@ -78,10 +78,10 @@ void CloudBody::number_frames(const CloudSpec& spec, Model& model) {
 
 /// A point resists six strains: with fewer of these than degrees of freedom, frames would be loose.
 void CloudBody::check_points(const CloudSpec& spec) const {
-  const std::size_t dofs = at(frame_count_) * (spec.affine ? 12 : 6);
+  const std::size_t dofs = at(node_count_) * (spec.affine ? 12 : 6);
   if (6 * points_.size() >= dofs) return;
-  const bool thin = points_[0].law != Law::solid;
-  throw InputError(std::to_string(points_.size()) + " integration points cannot hold " + std::to_string(frame_count_) +
+  const bool thin = !is_solid(points_[0].law);
+  throw InputError(std::to_string(points_.size()) + " integration points cannot hold " + std::to_string(node_count_) +
                        (spec.affine ? " affine" : "") + " frames; use at least " + std::to_string(dofs / 6) +
                        (thin ? ", those through the matter included" : "") + ", and several times as many for accuracy",
                    Blame::points);
@@ -92,7 +92,7 @@ Attachment CloudBody::attach_place(const ScatteredPlace& place, const ScatteredW
   const Mat3d halved = half_blend_ ? weights.consistent : Mat3d{};
   Attachment a;
   for (std::size_t k = 0; k < weights.frame.size(); ++k) {
-    a.nodes.push_back(first_frame_ + weights.frame[k]);
+    a.nodes.push_back(first_node_ + weights.frame[k]);
     const Vec3d d = place.X - frame_position_[at(weights.frame[k])];
     a.influences.push_back(blended(weights.w[k], weights.gradient[k], halved, d, offset));
   }
@@ -120,7 +120,7 @@ void CloudBody::add_inertia(const CloudSpec& spec, Model& model) {
     if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
     const ScatteredWeights& w = share[point_places_[q].place];
     for (std::size_t k = 0; k < w.frame.size(); ++k) {
-      const std::size_t node = at(first_frame_ + w.frame[k]);
+      const std::size_t node = at(first_node_ + w.frame[k]);
       const double m = spec.density * points_[q].volume * w.w[k];
       const Vec3d d = points_[q].X - model.rest_position[node];
       const FrameInertia part{m, d * m, outer(d, d) * m};

@@ -34,7 +34,7 @@ struct CloudSpec : BodyMatter {
   std::vector<std::array<int, 2>> segments;
 };
 
-class CloudBody final : public MeshlessBody {
+class CloudBody final : public ModelBody {
  public:
   /// Appends frames to the model and points to the builder.
   /// @throws InputError  a point that too many frames reach, points that are too few
@@ -43,7 +43,7 @@ class CloudBody final : public MeshlessBody {
   bool interpolates() const override { return interpolates_; }
   Attachment attach(const Vec3d& X) const override;
   Attachment attach_point(std::size_t point) const override;
-  std::vector<char> frames_on_boundary() const override { return on_boundary_; }
+  std::vector<char> nodes_on_boundary() const override { return on_boundary_; }
   double distance(const Vec3d& X) const override { return locate_(X).distance; }
   std::string quality() const override { return quality_; }
 
@@ -68,7 +68,7 @@ class CloudBody final : public MeshlessBody {
   void add_inertia(const CloudSpec& spec, Model& model);
   void describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights);
   void warn_of_locking(const CloudSpec& spec);
-  Vec3d frame_position(int node) const { return frame_position_[static_cast<std::size_t>(node - first_frame_)]; }
+  Vec3d frame_position(int node) const { return frame_position_[static_cast<std::size_t>(node - first_node_)]; }
 
   FrameField field_;
   std::function<Location(const Vec3d&)> locate_;

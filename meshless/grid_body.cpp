@@ -66,7 +66,7 @@ Vec3d GridBody::cell_coordinates(const Vec3d& x, const Cell& cell) const {
   return xi;
 }
 
-std::vector<char> GridBody::frames_on_boundary() const {
+std::vector<char> GridBody::nodes_on_boundary() const {
   std::vector<int> active_cells(frame_of_grid_node_.size(), 0);
   for (std::size_t c = 0; c < cells_.size(); ++c)
     for (int corner = 0; corner < 8 && cells_[c].owner == static_cast<int>(c); ++corner)

@@ -21,7 +21,7 @@ struct GridSpec : BodyMatter {
   Vec3d translation{};
 };
 
-class GridBody final : public MeshlessBody {
+class GridBody final : public ModelBody {
  public:
   /// Samples the domain, appends frames to the model and points to the builder.
   /// @throws InputError  a domain in which no point falls, or volumes that cannot be formed
@@ -31,7 +31,7 @@ class GridBody final : public MeshlessBody {
   Attachment attach(const Vec3d& X) const override;
   Attachment attach_point(std::size_t point) const override;
   Attachment attach_volumetric(const Attachment& at) const override;
-  std::vector<char> frames_on_boundary() const override;
+  std::vector<char> nodes_on_boundary() const override;
   double distance(const Vec3d& X) const override;
 
  private:

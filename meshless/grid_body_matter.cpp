@@ -16,6 +16,8 @@ namespace {
 /// Above this Poisson ratio full integration locks (docs/manual.md, "Nearly incompressible tissue").
 constexpr double kSelectivePoisson = 0.45;
 
+Law law_of(const PointMaterialSpec& m) { return m.neo_hookean ? Law::neo_hookean : Law::solid; }
+
 }  // namespace
 
 void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& samples, PointSetBuilder& builder) {
@@ -42,9 +44,9 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
     messages_.push_back("Poisson ratio above 0.45: lambda is integrated at one point a cell (selective integration)");
 
   // Points that share their frames, in the order of the cells (and tetrahedra).
-  std::map<std::pair<int, std::array<int, 3>>, std::vector<std::size_t>> groups;
+  std::map<std::tuple<int, std::array<int, 3>, Law>, std::vector<std::size_t>> groups;
   for (std::size_t q = 0; q < samples.size(); ++q)
-    groups[{cells_[at(samples[q].cell)].owner, samples[q].tetrahedron}].push_back(q);
+    groups[{cells_[at(samples[q].cell)].owner, samples[q].tetrahedron, law_of(materials[q])}].push_back(q);
   for (const auto& [key, members] : groups) {
     std::vector<PointSample> points;
     std::vector<int> nodes;
@@ -54,7 +56,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       Attachment a = attach_local(s.x, s.cell, weights_ == GridWeightKind::linear ? &s.tetrahedron : nullptr);
       const PointMaterialSpec& m = materials[q];
       const Vec3d X = to_world(s.x);
-      points_.push_back({X, s.volume, m.lambda, m.mu, X, Law::solid, Mat3d::identity()});
+      points_.push_back({X, s.volume, m.lambda, m.mu, X, law_of(m), Mat3d::identity()});
       point_cells_.push_back({a.cell, s.tetrahedron});
       points.push_back({X,
                         s.volume,
@@ -72,12 +74,14 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
     if (selective_) {
       volumetric.lambda /= volumetric.volume;
       volumetric.stiffness_damping /= volumetric.volume;
-      const Attachment a = attach_local(cells_[at(key.first)].center, key.first, nullptr);
+      const int cell = std::get<int>(key);
+      const Attachment a = attach_local(cells_[at(cell)].center, cell, nullptr);
       volumetric.influences = a.influences;
       points.push_back(volumetric);
     }
-    builder.add_points(nodes, points, length,
-                       {Law::solid, spec.affine ? Stabilization::affine : Stabilization::drilling, spec.affine});
+    builder.add_points(
+        nodes, points, length,
+        {std::get<Law>(key), spec.affine ? Stabilization::affine : Stabilization::drilling, spec.affine});
   }
 }
 
@@ -94,10 +98,10 @@ void GridBody::add_inertia(const GridSpec& spec, const std::vector<Sample>& samp
     const double mass_damping = spec.material(X).mass_damping;
     if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
     double sum = 0;
-    for (std::size_t k = 0; k < share.frame.size(); ++k) sum += share.w[k] * support[at(share.frame[k] - first_frame_)];
+    for (std::size_t k = 0; k < share.frame.size(); ++k) sum += share.w[k] * support[at(share.frame[k] - first_node_)];
     for (std::size_t k = 0; k < share.frame.size(); ++k) {
       const auto frame = at(share.frame[k]);
-      const double m = spec.density * s.volume * share.w[k] * support[frame - at(first_frame_)] / sum;
+      const double m = spec.density * s.volume * share.w[k] * support[frame - at(first_node_)] / sum;
       const Vec3d d = X - model.rest_position[frame];
       const FrameInertia part{m, d * m, outer(d, d) * m};
       model.inertia[frame] += part;
@@ -129,11 +133,11 @@ GridBody::CellShare GridBody::cell_share(const Sample& s) const {
 
 /// Part of a frame's weight function, over the cells around it that have points, that the matter fills: 1 in a box.
 std::vector<double> GridBody::frame_support(const std::vector<Sample>& samples) const {
-  std::vector<double> filled(at(frame_count_)), full(at(frame_count_));
+  std::vector<double> filled(at(node_count_)), full(at(node_count_));
   for (const Sample& s : samples) {
     const CellShare share = cell_share(s);
     for (std::size_t k = 0; k < share.frame.size(); ++k)
-      filled[at(share.frame[k] - first_frame_)] += s.volume * share.w[k];
+      filled[at(share.frame[k] - first_node_)] += s.volume * share.w[k];
   }
   const double cell_volume = spacing_[0] * spacing_[1] * spacing_[2];
   for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -142,7 +146,7 @@ std::vector<double> GridBody::frame_support(const std::vector<Sample>& samples) 
       // Linear weights: six tetrahedra meet at both ends of the main diagonal, two at the other corners.
       const double part =
           weights_ == GridWeightKind::trilinear ? 1.0 / 8 : (corner == 0 || corner == 7 ? 1.0 / 4 : 1.0 / 12);
-      full[at(frame_of_grid_node_[at(grid_node(cells_[c].index, corner))] - first_frame_)] += part * cell_volume;
+      full[at(frame_of_grid_node_[at(grid_node(cells_[c].index, corner))] - first_node_)] += part * cell_volume;
     }
   }
   for (std::size_t i = 0; i < filled.size(); ++i) filled[i] = std::min(1.0, filled[i] / full[i]);

@@ -149,7 +149,7 @@ void GridBody::number_frames(const GridSpec& spec, const std::vector<Sample>& sa
   for (const Sample& s : samples)
     for (int corner = 0; corner < 8; ++corner)
       frame_of_grid_node_[at(grid_node(cells_[at(cells_[at(s.cell)].owner)].index, corner))] = 0;
-  first_frame_ = model.node_count();
+  first_node_ = model.node_count();
   int dropped = 0;
   for (int node = 0; node < static_cast<int>(frame_of_grid_node_.size()); ++node) {
     if (frame_of_grid_node_[at(node)] < 0) {
@@ -161,7 +161,7 @@ void GridBody::number_frames(const GridSpec& spec, const std::vector<Sample>& sa
     model.rest_orientation.push_back(rotation_);
     model.frame_kind.push_back(spec.affine ? FrameKind::affine : FrameKind::rigid);
   }
-  frame_count_ = model.node_count() - first_frame_;
+  node_count_ = model.node_count() - first_node_;
   if (dropped > 0) messages_.push_back(std::to_string(dropped) + " frames without points were dropped");
 }
 

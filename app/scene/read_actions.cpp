@@ -95,14 +95,15 @@ void read_move(const TableReader& table, Constraint& constraint) {
 
 /// The quantities of a load belong either to `where` or to `at`.
 void check_load_keys(const TableReader& table) {
-  const std::vector<std::string> of_region{"total_force", "total_torque", "force_per_node"},
+  const std::vector<std::string> of_region{"total_force", "total_torque", "force_per_node", "traction"},
       of_point{"force", "torque"};
   const bool at = table.has("at"), where = table.has("where");
   if (at == where) return;
   table.refuse(at ? of_region : of_point,
-               at ? "goes with where, not with at" : "goes with at, not with where (there: total_force, total_torque)");
+               at ? "goes with where, not with at"
+                  : "goes with at, not with where (there: total_force, total_torque, traction)");
   std::vector<std::string> wanted = at ? of_point : of_region;
-  const std::vector<std::string> unsupported{"pressure", "traction", "line_force"};
+  const std::vector<std::string> unsupported{"pressure", "line_force"};
   const auto given = [&](const std::string& key) { return table.has(key); };
   if (std::none_of(of_region.begin(), of_region.end(), given) &&
       std::none_of(of_point.begin(), of_point.end(), given) &&
@@ -149,9 +150,12 @@ Load read_load(const TableReader& table, const std::vector<std::string>& bodies)
   load.force_per_node = table.vector("force_per_node");
   load.force = table.vector("force");
   load.torque = table.vector("torque");
+  load.traction = table.vector("traction");
   load.follower = table.boolean("follower").value_or(false);
   load.schedule = read_schedule(table);
   check_load_keys(table);
+  if (load.follower && table.has("traction"))
+    table.error("follower", "true does not go with traction, which keeps its direction; must be false");
   return load;
 }
 

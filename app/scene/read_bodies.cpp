@@ -1,4 +1,5 @@
 #include "app/scene/readers.hpp"
+#include "app/scene/schema.hpp"
 
 #include <fmt/format.h>
 
@@ -78,11 +79,43 @@ void read_young(const TableReader& table, Material& material) {
                                      *young, *poisson));
 }
 
+std::optional<BodyModel> read_model(const TableReader& body) {
+  const auto word = body.text("model");
+  if (!word) return std::nullopt;
+  if (*word == "tetrahedra") return BodyModel::tetrahedra;
+  return *word == "hexahedra" ? BodyModel::hexahedra : BodyModel::meshless;
+}
+
+/// Thin bodies: their laws hold for a vanishing stress through the thickness or across the section.
+void check_thin_laws(const TableReader& table, const Body& body) {
+  const std::optional<Extent> extent = read_extent(table);
+  if (!extent || *extent == Extent::solid) return;
+  for (std::size_t i = 0; i < body.materials.size(); ++i)
+    if (body.materials[i].material.law == MaterialLaw::neo_hookean)
+      table.diagnostics().add(place_of_material(table, i),
+                              "has the law \"neo-hookean\", which thin bodies do not take; must be of the law "
+                              "\"st-venant-kirchhoff\"");
+}
+
+void read_meshless(const TableReader& table, const std::filesystem::path& folder, Body& body) {
+  refuse_element_keys(table);
+  if (!table.has("frames")) table.error("frames", "is missing; must be " + in_words(frames_schema()));
+  read_section(table, body);
+  read_discretisation(table, folder, body);
+  check_thin_laws(table, body);
+}
+
 }  // namespace
+
+Place place_of_material(const TableReader& body, std::size_t use) {
+  const Value* value = body.value("material");
+  return value && value->as_array() ? body.tables("material")[use].place("use") : body.place("material");
+}
 
 Material read_material(const TableReader& table) {
   Material material;
   material.place = table.place();
+  if (table.text("law") == "neo-hookean") material.law = MaterialLaw::neo_hookean;
   if (table.has("young")) {
     if (!table.has("poisson"))
       table.error("poisson", "is missing beside young; must be a number above -1 and below 0.5");
@@ -125,8 +158,12 @@ Body read_body(const TableReader& table, const Materials& materials, const std::
   body.materials = read_material_uses(table, materials);
   body.mass = table.number("mass");
   body.density = table.number("density");
-  read_section(table, body);
-  read_discretisation(table, folder, body);
+  const std::optional<BodyModel> model = read_model(table);
+  body.frames_place = body.points_place = body.weights_place = body.place;
+  body.cells_place = body.domain_place;
+  body.model = model.value_or(BodyModel::meshless);
+  if (model == BodyModel::meshless) read_meshless(table, folder, body);
+  if (model && is_mesh_model(body)) read_elements(table, body);
   body.initial = read_initial(table.table("initial"));
   return body;
 }

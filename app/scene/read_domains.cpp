@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace fascia::app {
 namespace {
 
@@ -13,6 +15,34 @@ BoxDomain read_box(const TableReader& box) {
         box.error("max",
                   fmt::format("{} along {} is not above min, {}; must be above it", (*max)[i], "xyz"[i], (*min)[i]));
   return {min.value_or(Vec3d{}), max.value_or(Vec3d{})};
+}
+
+/// Determinant of the trilinear map's edges at a corner, of unit length: the volume that they span.
+double corner_determinant(const std::array<Vec3d, 8>& corners, std::size_t corner) {
+  constexpr std::array<std::array<std::size_t, 3>, 8> neighbours{
+      {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
+  std::array<Vec3d, 3> edge;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d d = corners[neighbours[corner][i]] - corners[corner];
+    edge[i] = 1 / norm(d) * d;
+  }
+  return dot(edge[0], cross(edge[1], edge[2]));
+}
+
+BlockDomain read_block(const TableReader& block) {
+  constexpr double flat = 1e-6;
+  BlockDomain domain;
+  const auto corners = block.vectors("corners");
+  if (!corners) return domain;
+  std::copy(corners->begin(), corners->end(), domain.corners.begin());
+  for (std::size_t i = 0; i < 8; ++i)
+    if (const double volume = corner_determinant(domain.corners, i); !(volume > flat)) {
+      block.error("corners", fmt::format("the block is {} at corner {}; must be four corners of the lower face, "
+                                         "counter-clockwise seen from above, then the four above them",
+                                         volume < -flat ? "inverted" : "flat", i));
+      break;
+    }
+  return domain;
 }
 
 CylinderDomain read_cylinder(const TableReader& cylinder) {
@@ -59,6 +89,7 @@ void require(const TableReader& table, const char* key, const char* message) {
 
 Domain read_domain(const TableReader& domain, const std::filesystem::path& folder) {
   if (domain.value("file")) return read_file(domain, folder);
+  if (domain.value("block")) return read_block(domain.table("block"));
   if (domain.value("cylinder")) return read_cylinder(domain.table("cylinder"));
   if (domain.value("rectangle")) return read_rectangle(domain.table("rectangle"));
   if (domain.value("line")) return read_line(domain.table("line"));

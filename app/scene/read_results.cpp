@@ -121,8 +121,7 @@ Output read_output(const TableReader& scene, const std::string& scene_name, std:
   output.place = table.place();
   output.directory = table.text("directory").value_or("results/" + scene_name);
   if (output.directory.empty()) table.error("directory", "is empty; must be a path");
-  if (kind && kind != SolverKind::implicit_euler)
-    table.refuse({"every"}, "counts simulated time, which only dynamic kinds have");
+  if (kind && !is_dynamic(*kind)) table.refuse({"every"}, "counts simulated time, which only dynamic kinds have");
   output.every = table.number("every").value_or(0);
   output.every_steps = table.integer("every_steps").value_or(0);
   output.fields = read_fields(table);

@@ -39,22 +39,39 @@ int steps_of(const TableReader& table, double duration, double time_step) {
   return 1;
 }
 
+/// A time step that the run finds: how many steps it takes is open.
+void read_automatic_time(const TableReader& table, Solver& solver) {
+  if (solver.kind != SolverKind::central_differences)
+    return table.error("time_step", "\"auto\" is only for kind = \"explicit\"; must be a time in s above 0");
+  solver.time_step_automatic = true;
+  if (table.has("duration")) return;
+  if (table.has("steps"))
+    table.error("steps", "is not used with time_step = \"auto\", whose steps the run counts; must be duration");
+  else
+    table.error("duration", "is missing beside time_step = \"auto\"; must be a time in s above 0");
+}
+
 void read_time(const TableReader& table, Solver& solver) {
-  if (!table.has("time_step")) table.error("time_step", "is missing; must be a time in s above 0");
+  solver.duration = table.number("duration");
+  const Value* time_step = table.value("time_step");
+  if (time_step && time_step->as_string()) return read_automatic_time(table, solver);
+  const char* automatic = solver.kind == SolverKind::central_differences ? " or \"auto\"" : "";
+  if (!table.has("time_step"))
+    table.error("time_step", fmt::format("is missing; must be a time in s above 0{}", automatic));
   if (!table.has("duration") && !table.has("steps"))
     table.error("duration", "is missing; must be a time in s above 0, or give steps");
   solver.time_step = table.number("time_step").value_or(0);
   solver.steps = table.integer("steps").value_or(1);
-  const auto duration = table.number("duration");
-  if (duration && solver.time_step > 0) solver.steps = steps_of(table, *duration, solver.time_step);
+  if (solver.duration && solver.time_step > 0) solver.steps = steps_of(table, *solver.duration, solver.time_step);
 }
 
 /// Keys that only some kinds use.
 void check_kind(const TableReader& table, const Solver& solver) {
   const std::string unused = fmt::format("is not used by kind = \"{}\"", table.text("kind").value_or("static"));
-  if (solver.kind != SolverKind::implicit_euler) table.refuse({"time_step", "duration", "steps"}, unused);
+  if (!is_dynamic(solver.kind)) table.refuse({"time_step", "duration", "steps"}, unused);
   if (solver.kind != SolverKind::statics) table.refuse({"load_steps", "control"}, unused);
   if (solver.kind != SolverKind::modes) table.refuse({"count"}, unused);
+  if (solver.kind == SolverKind::central_differences) table.refuse({"newton", "linear", "tangent"}, unused);
 }
 
 }  // namespace
@@ -70,6 +87,10 @@ std::optional<SolverKind> read_solver_kind(const TableReader& scene) {
   if (wrong) return std::nullopt;
   const std::string kind = solver.text("kind").value_or("static");
   if (kind == "implicit-euler") return SolverKind::implicit_euler;
+  if (kind == "bdf2") return SolverKind::bdf2;
+  if (kind == "newmark") return SolverKind::newmark;
+  if (kind == "midpoint") return SolverKind::midpoint;
+  if (kind == "explicit") return SolverKind::central_differences;
   if (kind == "modes") return SolverKind::modes;
   return SolverKind::statics;
 }
@@ -78,10 +99,11 @@ Solver read_solver(const TableReader& scene) {
   const TableReader table = scene.table("solver");
   Solver solver;
   solver.place = table.place();
+  solver.time_step_place = table.place("time_step");
   const std::optional<SolverKind> kind = read_solver_kind(scene);
   solver.kind = kind.value_or(SolverKind::statics);
   if (kind) check_kind(table, solver);
-  if (solver.kind == SolverKind::implicit_euler) read_time(table, solver);
+  if (is_dynamic(solver.kind)) read_time(table, solver);
   if (const Value* load_steps = table.value("load_steps"); load_steps && !load_steps->as_string())
     solver.load_steps = *table.integer("load_steps");
   solver.modes = table.integer("count").value_or(solver.modes);

@@ -44,6 +44,15 @@ void read_section(const TableReader& table, Body& body);
 /// @param folder  to which paths in the scene are relative
 void read_discretisation(const TableReader& table, const std::filesystem::path& folder, Body& body);
 
+/// What only tetrahedra and hexahedra take: the cells of their domain, the formulation and remedies.
+/// @param body  its model and materials are known
+void read_elements(const TableReader& table, Body& body);
+/// Reports the keys of read_elements that a meshless body has.
+void refuse_element_keys(const TableReader& table);
+
+/// Where a body names the material of one of its uses, which were read.
+Place place_of_material(const TableReader& body, std::size_t use);
+
 /// A list of tables of which the first that selects something counts: only the last may have no `where`.
 std::vector<TableReader> read_choices(const TableReader& table, std::string_view key);
 

@@ -83,9 +83,13 @@ struct Schedule {
 };
 
 // ------------------------------------------------------------------------------------------------ bodies
+/// Elastic law of large strain.
+enum class MaterialLaw { st_venant_kirchhoff, neo_hookean };
+
 struct Material {
   Place place;
-  std::string name;                                ///< empty for an inline table
+  std::string name;  ///< empty for an inline table
+  MaterialLaw law = MaterialLaw::st_venant_kirchhoff;
   double lambda = 0, mu = 0;                       ///< [Pa]
   double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
   double poisson() const { return lambda / (2 * (lambda + mu)); }
@@ -116,7 +120,13 @@ struct RectangleDomain {
 struct LineDomain {
   Vec3d from, to;
 };
-using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain, RectangleDomain, LineDomain>;
+/// The trilinear map of a cube onto eight corners [m], in the order of a VTK hexahedron: four of the lower face,
+/// counter-clockwise seen from above, then the four above them. Its Jacobian is positive at every corner.
+struct BlockDomain {
+  std::array<Vec3d, 8> corners{};
+};
+using Domain =
+    std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain, RectangleDomain, LineDomain, BlockDomain>;
 
 /// x → R(axis, angle) (scale x) + translate
 struct Transform {
@@ -172,9 +182,25 @@ enum class WeightKind { automatic, trilinear, linear, mls, shepard, wendland, cu
 enum class Blend { automatic, half, full };
 enum class Integration { automatic, full, selective };
 
+enum class BodyModel { meshless, tetrahedra, hexahedra };
+
+/// Strain of finite elements. large_strain: the material's law; corotational: linear in a frame that turns with the
+/// element; linear: small displacements.
+enum class Formulation { large_strain, corotational, linear };
+
+/// Remedy of tetrahedra against volumetric locking; automatic: chosen by Poisson's ratio.
+enum class Locking { automatic, none, f_bar };
+
+/// Cells of a generated mesh.
+struct MeshCells {
+  std::vector<int> count;  ///< box, block: along each edge; cylinder: along, around; ellipsoid: around, layers
+  int split = 6;           ///< tetrahedra of a cell: 5 or 6
+};
+
 struct Body {
   Place place;  ///< of the table [bodies.NAME]
   std::string name;
+  BodyModel model = BodyModel::meshless;
   Domain domain;
   Place domain_place;
   Transform transform;
@@ -198,7 +224,21 @@ struct Body {
   std::optional<double> drilling;  ///< relative to mu; default: 0.1, affine frames 0.003
   Integration integration = Integration::automatic;
   InitialMotion initial;
+
+  // Finite elements.
+  std::optional<MeshCells> cells;  ///< of generated domains
+  Place cells_place;
+  Formulation formulation = Formulation::large_strain;
+  Place formulation_place;
+  int order = 1;  ///< of the shape functions: 1 or 2
+  Place order_place;
+  double incompressibility = 0;  ///< κ of the volume penalty κ V₀ |s|³/3, s = (V − V₀)/V₀ of a tetrahedron [Pa]
+  Place incompressibility_place;
+  Locking locking = Locking::automatic;
+  Place locking_place;
 };
+
+inline bool is_mesh_model(const Body& body) { return body.model != BodyModel::meshless; }
 
 // ------------------------------------------------------------------------------------------------ constraints, loads
 struct Motion {
@@ -221,10 +261,11 @@ struct Constraint {
 struct Load {
   Place place;
   std::string body;
-  std::optional<Region> where;  ///< with total_force, total_torque, force_per_node
+  std::optional<Region> where;  ///< with total_force, total_torque, force_per_node, traction
   std::optional<Vec3d> at;      ///< with force, torque
   Place at_place;
   std::optional<Vec3d> total_force, total_torque, force_per_node, force, torque;  ///< [N], [N m]
+  std::optional<Vec3d> traction;  ///< dead force per rest area of the selected faces [Pa]
   bool follower = false;
   Schedule schedule;
 };
@@ -235,7 +276,15 @@ struct World {
 };
 
 // ------------------------------------------------------------------------------------------------ solver
-enum class SolverKind { statics, implicit_euler, modes };
+enum class SolverKind { statics, implicit_euler, bdf2, newmark, midpoint, central_differences, modes };
+constexpr bool is_implicit_dynamics(SolverKind kind) {
+  return kind == SolverKind::implicit_euler || kind == SolverKind::bdf2 || kind == SolverKind::newmark ||
+         kind == SolverKind::midpoint;
+}
+constexpr bool is_dynamic(SolverKind kind) {
+  return is_implicit_dynamics(kind) || kind == SolverKind::central_differences;
+}
+
 enum class LinearKind { automatic, cg, cholesky };
 enum class PreconditionerKind { automatic, none, jacobi, block_jacobi, cholesky };
 enum class OnLimit { stop, proceed };
@@ -243,9 +292,12 @@ enum class OnLimit { stop, proceed };
 struct Solver {
   Place place;
   SolverKind kind = SolverKind::statics;
-  double time_step = 0;  ///< [s]
-  int steps = 0;         ///< dynamic kinds: from `steps`, or duration / time_step rounded up
-  int load_steps = 0;    ///< 0: automatic
+  double time_step = 0;  ///< [s]; 0 where it is automatic
+  Place time_step_place;
+  bool time_step_automatic = false;  ///< central differences: a safe fraction of the stable step, and `steps` is open
+  int steps = 0;                     ///< dynamic kinds: from `steps`, or duration / time_step rounded up
+  std::optional<double> duration;    ///< [s], where it was given
+  int load_steps = 0;                ///< 0: automatic
   int modes = 10;
   int newton_max_iterations = 50;
   double newton_tolerance = 1e-8;

@@ -3,15 +3,13 @@
 namespace fascia::app {
 namespace {
 
-constexpr const char* not_for_meshless = "is not used by a meshless body";
-
 Shape region() { return reference("region", region_schema); }
 
 Shape material() { return reference("material", material_schema); }
 
 Shape body_material() {
   const Shape part =
-      table({key("where", region(), "Points that take this material.").defaults("\"all\""),
+      table({key("where", region(), "Points or cells that take this material.").defaults("\"all\""),
              key("use", one_of({text("the name of a material"), material()}), "Name of a material, or an inline table.")
                  .needed()});
   return one_of({text("the name of a material"), material(), array(part, 1)});
@@ -37,39 +35,57 @@ Shape transform_schema() {
                 key("scale", number("1", above(0)), "Factor about the origin, applied first.").defaults("1")});
 }
 
+Shape model_schema() {
+  return choice({{"meshless", "Frames and integration points."},
+                 {"tetrahedra", "Finite elements; 3 degrees of freedom a node."},
+                 {"hexahedra", "Finite elements; 3 degrees of freedom a node."},
+                 {"shell", "Thin wall.", false},
+                 {"rigid", "One frame that carries a surface.", false}});
+}
+
+/// Keys of tetrahedra and hexahedra alone.
+std::vector<Key> element_keys() {
+  return {
+      key("formulation",
+          choice({{"st-venant-kirchhoff", "Large strain: the law of the material, whichever it is."},
+                  {"corotational", "Small strain in axes that turn with the element."},
+                  {"linear", "Small strain and small rotation."}}),
+          "Strain of finite elements.")
+          .defaults("\"st-venant-kirchhoff\""),
+      key("order", integer(between(1, 2)), "Order of the shape functions of finite elements.").defaults("1"),
+      key("incompressibility", number("Pa", at_least(0)),
+          "Volume penalty of tetrahedra: kappa of the energy kappa V0 |s|^3 / 3, s = (V - V0) / V0 of each cell.")
+          .defaults("0"),
+      key("locking",
+          choice({{"none", "No remedy."},
+                  {"f-bar", "The volume change averaged over neighbouring cells; for `order = 1` and large strain."}}),
+          "Remedy against volumetric locking of tetrahedra.")
+          .defaults("chosen by Poisson's ratio; `fascia check` says which")};
+}
+
 Shape body_schema() {
-  return table(
-      {key("model",
-           choice({{"meshless", "Frames and integration points."},
-                   {"tetrahedra", "Finite elements.", false},
-                   {"hexahedra", "Finite elements.", false},
-                   {"shell", "Thin wall.", false},
-                   {"rigid", "One frame that carries a surface.", false}}),
-           "How the body is discretised.")
-           .needed(),
-       key("domain", domain_schema(), "The space, surface or line that the body fills.").needed(),
-       key("mass", number("kg", above(0)), "Mass of the whole body."),
-       key("density", number("kg/m3", above(0)), "Mass of a volume."),
-       key("material", body_material(), "Name, inline table, or a list of which the first that selects a point counts.")
-           .needed(),
-       key("frames", frames_schema(), "The frames.").needed(),
-       key("points", points_schema(), "The integration points."),
-       key("weights", weights_schema(), "The weight functions."), key("initial", initial_schema(), "Motion at time 0."),
-       key("transform", transform_schema(), "Moves the domain before anything is built."),
-       key("thickness", thickness(),
-           "Thickness of a sheet: of a rectangle, or of a file's triangles that bound no solid. A value, or a list of "
-           "which the first that selects a point counts."),
-       key("radius", number("m", above(0)), "Radius of a line, or of a file's lines."),
-       key("inertia", array(vector3("kg m2"), 3, 3), "Inertia of a rigid body.").not_yet(),
-       key("formulation", choice({{"st-venant-kirchhoff", ""}, {"corotational", ""}, {"linear", ""}}),
-           "Strain of finite elements.")
-           .refused(not_for_meshless),
-       key("order", integer(between(1, 2)), "Order of finite elements.").refused(not_for_meshless),
-       key("incompressibility", number("Pa", above(0)), "Volume penalty of tetrahedra.").refused(not_for_meshless),
-       key("locking", choice({{"none", ""}, {"f-bar", ""}}), "Remedy against locking of tetrahedra.")
-           .refused(not_for_meshless),
-       key("fluid", table({}), "What fills a closed shell.").refused(not_for_meshless)},
-      {{{"mass", "density"}}}, "model");
+  std::vector<Key> keys{
+      key("model", model_schema(), "How the body is discretised.").needed(),
+      key("domain", domain_schema(), "The space, surface or line that the body fills.").needed(),
+      key("mass", number("kg", above(0)), "Mass of the whole body."),
+      key("density", number("kg/m3", above(0)), "Mass of a volume."),
+      key("material", body_material(),
+          "Name, inline table, or a list of which the first that selects a point or a cell's centre counts.")
+          .needed(),
+      key("frames", frames_schema(), "The frames of a meshless body, which needs them."),
+      key("points", points_schema(), "The integration points of a meshless body."),
+      key("weights", weights_schema(), "The weight functions of a meshless body."),
+      key("initial", initial_schema(), "Motion at time 0."),
+      key("transform", transform_schema(), "Moves the domain before anything is built."),
+      key("thickness", thickness(),
+          "Thickness of a meshless sheet: of a rectangle, or of a file's triangles that bound no solid. A value, or a "
+          "list of which the first that selects a point counts."),
+      key("radius", number("m", above(0)), "Radius of a meshless line, or of a file's lines."),
+      key("inertia", array(vector3("kg m2"), 3, 3), "Inertia of a rigid body.").not_yet(),
+      key("fluid", table({}), "What fills a closed shell.").not_yet()};
+  const std::vector<Key> elements = element_keys();
+  keys.insert(keys.end(), elements.begin(), elements.end());
+  return table(std::move(keys), {{{"mass", "density"}}}, "model");
 }
 
 }  // namespace
@@ -78,7 +94,9 @@ const Shape& material_schema() {
   static const Shape material = table(
       {key("law",
            choice({{"st-venant-kirchhoff", "Linear between Green-Lagrange strain and second Piola-Kirchhoff stress."},
-                   {"neo-hookean", "Neo-Hooke.", false}}),
+                   {"neo-hookean",
+                    "Compressible: stiffens as it is compressed to nothing. Not for thin meshless bodies, nor "
+                    "`formulation = \"corotational\"` or `\"linear\"`."}}),
            "Elastic law.")
            .defaults("\"st-venant-kirchhoff\""),
        key("young", number("Pa", above(0)), "Young's modulus."),

@@ -27,7 +27,7 @@ Shape linear_schema() {
            choice({{"auto", "Chosen by size."},
                    {"none", "None."},
                    {"jacobi", "Diagonal."},
-                   {"block-jacobi", "A block for each frame."},
+                   {"block-jacobi", "A block for each node."},
                    {"cholesky", "An older factorisation."}}),
            "Preconditioner of conjugate gradients.")
            .defaults("\"auto\""),
@@ -37,12 +37,12 @@ Shape linear_schema() {
 
 std::vector<Choice> kinds() {
   return {{"static", "Equilibrium."},
-          {"implicit-euler", "Dynamics, damped."},
-          {"modes", "Natural frequencies."},
-          {"bdf2", "Dynamics, second order.", false},
-          {"newmark", "Dynamics, second order.", false},
-          {"midpoint", "Dynamics, second order.", false},
-          {"explicit", "Central differences.", false}};
+          {"implicit-euler", "Dynamics, first order; damps motion."},
+          {"bdf2", "Dynamics, second order; damps fast motion."},
+          {"newmark", "Dynamics, second order; the trapezoidal rule, without damping of its own."},
+          {"midpoint", "Dynamics, second order; the midpoint rule, without damping of its own."},
+          {"explicit", "Dynamics, second order; central differences, stable up to a limit of the time step."},
+          {"modes", "Natural frequencies."}};
 }
 
 }  // namespace
@@ -59,10 +59,13 @@ Key solver_schema() {
       "solver",
       table(
           {key("kind", choice(kinds()), "What is computed.").defaults("\"static\""),
-           key("time_step", one_of({number("s", above(0)), choice({{"auto", "Of explicit dynamics.", false}})}),
+           key("time_step",
+               one_of({number("s", above(0)),
+                       choice({{"auto",
+                                "Of `kind = \"explicit\"`: from the largest natural frequency. Needs `duration`."}})}),
                "Of dynamics, where it is needed."),
            key("duration", number("s", above(0)), "Of dynamics; or `steps`."),
-           key("steps", integer(between(1, many)), "Of dynamics; or `duration`."),
+           key("steps", integer(between(1, many)), "Of dynamics; or `duration`. Not with `time_step = \"auto\"`."),
            key("count", integer(between(1, 10000)), "Of `kind = \"modes\"`: how many.").defaults("10"),
            key("load_steps", one_of({choice({{"auto", "As few as converge."}}), integer(between(1, many))}),
                "Of `kind = \"static\"`.")
@@ -71,10 +74,10 @@ Key solver_schema() {
                choice({{"load", "The load factor grows."}, {"displacement", "", false}, {"arc-length", "", false}}),
                "Of `kind = \"static\"`.")
                .defaults("\"load\""),
-           key("newton", newton_schema(), "The non-linear solver."),
-           key("linear", linear_schema(), "The linear solver."),
+           key("newton", newton_schema(), "The non-linear solver; not of `kind = \"explicit\"`."),
+           key("linear", linear_schema(), "The linear solver; not of `kind = \"explicit\"`."),
            key("tangent", choice({{"full", "With the geometric stiffness."}, {"material", "Without it."}}),
-               "Stiffness of Newton's method.")
+               "Stiffness of Newton's method; not of `kind = \"explicit\"`.")
                .defaults("\"full\""),
            key("precision", choice({{"double", "64 bits."}, {"single", "32 bits.", false}, {"mixed", "Both.", false}}),
                "Arithmetic.")

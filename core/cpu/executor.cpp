@@ -54,6 +54,12 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
       targets_(set.axes.size() / 3),
       node_L_(at(set.node_count())),
       directions_(at(set.node_count()) * 12) {
+  std::size_t strains = at(set.group_count()) * 6 * kGroupSize;
+  for (const ElementBlock& block : set.blocks) {
+    strain_begin_.push_back(strains);
+    strains += elements_.emplace_back(block, set, pool).strain_size();
+  }
+  strain_begin_.push_back(strains);
   for (int group = 0; group < set.group_count(); ++group) {
     if (set.rule[at(group)].rule.law != Law::tether) continue;
     slot_is_tether_.resize(at(set.slot_count()));
@@ -68,7 +74,8 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
 void CpuExecutor::note_motion(const State& state) {
   for (int node = 0; node < set_.node_count(); ++node) {
     const int part = set_.node_part[at(node)];
-    const double turn = set_.part_length[at(part)] * norm(state.D[at(node)]);
+    const bool turns = set_.dofs.kind(node) != FrameKind::vertex;
+    const double turn = turns ? set_.part_length[at(part)] * norm(state.D[at(node)]) : 0.0;
     part_motion_[at(part)] = std::max({part_motion_[at(part)], norm(state.u[at(node)]), turn});
   }
 }
@@ -115,26 +122,55 @@ void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& his
   }
 }
 
+std::span<const double> CpuExecutor::strain_of_block(const AlignedVector<double>& E, std::size_t block) const {
+  if (E.empty()) return {};
+  return std::span(E).subspan(strain_begin_[block], strain_begin_[block + 1] - strain_begin_[block]);
+}
+
+/// Force of each node, with what linearize() needs of it.
+void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<double> gradient) {
+  pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
+    for (int node = begin; node < end; ++node) {
+      double* g = gradient.data() + set_.dofs.begin(node);
+      Vec3d force;
+      for (const ElementExecutor& block : elements_) force += block.sum_at(node);
+      if (set_.group_count() == 0) {
+        for (int k = 0; k < 3; ++k) g[k] = force[k];
+        continue;
+      }
+      const NodeSum sum = gather(set_, slot_sums_, node, [](int) { return true; });
+      if (keep_moments) node_L_[at(node)] = sum.N + times_transpose(sum.N, state.D[at(node)]);  // N Qᵀ
+      if (keep_moments && !tether_L_.empty()) {
+        const Mat3d N = gather(set_, slot_sums_, node, [&](int slot) { return slot_is_tether_[at(slot)] != 0; }).N;
+        tether_L_[at(node)] = N + times_transpose(N, state.D[at(node)]);
+      }
+      force += sum.force;
+      for (int k = 0; k < 3; ++k) g[k] = force[k];
+      std::fill(g + 3, g + set_.dofs.size(node), 0.0);
+      add_moment(set_.dofs.kind(node), sum.N, Mat3d::identity() + state.D[at(node)], g + 3);
+    }
+  });
+}
+
+void CpuExecutor::forces(const State& state, const StrainHistory& history, std::span<double> gradient) {
+  pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
+    for (int group = begin; group < end; ++group)
+      with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group); });
+  });
+  for (std::size_t b = 0; b < elements_.size(); ++b)
+    elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, false, {});
+  sum_forces(state, false, gradient);
+}
+
 InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, std::span<double> gradient) {
   note_motion(state);
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
       with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group); });
   });
-  pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
-    for (int node = begin; node < end; ++node) {
-      const NodeSum sum = gather(set_, slot_sums_, node, [](int) { return true; });
-      node_L_[at(node)] = sum.N + times_transpose(sum.N, state.D[at(node)]);  // N Qᵀ
-      if (!tether_L_.empty()) {
-        const Mat3d N = gather(set_, slot_sums_, node, [&](int slot) { return slot_is_tether_[at(slot)] != 0; }).N;
-        tether_L_[at(node)] = N + times_transpose(N, state.D[at(node)]);
-      }
-      double* g = gradient.data() + set_.dofs.begin(node);
-      for (int k = 0; k < 3; ++k) g[k] = sum.force[k];
-      std::fill(g + 3, g + set_.dofs.size(node), 0.0);
-      add_moment(set_.dofs.kind(node), sum.N, Mat3d::identity() + state.D[at(node)], g + 3);
-    }
-  });
+  for (std::size_t b = 0; b < elements_.size(); ++b)
+    elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, true, part_motion_);
+  sum_forces(state, true, gradient);
   InternalEnergy energy;
   std::fill(part_rounding_.begin(), part_rounding_.end(), 0.0);
   std::fill(part_tether_.begin(), part_tether_.end(), 0.0);
@@ -144,6 +180,11 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
     energy.viscous += group_viscous_[at(group)];
     part_tether_[at(set_.part_of_group(group))] += group_tether_[at(group)];
     part_rounding_[at(set_.part_of_group(group))] += group_rounding_[at(group)];
+  }
+  for (const ElementExecutor& block : elements_) {
+    energy.elastic += block.elastic();
+    energy.viscous += block.viscous();
+    block.add_rounding(part_rounding_);
   }
   for (double& r : part_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
   return energy;
@@ -167,7 +208,7 @@ Vec3d CpuExecutor::tether_force(const Tether& tether, const State& state) const 
 }
 
 void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
-  history.E.resize(at(set_.group_count()) * 6 * kGroupSize);
+  history.E.resize(strain_begin_.back());
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group) {
       const auto nodes = set_.nodes(group);
@@ -180,6 +221,8 @@ void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
       }
     }
   });
+  for (std::size_t b = 0; b < elements_.size(); ++b)
+    elements_[b].store_strain(state.u, std::span(history.E).subspan(strain_begin_[b], elements_[b].strain_size()));
 }
 
 void CpuExecutor::linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out,
@@ -191,11 +234,15 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   out.points.resize(at(set_.group_count()) * 24 * kGroupSize);
   for (int node = 0; node < set_.node_count(); ++node) {
     out.Q[at(node)] = Mat3d::identity() + state.D[at(node)];
-    if (tangent == Tangent::material || set_.dofs.kind(node) == FrameKind::affine) continue;
+    if (tangent == Tangent::material || set_.dofs.kind(node) != FrameKind::rigid) continue;
     const Mat3d L = tethers_turn || tether_L_.empty() ? node_L_[at(node)] : node_L_[at(node)] - tether_L_[at(node)];
     const Mat3d rr = sym(L) - Mat3d::diagonal(trace(L));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);
+  }
+  if (!elements_.empty()) {
+    out.u = state.u;
+    out.E = history.E;
   }
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)

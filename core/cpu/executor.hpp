@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/cpu/element_executor.hpp"
 #include "core/cpu/thread_pool.hpp"
 #include "core/model/model.hpp"
 #include "core/physics/point_physics.hpp"
@@ -18,7 +19,7 @@ struct InternalEnergy {
 
 /// Strains at the start of a time step, for stiffness damping.
 struct StrainHistory {
-  AlignedVector<double> E;  ///< (groups × 6 × 8): 11 22 33 23 13 12; empty where nothing is damped
+  AlignedVector<double> E;  ///< (groups × 6 × 8, then points of element batches × 6 × 8): 11 22 33 23 13 12; or empty
   double inverse_step = 0;  ///< 1/dt [1/s]; 0 switches the viscous stress off
 };
 
@@ -29,6 +30,8 @@ struct Linearization {
   std::vector<Mat3d> Q;             ///< I + D of each frame
   std::vector<double> node_blocks;  ///< what acts on one frame alone, by rows: rotation-rotation terms, inertia, loads
   AlignedVector<double> points;     ///< (groups × 24 × 8): H (9), Dbar (9), S (6)
+  std::vector<Vec3d> u;             ///< displacements, where there are elements
+  AlignedVector<double> E;          ///< StrainHistory::E, where elements are damped
 };
 
 /// Executes a point set on the processor: one pass over groups of points, one gather over frames. No atomics, sums in
@@ -43,6 +46,9 @@ class CpuExecutor {
   /// Gradient of the internal energy by degrees of freedom: force, then torque or what is conjugate to A (overwritten).
   /// Along u ← u + dx, Q ← exp(dr) Q or A ← A + dA the energy changes by gradient · (dx, dr or dA).
   InternalEnergy gradient(const State& state, const StrainHistory& history, std::span<double> gradient);
+
+  /// The same without energies and without what linearize() needs.
+  void forces(const State& state, const StrainHistory& history, std::span<double> gradient);
 
   /// Tangent at the state of the last call of gradient(), which must have been `state`.
   /// @param tethers_turn  false leaves out what the pull of tethers does to turning frames: a place that is still far
@@ -59,6 +65,8 @@ class CpuExecutor {
   /// Keeps the strains of a state.
   void store_strain(const State& state, StrainHistory& history);
 
+  /// Elastic energy of a block of elements at the last call of gradient() [J].
+  double block_elastic(int block) const { return elements_[static_cast<std::size_t>(block)].elastic(); }
   /// Elastic and stabilisation energy of each group at the last call of gradient() [J].
   std::span<const double> group_elastic() const { return group_elastic_; }
   std::span<const double> group_stabilization() const { return group_stabilization_; }
@@ -74,6 +82,8 @@ class CpuExecutor {
   ThreadPool& pool() { return pool_; }
 
  private:
+  std::span<const double> strain_of_block(const AlignedVector<double>& E, std::size_t block) const;
+  void sum_forces(const State& state, bool keep_moments, std::span<double> gradient);
   template <PointKind Kind>
   void gradient_of_group(const State& state, const StrainHistory& history, int group);
   template <PointKind Kind>
@@ -89,6 +99,9 @@ class CpuExecutor {
 
   const PointSet& set_;
   ThreadPool& pool_;
+  std::vector<ElementExecutor> elements_;
+  std::vector<std::size_t> strain_begin_;  ///< of each block in StrainHistory::E
+  std::vector<Vec3d> element_direction_;
   AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
   std::vector<double> group_elastic_, group_stabilization_, group_viscous_, group_rounding_, group_tether_;
   std::vector<double> part_motion_, part_rounding_, part_tether_;
@@ -110,20 +123,24 @@ struct Constant {
 
 template <class Act>
 void CpuExecutor::with_kind(int group, const Act& act) const {
-  const auto with_law = [&]<bool Solid>() {
+  using Matter = PointKind::Matter;
+  const auto with_law = [&]<Matter M>() {
     switch (set_.rule[static_cast<std::size_t>(group)].rule.stabilization) {
       case Stabilization::none:
-        return act(kernels::Constant<PointKind{Stabilization::none, Solid}>{});
+        return act(kernels::Constant<PointKind{Stabilization::none, M}>{});
       case Stabilization::drilling:
-        return act(kernels::Constant<PointKind{Stabilization::drilling, Solid}>{});
+        return act(kernels::Constant<PointKind{Stabilization::drilling, M}>{});
       case Stabilization::affine:
-        return act(kernels::Constant<PointKind{Stabilization::affine, Solid}>{});
+        return act(kernels::Constant<PointKind{Stabilization::affine, M}>{});
     }
   };
-  if (set_.rule[static_cast<std::size_t>(group)].rule.law == Law::solid)
-    with_law.template operator()<true>();
+  const Law law = set_.rule[static_cast<std::size_t>(group)].rule.law;
+  if (law == Law::solid)
+    with_law.template operator()<Matter::solid>();
+  else if (law == Law::neo_hookean)
+    with_law.template operator()<Matter::neo_hookean>();
   else
-    with_law.template operator()<false>();
+    with_law.template operator()<Matter::thin>();
 }
 
 }  // namespace fascia

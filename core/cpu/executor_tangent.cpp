@@ -70,11 +70,22 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
     for (int group = begin; group < end; ++group)
       with_kind(group, [&](auto kind) { multiply_group<kind.value>(lin, group); });
   });
+  if (!elements_.empty()) {
+    element_direction_.resize(at(set_.node_count()));
+    for (int node = 0; node < set_.node_count(); ++node)
+      std::copy_n(x.data() + set_.dofs.begin(node), 3, element_direction_[at(node)].v);
+  }
+  for (std::size_t b = 0; b < elements_.size(); ++b)
+    elements_[b].compute_product({lin.u, strain_of_block(lin.E, b), lin.inverse_step, lin.tangent}, element_direction_);
   pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       std::array<double, 12> sum{};
       for (int k = set_.node_slot_begin[at(node)]; k < set_.node_slot_begin[at(node + 1)]; ++k)
         for (int i = 0; i < 12; ++i) sum[at(i)] += slot_sums_[at(set_.node_slot[at(k)]) * 12 + at(i)];
+      for (const ElementExecutor& block : elements_) {
+        const Vec3d force = block.sum_at(node);
+        for (int i = 0; i < 3; ++i) sum[at(i)] += force[i];
+      }
       const int n = set_.dofs.size(node);
       const double* block = lin.node_blocks.data() + set_.dofs.block_begin(node);
       const double* xn = x.data() + set_.dofs.begin(node);
@@ -128,6 +139,7 @@ void add_column(FrameKind kind, const double* shape, int batch, const Mat3d& Q, 
     for (int i = 0; i < 3; ++i) out[stride * (3 + i)] += lane_sum(torque[i]);
     return;
   }
+  if (kind == FrameKind::vertex) return;
   for (int q = 0; q < 3; ++q) {
     for (int i = 0; i < 3; ++i) {
       Lanes sum;
@@ -183,6 +195,8 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out) {
       }
     });
   }
+  for (std::size_t b = 0; b < elements_.size(); ++b)
+    elements_[b].assemble({lin.u, strain_of_block(lin.E, b), lin.inverse_step, lin.tangent}, matrix_out);
   for (int node = 0; node < set_.node_count(); ++node) {
     double* diagonal = matrix_out.block(matrix_out.diagonal(node));
     const double* own = lin.node_blocks.data() + set_.dofs.block_begin(node);

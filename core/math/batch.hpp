@@ -1,23 +1,28 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace fascia {
 
-/// The register type of W doubles.
+/// The register type of W doubles, and of W lane numbers.
 template <int W>
 struct BatchRegister;
 template <>
 struct BatchRegister<2> {
   using Type = double __attribute__((vector_size(16)));
+  using Mask = long long __attribute__((vector_size(16)));
 };
 template <>
 struct BatchRegister<4> {
   using Type = double __attribute__((vector_size(32)));
+  using Mask = long long __attribute__((vector_size(32)));
 };
 template <>
 struct BatchRegister<8> {
   using Type = double __attribute__((vector_size(64)));
+  using Mask = long long __attribute__((vector_size(64)));
 };
 
 /// W doubles that are computed together (SIMD), as a scalar for Vec3 and Mat3.
@@ -56,6 +61,25 @@ struct Batch {
   friend Batch operator-(const Batch& a) { return of(-a.v); }
 };
 
+/// Lane by lane: a where condition > 0, else b.
+template <int W>
+Batch<W> where_positive(const Batch<W>& condition, const Batch<W>& a, const Batch<W>& b) {
+  return Batch<W>::of(condition.v > 0 ? a.v : b.v);
+}
+
+inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
+
+template <int W>
+Batch<W> abs(const Batch<W>& a) {
+  return where_positive(a, a, -a);
+}
+
+template <int W>
+Batch<W> log1p(Batch<W> a) {
+  for (int i = 0; i < W; ++i) a.v[i] = std::log1p(a.v[i]);
+  return a;
+}
+
 /// Sum over the lanes, always in the same order.
 template <int W>
 double lane_sum(const Batch<W>& a) {
@@ -69,6 +93,29 @@ double lane_sum(const Batch<W>& a) {
     }
     return lane_sum(low + high);
   }
+}
+
+/// Turns W batches into one another: lane l of batch k becomes lane k of batch l.
+template <int W, int Step = 1>
+void transpose_lanes(Batch<W> (&rows)[W]) {
+  using Register = typename Batch<W>::Register;
+  using Mask = typename BatchRegister<W>::Mask;
+  const auto masked =
+      []<std::size_t... L>(std::index_sequence<L...>, const Register& a, const Register& b, bool upper) {
+    constexpr auto n = static_cast<long long>(W), step = static_cast<long long>(Step);
+    constexpr Mask low{
+        (static_cast<long long>(L) & step ? n + static_cast<long long>(L) - step : static_cast<long long>(L))...};
+    constexpr Mask high{
+        (static_cast<long long>(L) & step ? n + static_cast<long long>(L) : static_cast<long long>(L) + step)...};
+    return upper ? __builtin_shuffle(a, b, high) : __builtin_shuffle(a, b, low);
+  };
+  for (int i = 0; i < W; ++i) {
+    if (i & Step) continue;
+    const Register a = rows[i].v, b = rows[i + Step].v;
+    rows[i].v = masked(std::make_index_sequence<W>{}, a, b, false);
+    rows[i + Step].v = masked(std::make_index_sequence<W>{}, a, b, true);
+  }
+  if constexpr (2 * Step < W) transpose_lanes<W, 2 * Step>(rows);
 }
 
 #if defined(__AVX512F__)

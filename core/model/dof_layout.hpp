@@ -8,17 +8,21 @@
 
 namespace fascia {
 
-/// What a frame may do: turn (6 degrees of freedom), or also stretch and shear (12).
-enum class FrameKind : unsigned char { rigid, affine };
+/// What a node may do: a frame turns (6 degrees of freedom), or also stretches and shears (12); a vertex only moves
+/// (3).
+enum class FrameKind : unsigned char { rigid, affine, vertex };
 
-/// Where the degrees of freedom of each frame stand in a vector: displacement (3), then for a rigid frame its rotation
+/// Number of degrees of freedom of a node.
+constexpr int dof_count(FrameKind kind) { return kind == FrameKind::vertex ? 3 : kind == FrameKind::rigid ? 6 : 12; }
+
+/// Where the degrees of freedom of each node stand in a vector: displacement (3), then for a rigid frame its rotation
 /// vector (3), for an affine one the columns of A (9).
 class DofLayout {
  public:
   DofLayout() = default;
   explicit DofLayout(std::vector<FrameKind> kinds) : kind_(std::move(kinds)) {
     for (const FrameKind kind : kind_) {
-      const int n = kind == FrameKind::rigid ? 6 : 12;
+      const int n = dof_count(kind);
       begin_.push_back(begin_.back() + n);
       block_begin_.push_back(block_begin_.back() + at(n * n));
     }
@@ -45,6 +49,7 @@ inline constexpr int kMostDofs = 12;
 inline Mat3d frame_variation(FrameKind kind, const double* d, const Mat3d& Q) {
   if (kind == FrameKind::rigid) return skew(Vec3d{{d[0], d[1], d[2]}}) * Q;
   Mat3d dA;
+  if (kind == FrameKind::vertex) return dA;
   for (int q = 0; q < 3; ++q)
     for (int i = 0; i < 3; ++i) dA(i, q) = d[3 * q + i];
   return dA;
@@ -52,6 +57,7 @@ inline Mat3d frame_variation(FrameKind kind, const double* d, const Mat3d& Q) {
 
 /// Adds what N, conjugate to A, is on the degrees of freedom behind the displacement.
 inline void add_moment(FrameKind kind, const Mat3d& N, const Mat3d& Q, double* g) {
+  if (kind == FrameKind::vertex) return;
   if (kind == FrameKind::rigid) {
     const Vec3d torque = axl(Q * transpose(N));
     for (int k = 0; k < 3; ++k) g[k] += torque[k];

@@ -13,7 +13,9 @@ Vec3d PrescribedMotion::displacement(const Vec3d& X, double factor) const {
 int Model::constrained_dof_count() const {
   int count = 0;
   for (const FrameConstraint& c : constraints) {
-    if (kind(c.node) == FrameKind::rigid)
+    if (kind(c.node) == FrameKind::vertex)
+      count += c.translations;
+    else if (kind(c.node) == FrameKind::rigid)
       count += c.translations + c.rotations;
     else
       count += c.translations + (c.whole ? 9 : 2 * c.rotations);

@@ -50,7 +50,7 @@ void PointSetBuilder::add_rule(std::span<const PointSample> points, double lengt
   if (std::none_of(points.begin(), points.end(), [](const PointSample& p) { return p.stabilization > 0; }))
     rule.stabilization = Stabilization::none;
   GroupRule group{rule, -1};
-  if (rule.law != Law::solid) {
+  if (!is_solid(rule.law)) {
     const std::size_t first = set_.axes.size();
     group.axes = static_cast<int>(first / (9 * kGroupSize));
     set_.axes.resize(first + 9 * kGroupSize);
@@ -61,6 +61,11 @@ void PointSetBuilder::add_rule(std::span<const PointSample> points, double lengt
   }
   set_.rule.push_back(group);
   group_length_.push_back(length);
+}
+
+void PointSetBuilder::add_elements(ElementBlock block) {
+  set_.damped = set_.damped || block.damped;
+  set_.blocks.push_back(std::move(block));
 }
 
 namespace {
@@ -96,6 +101,14 @@ void find_parts(PointSet& set, const std::vector<double>& group_length) {
       parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
     }
   }
+  for (const ElementBlock& block : set.blocks) {
+    block.for_each_element([&](std::span<const int> element) {
+      for (const int node : element) {
+        const int a = root(node), b = root(element[0]);
+        parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      }
+    });
+  }
   std::vector<double> nodes, volume;
   set.node_part.resize(n);
   for (int i = 0; i < set.node_count(); ++i) {
@@ -118,6 +131,14 @@ void find_parts(PointSet& set, const std::vector<double>& group_length) {
       volume[part] += v;
       length[part] += v * group_length[static_cast<std::size_t>(group)];
     }
+  }
+  for (const ElementBlock& block : set.blocks) {
+    block.for_each_element([&](std::span<const int> element) {
+      const auto part = static_cast<std::size_t>(set.node_part[static_cast<std::size_t>(element[0])]);
+      const double v = std::pow(block.length, 3);
+      volume[part] += v;
+      length[part] += v * block.length;
+    });
   }
   for (std::size_t p = 0; p < nodes.size(); ++p) set.part_length.push_back(volume[p] > 0 ? length[p] / volume[p] : 1.0);
 }
@@ -153,6 +174,7 @@ PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   transpose_incidence(set_);
   find_parts(set_, group_length_);
   color_groups(set_);
+  for (ElementBlock& block : set_.blocks) finish_element_block(block, set_.node_count());
   return std::move(set_);
 }
 

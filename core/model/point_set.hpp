@@ -3,6 +3,7 @@
 #include "core/math/mat3.hpp"
 #include "core/model/aligned.hpp"
 #include "core/model/dof_layout.hpp"
+#include "core/model/element_block.hpp"
 #include "core/physics/point_rule.hpp"
 
 #include <span>
@@ -36,8 +37,8 @@ struct PointSample {
   Mat3d axes{};                       ///< of a thin law: tangents first; of a tether: its stiffness [N/m]
 };
 
-/// All integration points of a model, in groups of eight that share their frames (array of structures of arrays).
-/// Unused lanes repeat the group's last point with volume 0.
+/// All integration points of a model: in groups of eight that share their frames (array of structures of arrays), and
+/// in finite elements. Unused lanes repeat the group's last point with volume 0.
 struct PointSet {
   DofLayout dofs;
   std::vector<int> slot_begin{0};  ///< (groups + 1): a slot is one frame of one group
@@ -59,6 +60,8 @@ struct PointSet {
 
   std::vector<int> color_begin{0};  ///< groups of one colour share no frame
   std::vector<int> color_group;
+
+  std::vector<ElementBlock> blocks;  ///< finite elements
 
   int node_count() const { return dofs.node_count(); }
   int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
@@ -91,6 +94,10 @@ class PointSetBuilder {
                   const PointRule& rule = {});
 
   int group_count() const { return set_.group_count(); }
+
+  void add_elements(ElementBlock block);
+
+  int block_count() const { return static_cast<int>(set_.blocks.size()); }
 
   PointSet finish(std::vector<FrameKind> frames) &&;
 

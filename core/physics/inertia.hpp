@@ -22,6 +22,10 @@ inline InertiaForce inertia_force(const FrameInertia& i, const Vec3d& a, const M
 /// The Hessian of half the square above on the degrees of freedom of a frame, at I + D = Q; of a rigid one, without
 /// the part that vanishes with the motion.
 inline void add_inertia_block(FrameKind kind, const FrameInertia& inertia, const Mat3d& Q, double* block) {
+  if (kind == FrameKind::vertex) {
+    for (int i = 0; i < 3; ++i) block[4 * i] += inertia.mass;
+    return;
+  }
   if (kind == FrameKind::affine) {
     for (int i = 0; i < 3; ++i) {
       block[13 * i] += inertia.mass;

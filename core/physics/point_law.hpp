@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/physics/neo_hookean.hpp"
 #include "core/physics/point_rule.hpp"
 #include "core/physics/st_venant_kirchhoff.hpp"
 
@@ -16,6 +17,10 @@ struct SolidMaterial {
   T stabilization;       ///< γ [Pa]
   T viscosity;           ///< κ = β/dt [-]: viscous stress κ C : (E − E_old)
 };
+
+/// Of a neo-Hookean solid.
+template <class T>
+struct NeoHookeanMaterial : SolidMaterial<T> {};
 
 /// Of a sheet, a line or a tether. A type of its own, so that solids do not ask at every point which law they have.
 template <class T>
@@ -65,10 +70,31 @@ FASCIA_HD Mat3<T> second_piola(const ThinMaterial<T>& m, const Mat3<T>& E) {
   return m.axes * times_transpose(S, m.axes);
 }
 
-/// S of a strain [Pa]; linear, so it also maps dE to dS.
+/// S of a strain [Pa]; linear, so it also maps dE to dS. Viscous stress is of this form whatever the law.
 template <class T>
 FASCIA_HD Mat3<T> second_piola(const SolidMaterial<T>& m, const Mat3<T>& E) {
   return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(E);
+}
+
+/// Elastic and viscous S at H, whose strain is E  [Pa].
+template <class T, template <class> class Material>
+FASCIA_HD Mat3<T> stress(const Material<T>& m, const Mat3<T>&, const Mat3<T>& E, const Mat3<T>& E_old) {
+  return second_piola(m, E + (E - E_old) * m.viscosity);
+}
+template <class T>
+FASCIA_HD Mat3<T> stress(const NeoHookeanMaterial<T>& m, const Mat3<T>& H, const Mat3<T>& E, const Mat3<T>& E_old) {
+  return NeoHookean<T>{m.lambda, m.mu}.second_piola(H) + second_piola(m, (E - E_old) * m.viscosity);
+}
+
+/// Elastic and viscous dS of dE at H  [Pa].
+template <class T, template <class> class Material>
+FASCIA_HD Mat3<T> stress_differential(const Material<T>& m, const Mat3<T>&, const Mat3<T>& dE) {
+  return second_piola(m, dE) * (T(1) + m.viscosity);
+}
+template <class T>
+FASCIA_HD Mat3<T> stress_differential(const NeoHookeanMaterial<T>& m, const Mat3<T>& H, const Mat3<T>& dE) {
+  return NeoHookean<T>{m.lambda, m.mu}.second_piola_differential(H, dE) +
+         StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity;
 }
 
 /// ψ = E : S(E) / 2  [J/m³]
@@ -79,6 +105,16 @@ FASCIA_HD T energy_density(const SolidMaterial<T>& m, const Mat3<T>& E) {
 template <class T>
 FASCIA_HD T energy_density(const ThinMaterial<T>& m, const Mat3<T>& E) {
   return T(0.5) * contract(E, second_piola(m, E));
+}
+
+/// Elastic ψ at H, whose strain is E  [J/m³].
+template <class T, template <class> class Material>
+FASCIA_HD T elastic_energy(const Material<T>& m, const Mat3<T>&, const Mat3<T>& E) {
+  return energy_density(m, E);
+}
+template <class T>
+FASCIA_HD T elastic_energy(const NeoHookeanMaterial<T>& m, const Mat3<T>& H, const Mat3<T>&) {
+  return NeoHookean<T>{m.lambda, m.mu}.energy_density(H);
 }
 
 }  // namespace fascia

@@ -55,7 +55,7 @@ FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>
     }
   }
   const Mat3<T> E = green_strain(x.H);
-  r.S = second_piola(material, E + (E - E_old) * material.viscosity);
+  r.S = stress(material, x.H, E, E_old);
   r.P = r.S + x.H * r.S;
   if constexpr (Tie == Stabilization::drilling) {
     const Mat3<T> Tm = drilling_stress(x, material.stabilization);
@@ -89,7 +89,7 @@ FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const Material<T>
     }
   }
   const Mat3<T> E = green_strain(x.H);
-  r.elastic = material.volume * energy_density(material, E);
+  r.elastic = material.volume * elastic_energy(material, x.H, E);
   r.viscous = material.volume * material.viscosity * energy_density(material, E - E_old);
   if constexpr (Tie == Stabilization::drilling) {
     const Mat3<T> M = drilling_stress(x, T(1));
@@ -127,7 +127,7 @@ FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion
     }
   }
   const Mat3<T> dE = sym(dH + transpose_times(x.H, dH));
-  const Mat3<T> dS = second_piola(material, dE) * (T(1) + material.viscosity);
+  const Mat3<T> dS = stress_differential(material, x.H, dE);
   r.dP = dS + x.H * dS;
   if (tangent == Tangent::full) r.dP += dH * S;
   if constexpr (Tie == Stabilization::drilling) {

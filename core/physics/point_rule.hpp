@@ -2,8 +2,11 @@
 
 namespace fascia {
 
-/// Stress of a point: of a solid; plane stress; that of a rod; or no stress but a spring to a place in space.
-enum class Law : unsigned char { solid, sheet, line, tether };
+/// Stress of a point: of a solid, St Venant-Kirchhoff or neo-Hookean; plane stress; that of a rod; or no stress but a
+/// spring to a place in space.
+enum class Law : unsigned char { solid, neo_hookean, sheet, line, tether };
+
+constexpr bool is_solid(Law law) { return law == Law::solid || law == Law::neo_hookean; }
 
 /// What keeps frames from moving where strain does not see them: nothing; Qbar tied to the rotation in F; affine
 /// frames: the blended A tied to F.
@@ -19,7 +22,7 @@ struct PointRule {
 /// What the compiler must know of a rule to leave out what it does not need.
 struct PointKind {
   Stabilization stabilization = Stabilization::none;
-  bool solid = true;
+  enum class Matter : unsigned char { solid, neo_hookean, thin } matter = Matter::solid;
 };
 
 /// The same in a point set.

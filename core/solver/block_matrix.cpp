@@ -1,41 +1,86 @@
 #include "core/solver/block_matrix.hpp"
 
+#include "core/math/index.hpp"
+
 #include <algorithm>
 
 namespace fascia {
 
+namespace {
+
+/// Nodes that share an element with each node, ascending; itself where an element has it.
+std::vector<std::vector<int>> neighbours_in(const ElementBlock& block, int nodes) {
+  std::vector<std::vector<int>> around(at(nodes));
+  block.for_each_element([&](std::span<const int> element) {
+    for (const int a : element) around[at(a)].insert(around[at(a)].end(), element.begin(), element.end());
+  });
+  for (std::vector<int>& list : around) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return around;
+}
+
+}  // namespace
+
 BlockMatrix::BlockMatrix(const PointSet& set) : dofs_(set.dofs) {
-  std::vector<int> group_of_slot(static_cast<std::size_t>(set.slot_count()));
+  find_pattern(set);
+  for (int node = 0; node < rows(); ++node) all_vertices_ = all_vertices_ && dofs_.kind(node) == FrameKind::vertex;
+  std::size_t next = 0;
+  for (int row = 0; row < rows(); ++row) {
+    for (const int column : columns(row)) {
+      value_begin_.push_back(next);
+      if (!all_vertices_ || column >= row) next += at(dofs_.size(row)) * at(dofs_.size(column));
+    }
+  }
+  value_begin_.push_back(next);
+  values_.assign(next + 1, 0.0);  // one more: blocks of nine are read ten at a time
+  if (all_vertices_)
+    size_chunks();
+  else
+    find_mirrors();
+}
+
+void BlockMatrix::find_mirrors() {
+  mirror_.assign(column_.size(), -1);
+  std::vector<int> reached(row_begin_.begin(), row_begin_.end() - 1);
+  for (int row = 0; row < rows(); ++row)  // ascending rows meet the blocks above the diagonal in their order
+    for (int k = row_begin(row); k < diagonal(row); ++k) {
+      int& upper = reached[at(column_[at(k)])];
+      upper = std::max(upper, diagonal(column_[at(k)]) + 1);
+      mirror_[at(k)] = upper++;
+    }
+}
+
+void BlockMatrix::find_pattern(const PointSet& set) {
+  std::vector<int> group_of_slot(at(set.slot_count()));
   for (int group = 0; group < set.group_count(); ++group)
-    for (int s = set.slot_begin[static_cast<std::size_t>(group)];
-         s < set.slot_begin[static_cast<std::size_t>(group) + 1]; ++s)
-      group_of_slot[static_cast<std::size_t>(s)] = group;
-  std::vector<int> last_seen(static_cast<std::size_t>(set.node_count()), -1);
+    std::fill(group_of_slot.begin() + set.slot_begin[at(group)], group_of_slot.begin() + set.slot_begin[at(group + 1)],
+              group);
+  std::vector<std::vector<std::vector<int>>> around;
+  for (const ElementBlock& block : set.blocks) around.push_back(neighbours_in(block, set.node_count()));
+  std::vector<int> last_seen(at(set.node_count()), -1);
   for (int row = 0; row < set.node_count(); ++row) {
     const std::size_t begin = column_.size();
-    last_seen[static_cast<std::size_t>(row)] = row;
-    column_.push_back(row);
-    for (int k = set.node_slot_begin[static_cast<std::size_t>(row)];
-         k < set.node_slot_begin[static_cast<std::size_t>(row) + 1]; ++k) {
-      const int slot = set.node_slot[static_cast<std::size_t>(k)];
-      for (const int column : set.nodes(group_of_slot[static_cast<std::size_t>(slot)])) {
-        if (last_seen[static_cast<std::size_t>(column)] == row) continue;
-        last_seen[static_cast<std::size_t>(column)] = row;
-        column_.push_back(column);
+    const auto add = [&](int column) {
+      if (last_seen[at(column)] == row) return;
+      last_seen[at(column)] = row;
+      column_.push_back(column);
+    };
+    add(row);
+    for (int k = set.node_slot_begin[at(row)]; k < set.node_slot_begin[at(row + 1)]; ++k)
+      for (const int column : set.nodes(group_of_slot[at(set.node_slot[at(k)])])) add(column);
+    for (std::size_t b = 0; b < around.size(); ++b) {
+      for (const int column : around[b][at(row)]) {
+        add(column);
+        if (set.blocks[b].averaged)
+          for (const int further : around[b][at(column)]) add(further);
       }
     }
     std::sort(column_.begin() + static_cast<std::ptrdiff_t>(begin), column_.end());
     row_begin_.push_back(static_cast<int>(column_.size()));
     diagonal_.push_back(find(row, row));
   }
-  std::size_t next = 0;
-  for (int row = 0; row < rows(); ++row) {
-    for (const int column : columns(row)) {
-      value_begin_.push_back(next);
-      next += static_cast<std::size_t>(dofs_.size(row) * dofs_.size(column));
-    }
-  }
-  values_.assign(next, 0.0);
 }
 
 std::span<const int> BlockMatrix::columns(int row) const {
@@ -51,11 +96,12 @@ int BlockMatrix::find(int row, int column) const {
 void BlockMatrix::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
 void BlockMatrix::mirror_lower() {
+  if (all_vertices_) return;
   for (int row = 0; row < rows(); ++row) {
     for (int k = row_begin(row); k < diagonal(row); ++k) {
-      const int column = column_[static_cast<std::size_t>(k)], n = dofs_.size(row), m = dofs_.size(column);
+      const int n = dofs_.size(row), m = dofs_.size(column_[at(k)]);
       const double* lower = block(k);
-      double* upper = block(find(column, row));
+      double* upper = block(mirror_[at(k)]);
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < m; ++j) upper[n * j + i] = lower[m * i + j];
     }
@@ -75,24 +121,25 @@ void add_product(const double* b, const double* x, double* y) {
 
 void BlockMatrix::multiply_row(int row, std::span<const double> x, std::span<double> y) const {
   double sum[kMostDofs] = {};
-  const bool rigid_row = dofs_.kind(row) == FrameKind::rigid;
+  const int n = dofs_.size(row);
   for (int k = row_begin(row); k < row_begin(row + 1); ++k) {
-    const int column = column_[static_cast<std::size_t>(k)];
-    const double* xc = x.data() + dofs_.begin(column);
-    const bool rigid_column = dofs_.kind(column) == FrameKind::rigid;
-    if (rigid_row && rigid_column)
-      add_product<6, 6>(block(k), xc, sum);
-    else if (rigid_row)
-      add_product<6, 12>(block(k), xc, sum);
-    else if (rigid_column)
-      add_product<12, 6>(block(k), xc, sum);
+    const int column = column_[at(k)], m = dofs_.size(column);
+    const double *xc = x.data() + dofs_.begin(column), *b = block(k);
+    if (n == 6 && m == 6)
+      add_product<6, 6>(b, xc, sum);
+    else if (n == 3 && m == 3)
+      add_product<3, 3>(b, xc, sum);
+    else if (n == 12 && m == 12)
+      add_product<12, 12>(b, xc, sum);
     else
-      add_product<12, 12>(block(k), xc, sum);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < m; ++j) sum[i] += b[m * i + j] * xc[j];
   }
-  std::copy(sum, sum + dofs_.size(row), y.data() + dofs_.begin(row));
+  std::copy(sum, sum + n, y.data() + dofs_.begin(row));
 }
 
 void BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  if (all_vertices_) return multiply_upper(pool, x, y);
   pool.for_ranges(rows(), 64, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) multiply_row(row, x, y);
   });

@@ -9,8 +9,9 @@
 
 namespace fascia {
 
-/// Symmetric matrix of blocks, one for each pair of frames that share a group, as large as the frames have degrees of
-/// freedom and stored by rows. Both triangles are stored, columns ascending in each row. The pattern is fixed.
+/// Symmetric matrix of blocks, one for each pair of nodes that share a group or an element, as large as the nodes have
+/// degrees of freedom and stored by rows, columns ascending. The pattern is fixed. Where all nodes are vertices only
+/// the blocks on and above the diagonal are stored: half as much to read in a product.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
@@ -27,20 +28,37 @@ class BlockMatrix {
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
 
   void set_zero();
-  /// Copies the blocks below the diagonal, transposed, above it.
+  /// Only blocks on and above the diagonal are stored; otherwise those on and below are filled, then mirrored.
+  bool fills_upper() const { return all_vertices_; }
+  /// Copies the blocks below the diagonal, transposed, above it, where those are filled.
   void mirror_lower();
   /// y = K x
   void multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
 
-  std::size_t value_count() const { return values_.size(); }
+  std::size_t value_count() const { return value_begin_.back(); }
+  double* values() { return values_.data(); }
+  const double* values() const { return values_.data(); }
 
  private:
+  void find_pattern(const PointSet& set);
   void multiply_row(int row, std::span<const double> x, std::span<double> y) const;
+  void multiply_upper(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  void multiply_chunk(int chunk) const;
+  void size_chunks();
+  void find_mirrors();
 
   DofLayout dofs_;
   std::vector<int> row_begin_{0}, column_, diagonal_;
-  std::vector<std::size_t> value_begin_;
+  std::vector<int> mirror_;               ///< of each block below the diagonal, the one above it
+  bool all_vertices_ = true;              ///< every block is 3 × 3
+  std::vector<std::size_t> value_begin_;  ///< of each block, and of all
   AlignedVector<double> values_;
+
+  /// Of products with the upper triangle: rows are taken in a few chunks, whose sums for rows behind them wait in a
+  /// buffer, so that the order of additions does not depend on threads. Vectors have four numbers a node there.
+  std::vector<int> chunk_begin_;             ///< (chunks + 1) rows
+  std::vector<std::size_t> overhang_begin_;  ///< (chunks + 1) of each chunk's buffer, for rows from its end on
+  mutable AlignedVector<double> wide_x_, wide_y_, overhang_;
 };
 
 }  // namespace fascia

@@ -25,8 +25,8 @@ struct CgReport {
 /// Steihaug 1983); at the first iteration with M⁻¹ b.
 ///
 /// @param apply         apply(p, Ap)
-/// @param precondition  precondition(r, z)
-/// @param space         dot, axpy, xpay and zeros, as in CpuVectors
+/// @param precondition  precondition(r, z) returns r · z
+/// @param space         dot, advance, xpay and zeros, as in CpuVectors
 template <class Space, class Apply, class Precondition>
 CgReport conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
                              const typename Space::Vector& b, typename Space::Vector& x, const CgOptions& options) {
@@ -34,8 +34,7 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
   CgReport report;
   Vector r = b, z = space.zeros(b.size()), p = z, Ap = z;
   x = z;
-  precondition(r, z);
-  double rz = space.dot(r, z);
+  double rz = precondition(r, z);
   const double rz_start = rz;
   if (!std::isfinite(rz)) return {CgStatus::not_finite, 0, 0};
   if (rz <= 0) return report;
@@ -49,10 +48,8 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
       return {CgStatus::negative_curvature, report.iterations, std::sqrt(rz / rz_start)};
     }
     const double alpha = rz / curvature;
-    space.axpy(alpha, p, x);
-    space.axpy(-alpha, Ap, r);
-    precondition(r, z);
-    const double rz_next = space.dot(r, z);
+    space.advance(alpha, p, Ap, x, r);
+    const double rz_next = precondition(r, z);
     if (rz_next <= options.tolerance * options.tolerance * rz_start) {
       ++report.iterations;
       rz = rz_next;

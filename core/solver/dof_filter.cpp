@@ -17,7 +17,9 @@ void multiply(const Mat3d& A, double* v) {
 
 DofFilter::DofFilter(const Model& model)
     : dofs_(model.points.dofs), turn_of_node_(at(model.node_count()), -1), fixed_(at(model.dof_count()), false) {
+  held_.assign(turn_of_node_.size(), 0);
   for (const FrameConstraint& c : model.constraints) {
+    held_[at(c.node)] = 1;
     const bool identity = c.translation_axes == Mat3d::identity() && c.rotation_axes == Mat3d::identity();
     if (!identity) {
       turn_of_node_[at(c.node)] = static_cast<int>(turns_.size());
@@ -25,6 +27,7 @@ DofFilter::DofFilter(const Model& model)
     }
     const int first = dofs_.begin(c.node);
     for (int k = 0; k < c.translations; ++k) fixed_[at(first + k)] = true;
+    if (dofs_.kind(c.node) == FrameKind::vertex) continue;
     if (dofs_.kind(c.node) == FrameKind::rigid) {
       for (int k = 0; k < c.rotations; ++k) fixed_[at(first + 3 + k)] = true;
       continue;
@@ -33,6 +36,8 @@ DofFilter::DofFilter(const Model& model)
       for (int i = 0; i < 3; ++i)
         if (c.whole || (i != q && 3 - i - q < c.rotations)) fixed_[at(first + 3 + 3 * q + i)] = true;
   }
+  for (std::size_t i = 0; i < fixed_.size(); ++i)
+    if (fixed_[i]) fixed_list_.push_back(i);
   free_count_ = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), false));
 }
 
@@ -40,6 +45,7 @@ void DofFilter::apply(const Turn& turn, bool back, double* v) const {
   const Mat3d T = back ? transpose(turn.translation) : turn.translation;
   const Mat3d R = back ? transpose(turn.rotation) : turn.rotation;
   multiply(T, v);
+  if (dofs_.kind(turn.node) == FrameKind::vertex) return;
   if (dofs_.kind(turn.node) == FrameKind::rigid) return multiply(R, v + 3);
   Mat3d A;
   for (int q = 0; q < 3; ++q)
@@ -58,8 +64,7 @@ void DofFilter::to_global(std::span<double> v) const {
 }
 
 void DofFilter::clear_fixed(std::span<double> local) const {
-  for (std::size_t i = 0; i < fixed_.size(); ++i)
-    if (fixed_[i]) local[i] = 0;
+  for (const std::size_t i : fixed_list_) local[i] = 0;
 }
 
 void DofFilter::keep_fixed(std::span<double> local) const {

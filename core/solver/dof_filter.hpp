@@ -13,7 +13,9 @@ class DofFilter {
  public:
   explicit DofFilter(const Model& model);
 
+  bool turns() const { return !turns_.empty(); }  ///< constraint axes are not those of the world
   bool is_fixed(std::size_t dof) const { return fixed_[dof]; }
+  bool holds(int node) const { return held_[static_cast<std::size_t>(node)] != 0; }  ///< any of its degrees
   int free_count() const { return free_count_; }
   std::size_t size() const { return fixed_.size(); }
 
@@ -36,6 +38,8 @@ class DofFilter {
   std::vector<Turn> turns_;
   std::vector<int> turn_of_node_;  ///< −1: none
   std::vector<bool> fixed_;
+  std::vector<std::size_t> fixed_list_;
+  std::vector<char> held_;  ///< (nodes)
   int free_count_ = 0;
 };
 

@@ -111,40 +111,55 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
 
 namespace {
 
-/// Advances by dt, in halves where Newton fails or a boundary turns too far at once.
-NewtonReport advance(MechanicalSystem& system, State& state, const FactorFunction& factors,
-                     const SolverSettings& settings, double end, double dt, int depth, RunReport& run) {
-  system.begin_step(state, dt);
-  system.set_factors(factors(end));
-  NewtonReport report;
-  if (depth == 0 || system.prescribed_rotation() <= kRotationPerStep) {
-    system.start_from_prediction();
-    Newton newton(system, settings);
-    report = newton.solve();
-    count(run, report);
-    if (acceptable(report, settings)) {
-      state = system.finish_step(end);
-      return report;
+/// A dynamic run, and what its scheme keeps.
+struct Stepper {
+  MechanicalSystem& system;
+  const FactorFunction& factors;
+  const SolverSettings& settings;
+  TimeScheme scheme;
+  RunReport& run;
+  StepMemory memory;
+
+  /// Advances by dt, in halves where Newton fails or a boundary turns too far at once.
+  NewtonReport advance(State& state, double end, double dt, int depth) {
+    const TimeScheme taken = scheme_of_step(scheme, dt, memory);
+    const double solved_at = taken == TimeScheme::midpoint ? end - 0.5 * dt : end;
+    if (taken == TimeScheme::newmark && memory.acceleration.empty()) {
+      system.set_factors(factors(end - dt));
+      system.start_acceleration(state, dt, memory);
     }
-    if (depth == 0) return report;
+    system.begin_step(state, dt, taken, memory);
+    system.set_factors(factors(solved_at));
+    NewtonReport report;
+    if (depth == 0 || system.prescribed_rotation() <= kRotationPerStep) {
+      system.start_from_prediction();
+      Newton newton(system, settings);
+      report = newton.solve();
+      count(run, report);
+      if (acceptable(report, settings)) {
+        if (solved_at < end) system.set_factors(factors(end));
+        state = system.finish_step(end, memory);
+        return report;
+      }
+      if (depth == 0) return report;
+    }
+    report = advance(state, end - 0.5 * dt, 0.5 * dt, depth - 1);
+    if (!acceptable(report, settings)) return report;
+    return advance(state, end, 0.5 * dt, depth - 1);
   }
-  const double middle = end - 0.5 * dt;
-  report = advance(system, state, factors, settings, middle, 0.5 * dt, depth - 1, run);
-  if (!acceptable(report, settings)) return report;
-  return advance(system, state, factors, settings, end, 0.5 * dt, depth - 1, run);
-}
+};
 
 }  // namespace
 
-RunReport run_implicit_euler(MechanicalSystem& system, State& state, const FactorFunction& factors,
-                             const SolverSettings& settings, const DynamicsSettings& dynamics,
-                             const StepObserver& observe) {
+RunReport run_implicit(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                       const SolverSettings& settings, const DynamicsSettings& dynamics, const StepObserver& observe) {
   RunReport run;
+  Stepper stepper{system, factors, settings, dynamics.scheme, run, {}};
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
     const double end = step * dynamics.time_step;
     const State before = state;
-    const NewtonReport report = advance(system, state, factors, settings, end, dynamics.time_step, 8, run);
+    const NewtonReport report = stepper.advance(state, end, dynamics.time_step, 8);
     if (!acceptable(report, settings)) {
       state = before;
       std::ostringstream message;
@@ -156,6 +171,10 @@ RunReport run_implicit_euler(MechanicalSystem& system, State& state, const Facto
       return run;
     }
     accept(run, report, end);
+    if (observe && system.solves_for_middle()) {
+      system.begin_step(state, 0);
+      system.evaluate();
+    }
     const double progress = static_cast<double>(step) / dynamics.steps;
     if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {
       if (step < dynamics.steps) run.status = RunStatus::interrupted;

@@ -44,13 +44,16 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
                       const SolverSettings& settings, const StaticsSettings& statics, const StepObserver& observe);
 
 struct DynamicsSettings {
+  TimeScheme scheme = TimeScheme::implicit_euler;
   double time_step = 0;  ///< [s]
   int steps = 0;
 };
 
-/// Implicit Euler. A time step that does not converge is taken in halves, down to 1/256.
-RunReport run_implicit_euler(MechanicalSystem& system, State& state, const FactorFunction& factors,
-                             const SolverSettings& settings, const DynamicsSettings& dynamics,
-                             const StepObserver& observe);
+/// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256.
+///
+/// The observer sees the state at the end of each step. The system's gradient belongs to the step's equations there,
+/// with inertia; after a midpoint step it is evaluated anew at the end, without inertia and viscous stress.
+RunReport run_implicit(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                       const SolverSettings& settings, const DynamicsSettings& dynamics, const StepObserver& observe);
 
 }  // namespace fascia

@@ -3,10 +3,13 @@
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
+#include "core/solver/boundary_motion.hpp"
+#include "core/solver/node_force.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fascia {
 
@@ -46,47 +49,19 @@ std::vector<double> zero_factors(const Model& model) {
   return std::vector<double>(at(schedules), 0.0);
 }
 
-void MechanicalSystem::begin_step(const State& start, double dt) {
-  start_ = start;
-  dt_ = dt;
-  increment_.du.assign(start.u.size(), Vec3d{});
-  increment_.Ds.assign(start.u.size(), Mat3d{});
-  increment_.turned = start.turned;
-  increment_.turned.resize(model_.constraints.size());  // a state made before the constraints has none
-  if (model_.points.damped && dt > 0) {
-    history_.inverse_step = 1 / dt;
-    executor_.store_strain(start, history_);
-  }
-  rebuild_state();
-}
-
-/// Adds a force, what is conjugate to A, and a torque.
 void MechanicalSystem::add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N,
                            const Vec3d& torque) const {
-  const Mat3d A = Mat3d::identity() + state_.D[at(node)];
-  double* g = out.data() + model_.points.dofs.begin(node);
-  for (int k = 0; k < 3; ++k) g[k] += force[k];
-  add_moment(model_.kind(node), squared_norm(torque) > 0 ? N + moment_of_torque(torque, A) : N, A, g + 3);
+  add_node_force(model_.kind(node), state_.D[at(node)], force, N, torque, out.data() + model_.points.dofs.begin(node));
 }
 
 void MechanicalSystem::set_factors(std::span<const double> factors) {
+  known_.reset();
   factors_.assign(factors.begin(), factors.end());
-  const std::span<double> targets = executor_.targets();
-  for (const Tether& t : model_.tethers) {
-    Vec3d target;
-    if (t.motion >= 0) target = displacement(t.motion, t.X + t.arm);
-    if (t.motion >= 0 && squared_norm(t.arm) > 0) target -= displacement(t.motion, t.X);
-    const auto first = at(model_.points.rule[at(t.group)].axes) * 3 * kGroupSize + at(t.lane);
-    for (int k = 0; k < 3; ++k) targets[first + at(k) * kGroupSize] = target[k];
-  }
-}
-
-Vec3d MechanicalSystem::displacement(int motion, const Vec3d& X) const {
-  const PrescribedMotion& m = model_.motions[at(motion)];
-  return m.displacement(X, factors_[at(m.schedule)]);
+  place_tethers(model_, factors_, executor_.targets());
 }
 
 void MechanicalSystem::rebuild_state() {
+  known_.reset();
   state_.u.resize(start_.u.size());
   state_.D.resize(start_.u.size());
   for (std::size_t i = 0; i < start_.u.size(); ++i) {
@@ -102,34 +77,21 @@ void MechanicalSystem::start_from_prediction() {
   for (const FrameConstraint& c : model_.constraints) held[at(c.node)] = 1;
   for (std::size_t i = 0; i < start_.u.size(); ++i) {
     if (held[i] != 0) continue;
-    const Mat3d Q = Mat3d::identity() + start_.D[i];
-    const Vec3d spin = axl(transpose(times_transpose(start_.Q_dot[i], Q))) * 0.5;
-    increment_.du[i] = start_.v[i] * dt_;
-    increment_.Ds[i] = rigid(i) ? rotation_increment(spin * dt_) : start_.Q_dot[i] * dt_;
+    const Vec3d spin = spin_of(start_.Q_dot[i], Mat3d::identity() + start_.D[i]);
+    increment_.du[i] = start_.v[i] * form_.reach;
+    increment_.Ds[i] = rigid(i) ? rotation_increment(spin * form_.reach) : start_.Q_dot[i] * form_.reach;
   }
   rebuild_state();
-  const double predicted = evaluate().energy;
-  if (!(predicted < at_old_state)) restore();
+  const Evaluation predicted = evaluate();
+  if (predicted.energy < at_old_state)
+    known_ = predicted;  // Newton asks for it next
+  else
+    restore();
 }
 
-State MechanicalSystem::finish_step(double end_time) {
-  reached_factors_ = factors_;
-  State end = state_;
-  end.turned = increment_.turned;
-  end.time = end_time;
-  end.v.assign(end.u.size(), Vec3d{});
-  end.Q_dot.assign(end.u.size(), Mat3d{});
-  for (std::size_t i = 0; i < end.u.size(); ++i) {
-    if (rigid(i)) end.D[i] = orthonormalized_increment(end.D[i]);
-    if (dt_ <= 0) continue;
-    end.v[i] = increment_.du[i] * (1 / dt_);
-    end.Q_dot[i] = motion_of(i) * (1 / dt_);
-  }
-  return end;
-}
-
-Mat3d MechanicalSystem::motion_of(std::size_t i) const {
-  return rigid(i) ? increment_.Ds[i] + increment_.Ds[i] * start_.D[i] : increment_.Ds[i];
+PoseMotion MechanicalSystem::motion_of(std::size_t i) const {
+  const Mat3d& Ds = increment_.Ds[i];
+  return {increment_.du[i], rigid(i) ? Ds + Ds * start_.D[i] : Ds};
 }
 
 void MechanicalSystem::add_loads() {
@@ -150,33 +112,36 @@ void MechanicalSystem::add_loads() {
                    });
 }
 
-/// 1/(2 dt²) |motion − dt velocity|² + α/(2 dt) |motion|², in the pose form of inertia.hpp.
+/// |x − q − h w|² / (2 h²) + α |x − q|² / (2 h), in the pose form of inertia.hpp.
 void MechanicalSystem::add_inertia() {
   std::fill(inertia_.begin(), inertia_.end(), 0.0);
   inertia_energy_ = 0;
   inertia_rounding_.assign(at(model_.points.part_count()), 0.0);
-  if (dt_ <= 0) return;
-  const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
+  if (form_.h <= 0) return;
+  const double scale = 1 / (form_.h * form_.h), damping_scale = 1 / form_.h;
   for (int i = 0; i < model_.node_count(); ++i) {
-    const Mat3d motion = motion_of(at(i));
-    const Vec3d a = increment_.du[at(i)] - start_.v[at(i)] * dt_;
-    const Mat3d A = motion - start_.Q_dot[at(i)] * dt_;
-    InertiaForce f = inertia_force(model_.inertia[at(i)], a, A);
-    inertia_energy_ += 0.5 * scale * inertia_product(model_.inertia[at(i)], a, A);
+    if (model_.kind(i) == FrameKind::vertex) {
+      add_vertex_inertia(i);
+      continue;
+    }
+    const PoseMotion x = motion_of(at(i)), rest = form_.deviation(x, at(i));
+    InertiaForce f = inertia_force(model_.inertia[at(i)], rest.u, rest.Q);
+    inertia_energy_ += 0.5 * scale * inertia_product(model_.inertia[at(i)], rest.u, rest.Q);
     Vec3d force = f.force * scale;
     Mat3d moment = f.moment * scale;
     if (!model_.mass_damping.empty()) {
       const FrameInertia& damping = model_.mass_damping[at(i)];
-      f = inertia_force(damping, increment_.du[at(i)], motion);
-      inertia_energy_ += 0.5 * damping_scale * inertia_product(damping, increment_.du[at(i)], motion);
+      const PoseMotion path = x - form_.q[at(i)];
+      f = inertia_force(damping, path.u, path.Q);
+      inertia_energy_ += 0.5 * damping_scale * inertia_product(damping, path.u, path.Q);
       force += f.force * damping_scale;
       moment += f.moment * damping_scale;
     }
     add(inertia_, i, force, moment, {});
     const auto part = at(model_.points.node_part[at(i)]);
     // The motion and what the old velocity predicts of it cancel.
-    const double cancelled = norm(increment_.du[at(i)]) + dt_ * norm(start_.v[at(i)]) +
-                             model_.points.part_length[part] * (norm(motion) + dt_ * norm(start_.Q_dot[at(i)]));
+    const double cancelled = norm(x.u) + form_.reach * norm(start_.v[at(i)]) +
+                             model_.points.part_length[part] * (norm(x.Q) + form_.reach * norm(start_.Q_dot[at(i)]));
     const double rounding = scale * model_.inertia[at(i)].mass * cancelled;
     inertia_rounding_[part] += rounding * rounding;
   }
@@ -194,15 +159,16 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
               lin.node_blocks.data() + dofs.block_begin(n.node),
               rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) * -factors_[at(load.schedule)]);
   }
-  if (dt_ <= 0) return;
-  const double scale = 1 / (dt_ * dt_), damping_scale = 1 / dt_;
+  if (form_.h <= 0) return;
+  const double scale = 1 / (form_.h * form_.h), damping_scale = 1 / form_.h;
   for (int i = 0; i < model_.node_count(); ++i) {
     const Mat3d& Q = lin.Q[at(i)];
     FrameInertia total = model_.inertia[at(i)];
     InertiaForce f;
-    const Mat3d motion = motion_of(at(i));
+    const PoseMotion x = motion_of(at(i));
     if (full) {
-      f = inertia_force(total, increment_.du[at(i)] - start_.v[at(i)] * dt_, motion - start_.Q_dot[at(i)] * dt_);
+      const PoseMotion rest = form_.deviation(x, at(i));
+      f = inertia_force(total, rest.u, rest.Q);
       f.moment *= scale;
     }
     total.mass *= scale;
@@ -210,7 +176,8 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
     total.second *= scale;
     if (!model_.mass_damping.empty()) {
       FrameInertia damping = model_.mass_damping[at(i)];
-      if (full) f.moment += inertia_force(damping, increment_.du[at(i)], motion).moment * damping_scale;
+      const PoseMotion path = x - form_.q[at(i)];
+      if (full) f.moment += inertia_force(damping, path.u, path.Q).moment * damping_scale;
       damping.mass *= damping_scale;
       damping.first *= damping_scale;
       damping.second *= damping_scale;
@@ -222,25 +189,53 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
   }
 }
 
+/// The same of a node that is a point mass.
+void MechanicalSystem::add_vertex_inertia(int node) {
+  const auto i = at(node);
+  const double mass = model_.inertia[i].mass, scale = mass / (form_.h * form_.h);
+  const Vec3d &x = increment_.du[i], path = x - form_.q[i].u, rest = path - form_.w[i].u * form_.h;
+  Vec3d force = rest * scale;
+  inertia_energy_ += 0.5 * scale * squared_norm(rest);
+  if (!model_.mass_damping.empty()) {
+    const double damping = model_.mass_damping[i].mass / form_.h;
+    inertia_energy_ += 0.5 * damping * squared_norm(path);
+    force += path * damping;
+  }
+  double* out = inertia_.data() + model_.points.dofs.begin(node);
+  for (int k = 0; k < 3; ++k) out[k] += force[k];
+  const double rounding = scale * (norm(x) + form_.reach * norm(start_.v[i]));
+  inertia_rounding_[at(model_.points.node_part[i])] += rounding * rounding;
+}
+
 /// Squares of |v| by connected part, torques divided by the part's length, over the free or the prescribed degrees.
 void MechanicalSystem::add_squares(std::span<const double> global, std::vector<double>& free,
                                    std::vector<double>& fixed) {
-  std::copy(global.begin(), global.end(), work_.begin());
-  filter_.to_local(work_);
+  std::span<const double> local = global;
+  if (filter_.turns()) {
+    std::copy(global.begin(), global.end(), work_.begin());
+    filter_.to_local(work_);
+    local = work_;
+  }
   free.assign(at(model_.points.part_count()), 0.0);
   fixed.assign(free.size(), 0.0);
   const DofLayout& dofs = model_.points.dofs;
   for (int node = 0; node < model_.node_count(); ++node) {
     const auto part = at(model_.points.node_part[at(node)]);
+    if (!filter_.holds(node) && dofs.kind(node) == FrameKind::vertex) {
+      const double* v = local.data() + dofs.begin(node);
+      free[part] += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+      continue;
+    }
     for (int k = 0; k < dofs.size(node); ++k) {
       const std::size_t i = at(dofs.begin(node) + k);
-      const double value = k < 3 ? work_[i] : work_[i] / model_.points.part_length[part];
+      const double value = k < 3 ? local[i] : local[i] / model_.points.part_length[part];
       (filter_.is_fixed(i) ? fixed : free)[part] += value * value;
     }
   }
 }
 
 Evaluation MechanicalSystem::evaluate() {
+  if (known_) return *std::exchange(known_, std::nullopt);
   internal_ = executor_.gradient(state_, history_, gradient_);
   add_loads();
   add_inertia();
@@ -313,7 +308,7 @@ void MechanicalSystem::apply(double step) {
     if (rigid(at(i)))
       Ds = compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}} * step), Ds);
     else
-      Ds += frame_variation(FrameKind::affine, d + 3, {}) * step;
+      Ds += frame_variation(model_.kind(i), d + 3, {}) * step;
   }
   for (std::size_t k = 0; k < model_.constraints.size(); ++k) {
     const FrameConstraint& c = model_.constraints[k];

@@ -4,14 +4,16 @@
 #include "core/model/model.hpp"
 #include "core/solver/newton.hpp"
 #include "core/solver/tangent_solver.hpp"
+#include "core/solver/time_scheme.hpp"
 
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace fascia {
 
-/// The equilibrium of a model at the end of a load or time step, as Newton's method sees it: internal energy, loads,
-/// and in dynamics the inertia of an implicit Euler step as a potential (incremental potential).
+/// The equilibrium of a model in a load or time step, as Newton's method sees it: internal energy, loads, and in
+/// dynamics the inertia of the step as a potential (incremental potential), in the form of time_scheme.hpp.
 ///
 /// The unknown of a step is the motion since its start: u = u₀ + du, Q = (I + Ds) Q₀, A = A₀ + Ds. Velocities come from
 /// du and Ds, never from a difference of positions, so that small steps keep their digits.
@@ -19,14 +21,25 @@ class MechanicalSystem {
  public:
   MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings);
 
-  /// Starts a step from `start`. @param dt  0: statics
-  void begin_step(const State& start, double dt);
-  /// Loads and boundary motions at the end of the step: one factor for each schedule.
+  /// Starts a step of implicit Euler from `start`. @param dt  0: statics
+  void begin_step(const State& start, double dt) { begin_step(start, dt, TimeScheme::implicit_euler, {}); }
+  /// Starts a step of a scheme. @param memory  of the step before, as far as the scheme needs it
+  void begin_step(const State& start, double dt, TimeScheme scheme, const StepMemory& memory);
+  /// Loads and boundary motions where the step's equations hold (midpoint: in its middle, else at its end): one factor
+  /// for each schedule.
   void set_factors(std::span<const double> factors);
   /// Starts Newton where the old velocities lead, if the step's potential is lower there than at the old state.
   void start_from_prediction();
-  /// The state reached, with the velocities of the step.
-  State finish_step(double end_time);
+  /// The state at the end of the step, with its velocities. Of a midpoint step the factors must be set to those of the
+  /// end before; what is prescribed then is on its target.
+  State finish_step(double end_time) {
+    StepMemory unused;
+    return finish_step(end_time, unused);
+  }
+  State finish_step(double end_time, StepMemory& memory);
+  /// Accelerations from the equation of motion at a state (Newmark's start), zero where a node has no inertia and in
+  /// what is prescribed. The factors must be set to those of its time. @param dt  of the step to come
+  void start_acceleration(const State& start, double dt, StepMemory& memory);
 
   // What Newton asks for.
   Evaluation evaluate();
@@ -40,12 +53,16 @@ class MechanicalSystem {
   /// Largest rotation [rad] by which a boundary motion would turn a frame from its present place.
   double prescribed_rotation() const;
 
+  /// The step's equations hold in its middle: after finish_step() the gradient is not that of the end.
+  bool solves_for_middle() const { return form_.scheme == TimeScheme::midpoint; }
+
   const State& state() const { return state_; }
   /// Gradient of the internal energy, loads and inertia: what supports add to hold the model (by degrees of freedom).
   std::span<const double> gradient() const { return gradient_; }
   InternalEnergy internal_energy() const { return internal_; }
   double load_energy() const { return load_energy_; }  ///< potential of the conservative dead loads [J]
   const CpuExecutor& executor() const { return executor_; }
+  CpuExecutor& executor() { return executor_; }
   const Model& model() const { return model_; }
   const DofFilter& filter() const { return filter_; }
   TangentSolver& tangent() { return tangent_; }
@@ -60,15 +77,18 @@ class MechanicalSystem {
   void rebuild_state();
   void add_loads();
   void add_inertia();
+  void add_vertex_inertia(int node);
   void add_squares(std::span<const double> global, std::vector<double>& free, std::vector<double>& fixed);
   void add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N, const Vec3d& torque) const;
+  void predict_node(std::size_t node, const StepMemory& memory);
+  void predict_strain(const StepMemory& memory);
+  State moved_by_velocity(double time) const;
+  void finish_middle(State& end, std::vector<PoseMotion>& motion) const;
+  void finish_middle_of_frame(std::size_t node, const FrameConstraint* held, State& end, PoseMotion& motion) const;
   bool rigid(std::size_t node) const { return model_.frame_kind[node] == FrameKind::rigid; }
-  Mat3d motion_of(std::size_t node) const;  ///< of Q or A since the start of the step
-  Vec3d displacement(int motion, const Vec3d& X) const;
+  PoseMotion motion_of(std::size_t node) const;  ///< since the start of the step
   double rotation_in(int node, const double* vector) const;
   double largest_angle() const;
-  void prescribe_affine(const FrameConstraint& constraint, double* local) const;
-  void prescribed_increments(std::span<double> local) const;
   void add_node_blocks(Linearization& lin) const;
 
   const Model& model_;
@@ -79,8 +99,9 @@ class MechanicalSystem {
   bool conservative_;
 
   State start_, state_;
-  double dt_ = 0;
+  StepForm form_;
   StrainHistory history_;
+  AlignedVector<double> start_strain_;  ///< E at the start of the step
   std::vector<double> factors_;
   std::vector<double> reached_factors_;  ///< at the end of the last step
   Increment increment_, saved_;
@@ -91,6 +112,7 @@ class MechanicalSystem {
   struct PartSquares {
     std::vector<double> load, held_load, inertia, residual, reaction, unused;
   } part_squares_;
+  std::optional<Evaluation> known_;  ///< of the present state, where evaluate() would repeat itself
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0;
   Linearization lin_;

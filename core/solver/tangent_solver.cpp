@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace fascia {
 
@@ -15,6 +16,21 @@ namespace {
 constexpr int kDirectDofs = 15000;
 /// Beyond: only where its work stays below that of the CG iterations that a bulky body of this size needs.
 constexpr double kFlopsPerNonzero = 2000;
+
+constexpr int kNodeChunk = 512;
+
+/// y = B x; returns x · y.
+template <int N>
+double apply_block(const double* B, const double* x, double* y) {
+  double dot = 0;
+  for (int i = 0; i < N; ++i) {
+    double sum = 0;
+    for (int j = 0; j < N; ++j) sum += B[N * i + j] * x[j];
+    y[i] = sum;
+    dot += x[i] * sum;
+  }
+  return dot;
+}
 
 }  // namespace
 
@@ -39,12 +55,14 @@ bool TangentSolver::direct() {
   else if (filter_.free_count() <= kDirectDofs)
     direct_ = true;
   else
-    direct_ = factor().factor_flops() < kFlopsPerNonzero * static_cast<double>(matrix().value_count());
+    direct_ = factor().factor_flops() <
+              kFlopsPerNonzero * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
   if (!*direct_ && settings_.preconditioner != Preconditioner::cholesky) cholesky_.reset();
   return *direct_;
 }
 
 void TangentSolver::apply_matrix(std::span<const double> local, std::span<double> out) {
+  if (!filter_.turns()) return matrix().multiply(executor_.pool(), local, out);
   std::copy(local.begin(), local.end(), work_.begin());
   filter_.to_global(work_);
   matrix().multiply(executor_.pool(), work_, out);
@@ -131,30 +149,49 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
   CgReport cg;
   if (kind == Preconditioner::none) {
     cg = conjugate_gradients(
-        vectors_, apply, [](const auto& r, auto& z) { z = r; }, rhs, result, settings_.cg);
+        vectors_, apply,
+        [&](const auto& r, auto& z) {
+          z = r;
+          return vectors_.dot(r, z);
+        },
+        rhs, result, settings_.cg);
   } else if (kind == Preconditioner::cholesky) {
     if (!factor_is_preconditioner_) factor_is_preconditioner_ = factor().factorize(matrix());
     if (!factor_is_preconditioner_)
       return {false, 0, "the tangent is not positive definite: no Cholesky preconditioner"};
     cg = conjugate_gradients(
-        vectors_, apply, [&](const auto& r, auto& z) { factor().solve(r, z); }, rhs, result, settings_.cg);
+        vectors_, apply,
+        [&](const auto& r, auto& z) {
+          factor().solve(r, z);
+          return vectors_.dot(r, z);
+        },
+        rhs, result, settings_.cg);
     if (cg.iterations > 30) factor_is_preconditioner_ = false;  // out of date: renewed next time
   } else {
     build_block_jacobi();
     const DofLayout& dofs = model_.points.dofs;
     const auto precondition = [&](const std::vector<double>& r, std::vector<double>& z) {
-      executor_.pool().for_ranges(model_.node_count(), 512, [&](int begin, int end) {
+      executor_.pool().for_ranges(model_.node_count(), kNodeChunk, [&](int begin, int end) {
+        double sum = 0;
         for (int node = begin; node < end; ++node) {
-          const int n = dofs.size(node), first = dofs.begin(node);
           const double* inverse = inverse_blocks_.data() + dofs.block_begin(node);
-          for (int i = 0; i < n; ++i) {
-            double sum = 0;
-            for (int j = 0; j < n; ++j) sum += inverse[n * i + j] * r[at(first + j)];
-            z[at(first + i)] = sum;
+          const std::size_t first = at(dofs.begin(node));
+          switch (dofs.size(node)) {
+            case 3:
+              sum += apply_block<3>(inverse, r.data() + first, z.data() + first);
+              break;
+            case 6:
+              sum += apply_block<6>(inverse, r.data() + first, z.data() + first);
+              break;
+            default:
+              sum += apply_block<12>(inverse, r.data() + first, z.data() + first);
           }
         }
+        chunk_sums_[at(begin / kNodeChunk)] = sum;
       });
+      return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
     };
+    chunk_sums_.resize(at((model_.node_count() + kNodeChunk - 1) / kNodeChunk));
     cg = conjugate_gradients(vectors_, apply, precondition, rhs, result, settings_.cg);
   }
   std::copy(result.begin(), result.end(), x.begin());

@@ -54,7 +54,7 @@ class TangentSolver {
   std::optional<bool> direct_;
   bool factor_is_preconditioner_ = false;
   double shift_ = 0;  ///< of the last factorisation that needed one
-  std::vector<double> inverse_blocks_, work_, rhs_, solution_;
+  std::vector<double> inverse_blocks_, work_, rhs_, solution_, chunk_sums_;
 };
 
 }  // namespace fascia

@@ -12,7 +12,10 @@ constexpr int kChunk = 4096;
 double CpuVectors::dot(std::span<const double> a, std::span<const double> b) const {
   const int n = static_cast<int>(a.size());
   const int chunks = (n + kChunk - 1) / kChunk;
-  std::vector<double> partial(static_cast<std::size_t>(chunks));
+  std::array<double, 64> few;  // no allocation for short vectors
+  std::vector<double> many(chunks > 64 ? static_cast<std::size_t>(chunks) : 0);
+  const std::span<double> partial =
+      chunks > 64 ? std::span(many) : std::span(few).first(static_cast<std::size_t>(chunks));
   pool_->for_ranges(n, kChunk, [&](int begin, int end) {
     std::array<double, 8> lanes{};
     std::size_t i = static_cast<std::size_t>(begin);
@@ -28,9 +31,13 @@ double CpuVectors::dot(std::span<const double> a, std::span<const double> b) con
   return sum;
 }
 
-void CpuVectors::axpy(double s, std::span<const double> x, std::span<double> y) const {
+void CpuVectors::advance(double s, std::span<const double> p, std::span<const double> q, std::span<double> x,
+                         std::span<double> r) const {
   pool_->for_ranges(static_cast<int>(x.size()), kChunk, [&](int begin, int end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) y[i] += s * x[i];
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      x[i] += s * p[i];
+      r[i] -= s * q[i];
+    }
   });
 }
 

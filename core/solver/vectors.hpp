@@ -16,8 +16,9 @@ class CpuVectors {
 
   Vector zeros(std::size_t n) const { return Vector(n, 0.0); }
   double dot(std::span<const double> a, std::span<const double> b) const;
-  /// y += s x
-  void axpy(double s, std::span<const double> x, std::span<double> y) const;
+  /// x += s p, r −= s q
+  void advance(double s, std::span<const double> p, std::span<const double> q, std::span<double> x,
+               std::span<double> r) const;
   /// y = x + s y
   void xpay(std::span<const double> x, double s, std::span<double> y) const;
 

@@ -15,11 +15,17 @@
 namespace fascia::io {
 namespace {
 
-void color(vtkMapper& mapper, vtkLookupTable* colors) {
-  mapper.SetScalarVisibility(colors != nullptr);
-  if (!colors) return;
+void color(vtkMapper& mapper, vtkLookupTable* colors, ShownOn shown_on) {
+  const bool visible = colors && shown_on != ShownOn::nothing;
+  mapper.SetScalarVisibility(visible);
+  if (!visible) return;
   mapper.SetLookupTable(colors);
   mapper.UseLookupTableScalarRangeOn();
+  if (shown_on == ShownOn::cells) {
+    mapper.SetScalarModeToUseCellData();
+    return;
+  }
+  mapper.SetScalarModeToUsePointData();
   mapper.InterpolateScalarsBeforeMappingOn();
 }
 
@@ -61,24 +67,24 @@ void add_surface(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable*
   normals->SetFeatureAngle(crease);
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(normals->GetOutputPort());
-  color(*mapper, colors);
+  color(*mapper, colors, body.shown_on);
   mapper->SetResolveCoincidentTopologyToPolygonOffset();
   mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 2);  // behind the lines of its edges
   add_actor(renderer, mapper);
 }
 
 void add_edges(vtkRenderer& renderer, const PictureBody& body) {
-  if (!has_points(body.surface)) return;
+  if (!has_points(body.edges)) return;
   vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(body.surface);
+  mapper->SetInputData(body.edges);
   mapper->ScalarVisibilityOff();
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   actor->GetProperty()->SetRepresentationToWireframe();
   actor->GetProperty()->LightingOff();
   actor->GetProperty()->SetColor(0.05, 0.05, 0.08);
-  const double triangles = static_cast<double>(body.surface->GetNumberOfPolys());
-  actor->GetProperty()->SetOpacity(std::clamp(0.32 - 0.05 * std::log10(1 + triangles), 0.08, 0.25));
+  const double faces = static_cast<double>(body.edges->GetNumberOfPolys());
+  actor->GetProperty()->SetOpacity(std::clamp(0.32 - 0.05 * std::log10(1 + faces), 0.08, 0.25));
   actor->GetProperty()->SetLineWidth(1);
   renderer.AddActor(actor);
 }
@@ -86,17 +92,18 @@ void add_edges(vtkRenderer& renderer, const PictureBody& body) {
 void add_lines(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable* colors, double radius) {
   if (!has_points(body.lines)) return;
   constexpr int sides = 10;
+  const ShownOn shown_on = body.shown_on == ShownOn::points ? ShownOn::points : ShownOn::nothing;
   vtkNew<vtkTubeFilter> tubes;
   tubes->SetInputData(body.lines);
   tubes->SetRadius(radius);
   tubes->SetNumberOfSides(sides);
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(tubes->GetOutputPort());
-  color(*mapper, colors);
+  color(*mapper, colors, shown_on);
   add_actor(renderer, mapper);
   vtkNew<vtkGlyph3DMapper> joints;  // round ends and bends
   place_balls(*joints, body.lines, radius, sides, 6);
-  color(*joints, colors);
+  color(*joints, colors, shown_on);
   joints->InterpolateScalarsBeforeMappingOff();  // each ball has one colour
   add_actor(renderer, joints);
 }

@@ -9,11 +9,11 @@ namespace fascia::io {
 
 bool has_points(vtkPolyData* part);
 
-/// The triangles, smooth but for creases, seen and lit from both sides. An empty part adds nothing; here and below.
+/// The faces, smooth but for creases, seen and lit from both sides. An empty part adds nothing; here and below.
 /// @param colors  of the values shown; tissue where null
 void add_surface(vtkRenderer& renderer, const PictureBody& body, vtkLookupTable* colors);
 
-/// Faint lines along the triangles' edges, lighter where they are many.
+/// Faint lines along the edges of the faces, lighter where they are many.
 void add_edges(vtkRenderer& renderer, const PictureBody& body);
 
 /// The lines as round tubes. @param radius  [m]

@@ -51,7 +51,7 @@ int run(int argc, char** argv) {
   app.add_option("--view", view, "direction from the bodies to the eye, x,y,z")->capture_default_str();
   app.add_option("--up", up, "direction that points up in the picture, x,y,z (default: y)");
   app.add_option("--size", pixels, "width and height in pixels")->capture_default_str();
-  app.add_option("--field", style.field, "point field that colours the surface (magnitude of vectors)");
+  app.add_option("--field", style.field, "point or cell field that colours the surface (magnitude of vectors)");
   app.add_option("--title", style.title, "text above the picture");
   app.add_flag("--frames", style.frames, "show the frames as balls in front of the surface");
   try {

@@ -8,6 +8,7 @@
 
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>
+#include <vtkCellData.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkPointData.h>
@@ -59,7 +60,10 @@ std::array<double, 2> range_of(const std::vector<PictureBody>& bodies) {
     for (const auto& part : {body.surface, body.lines}) {
       if (!has_points(part)) continue;
       double own[2];
-      part->GetPointData()->GetScalars()->GetRange(own);
+      vtkDataArray* values = part->GetPointData()->GetScalars();
+      if (!values) values = part->GetCellData()->GetScalars();
+      if (!values) continue;  // lines, where a cell field is shown
+      values->GetRange(own);
       range = {std::min(range[0], own[0]), std::max(range[1], own[1])};
     }
   if (range[0] > range[1]) return {0, 1};
@@ -168,7 +172,7 @@ void render_picture(const std::vector<PictureBody>& bodies, const PictureStyle& 
   const bool anything = std::any_of(bodies.begin(), bodies.end(), [&](const PictureBody& body) {
     return has_points(body.surface) || has_points(body.lines) || (style.frames && has_points(body.frames));
   });
-  if (!anything) throw InputError(png.string() + ": the results have neither triangles nor lines to show");
+  if (!anything) throw InputError(png.string() + ": the results have no volume cells, triangles or lines to show");
   VtkErrors errors;
   const vtkBoundingBox box = bounds_of(bodies);
   vtkNew<vtkRenderer> renderer;

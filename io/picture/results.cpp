@@ -2,13 +2,12 @@
 
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
+#include "io/picture/surface.hpp"
 #include "io/vtk_errors.hpp"
 
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
-#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkUnstructuredGrid.h>
@@ -33,73 +32,59 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file
   return reader->GetOutput();
 }
 
-vtkSmartPointer<vtkDoubleArray> shown_values(const std::filesystem::path& file, vtkUnstructuredGrid& grid,
-                                             const std::string& field) {
-  vtkDataArray* array = grid.GetPointData()->GetArray(field.c_str());
-  if (!array) {
-    std::string names;
-    for (int a = 0; a < grid.GetPointData()->GetNumberOfArrays(); ++a)
-      names += (a ? ", " : "") + std::string(grid.GetPointData()->GetArrayName(a));
-    throw InputError(file.string() + ": has no point field \"" + field + "\"; it has " +
-                     (names.empty() ? "none" : names));
-  }
+void add_names(std::string& names, vtkFieldData& data) {
+  for (int a = 0; a < data.GetNumberOfArrays(); ++a)
+    names += (names.empty() ? "" : ", ") + std::string(data.GetArrayName(a));
+}
+
+/// One value each: the array's own, or the magnitude of its components.
+vtkSmartPointer<vtkDoubleArray> magnitudes(vtkDataArray& array) {
   auto values = vtkSmartPointer<vtkDoubleArray>::New();
   values->SetName(shown_array);
-  const int components = array->GetNumberOfComponents();
-  for (vtkIdType p = 0; p < array->GetNumberOfTuples(); ++p) {
+  const int components = array.GetNumberOfComponents();
+  for (vtkIdType i = 0; i < array.GetNumberOfTuples(); ++i) {
     double sum = 0;
-    for (int c = 0; c < components; ++c) sum += array->GetComponent(p, c) * array->GetComponent(p, c);
-    values->InsertNextValue(components == 1 ? array->GetComponent(p, 0) : std::sqrt(sum));
+    for (int c = 0; c < components; ++c) sum += array.GetComponent(i, c) * array.GetComponent(i, c);
+    values->InsertNextValue(components == 1 ? array.GetComponent(i, 0) : std::sqrt(sum));
   }
   return values;
 }
 
-/// The points that the cells use, and the cells.
-vtkSmartPointer<vtkPolyData> extract(vtkUnstructuredGrid& grid, const std::vector<vtkIdType>& cells,
-                                     vtkDoubleArray* values) {
-  std::vector<vtkIdType> number(static_cast<std::size_t>(grid.GetNumberOfPoints()), -1);
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> vertices, lines, polygons;
-  vtkNew<vtkDoubleArray> shown;
-  vtkNew<vtkIdList> ids;
-  shown->SetName(shown_array);
-  for (const vtkIdType c : cells) {
-    grid.GetCellPoints(c, ids);
-    for (vtkIdType n = 0; n < ids->GetNumberOfIds(); ++n) {
-      const vtkIdType p = ids->GetId(n);
-      vtkIdType& target = number[static_cast<std::size_t>(p)];
-      if (target < 0) {
-        target = points->InsertNextPoint(grid.GetPoint(p));
-        if (values) shown->InsertNextValue(values->GetValue(p));
-      }
-      ids->SetId(n, target);
-    }
-    const vtkIdType size = ids->GetNumberOfIds();
-    (size == 1 ? vertices : size == 2 ? lines : polygons)->InsertNextCell(ids);
-  }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(points);
-  data->SetPolys(polygons);
-  data->SetLines(lines);
-  data->SetVerts(vertices);
-  if (values) data->GetPointData()->SetScalars(shown);
-  return data;
+ShownValues shown_values(const std::filesystem::path& file, vtkUnstructuredGrid& grid, const std::string& field) {
+  if (field.empty()) return {};
+  if (vtkDataArray* array = grid.GetPointData()->GetArray(field.c_str())) return {magnitudes(*array), nullptr};
+  if (vtkDataArray* array = grid.GetCellData()->GetArray(field.c_str())) return {nullptr, magnitudes(*array)};
+  std::string names;
+  add_names(names, *grid.GetPointData());
+  add_names(names, *grid.GetCellData());
+  throw InputError(file.string() + ": has no field \"" + field + "\"; it has " + (names.empty() ? "none" : names));
 }
 
 }  // namespace
 
 PictureBody read_picture_body(const std::filesystem::path& file, const std::string& field) {
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
-  const vtkSmartPointer<vtkDoubleArray> values = field.empty() ? nullptr : shown_values(file, *grid, field);
+  const ShownValues values = shown_values(file, *grid, field);
   vtkDataArray* part = grid->GetCellData()->GetArray("part");
-  std::vector<vtkIdType> triangles, lines, frames;
+  std::vector<vtkIdType> volumes, linear_volumes, triangles, lines, frames;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    if (grid->GetCellType(c) == VTK_TRIANGLE) triangles.push_back(c);
-    if (grid->GetCellType(c) == VTK_LINE) lines.push_back(c);
-    if (grid->GetCellType(c) == VTK_VERTEX && part && static_cast<int>(part->GetComponent(c, 0)) == frame_part)
-      frames.push_back(c);
+    const int type = grid->GetCellType(c);
+    const bool linear = type == VTK_TETRA || type == VTK_HEXAHEDRON;
+    if (linear) linear_volumes.push_back(c);
+    if (linear || type == VTK_QUADRATIC_TETRA || type == VTK_QUADRATIC_HEXAHEDRON) volumes.push_back(c);
+    if (type == VTK_TRIANGLE) triangles.push_back(c);
+    if (type == VTK_LINE) lines.push_back(c);
+    if (type == VTK_VERTEX && part && static_cast<int>(part->GetComponent(c, 0)) == frame_part) frames.push_back(c);
   }
-  return {extract(*grid, triangles, values), extract(*grid, lines, values), extract(*grid, frames, nullptr)};
+  const auto sheet = extract(*grid, triangles, values);
+  PictureBody body;
+  body.surface = joined(sheet, outer_faces(*grid, volumes, values));
+  body.edges = linear_volumes.size() == volumes.size() ? body.surface
+                                                       : joined(sheet, outer_faces(*grid, linear_volumes, values));
+  body.lines = extract(*grid, lines, {values.points, nullptr});
+  body.frames = extract(*grid, frames, {});
+  body.shown_on = values.points ? ShownOn::points : values.cells ? ShownOn::cells : ShownOn::nothing;
+  return body;
 }
 
 }  // namespace fascia::io

@@ -3,6 +3,7 @@
 #include "core/geometry/primitives.hpp"
 #include "core/math/rotation.hpp"
 #include "core/model/model.hpp"
+#include "core/physics/inertia.hpp"
 #include "core/physics/st_venant_kirchhoff.hpp"
 #include "core/solver/drivers.hpp"
 #include "meshless/cloud_build.hpp"
@@ -116,6 +117,61 @@ inline CloudSpec scattered_spec(const BlockOptions& o, double spacing, int seed,
   return spec;
 }
 
+/// A block of trilinear hexahedra: vertices in place of frames, eight points a cell, lumped mass.
+inline Model vertex_block(const BlockOptions& o = {}) {
+  Model model;
+  PointSetBuilder points;
+  const Lame lame = Lame::from_young(o.young, o.poisson);
+  const auto& n = o.grid;
+  Vec3d cell;
+  for (int k = 0; k < 3; ++k) cell[k] = o.size[k] / (n[at(k)] - 1);
+  const double volume = cell[0] * cell[1] * cell[2] / 8;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) model.rest_position.push_back({{x * cell[0], y * cell[1], z * cell[2]}});
+  model.rest_orientation.assign(model.rest_position.size(), Mat3d::identity());
+  model.frame_kind.assign(model.rest_position.size(), FrameKind::vertex);
+  model.inertia.resize(model.rest_position.size());
+  if (o.mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
+  for (int z = 0; z + 1 < n[2]; ++z)
+    for (int y = 0; y + 1 < n[1]; ++y)
+      for (int x = 0; x + 1 < n[0]; ++x) {
+        std::vector<int> nodes;
+        for (int c = 0; c < 8; ++c)
+          nodes.push_back(x + (c & 1) + n[0] * (y + (c >> 1 & 1) + n[1] * (z + (c >> 2 & 1))));
+        std::vector<PointSample> samples;
+        for (int q = 0; q < 8; ++q) {
+          PointSample p;
+          p.volume = volume;
+          p.lambda = lame.lambda;
+          p.mu = lame.mu;
+          p.stiffness_damping = o.stiffness_damping;
+          double s[3];
+          for (int k = 0; k < 3; ++k) s[k] = 0.5 + ((q >> k & 1) != 0 ? 0.5 : -0.5) / std::sqrt(3.0);
+          p.X = model.rest_position[at(nodes[0])] + Vec3d{{s[0] * cell[0], s[1] * cell[1], s[2] * cell[2]}};
+          for (int c = 0; c < 8; ++c) {
+            double w[3], slope[3];
+            for (int k = 0; k < 3; ++k) {
+              const bool far = (c >> k & 1) != 0;
+              w[k] = far ? s[k] : 1 - s[k];
+              slope[k] = (far ? 1 : -1) / cell[k];
+            }
+            Influence influence;
+            influence.w = w[0] * w[1] * w[2];
+            influence.g = {{slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]}};
+            p.influences.push_back(influence);
+            model.inertia[at(nodes[at(c)])].mass += o.density * volume * influence.w;
+            if (o.mass_damping > 0)
+              model.mass_damping[at(nodes[at(c)])].mass += o.mass_damping * o.density * volume * influence.w;
+          }
+          samples.push_back(p);
+        }
+        points.add_points(nodes, samples, cell[0]);
+      }
+  model.points = std::move(points).finish(model.frame_kind);
+  return model;
+}
+
 inline BuiltModel block(const BlockOptions& o = {}) { return build({block_spec(o)}); }
 
 inline Vec3d random_vector(std::mt19937& random, double size) {
@@ -141,7 +197,7 @@ inline State moved(const Model& model, const State& state, const std::vector<dou
     r.u[i] += Vec3d{{d[0], d[1], d[2]}} * s;
     if (model.kind(node) == FrameKind::rigid)
       r.D[i] = compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}} * s), r.D[i]);
-    else
+    else if (model.kind(node) == FrameKind::affine)
       r.D[i] += frame_variation(FrameKind::affine, d + 3, {}) * s;
   }
   return r;
@@ -171,6 +227,44 @@ inline State rigid_state(const Model& model, const Mat3d& D, const Vec3d& t) {
     state.D[i] = D;
   }
   return state;
+}
+
+/// At rest, moving as a rigid body: x' = v + spin × x.
+inline State spinning_state(const Model& model, const Vec3d& spin, const Vec3d& v) {
+  State state = State::at_rest(model);
+  for (std::size_t i = 0; i < state.u.size(); ++i) {
+    state.v[i] = v + cross(spin, model.rest_position[i]);
+    if (model.frame_kind[i] != FrameKind::vertex) state.Q_dot[i] = skew(spin);
+  }
+  return state;
+}
+
+/// Momentum of all nodes, about the origin.
+inline Momentum total_momentum(const Model& model, const State& state) {
+  Momentum sum;
+  for (std::size_t i = 0; i < state.u.size(); ++i) {
+    const Momentum m = momentum_of(model.inertia[i], model.rest_position[i] + state.u[i],
+                                   Mat3d::identity() + state.D[i], state.v[i], state.Q_dot[i], {});
+    sum.linear += m.linear;
+    sum.angular += m.angular;
+    sum.kinetic_energy += m.kinetic_energy;
+    sum.mass += m.mass;
+    sum.first_moment += m.first_moment;
+  }
+  return sum;
+}
+
+/// Holds the nodes of the plane x = 0: the first so many directions (x, y, z), and rotations about z and y.
+inline void hold_face(Model& model, int translations, int rotations) {
+  for (int i = 0; i < model.node_count(); ++i) {
+    if (std::abs(model.rest_position[at(i)][0]) > 1e-9) continue;
+    FrameConstraint c;
+    c.node = i;
+    c.translations = translations;
+    c.rotations = rotations;
+    c.rotation_axes = Mat3d::from_columns({{0, 0, 1}}, {{0, 1, 0}}, {{-1, 0, 0}});
+    model.constraints.push_back(c);
+  }
 }
 
 /// Holds all of the frames of a plane.

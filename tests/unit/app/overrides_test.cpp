@@ -58,9 +58,10 @@ TEST(Overrides, AreCheckedLikeTheFile) {
             "--set:1:19: world.gravity[1]: nan is not finite; must be an acceleration in m/s2");
   EXPECT_EQ(errors_of_override("solver.newton.tolerence=1"),
             "--set:1:15: solver.newton.tolerence: is no known key; did you mean \"tolerance\"?");
-  EXPECT_EQ(errors_of_override("bodies.beam.domain.sphere.radius=1"),
-            "--set:1:20: bodies.beam.domain.sphere: is no known key; known here: box, cylinder, ellipsoid, file, "
-            "rectangle, line");
+  EXPECT_EQ(
+      errors_of_override("bodies.beam.domain.sphere.radius=1"),
+      "--set:1:20: bodies.beam.domain.sphere: is no known key; known here: box, block, cylinder, ellipsoid, file, "
+      "rectangle, line");
 }
 
 TEST(Overrides, WrongPaths) {
@@ -76,11 +77,12 @@ TEST(Overrides, WrongPaths) {
 }
 
 TEST(Overrides, ErrorsOfTheFileComeFirst) {
-  EXPECT_EQ(test::errors_of_beam("titel = 1\n", {"foo=1"}),
-            "a.toml:10:1: bodies.beam.titel: is no known key; known here: model, domain, mass, density, material, "
-            "frames, points, weights, initial, transform, thickness, radius\n"
-            "--set:1:1: foo: is no known key; known here: title, world, materials, bodies, constraints, loads, solver, "
-            "probes, output");
+  EXPECT_EQ(
+      test::errors_of_beam("titel = 1\n", {"foo=1"}),
+      "a.toml:10:1: bodies.beam.titel: is no known key; known here: model, domain, mass, density, material, "
+      "frames, points, weights, initial, transform, thickness, radius, formulation, order, incompressibility, locking\n"
+      "--set:1:1: foo: is no known key; known here: title, world, materials, bodies, constraints, loads, solver, "
+      "probes, output");
 }
 
 }  // namespace

@@ -91,7 +91,8 @@ TEST(SceneErrors, WrongTypes) {
   EXPECT_EQ(errors_of(beam_with("[5, 2, 2]", "[5, 2.0, 2]")),
             "a.toml:9:23: bodies.beam.frames.grid[1]: 2.0 is of the wrong type; must be a whole number from 2 to 1000");
   EXPECT_EQ(errors_of(beam_with("\"meshless\"", "2020-01-01")),
-            "a.toml:5:9: bodies.beam.model: a date is of the wrong type; must be \"meshless\"");
+            "a.toml:5:9: bodies.beam.model: a date is of the wrong type; must be \"meshless\", \"tetrahedra\" or "
+            "\"hexahedra\"");
   EXPECT_EQ(
       errors_of_beam("[world]\ngravity = 9.81\n"),
       "a.toml:11:11: world.gravity: 9.81 is of the wrong type; must be a list of 3, each an acceleration in m/s2");
@@ -101,25 +102,26 @@ TEST(SceneErrors, WrongTypes) {
 }
 
 TEST(SceneErrors, NotSupportedYet) {
-  EXPECT_EQ(errors_of(beam_with("\"meshless\"", "\"tetrahedra\"")),
-            "a.toml:5:9: bodies.beam.model: \"tetrahedra\" is not supported yet; must be \"meshless\"");
+  EXPECT_EQ(errors_of(beam_with("\"meshless\"", "\"shell\"")),
+            "a.toml:5:9: bodies.beam.model: \"shell\" is not supported yet; must be \"meshless\", \"tetrahedra\" or "
+            "\"hexahedra\"");
+  EXPECT_EQ(errors_of(beam_with("\"meshless\"", "\"rigid\"")),
+            "a.toml:5:9: bodies.beam.model: \"rigid\" is not supported yet; must be \"meshless\", \"tetrahedra\" or "
+            "\"hexahedra\"");
+  EXPECT_EQ(errors_of_beam("fluid = {}\n"), "a.toml:10:9: bodies.beam.fluid: is not supported yet; remove it");
   EXPECT_EQ(errors_of_beam("inertia = []\n"), "a.toml:10:11: bodies.beam.inertia: is not supported yet; remove it");
   EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }", "annulus = {}")),
-            "a.toml:6:22: bodies.beam.domain.annulus: is not supported yet; must be box, cylinder, ellipsoid, file, "
-            "rectangle or line");
+            "a.toml:6:22: bodies.beam.domain.annulus: is not supported yet; must be box, block, cylinder, ellipsoid, "
+            "file, rectangle or line");
   EXPECT_EQ(errors_of(beam_with("[5, 2, 2] }", "[5, 2, 2], share = [] }")),
             "a.toml:9:38: bodies.beam.frames.share: is not supported yet; remove it");
   EXPECT_EQ(errors_of_beam("[couplings.a]\nkind = \"weld\"\n"),
             "a.toml:10:1: couplings: is not supported yet; remove it");
-  EXPECT_EQ(errors_of_beam("[solver]\nkind = \"newmark\"\n[output]\nevery = 1\n"),
-            "a.toml:11:8: solver.kind: \"newmark\" is not supported yet; must be \"static\", \"implicit-euler\" or "
-            "\"modes\"");
+  EXPECT_EQ(errors_of_beam("[solver]\ncontrol = \"arc-length\"\n"),
+            "a.toml:11:11: solver.control: \"arc-length\" is not supported yet; must be \"load\"");
+  EXPECT_EQ(errors_of_load("line_force = [0, 0, 1]\n"),
+            "a.toml:13:14: loads[0].line_force: is not supported yet; remove it");
   EXPECT_EQ(errors_of_load("pressure = 1\n"), "a.toml:13:12: loads[0].pressure: is not supported yet; remove it");
-}
-
-TEST(SceneErrors, KeysOfOtherModels) {
-  EXPECT_EQ(errors_of(beam_with("max = [4, 1, 1] }", "max = [4, 1, 1], cells = [1, 1, 1] }")),
-            "a.toml:6:62: bodies.beam.domain.box.cells: is not used by a meshless body; remove it");
 }
 
 TEST(SceneErrors, ValuesThatExcludeOneAnother) {
@@ -182,11 +184,24 @@ TEST(SceneErrors, Constraints) {
 
 TEST(SceneErrors, Loads) {
   EXPECT_EQ(errors_of_load(""),
-            "a.toml:10:1: loads[0]: applies nothing; must have total_force, total_torque or force_per_node");
+            "a.toml:10:1: loads[0]: applies nothing; must have total_force, total_torque, force_per_node or "
+            "traction");
   EXPECT_EQ(errors_of_load("force = [1, 0, 0]\n"),
-            "a.toml:13:9: loads[0].force: goes with at, not with where (there: total_force, total_torque); remove it");
+            "a.toml:13:9: loads[0].force: goes with at, not with where (there: total_force, total_torque, "
+            "traction); remove it");
   EXPECT_EQ(errors_of_beam("[[loads]]\nbody = \"beam\"\nforce = [1, 0, 0]\n"),
             "a.toml:10:1: loads[0]: where or at is missing; give exactly one");
+  EXPECT_EQ(errors_of_beam("[[loads]]\nbody = \"beam\"\nat = [0, 0, 0]\ntraction = [1, 0, 0]\n"),
+            "a.toml:13:12: loads[0].traction: goes with where, not with at; remove it");
+  EXPECT_EQ(errors_of_beam("[[loads]]\nbody = \"beam\"\ntraction = [1, 0, 0]\n"),
+            "a.toml:10:1: loads[0]: where or at is missing; give exactly one");
+  EXPECT_EQ(errors_of_load("traction = 1\n"),
+            "a.toml:13:12: loads[0].traction: 1 is of the wrong type; must be a list of 3, each a pressure in Pa");
+  EXPECT_EQ(errors_of_load("traction = [0, 0, \"1 N\"]\n"),
+            "a.toml:13:19: loads[0].traction[2]: \"1 N\" is a force; must be a pressure in Pa, such as \"40 kPa\"");
+  EXPECT_EQ(errors_of_load("traction = [1, 0, 0]\nfollower = true\n"),
+            "a.toml:14:12: loads[0].follower: true does not go with traction, which keeps its direction; must be "
+            "false");
   EXPECT_EQ(errors_of_load("total_force = [1, 0, 0]\nprofile = [[0, 0], [\"1 s\", 1], [1, 2]]\n"),
             "a.toml:14:32: loads[0].profile[2]: time 1 s is not after 1 s; times must ascend");
 }
@@ -207,6 +222,12 @@ TEST(SceneErrors, Regions) {
             "a.toml:13:21: constraints[0].where.any_of[0]: box, sphere, cylinder, halfspace, nearest, group, ids, "
             "boundary, all_of, any_of or not is missing; give exactly one\n"
             "a.toml:13:23: constraints[0].where.any_of[0].spere: is no known key; did you mean \"sphere\"?");
+}
+
+TEST(SceneErrors, FramesAreNeeded) {
+  EXPECT_EQ(errors_of(beam_with("frames = { grid = [5, 2, 2] }\n", "")),
+            "a.toml:4:1: bodies.beam.frames: is missing; must be a table with grid, poisson_disk, count, positions or "
+            "file");
 }
 
 TEST(SceneErrors, Solver) {

@@ -53,6 +53,14 @@ inline std::string beam_with(std::string_view line, std::string_view by) {
   return text;
 }
 
+/// A body "block" of finite elements: `more` from line 9 on.
+/// @param domain  the keys inside of domain = { }, at column 12 of line 6
+inline std::string mesh_body(std::string_view model, std::string_view domain, std::string_view more = "") {
+  return "[materials.soft]\nyoung = 1\npoisson = 0.3\n[bodies.block]\nmodel = \"" + std::string(model) +
+         "\"\ndomain = { " + std::string(domain) + " }\nmass = 1\nmaterial = \"soft\"\n" + std::string(more);
+}
+inline constexpr std::string_view meshed_box = "box = { min = [0, 0, 0], max = [4, 1, 1], cells = [8, 2, 2] }";
+
 /// A body "skin" on another domain: keys from line 7 on.
 inline std::string thin_body(std::string_view domain, std::string_view more) {
   return "[materials.soft]\nyoung = 1\npoisson = 0.3\n[bodies.skin]\nmodel = \"meshless\"\ndomain = { " +

@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(Terms, Derivatives, testing::ValuesIn(cases()), [](cons
 /// The slow reference: F of one point from the formula, against differences and against the executor's strain energy.
 TEST(Reference, DeformationGradientAgainstDifferences) {
   const BuiltModel built = block();
-  const MeshlessBody& body = built.bodies[0];
+  const ModelBody& body = built.bodies[0];
   const State state = random_state(built.model, 0.05, 0.4);
   const auto position = [&](const Vec3d& X) {
     const Attachment a = body.attach(X);
@@ -258,7 +258,7 @@ TEST(Reference, DeformationGradientAgainstDifferences) {
 TEST(Reference, EnergyAndForcesFromPlainLoops) {
   BlockOptions o;
   const BuiltModel built = block(o);
-  const MeshlessBody& body = built.bodies[0];
+  const ModelBody& body = built.bodies[0];
   const State state = random_state(built.model, 0.05, 0.4);
   double elastic = 0, drilling = 0;
   std::vector<Vec3d> force(state.u.size()), torque(state.u.size());

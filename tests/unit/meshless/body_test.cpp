@@ -35,7 +35,7 @@ GridSpec ball_spec(int n) {
 }
 
 /// F at rest is I at every point, for every rule; else rest would not be free of stress.
-TEST(MeshlessBody, IsFreeOfStrainAtRest) {
+TEST(ModelBody, IsFreeOfStrainAtRest) {
   for (const bool half : {true, false}) {
     BlockOptions o;
     o.half_blend = half;
@@ -71,7 +71,7 @@ TEST(PatchTest, AffineDisplacementIsAnEquilibrium) {
     A(1, 2) = A(2, 1) = -0.04;
     A(2, 2) = -0.12;
     Model& model = built.model;
-    const std::vector<char> boundary = built.bodies[0].frames_on_boundary();
+    const std::vector<char> boundary = built.bodies[0].nodes_on_boundary();
     State state = State::at_rest(model);
     for (int i = 0; i < model.node_count(); ++i) {
       const auto node = static_cast<std::size_t>(i);
@@ -107,7 +107,7 @@ TEST(PatchTest, AffineDisplacementIsAnEquilibrium) {
   }
 }
 
-TEST(MeshlessBody, VolumesAddUpToTheDomains) {
+TEST(ModelBody, VolumesAddUpToTheDomains) {
   for (const GridSpec& spec : {cylinder_spec({13, 5, 5}), ball_spec(6)}) {
     const BuiltModel built = build({spec});
     double volume = 0, mass = 0;
@@ -144,7 +144,7 @@ TEST(ImmersedBody, WithoutAPointInsideIsRefused) {
 }
 
 /// Frames along other axes, another place, another numbering: the same energy for the same motion.
-TEST(MeshlessBody, DoesNotDependOnPlaceOrientationOrNumbering) {
+TEST(ModelBody, DoesNotDependOnPlaceOrientationOrNumbering) {
   const auto energy = [](const BlockOptions& o, const Mat3d& axes) {
     const BuiltModel built = block(o);
     State state = State::at_rest(built.model);

@@ -1,0 +1,75 @@
+#include "app/result_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fascia::app {
+
+namespace {
+
+/// Determinant of the mean of two rotations a right angle apart: below, a blend no longer follows them.
+constexpr double kResolved = 0.5;
+
+}  // namespace
+
+SnapWatch::SnapWatch(const Simulation& s) : simulation_(s), factors_(s.factors(0)) {
+  for (const SimulatedBody& b : s.bodies)
+    for (const BodyPoint& p : b.body->points()) scale_ += p.mu * p.volume;
+}
+
+void SnapWatch::look(double time, double energy) {
+  const std::vector<double> factors = simulation_.factors(time);
+  bool grew = true;
+  for (std::size_t i = 0; i < factors.size(); ++i) grew = grew && std::abs(factors[i]) >= std::abs(factors_[i]);
+  // Energies of rounding are no energies: strains of 1e-8.
+  if (grew && energy < 0.5 * energy_ && energy_ > 1e-16 * scale_ && warning_.empty())
+    warning_ = fmt::format(
+        "the elastic energy fell from {:.3g} J to {:.3g} J on the way to load factor {:.4g}, though nothing was "
+        "unloaded: the body snapped to another equilibrium, perhaps one that lost a turn; compare with more frames",
+        energy_, energy, time);
+  energy_ = energy;
+  factors_ = factors;
+}
+
+void add_result_warnings(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
+  if (run.status == RunStatus::converged && !run.trouble.empty())
+    warnings.push_back("the end state may be an unstable equilibrium: " + run.trouble);
+  if (run.residual_floor > 1e-3 && !s.model.loads.empty())
+    warnings.push_back(fmt::format(
+        "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
+  for (const SimulatedBody& b : s.bodies) {
+    int inverted = 0, unresolved = 0;
+    const bool rigid = s.model.kind(b.body->first_node()) == FrameKind::rigid;
+    const bool linear =
+        s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())].formulation == Formulation::linear;
+    for (std::size_t q = 0; q < b.body->points().size(); ++q) {
+      const FieldValue f = field_at(b.body->attach_point(q), end);
+      inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
+      unresolved += rigid && determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
+    }
+    if (inverted > 0 && linear)
+      warnings.push_back(
+          fmt::format("body \"{}\": {} of {} integration points are turned inside out: the displacements are "
+                      "too large for small-strain elasticity; use formulation = \"corotational\" or leave "
+                      "it out",
+                      b.name, inverted, b.body->points().size()));
+    else if (inverted > 0)
+      warnings.push_back(
+          fmt::format("body \"{}\" is turned inside out at {} of {} integration points: St Venant-Kirchhoff does "
+                      "not resist that; the result is no physical state",
+                      b.name, inverted, b.body->points().size()));
+    if (unresolved > 0)
+      warnings.push_back(
+          fmt::format("body \"{}\": neighbouring frames are turned against each other by more than a right angle at {} "
+                      "of {} integration points: their blend does not resolve that; use more frames",
+                      b.name, unresolved, b.body->points().size()));
+  }
+  if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
+    run.status = RunStatus::not_converged;
+    run.message =
+        fmt::format("{} steps were accepted above the tolerance (newton.on_limit = \"continue\")", run.steps_at_limit);
+  }
+}
+
+}  // namespace fascia::app

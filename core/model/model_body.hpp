@@ -1,0 +1,134 @@
+#pragma once
+
+#include "core/geometry/mesh.hpp"
+#include "core/model/model.hpp"
+#include "core/physics/point_law.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fascia {
+
+/// Material of a point.
+struct PointMaterialSpec {
+  double lambda = 0, mu = 0;                       ///< [Pa]
+  double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
+  bool neo_hookean = false;                        ///< St Venant-Kirchhoff otherwise
+};
+
+/// Where a material point is attached: the nodes that move it.
+struct Attachment {
+  std::vector<int> nodes;  ///< of the model, ascending
+  std::vector<Influence> influences;
+  int cell = -1;  ///< of a frame grid, or the element
+};
+
+/// Displacement, rotation and displacement gradient of the field at an attachment.
+struct FieldValue {
+  Vec3d u{};
+  Mat3d D{}, H{};  ///< blended rotation − I, F − I
+};
+FieldValue field_at(const Attachment& attachment, const State& state);
+
+/// An integration point with what it weighs, for results.
+struct BodyPoint {
+  Vec3d X{};          ///< [m]
+  double volume = 0;  ///< [m³]
+  double lambda = 0, mu = 0;
+  Vec3d middle{};  ///< its place on the middle of a sheet or line; X in a solid [m]
+  Law law = Law::solid;
+  Mat3d axes = Mat3d::identity();  ///< of a thin law: columns, tangents first
+  bool transverse = false;         ///< as in PointRule
+  int cell = -1;                   ///< of BodyCells
+};
+
+/// Strain (Green-Lagrange), stress (Cauchy) and energy density at a point.
+struct PointTensors {
+  Mat3d strain{}, stress{};   ///< [-], [Pa]
+  double energy_density = 0;  ///< [J/m³]
+};
+
+/// A named set of a body's nodes and cells, from the groups of a mesh.
+struct BodyGroup {
+  std::string name;
+  int number = 0;
+  std::vector<int> nodes, cells;  ///< of the body, ascending
+};
+
+/// Volume cells that a body carries: nodes of the body, corners first.
+struct BodyCells {
+  CellType type = CellType::tetrahedron;
+  int nodes_per_cell = 4;
+  std::vector<int> nodes;
+};
+
+/// A body in a model. Its nodes are a contiguous range, its groups of points and blocks of elements too.
+class ModelBody {
+ public:
+  virtual ~ModelBody() = default;
+
+  int first_node() const { return first_node_; }
+  int node_count() const { return node_count_; }
+  const std::vector<BodyPoint>& points() const { return points_; }
+  double volume() const { return volume_; }
+  double mass() const { return mass_; }
+  double size() const { return size_; }                     ///< diagonal of the bounding box [m]
+  const TriangleMesh& surface() const { return surface_; }  ///< at rest; of a sheet its middle
+  /// Pairs of points of the surface mesh that a line runs between.
+  const std::vector<std::array<int, 2>>& segments() const { return segments_; }
+  const std::vector<std::string>& messages() const { return messages_; }
+  int first_group = 0, group_count = 0;  ///< in the model's point set; set by who closes the set
+  int first_block = 0, block_count = 0;  ///< of elements, likewise
+  const std::vector<BodyGroup>& groups() const { return groups_; }
+  const BodyCells& cells() const { return cells_; }
+  /// Weight of each node over its mass, where a static load of gravity is not shared as the mass is; else empty [kg].
+  const std::vector<double>& weights() const { return weights_; }
+
+  /// What a scene calls it: "meshless", "tetrahedra", "hexahedra".
+  virtual std::string model_name() const { return "meshless"; }
+  /// λ is integrated at one point a cell.
+  virtual bool selective() const { return false; }
+  /// A node's weight is 1 at its own place: holding the nodes holds the material there.
+  virtual bool interpolates() const { return true; }
+  /// The nodes that move the material at a rest position.
+  virtual Attachment attach(const Vec3d& X) const = 0;
+  /// The same for an integration point, exactly as the mechanics see it.
+  virtual Attachment attach_point(std::size_t point) const = 0;
+  /// The same at the point whose volumetric strain stands for X's cell (selective integration).
+  virtual Attachment attach_volumetric(const Attachment& at) const { return at; }
+  /// The nodes that move a point of the surface.
+  virtual Attachment attach_surface(std::size_t point) const { return attach(surface_.points[point]); }
+  /// At each integration point.
+  virtual std::vector<PointTensors> tensors(const State& state) const;
+  /// At any place. @param nearest  index of the integration point whose material counts there
+  virtual PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const;
+  /// Nodes on the outside: 1 (one entry a node of the body).
+  virtual std::vector<char> nodes_on_boundary() const = 0;
+  /// Distance from X to the body [m]; 0 inside.
+  virtual double distance(const Vec3d& X) const = 0;
+  /// The mesh's own number of the cell with the fastest waves through it, which limits explicit steps; 0: no mesh.
+  virtual std::int64_t fastest_cell() const { return 0; }
+  /// One line on how the weights do in this body; empty where there is nothing to say.
+  virtual std::string quality() const { return ""; }
+
+ protected:
+  ModelBody() = default;
+  ModelBody(const ModelBody&) = default;
+  ModelBody(ModelBody&&) = default;
+  ModelBody& operator=(const ModelBody&) = default;
+  ModelBody& operator=(ModelBody&&) = default;
+
+  double volume_ = 0, mass_ = 0, size_ = 0;
+  int first_node_ = 0, node_count_ = 0;
+  std::vector<BodyPoint> points_;
+  TriangleMesh surface_;
+  std::vector<std::array<int, 2>> segments_;
+  std::vector<std::string> messages_;
+  std::vector<BodyGroup> groups_;
+  BodyCells cells_;
+  std::vector<double> weights_;
+};
+
+}  // namespace fascia

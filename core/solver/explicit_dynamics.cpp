@@ -1,0 +1,91 @@
+#include "core/solver/explicit_dynamics.hpp"
+
+#include "core/solver/explicit_step.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+namespace fascia {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Every so many steps the state is kept, to return to where the run blows up.
+constexpr int kKeepEvery = 100;
+
+std::string divergence(MechanicalSystem& system, const State& good, int step, double dt) {
+  std::ostringstream out;
+  out.precision(4);
+  out << "step " << step << " (t = " << step * dt << " s): the motion grows beyond what the loads can do; ";
+  const double at_rest = stable_time_step(system), stable = stable_time_step(system, good);
+  if (at_rest < dt)
+    out << "time_step = " << dt << " is above the stable step at rest, " << at_rest << " s; use that or \"auto\"";
+  else if (stable < dt)
+    out << "the material stiffened: its stable step shrank to about " << stable << " s, below time_step = " << dt
+        << "; use a time_step clearly below that";
+  else
+    out << "try a smaller time_step, damping or smaller loads";
+  return out.str();
+}
+
+bool is_finite(const State& state) {
+  double sum = 0;
+  for (std::size_t i = 0; i < state.u.size(); ++i)
+    sum += squared_norm(state.v[i]) + contract(state.Q_dot[i], state.Q_dot[i]);
+  return std::isfinite(sum);
+}
+
+}  // namespace
+
+RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunction& factors,
+                       const ExplicitSettings& settings, const StepObserver& observe) {
+  const double dt = settings.time_step;
+  RunReport run;
+  ExplicitStepper stepper(system, state, dt, factors(state.time));
+  const double begin = state.time;
+  State good = state;
+  Clock::time_point start = Clock::now();
+  std::vector<double> next = factors(begin + dt);
+  for (int step = 1; step <= settings.steps; ++step) {
+    const double time = begin + step * dt;
+    stepper.advance(next);
+    state.time = time;
+    const std::vector<double> present = std::move(next);
+    next = factors(time + dt);
+    const StepInfo info{step, time, static_cast<double>(step) / settings.steps, {}, seconds_since(start)};
+    start = Clock::now();
+    bool sound = stepper.is_sound();
+    const bool last = step == settings.steps;
+    const bool seen = sound && (last || (observe && (!settings.observed || settings.observed(info))));
+    if (seen || (sound && step % kKeepEvery == 0)) {
+      stepper.report_velocities(next);
+      sound = is_finite(state);
+    }
+    if (!sound) {
+      run.status = RunStatus::diverged;
+      run.message = divergence(system, good, step, dt);
+      state = good;
+      run.time = state.time;
+      return run;
+    }
+    run.steps = step;
+    run.time = time;
+    if (seen || step % kKeepEvery == 0) good = state;
+    if (!seen || !observe) continue;
+    system.set_factors(present);
+    system.begin_step(state, 0);
+    system.evaluate();
+    if (!observe(info, state, system)) {
+      if (!last) run.status = RunStatus::interrupted;
+      return run;
+    }
+    start = Clock::now();  // what the observer took is not the step's
+  }
+  return run;
+}
+
+}  // namespace fascia

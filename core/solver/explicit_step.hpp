@@ -1,0 +1,87 @@
+#pragma once
+
+#include "core/solver/mechanical_system.hpp"
+#include "core/solver/node_inertia.hpp"
+#include "core/solver/small_factor.hpp"
+
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Degrees of freedom of a held node into its constraint's axes, or back.
+void turn_to_axes(const FrameConstraint& constraint, FrameKind kind, bool back, double* d);
+
+/// Steps a state by central differences, in place: one pass over points for the forces, one over nodes. What it needs
+/// is allocated once. The state's v and Q_dot are read at the start and written by report_velocities().
+class ExplicitStepper {
+ public:
+  /// @param factors  of all schedules at the start
+  ExplicitStepper(MechanicalSystem& system, State& state, double dt, std::span<const double> factors);
+
+  /// One step. @param factors  at its end
+  void advance(std::span<const double> factors);
+  /// v and Q_dot at the present step: means of the half steps on both sides. @param factors  at the end of the next
+  /// step
+  void report_velocities(std::span<const double> factors);
+
+  double kinetic_energy() const { return kinetic_; }  ///< of nodes that nothing holds, at the last half step [J]
+  /// Energy at the start, and the most that loads, boundaries and tethers have added [J].
+  double given_energy() const { return start_energy_ + largest_work_; }
+  /// The kinetic energy is finite and within what was given, with room for rounding and for coarse steps.
+  bool is_sound() const;
+
+ private:
+  /// Velocities at a half step. Rigid: of the mass centre and the momentum about it; where a constraint holds the
+  /// frame, of its origin and ω. Affine: of the origin and dA/dt.
+  struct Velocity {
+    Vec3d v{}, spin{};
+    Mat3d rate{};
+  };
+  struct Sums {
+    double kinetic = 0, work = 0;
+  };
+  struct PlacedLoad {
+    int schedule;
+    NodeLoad load;
+  };
+
+  void place_loads();
+  void update_forces();
+  void start_velocities();
+  void node_force(int node, double* load, double* force) const;
+  Velocity kicked(int node, const double* force) const;
+  Velocity kicked_held(int node, const double* force) const;
+  Vec3d kicked_held_vertex(int node, const Vec3d& force) const;
+  bool step_free_vertex(int node, Sums& sums);
+  void drift(int node, const Velocity& velocity, const double* load, Sums& sums);
+  PoseMotion pose_velocity(int node, const Velocity& velocity) const;
+  Velocity velocity_of(int node, const PoseMotion& motion) const;
+  double tether_work(std::span<const double> factors);
+
+  MechanicalSystem& system_;
+  const Model& model_;
+  CpuExecutor& executor_;
+  const DofFilter& filter_;
+  State& state_;
+  double dt_;
+
+  std::vector<Velocity> velocity_;                    ///< at the last half step
+  std::vector<SpinInertia> turning_;                  ///< of rigid frames
+  std::vector<Vec3d> center_;                         ///< c / m of rigid frames [m]
+  std::vector<double> damping_;                       ///< α dt / 2
+  std::vector<int> constraint_;                       ///< of each node, −1: none
+  std::vector<std::array<double, 16>> inverse_mass_;  ///< of free affine frames: (origin, axes)²
+  std::vector<int> affine_;                           ///< index into it
+  std::vector<int> load_begin_;                       ///< by node
+  std::vector<PlacedLoad> loads_;
+  std::vector<double> factors_, gradient_, follower_;
+  std::vector<double> increments_, last_increments_;  ///< prescribed, in constraint axes
+  std::vector<double> old_targets_;
+  std::vector<Vec3d> old_forces_;  ///< of tethers
+  StrainHistory history_;
+  std::vector<Sums> chunk_sums_;
+  double kinetic_ = 0, work_ = 0, largest_work_ = 0, start_energy_ = 0, rounding_energy_ = 0;
+};
+
+}  // namespace fascia

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "core/model/model.hpp"
+#include "core/physics/inertia.hpp"
+#include "core/solver/dof_filter.hpp"
+
+#include <array>
+
+namespace fascia {
+
+/// Rotational inertia of a rigid frame, I = tr(J) 1 − J: about its mass centre, J = S − c cᵀ / m, or its origin, J = S.
+struct SpinInertia {
+  Mat3d rest{}, inverse_rest{};  ///< at rest [kg m²], [1/(kg m²)]
+  bool regular = false;          ///< has an inverse
+
+  SpinInertia() = default;
+  explicit SpinInertia(const FrameInertia& i)
+      : SpinInertia(i.mass > 0 ? i.second - outer(i.first, i.first) * (1 / i.mass) : Mat3d{}) {}
+  explicit SpinInertia(const Mat3d& J) {
+    rest = Mat3d::diagonal(trace(J)) - J;
+    const double size = trace(rest);
+    regular = determinant(rest) > kSingular * size * size * size;
+    if (regular) inverse_rest = inverse(rest);
+  }
+  Vec3d momentum(const Mat3d& Q, const Vec3d& spin) const { return Q * (rest * (transpose(Q) * spin)); }
+  Vec3d spin(const Mat3d& Q, const Vec3d& momentum) const { return Q * (inverse_rest * (transpose(Q) * momentum)); }
+
+ private:
+  static constexpr double kSingular = 1e-10;
+};
+
+/// The mass block of a node in constraint axes at I + D = Q; rows and columns of what is held are those of the
+/// identity.
+inline std::array<double, kMostDofs * kMostDofs> free_mass_block(const Model& model, const DofFilter& filter, int node,
+                                                                 const Mat3d& Q) {
+  std::array<double, kMostDofs * kMostDofs> mass{}, local{};
+  const int n = model.points.dofs.size(node), first = model.points.dofs.begin(node);
+  add_inertia_block(model.kind(node), model.inertia[at(node)], Q, mass.data());
+  filter.rotate_block(node, node, mass.data(), local.data());
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      if (filter.is_fixed(at(first + i)) || filter.is_fixed(at(first + j))) local[at(n * i + j)] = i == j ? 1 : 0;
+  return local;
+}
+
+}  // namespace fascia

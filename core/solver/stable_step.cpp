@@ -1,0 +1,170 @@
+#include "core/model/errors.hpp"
+#include "core/solver/explicit_dynamics.hpp"
+#include "core/solver/node_inertia.hpp"
+#include "core/solver/small_factor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <sstream>
+
+namespace fascia {
+
+namespace {
+
+/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the signs of its pivots.
+/// @param off  entries beside the diagonal, one fewer
+double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector<double>& off) {
+  double low = diagonal[0], high = diagonal[0];
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    const double beside = (i > 0 ? off[i - 1] : 0.0) + (i + 1 < diagonal.size() ? off[i] : 0.0);
+    low = std::max(low, diagonal[i]);
+    high = std::max(high, diagonal[i] + beside);
+  }
+  while (high - low > 1e-12 * high) {
+    const double middle = 0.5 * (low + high);
+    bool above = true;  // of every eigenvalue
+    double pivot = 1;
+    for (std::size_t i = 0; i < diagonal.size() && above; ++i) {
+      pivot = middle - diagonal[i] - (i > 0 ? off[i - 1] * off[i - 1] / pivot : 0.0);
+      above = pivot > 0;
+    }
+    if (middle <= low || middle >= high) break;
+    (above ? high : low) = middle;
+  }
+  return high;
+}
+
+/// The largest eigenvalue of M⁻¹ K on the free degrees of freedom, K with the viscous stress of any time step.
+class HighestFrequency {
+ public:
+  HighestFrequency(MechanicalSystem& system, const State& state)
+      : executor_(system.executor()), filter_(system.filter()), dofs_(system.model().points.dofs), state_(state) {
+    const Model& model = system.model();
+    require_inertia(model, filter_);
+    inverse_mass_.resize(dofs_.block_total());
+    for (int node = 0; node < dofs_.node_count(); ++node) {
+      const int n = dofs_.size(node);
+      SmallFactor factor;
+      factor.factorize(free_mass_block(model, filter_, node, Mat3d::identity() + state.D[at(node)]).data(), n);
+      for (int j = 0; j < n; ++j) {
+        double* column = inverse_mass_.data() + dofs_.block_begin(node) + at(n * j);
+        column[j] = 1;
+        factor.solve(column);
+      }
+    }
+    executor_.store_strain(state, history_);
+  }
+
+  /// ω² [1/s²]. @param inverse_step  of the viscous stress [1/s]
+  double squared(double inverse_step) {
+    constexpr int kMost = 400, kLook = 10;
+    constexpr double kSettled = 1e-4;
+    const auto n = at(dofs_.total());
+    std::vector<double> v(n), y(n), y_old(n, 0.0), w(n);
+    history_.inverse_step = inverse_step;
+    executor_.gradient(state_, history_, w);
+    executor_.linearize(state_, history_, Tangent::full, lin_);
+    std::mt19937 random(1);
+    for (double& x : y) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
+    filter_.clear_fixed(y);
+    std::vector<double> diagonal, off;
+    double beta = 0, found = 0, looked = 0;
+    for (int k = 1; k <= std::min(kMost, filter_.free_count()); ++k) {
+      solve_mass(y, v);
+      double norm2 = 0;
+      for (std::size_t i = 0; i < n; ++i) norm2 += v[i] * y[i];
+      beta = std::sqrt(norm2);
+      if (!(beta > 1e-8 * std::abs(found))) break;
+      if (k > 1) off.push_back(beta);
+      for (std::size_t i = 0; i < n; ++i) {
+        v[i] /= beta;
+        y[i] /= beta;
+      }
+      multiply(v, w);
+      double alpha = 0;
+      for (std::size_t i = 0; i < n; ++i) alpha += v[i] * w[i];
+      diagonal.push_back(alpha);
+      const double beside = k > 1 ? beta : 0.0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double next = w[i] - alpha * y[i] - beside * y_old[i];
+        y_old[i] = y[i];
+        y[i] = next;
+      }
+      if (k % kLook == 0 || k == 1) {
+        found = largest_eigenvalue(diagonal, off);
+        if (k > 1 && found - looked <= kSettled * found) break;
+        looked = found;
+      }
+    }
+    return diagonal.empty() ? 0.0 : std::max(0.0, largest_eigenvalue(diagonal, off));
+  }
+
+ private:
+  void solve_mass(const std::vector<double>& y, std::vector<double>& v) const {
+    for (int node = 0; node < dofs_.node_count(); ++node) {
+      const int n = dofs_.size(node), first = dofs_.begin(node);
+      const double* inverse = inverse_mass_.data() + dofs_.block_begin(node);
+      for (int i = 0; i < n; ++i) {
+        double sum = 0;
+        for (int j = 0; j < n; ++j) sum += inverse[n * i + j] * y[at(first + j)];
+        v[at(first + i)] = sum;
+      }
+    }
+  }
+
+  void multiply(const std::vector<double>& v, std::vector<double>& w) {
+    global_ = v;
+    filter_.to_global(global_);
+    executor_.multiply(lin_, global_, w);
+    filter_.to_local(w);
+    filter_.clear_fixed(w);
+  }
+
+  CpuExecutor& executor_;
+  const DofFilter& filter_;
+  const DofLayout& dofs_;
+  const State& state_;
+  StrainHistory history_;
+  Linearization lin_;
+  std::vector<double> inverse_mass_, global_;
+};
+
+}  // namespace
+
+void require_inertia(const Model& model, const DofFilter& filter) {
+  for (int node = 0; node < model.node_count(); ++node) {
+    SmallFactor factor;
+    if (factor.factorize(free_mass_block(model, filter, node, Mat3d::identity()).data(), model.points.dofs.size(node)))
+      continue;
+    const Vec3d& X = model.rest_position[at(node)];
+    std::ostringstream message;
+    message << (model.kind(node) == FrameKind::vertex ? "the vertex at (" : "the frame at (") << X[0] << ", " << X[1]
+            << ", " << X[2] << ") has no inertia in some of its motions, which explicit dynamics cannot step; use a "
+            << "density above 0, more integration points or fewer frames, or an implicit scheme";
+    throw InputError(message.str());
+  }
+}
+
+double stable_time_step(MechanicalSystem& system, const State& state) {
+  if (system.filter().free_count() == 0) return std::numeric_limits<double>::infinity();
+  HighestFrequency highest(system, state);
+  const double elastic = highest.squared(0);
+  if (!(elastic > 0)) return std::numeric_limits<double>::infinity();
+  double dt = 2 / std::sqrt(elastic);
+  if (!system.model().points.damped) return kStableMargin * dt;
+  // The limit is dt² (K + 2 C / dt) = 4 M: ω² grows with 2/dt, by a line that each round finds anew.
+  for (int round = 0; round < 20; ++round) {
+    const double damping = 0.5 * dt * std::max(0.0, highest.squared(2 / dt) - elastic);
+    const double next = 4 / (damping + std::sqrt(damping * damping + 4 * elastic));
+    const bool settled = std::abs(next - dt) <= 1e-4 * dt;
+    dt = next;
+    if (settled) break;
+  }
+  return kStableMargin * dt;
+}
+
+double stable_time_step(MechanicalSystem& system) { return stable_time_step(system, State::at_rest(system.model())); }
+
+}  // namespace fascia

@@ -1,0 +1,222 @@
+#include "fem/element_body.hpp"
+
+#include "core/math/index.hpp"
+#include "core/model/errors.hpp"
+#include "fem/quadrature.hpp"
+#include "fem/quality.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia {
+
+namespace {
+
+/// Above this Poisson ratio linear elements lock (docs/manual.md, "Nearly incompressible tissue").
+constexpr double kLockingPoisson = 0.45;
+
+Vec3d middle_of(const ElementMesh& mesh, std::size_t e) {
+  return shape_at(mesh, e, reference_center(family_of(mesh.shape))).X;
+}
+
+double mean_edge(const ElementMesh& mesh) {
+  double sum = 0;
+  const auto edges = edges_of(family_of(mesh.shape));
+  for (std::size_t e = 0; e < mesh.size(); ++e)
+    for (const auto& edge : edges)
+      sum += norm(mesh.nodes[at(mesh.element(e)[at(edge[1])])] - mesh.nodes[at(mesh.element(e)[at(edge[0])])]);
+  return sum / static_cast<double>(edges.size() * mesh.size()) / order_of(mesh.shape);
+}
+
+/// Ten bits of each coordinate, interleaved: near places have near numbers.
+std::uint32_t morton(const Vec3d& x) {
+  std::uint32_t code = 0;
+  for (int bit = 9; bit >= 0; --bit)
+    for (int a = 0; a < 3; ++a) code = code * 2 + (static_cast<std::uint32_t>(x[a] * 1023) >> bit & 1U);
+  return code;
+}
+
+/// Elements of a law in an order in which neighbours are near each other.
+std::vector<std::size_t> ordered(const ElementMesh& mesh, const std::vector<std::size_t>& chosen) {
+  Vec3d low = mesh.nodes[0], high = low;
+  for (const Vec3d& x : mesh.nodes)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], x[a]);
+      high[a] = std::max(high[a], x[a]);
+    }
+  const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  std::vector<std::pair<std::uint32_t, std::size_t>> keys;
+  for (const std::size_t e : chosen) keys.emplace_back(morton((middle_of(mesh, e) - low) * (1 / size)), e);
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> order;
+  for (const auto& [key, e] : keys) order.push_back(e);
+  return order;
+}
+
+double poisson_of(const PointMaterialSpec& m) { return m.lambda / (2 * (m.lambda + m.mu)); }
+
+}  // namespace
+
+ElementBody::ElementBody(ElementBodySpec spec, Model& model, PointSetBuilder& points)
+    : locator_(std::move(spec.mesh)), formulation_(spec.formulation), penalty_(spec.penalty) {
+  messages_ = mesh().messages;
+  for (std::size_t e = 0; e < mesh().size(); ++e)
+    material_.push_back(spec.material(middle_of(mesh(), e), static_cast<int>(e)));
+  choose_formulation(spec);
+  number_nodes(model);
+  add_points(spec);
+  add_elements(spec, points);
+  add_mass(spec, model);
+  describe();
+}
+
+std::string ElementBody::model_name() const {
+  return family_of(mesh().shape) == ElementFamily::tetrahedra ? "tetrahedra" : "hexahedra";
+}
+
+ElementLaw ElementBody::law(int element) const {
+  if (formulation_ == ElementFormulation::linear) return ElementLaw::linear;
+  if (formulation_ == ElementFormulation::corotational) return ElementLaw::corotational;
+  return material_[at(element)].neo_hookean ? ElementLaw::neo_hookean : ElementLaw::st_venant_kirchhoff;
+}
+
+void ElementBody::choose_formulation(const ElementBodySpec& spec) {
+  const bool nearly = std::any_of(material_.begin(), material_.end(),
+                                  [](const PointMaterialSpec& m) { return poisson_of(m) > kLockingPoisson; });
+  const bool can_average = mesh().shape == ElementShape::tet4 && formulation_ == ElementFormulation::large_strain;
+  averaged_ =
+      spec.locking == ElementLocking::averaged || (spec.locking == ElementLocking::automatic && nearly && can_average);
+  if (averaged_ && !can_average)
+    throw InputError("locking = \"f-bar\" is for linear tetrahedra of large strain; must be \"none\" here");
+  if (averaged_ && spec.locking == ElementLocking::automatic)
+    messages_.push_back(
+        "Poisson ratio above 0.45: the volumetric strain is averaged about the nodes (locking = \"f-bar\")");
+  if (nearly && !averaged_ && order_of(mesh().shape) == 1)
+    messages_.push_back(
+        "linear elements lock at a Poisson ratio above 0.45: much too stiff; use order = 2" +
+        std::string(mesh().shape == ElementShape::tet4 ? ", or locking = \"f-bar\" with large strain" : ""));
+}
+
+void ElementBody::number_nodes(Model& model) {
+  first_node_ = model.node_count();
+  node_count_ = static_cast<int>(mesh().nodes.size());
+  for (const Vec3d& x : mesh().nodes) {
+    model.rest_position.push_back(x);
+    model.rest_orientation.push_back(Mat3d::identity());
+    model.frame_kind.push_back(FrameKind::vertex);
+  }
+  const BoundaryFaces faces = boundary_faces(mesh());
+  on_boundary_.assign(mesh().nodes.size(), 0);
+  for (const int node : faces.node) on_boundary_[at(node)] = 1;
+  surface_.points = mesh().nodes;
+  for (const auto& t : faces.surface.triangles)
+    surface_.triangles.push_back({faces.node[at(t[0])], faces.node[at(t[1])], faces.node[at(t[2])]});
+  Vec3d low = mesh().nodes[0], high = low;
+  for (const Vec3d& x : mesh().nodes)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], x[a]);
+      high[a] = std::max(high[a], x[a]);
+    }
+  size_ = norm(high - low);
+  for (const ElementGroup& g : mesh().groups) groups_.push_back({g.name, g.number, g.nodes, g.elements});
+  cells_.type = family_of(mesh().shape) == ElementFamily::tetrahedra ? CellType::tetrahedron : CellType::hexahedron;
+  cells_.nodes_per_cell = fascia::node_count(mesh().shape);
+  cells_.nodes = mesh().element_nodes;
+}
+
+void ElementBody::add_points(const ElementBodySpec& spec) {
+  const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
+  points_.reserve(mesh().size() * rule.size());
+  for (std::size_t e = 0; e < mesh().size(); ++e) {
+    const PointMaterialSpec& m = material_[e];
+    for (const QuadraturePoint& q : rule) {
+      const ElementPoint p = shape_at(mesh(), e, q.xi);
+      const double v = p.det_J * q.weight;
+      BodyPoint point;
+      point.X = point.middle = p.X;
+      point.volume = v;
+      point.lambda = m.lambda;
+      point.mu = m.mu;
+      point.law = m.neo_hookean ? Law::neo_hookean : Law::solid;
+      point.cell = static_cast<int>(e);
+      points_.push_back(point);
+      volume_ += v;
+    }
+  }
+  mass_ = volume_ * spec.density;
+}
+
+void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& builder) {
+  const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
+  const double length = mean_edge(mesh());
+  double fastest = 0;
+  std::array<std::vector<std::size_t>, 4> by_law;
+  for (std::size_t e = 0; e < mesh().size(); ++e)
+    by_law[static_cast<std::size_t>(law(static_cast<int>(e)))].push_back(e);
+  for (const std::vector<std::size_t>& chosen : by_law) {
+    if (chosen.empty()) continue;
+    ElementBlockSpec block;
+    block.law = law(static_cast<int>(chosen[0]));
+    block.averaged = averaged_;
+    block.nodes = fascia::node_count(mesh().shape);
+    block.points = static_cast<int>(rule.size());
+    block.length = length;
+    for (const std::size_t e : ordered(mesh(), chosen)) {
+      for (const int node : mesh().element(e)) block.node.push_back(first_node_ + node);
+      for (const QuadraturePoint& q : rule) {
+        const ElementPoint p = shape_at(mesh(), e, q.xi);
+        block.gradient.insert(block.gradient.end(), p.dN_dX.begin(), p.dN_dX.begin() + block.nodes);
+        block.volume.push_back(p.det_J * q.weight);
+        double squares = 0;  // (λ + 2μ) Σ |∇N|²/ρ bounds the square of an element's highest frequency
+        for (const Vec3d& g : p.dN_dX) squares += squared_norm(g);
+        const double speed = (material_[e].lambda + 2 * material_[e].mu) * squares;
+        if (speed <= fastest) continue;
+        fastest = speed;
+        fastest_cell_ = mesh().element_number[e];
+      }
+      const PointMaterialSpec& m = material_[e];
+      block.material.push_back({m.lambda, m.mu, m.stiffness_damping, spec.penalty});
+    }
+    builder.add_elements(make_element_block(block));
+  }
+}
+
+void ElementBody::add_mass(const ElementBodySpec& spec, Model& model) {
+  model.inertia.resize(model.rest_position.size());
+  const bool linear = order_of(mesh().shape) == 1;
+  const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
+  if (!linear) weights_.assign(mesh().nodes.size(), 0.0);
+  for (std::size_t e = 0; e < mesh().size(); ++e) {
+    ShapeValues first{}, second{};
+    double sum = 0, volume = 0;
+    for (const QuadraturePoint& q : rule) {
+      const ElementPoint p = shape_at(mesh(), e, q.xi);
+      const double v = p.det_J * q.weight;
+      volume += v;
+      for (std::size_t a = 0; a < first.size(); ++a) {
+        first[a] += v * p.N[a];
+        second[a] += v * p.N[a] * p.N[a];
+        sum += v * p.N[a] * p.N[a];
+      }
+    }
+    for (std::size_t a = 0; a < mesh().element(e).size(); ++a) {
+      const auto node = at(first_node_ + mesh().element(e)[a]);
+      const double m = spec.density * (linear ? first[a] : second[a] * volume / sum);
+      model.inertia[node].mass += m;
+      if (!linear) weights_[at(mesh().element(e)[a])] += spec.density * first[a];
+      if (material_[e].mass_damping > 0) {
+        model.mass_damping.resize(model.rest_position.size());
+        model.mass_damping[node].mass += m * material_[e].mass_damping;
+      }
+    }
+  }
+  if (!model.mass_damping.empty()) model.mass_damping.resize(model.rest_position.size());
+}
+
+void ElementBody::describe() {
+  const MeshQuality q = mesh_quality(mesh());
+  quality_ = q.sentence;
+  messages_.insert(messages_.end(), q.messages.begin(), q.messages.end());
+}
+
+}  // namespace fascia

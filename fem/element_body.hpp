@@ -1,0 +1,79 @@
+#pragma once
+
+#include "core/model/model_body.hpp"
+#include "fem/locator.hpp"
+
+#include <functional>
+#include <optional>
+
+namespace fascia {
+
+/// large_strain: the law of the material.
+enum class ElementFormulation { large_strain, corotational, linear };
+
+/// Against volumetric locking of linear tetrahedra; automatic: averaged above a Poisson ratio of 0.45.
+enum class ElementLocking { automatic, none, averaged };
+
+struct ElementBodySpec {
+  ElementMesh mesh;
+  ElementFormulation formulation = ElementFormulation::large_strain;
+  ElementLocking locking = ElementLocking::automatic;
+  double penalty = 0;  ///< κ of each cell's volume [Pa]
+  double density = 0;  ///< [kg/m³]
+  /// By the middle of an element and its number.
+  std::function<PointMaterialSpec(const Vec3d&, int)> material;
+};
+
+/// Finite elements in a model: vertices with three degrees of freedom.
+///
+/// Mass is lumped: Σ ρ v N of linear elements, and in proportion to Σ ρ v N² of quadratic ones (Hinton, Rock and
+/// Zienkiewicz 1976), whose Σ ρ v N is negative at corners of hexahedra; that is their weight in statics.
+class ElementBody final : public ModelBody {
+ public:
+  /// Appends nodes to the model and elements to the builder.
+  /// @throws InputError  a formulation that the elements cannot take
+  ElementBody(ElementBodySpec spec, Model& model, PointSetBuilder& points);
+
+  std::string model_name() const override;
+  Attachment attach(const Vec3d& X) const override;
+  Attachment attach_point(std::size_t point) const override;
+  Attachment attach_surface(std::size_t point) const override;
+  std::vector<PointTensors> tensors(const State& state) const override;
+  PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const override;
+  std::vector<char> nodes_on_boundary() const override { return on_boundary_; }
+  double distance(const Vec3d& X) const override { return locator_.locate(X).distance; }
+  std::string quality() const override { return quality_; }
+  std::int64_t fastest_cell() const override { return fastest_cell_; }
+
+  ElementLaw law(int element) const;
+  bool averaged() const { return averaged_; }
+
+ private:
+  struct Strained {
+    double swelling = 0;  ///< relative change of the element's volume
+    Mat3d turn;           ///< rotation of the element − I
+  };
+  void number_nodes(Model& model);
+  void choose_formulation(const ElementBodySpec& spec);
+  void add_points(const ElementBodySpec& spec);
+  void add_elements(const ElementBodySpec& spec, PointSetBuilder& points);
+  void add_mass(const ElementBodySpec& spec, Model& model);
+  void describe();
+  Attachment attachment(std::size_t element, const Vec3d& xi) const;
+  Strained strained(std::size_t element, const State& state) const;
+  std::vector<double> pressures(const State& state) const;
+  PointTensors tensors_of(std::size_t point, const Mat3d& H, const Strained& element,
+                          std::optional<double> pressure) const;
+  const ElementMesh& mesh() const { return locator_.mesh(); }
+
+  ElementLocator locator_;
+  ElementFormulation formulation_;
+  std::vector<PointMaterialSpec> material_;  ///< of each element
+  bool averaged_ = false;
+  double penalty_ = 0;
+  std::vector<char> on_boundary_;
+  std::string quality_;
+  std::int64_t fastest_cell_ = 0;
+};
+
+}  // namespace fascia

@@ -1,0 +1,145 @@
+#include "core/math/index.hpp"
+#include "core/math/polar.hpp"
+#include "core/physics/element_law.hpp"
+#include "fem/element_body.hpp"
+#include "fem/quadrature.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+/// Places, strains and stresses of finite elements, for results.
+namespace fascia {
+
+Attachment ElementBody::attachment(std::size_t e, const Vec3d& xi) const {
+  const ElementPoint p = shape_at(mesh(), e, xi);
+  const auto nodes = mesh().element(e);
+  std::vector<std::size_t> order(nodes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nodes[a] < nodes[b]; });
+  Attachment a;
+  a.cell = static_cast<int>(e);
+  for (const std::size_t k : order) {
+    a.nodes.push_back(first_node_ + nodes[k]);
+    a.influences.push_back({p.N[k], p.dN_dX[k], {}, {}});
+  }
+  return a;
+}
+
+Attachment ElementBody::attach(const Vec3d& X) const {
+  const Located l = locator_.locate(X);
+  return attachment(at(l.element), l.xi);
+}
+
+Attachment ElementBody::attach_point(std::size_t point) const {
+  static const std::array<std::vector<QuadraturePoint>, 4> rules{
+      quadrature(ElementShape::tet4), quadrature(ElementShape::tet10), quadrature(ElementShape::hex8),
+      quadrature(ElementShape::hex20)};
+  const std::vector<QuadraturePoint>& rule = rules[static_cast<std::size_t>(mesh().shape)];
+  return attachment(point / rule.size(), rule[point % rule.size()].xi);
+}
+
+Attachment ElementBody::attach_surface(std::size_t point) const {
+  Attachment a;
+  a.nodes = {first_node_ + static_cast<int>(point)};
+  a.influences.resize(1);
+  a.influences[0].w = 1;
+  return a;
+}
+
+ElementBody::Strained ElementBody::strained(std::size_t e, const State& state) const {
+  const std::size_t points = points_.size() / mesh().size();
+  Strained s;
+  Mat3d mean;
+  double volume = 0;
+  for (std::size_t q = points * e; q < points * (e + 1); ++q) {
+    const Mat3d H = field_at(attach_point(q), state).H;
+    mean += H * points_[q].volume;
+    s.swelling += volume_change(H) * points_[q].volume;
+    volume += points_[q].volume;
+  }
+  s.swelling /= volume;
+  if (formulation_ == ElementFormulation::corotational) s.turn = nearest_rotation_increment(mean * (1 / volume));
+  return s;
+}
+
+/// λ θ of each element, averaged about its nodes; empty where nothing is averaged.
+std::vector<double> ElementBody::pressures(const State& state) const {
+  if (!averaged_) return {};
+  std::vector<double> theta(mesh().nodes.size()), lambda(theta.size()), volume(theta.size()), result;
+  for (std::size_t e = 0; e < mesh().size(); ++e) {
+    const Mat3d H = field_at(attach_point(e), state).H;
+    const double strain = material_[e].neo_hookean ? NeoHookean<double>::log_volume(H) : trace(green_strain(H));
+    for (const int node : mesh().element(e)) {
+      theta[at(node)] += strain * points_[e].volume;
+      lambda[at(node)] += material_[e].lambda * points_[e].volume;
+      volume[at(node)] += points_[e].volume;
+    }
+  }
+  for (std::size_t e = 0; e < mesh().size(); ++e) {
+    double p = 0;
+    for (const int node : mesh().element(e))
+      p += 0.25 * lambda[at(node)] * theta[at(node)] / (volume[at(node)] * volume[at(node)]);
+    result.push_back(p);
+  }
+  return result;
+}
+
+PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Strained& element,
+                                     std::optional<double> pressure) const {
+  const BodyPoint& p = points_[point];
+  const double pull = penalty_ * element.swelling * std::abs(element.swelling);
+  const double penalty_energy = penalty_ * std::pow(std::abs(element.swelling), 3) / 3;
+  const StVenantKirchhoff<double> law{p.lambda, p.mu};
+  PointTensors t;
+  t.strain = green_strain(H);
+  if (formulation_ == ElementFormulation::linear) {
+    t.strain = sym(H);
+    t.stress = law.second_piola(t.strain);
+    t.energy_density = law.energy_density(t.strain);
+  } else if (formulation_ == ElementFormulation::corotational) {
+    const Mat3d R = Mat3d::identity() + element.turn;
+    const Mat3d strain = sym(transpose(element.turn) + H + transpose_times(element.turn, H));
+    t.stress = times_transpose(R * law.second_piola(strain), R);
+    t.energy_density = law.energy_density(strain);
+  } else {
+    const Mat3d F = Mat3d::identity() + H;
+    Mat3d S;
+    if (material_[at(p.cell)].neo_hookean) {
+      const NeoHookean<double> neo{p.lambda, p.mu};
+      const double swelling = NeoHookean<double>::log_volume(H);
+      S = neo.second_piola(t.strain, NeoHookean<double>::inverse_right_cauchy_green(H),
+                           pressure.value_or(p.lambda * swelling));
+      t.energy_density = neo.energy_density(H);
+    } else {
+      S = t.strain * (2 * p.mu) + Mat3d::diagonal(pressure.value_or(p.lambda * trace(t.strain)));
+      t.energy_density = law.energy_density(t.strain);
+    }
+    t.stress = times_transpose(F * S, F) * (1 / determinant(F));
+  }
+  t.stress += Mat3d::diagonal(pull);
+  t.energy_density += penalty_energy;
+  return t;
+}
+
+std::vector<PointTensors> ElementBody::tensors(const State& state) const {
+  const std::vector<double> pressure = pressures(state);
+  const std::size_t points = points_.size() / mesh().size();
+  std::vector<PointTensors> all;
+  all.reserve(points_.size());
+  for (std::size_t e = 0; e < mesh().size(); ++e) {
+    const Strained element = strained(e, state);
+    for (std::size_t q = points * e; q < points * (e + 1); ++q)
+      all.push_back(tensors_of(q, field_at(attach_point(q), state).H, element,
+                               pressure.empty() ? std::nullopt : std::optional(pressure[e])));
+  }
+  return all;
+}
+
+PointTensors ElementBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {
+  const std::vector<double> pressure = pressures(state);
+  return tensors_of(nearest, field_at(place, state).H, strained(at(place.cell), state),
+                    pressure.empty() ? std::nullopt : std::optional(pressure[at(place.cell)]));
+}
+
+}  // namespace fascia

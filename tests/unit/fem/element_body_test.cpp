@@ -1,0 +1,160 @@
+#include "core/cpu/executor.hpp"
+#include "core/solver/mechanical_system.hpp"
+#include "tests/unit/fem/element_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+namespace fascia {
+namespace {
+
+using namespace test;
+
+constexpr ElementShape kShapes[] = {ElementShape::tet4, ElementShape::tet10, ElementShape::hex8, ElementShape::hex20};
+
+TEST(ElementBody, MassAndWeightAddUp) {
+  for (const ElementShape shape : kShapes) {
+    ElementOptions o;
+    o.shape = shape;
+    const ElementModel built = element_model(o);
+    double mass = 0;
+    for (const FrameInertia& i : built.model.inertia) {
+      EXPECT_GT(i.mass, 0);
+      mass += i.mass;
+    }
+    EXPECT_NEAR(mass, built.body->mass(), 1e-13 * mass);
+    const std::vector<double>& weights = built.body->weights();
+    EXPECT_EQ(weights.empty(), order_of(shape) == 1);
+    if (!weights.empty()) EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), mass, 1e-13 * mass);
+  }
+}
+
+/// Irregular elements under u = A X on the boundary: inner nodes find it, every point strains alike.
+TEST(ElementBody, PatchTest) {
+  const Mat3d A = Mat3d::from_columns({{0.12, 0.03, -0.05}}, {{0.08, -0.1, 0.02}}, {{-0.04, 0.06, 0.09}});
+  for (const ElementShape shape : kShapes) {
+    for (const auto formulation :
+         {ElementFormulation::linear, ElementFormulation::corotational, ElementFormulation::large_strain}) {
+      ElementOptions o;
+      o.shape = shape;
+      o.formulation = formulation;
+      o.cells = {3, 3, 3};
+      ElementModel built = element_model(o, [&] {
+        ElementOptions straight = o;  // straight edges: curved ones hold no linear field's equilibrium exactly
+        straight.shape = element_shape(family_of(shape), 1);
+        const ElementMesh mesh = distorted_mesh(straight);
+        return order_of(shape) == 2 ? quadratic(mesh) : mesh;
+      }());
+      State state = State::at_rest(built.model);
+      const std::vector<char> boundary = built.body->nodes_on_boundary();
+      for (int i = 0; i < built.model.node_count(); ++i) {
+        if (boundary[at(i)] == 0) continue;
+        state.u[at(i)] = A * built.model.rest_position[at(i)];
+        FrameConstraint c;
+        c.node = i;
+        c.translations = 3;
+        c.translation_motion = {0, 0, 0};
+        built.model.constraints.push_back(c);
+      }
+      // Held where they are put: the motion of each is zero from there on.
+      for (FrameConstraint& c : built.model.constraints) c.translation_motion = {-1, -1, -1};
+      ThreadPool pool(1);
+      CpuExecutor executor(built.model.points, pool);
+      std::vector<double> g(at(built.model.dof_count()));
+      for (int i = 0; i < built.model.node_count(); ++i) state.u[at(i)] = A * built.model.rest_position[at(i)];
+      executor.gradient(state, {}, g);
+      double inner = 0, outer = 0;
+      for (int i = 0; i < built.model.node_count(); ++i)
+        for (int k = 0; k < 3; ++k) {
+          double& largest = boundary[at(i)] != 0 ? outer : inner;
+          largest = std::max(largest, std::abs(g[at(3 * i + k)]));
+        }
+      EXPECT_LT(inner, 1e-12 * outer);
+      const std::vector<PointTensors> tensors = built.body->tensors(state);
+      for (const PointTensors& t : tensors)
+        EXPECT_LT(norm(t.stress - tensors[0].stress), 1e-12 * norm(tensors[0].stress));
+    }
+  }
+}
+
+TEST(ElementBody, NumberingDoesNotMatter) {
+  for (const ElementShape shape : kShapes) {
+    ElementOptions o;
+    o.shape = shape;
+    const ElementMesh mesh = distorted_mesh(o);
+    ElementMesh other = mesh;
+    const auto n = mesh.nodes.size(), m = mesh.size(), per = mesh.element(0).size();
+    for (std::size_t i = 0; i < n; ++i) other.nodes[n - 1 - i] = mesh.nodes[i];
+    for (std::size_t e = 0; e < m; ++e)
+      for (std::size_t a = 0; a < per; ++a)
+        other.element_nodes[(m - 1 - e) * per + a] = static_cast<int>(n) - 1 - mesh.element(e)[a];
+    const ElementModel first = element_model(o, mesh), second = element_model(o, other);
+    State state = random_state(first.model, 0.03, 0), reversed = state;
+    std::reverse(reversed.u.begin(), reversed.u.end());
+    ThreadPool pool(1);
+    CpuExecutor a(first.model.points, pool), b(second.model.points, pool);
+    std::vector<double> f(3 * n), g(3 * n);
+    const double energy = a.gradient(state, {}, f).total();
+    EXPECT_NEAR(b.gradient(reversed, {}, g).total(), energy, 1e-13 * energy);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(f[3 * i + k], g[3 * (n - 1 - i) + k], 1e-13 * test::norm(f));
+  }
+}
+
+TEST(ElementBody, ThreadsDoNotMatter) {
+  ElementOptions o;
+  o.cells = {12, 10, 8};
+  o.locking = ElementLocking::averaged;
+  const ElementModel built = element_model(o);
+  const State state = random_state(built.model, 0.005, 0);
+  std::vector<double> first, matrix;
+  for (const int threads : {1, 2, 5}) {
+    ThreadPool pool(threads);
+    CpuExecutor executor(built.model.points, pool);
+    std::vector<double> g(at(built.model.dof_count()));
+    executor.gradient(state, {}, g);
+    Linearization lin;
+    executor.linearize(state, {}, Tangent::full, lin);
+    BlockMatrix K(built.model.points);
+    executor.assemble(lin, K);
+    const std::vector<double> values(K.values(), K.values() + K.value_count());
+    if (threads == 1) {
+      first = g;
+      matrix = values;
+    }
+    EXPECT_EQ(g, first);
+    EXPECT_EQ(values, matrix);
+  }
+}
+
+/// Energy density times volume adds up to the energy of the mechanics, whatever the law.
+TEST(ElementBody, TensorsAddUpToTheEnergy) {
+  for (const ElementShape shape : kShapes) {
+    for (int kind = 0; kind < 4; ++kind) {
+      ElementOptions o;
+      o.shape = shape;
+      o.formulation = kind == 0   ? ElementFormulation::linear
+                      : kind == 1 ? ElementFormulation::corotational
+                                  : ElementFormulation::large_strain;
+      o.neo_hookean = kind == 3;
+      o.penalty = family_of(shape) == ElementFamily::tetrahedra ? 1e5 : 0;
+      const ElementModel built = element_model(o);
+      const State state = random_state(built.model, 0.02, 0);
+      double sum = 0;
+      const std::vector<PointTensors> tensors = built.body->tensors(state);
+      for (std::size_t q = 0; q < tensors.size(); ++q)
+        sum += tensors[q].energy_density * built.body->points()[q].volume;
+      ThreadPool pool(1);
+      CpuExecutor executor(built.model.points, pool);
+      std::vector<double> g(at(built.model.dof_count()));
+      const double energy = executor.gradient(state, {}, g).elastic;
+      EXPECT_NEAR(sum, energy, 1e-12 * energy);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fascia

@@ -1,0 +1,268 @@
+#include "core/cpu/executor.hpp"
+#include "core/solver/block_matrix.hpp"
+#include "tests/unit/fem/element_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <ostream>
+#include <string>
+
+namespace fascia {
+namespace {
+
+using namespace test;
+
+struct Case {
+  std::string name;
+  ElementOptions options;
+  double dt = 0;
+};
+
+/// Each law on each shape, with the terms that it can have.
+std::vector<Case> cases() {
+  using enum ElementShape;
+  using enum ElementFormulation;
+  std::vector<Case> all;
+  const auto add = [&](const std::string& name, ElementShape shape, auto change) {
+    ElementOptions o;
+    o.shape = shape;
+    if (order_of(shape) == 2) o.cells = {1, 1, 1};
+    change(o);
+    all.push_back({name, o, o.stiffness_damping > 0 ? 0.05 : 0});
+  };
+  const std::pair<ElementShape, std::string> shapes[] = {
+      {tet4, "tet4"}, {tet10, "tet10"}, {hex8, "hex8"}, {hex20, "hex20"}};
+  for (const auto& [shape, name] : shapes) {
+    add("linear_" + name, shape, [](ElementOptions& o) { o.formulation = linear; });
+    add("corotational_" + name, shape, [](ElementOptions& o) { o.formulation = corotational; });
+    add("svk_" + name, shape, [](ElementOptions&) {});
+    add("neo_hookean_" + name, shape, [](ElementOptions& o) { o.neo_hookean = true; });
+    add("corotational_viscous_" + name, shape, [](ElementOptions& o) {
+      o.formulation = corotational;
+      o.stiffness_damping = 0.02;
+    });
+    add("neo_hookean_viscous_" + name, shape, [](ElementOptions& o) {
+      o.neo_hookean = true;
+      o.stiffness_damping = 0.02;
+    });
+  }
+  add("svk_viscous_tet4", tet4, [](ElementOptions& o) { o.stiffness_damping = 0.02; });
+  add("linear_viscous_tet4", tet4, [](ElementOptions& o) {
+    o.formulation = linear;
+    o.stiffness_damping = 0.02;
+  });
+  add("svk_penalty_tet4", tet4, [](ElementOptions& o) { o.penalty = 1e5; });
+  add("linear_penalty_tet4", tet4, [](ElementOptions& o) {
+    o.formulation = linear;
+    o.penalty = 1e5;
+  });
+  add("corotational_penalty_tet10", tet10, [](ElementOptions& o) {
+    o.formulation = corotational;
+    o.penalty = 1e5;
+  });
+  add("svk_averaged", tet4, [](ElementOptions& o) { o.locking = ElementLocking::averaged; });
+  add("neo_hookean_averaged", tet4, [](ElementOptions& o) {
+    o.locking = ElementLocking::averaged;
+    o.neo_hookean = true;
+    o.poisson = 0.49;
+  });
+  add("averaged_viscous_penalty", tet4, [](ElementOptions& o) {
+    o.locking = ElementLocking::averaged;
+    o.stiffness_damping = 0.02;
+    o.penalty = 1e5;
+  });
+  return all;
+}
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+class ElementDerivatives : public testing::TestWithParam<Case> {
+ protected:
+  ElementDerivatives()
+      : built_(element_model(GetParam().options)),
+        executor_(built_.model.points, pool_),
+        state_(random_state(built_.model, 0.03, 0)) {
+    turn(state_);
+    if (GetParam().dt > 0) {
+      history_.inverse_step = 1 / GetParam().dt;
+      executor_.store_strain(random_state(built_.model, 0.01, 0, 7), history_);
+    }
+  }
+  /// Adds a rotation of half a radian.
+  void turn(State& state) const {
+    const Mat3d D = rotation_increment(Vec3d{{0.3, -0.4, 0.1}});
+    for (std::size_t i = 0; i < state.u.size(); ++i) state.u[i] += D * (built_.model.rest_position[i] + state.u[i]);
+  }
+  std::size_t size() const { return static_cast<std::size_t>(built_.model.dof_count()); }
+  double energy(const State& state) {
+    std::vector<double> unused(size());
+    return executor_.gradient(state, history_, unused).total();
+  }
+  std::vector<double> gradient(const State& state) {
+    std::vector<double> g(size());
+    executor_.gradient(state, history_, g);
+    return g;
+  }
+  Linearization linearization(Tangent tangent) {
+    gradient(state_);
+    Linearization lin;
+    executor_.linearize(state_, history_, tangent, lin);
+    return lin;
+  }
+
+  ElementModel built_;
+  ThreadPool pool_{1};
+  CpuExecutor executor_;
+  State state_;
+  StrainHistory history_;
+};
+
+TEST_P(ElementDerivatives, GradientIsThatOfTheEnergy) {
+  const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
+  const double h = 1e-6;
+  const double numeric =
+      (energy(moved(built_.model, state_, d, h)) - energy(moved(built_.model, state_, d, -h))) / (2 * h);
+  const double error = std::abs(numeric - test::dot(g, d)) / (test::norm(g) * test::norm(d));
+  std::printf("%-28s gradient against differences of the energy: %.1e\n", GetParam().name.c_str(), error);
+  EXPECT_LT(error, 1e-8);
+}
+
+TEST_P(ElementDerivatives, TangentIsTheDerivativeOfTheGradient) {
+  const std::vector<double> d = random_direction(built_.model);
+  const Linearization lin = linearization(Tangent::full);
+  std::vector<double> Kd(size());
+  executor_.multiply(lin, d, Kd);
+  const double h = 1e-6;
+  const std::vector<double> plus = gradient(moved(built_.model, state_, d, h)),
+                            minus = gradient(moved(built_.model, state_, d, -h));
+  std::vector<double> difference(size());
+  for (std::size_t i = 0; i < size(); ++i) difference[i] = (plus[i] - minus[i]) / (2 * h) - Kd[i];
+  const double error = test::norm(difference) / test::norm(Kd);
+  std::printf("%-28s product against differences of the gradient: %.1e\n", GetParam().name.c_str(), error);
+  EXPECT_LT(error, 1e-8);
+}
+
+TEST_P(ElementDerivatives, AssembledMatrixEqualsTheProduct) {
+  for (const Tangent tangent : {Tangent::full, Tangent::material}) {
+    const Linearization lin = linearization(tangent);
+    BlockMatrix matrix(built_.model.points);
+    executor_.assemble(lin, matrix);
+    const std::vector<double> d = random_direction(built_.model);
+    std::vector<double> free(size()), assembled(size());
+    executor_.multiply(lin, d, free);
+    matrix.multiply(pool_, d, assembled);
+    for (std::size_t i = 0; i < size(); ++i) assembled[i] -= free[i];
+    EXPECT_LT(test::norm(assembled), 1e-12 * test::norm(free)) << GetParam().name;
+  }
+}
+
+TEST_P(ElementDerivatives, MaterialTangentIsSymmetricAndNotNegative) {
+  const Linearization lin = linearization(Tangent::material);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const std::vector<double> a = random_direction(built_.model, seed), b = random_direction(built_.model, seed + 100);
+    std::vector<double> Ka(size()), Kb(size());
+    executor_.multiply(lin, a, Ka);
+    executor_.multiply(lin, b, Kb);
+    EXPECT_GE(test::dot(a, Ka), 0);
+    EXPECT_NEAR(test::dot(a, Kb), test::dot(b, Ka), 1e-12 * test::norm(Ka) * test::norm(b));
+  }
+}
+
+TEST_P(ElementDerivatives, ForcesWithoutEnergiesAreTheSame) {
+  const std::vector<double> g = gradient(state_);
+  std::vector<double> f(size());
+  executor_.forces(state_, history_, f);
+  EXPECT_EQ(f, g);
+}
+
+/// Forces and their moments about any point vanish; a rotation costs nothing, except for small-strain elements.
+TEST_P(ElementDerivatives, InternalForcesBalance) {
+  const std::vector<double> g = gradient(state_);
+  Vec3d force, moment;
+  for (int i = 0; i < built_.model.node_count(); ++i) {
+    const Vec3d f{{g[at(3 * i)], g[at(3 * i + 1)], g[at(3 * i + 2)]}};
+    force += f;
+    moment += cross(built_.model.rest_position[at(i)] + state_.u[at(i)], f);
+  }
+  EXPECT_LT(norm(force), 1e-12 * test::norm(g));
+  const bool linear = GetParam().options.formulation == ElementFormulation::linear;
+  const bool viscous = GetParam().dt > 0 && GetParam().options.formulation == ElementFormulation::corotational;
+  if (linear) EXPECT_GT(norm(moment), 1e-4 * test::norm(g));
+  if (!linear && !viscous) EXPECT_LT(norm(moment), 1e-12 * test::norm(g));
+  if (GetParam().dt > 0) return;
+  const double turned = energy(rigid_state(built_.model, rotation_increment(Vec3d{{0, 1, 2}}), {{1, 2, 3}}));
+  const double scale = GetParam().options.young * built_.body->volume();
+  if (linear)
+    EXPECT_GT(turned, 1e-2 * scale);
+  else
+    EXPECT_LT(turned, 1e-24 * scale);
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, ElementDerivatives, testing::ValuesIn(cases()),
+                         [](const auto& parameter) { return parameter.param.name; });
+
+/// The slow reference: the same elements as ordinary points of a point set whose nodes are vertices.
+TEST(ElementReference, BlocksEqualOrdinaryPoints) {
+  for (const ElementShape shape : {ElementShape::tet4, ElementShape::tet10, ElementShape::hex8, ElementShape::hex20}) {
+    for (const bool neo_hookean : {false, true}) {
+      ElementOptions o;
+      o.shape = shape;
+      o.neo_hookean = neo_hookean;
+      const ElementModel built = element_model(o);
+      const ElementBody& body = *built.body;
+      PointSetBuilder builder;
+      for (std::size_t q = 0; q < body.points().size(); ++q) {
+        const BodyPoint& p = body.points()[q];
+        const Attachment a = body.attach_point(q);
+        const PointSample sample{p.X, p.volume, p.lambda, p.mu, 0, 0, a.influences, {}};
+        builder.add_points(a.nodes, std::span(&sample, 1), 1, {p.law, Stabilization::none, false});
+      }
+      const PointSet set = std::move(builder).finish(built.model.frame_kind);
+      const State state = random_state(built.model, 0.03, 0);
+      ThreadPool pool(1);
+      CpuExecutor blocks(built.model.points, pool), points(set, pool);
+      std::vector<double> f(at(built.model.dof_count())), g = f, Kf = f, Kg = f;
+      const double energy = blocks.gradient(state, {}, f).total(), reference = points.gradient(state, {}, g).total();
+      EXPECT_NEAR(energy, reference, 1e-12 * reference);
+      Linearization of_blocks, of_points;
+      blocks.linearize(state, {}, Tangent::full, of_blocks);
+      points.linearize(state, {}, Tangent::full, of_points);
+      const std::vector<double> d = random_direction(built.model);
+      blocks.multiply(of_blocks, d, Kf);
+      points.multiply(of_points, d, Kg);
+      const double scale = test::norm(g), stiff = test::norm(Kg);
+      for (std::size_t i = 0; i < f.size(); ++i) {
+        EXPECT_NEAR(f[i], g[i], 1e-12 * scale);
+        EXPECT_NEAR(Kf[i], Kg[i], 1e-12 * stiff);
+      }
+    }
+  }
+}
+
+/// An element turned inside out keeps a proper rotation: energy and forces stay finite and agree.
+TEST(ElementReference, CorotationalElementsSurviveInversion) {
+  ElementOptions o;
+  o.formulation = ElementFormulation::corotational;
+  o.cells = {1, 1, 1};
+  const ElementModel built = element_model(o);
+  State state = State::at_rest(built.model);
+  for (std::size_t i = 0; i < state.u.size(); ++i) state.u[i][0] = -1.7 * built.model.rest_position[i][0];
+  ThreadPool pool(1);
+  CpuExecutor executor(built.model.points, pool);
+  std::vector<double> g(at(built.model.dof_count()));
+  const auto energy = [&](const State& at_state) {
+    std::vector<double> unused(g.size());
+    return executor.gradient(at_state, {}, unused).total();
+  };
+  const double e = executor.gradient(state, {}, g).total();
+  EXPECT_TRUE(std::isfinite(e));
+  const std::vector<double> d = random_direction(built.model);
+  const double h = 1e-6;
+  const double numeric =
+      (energy(moved(built.model, state, d, h)) - energy(moved(built.model, state, d, -h))) / (2 * h);
+  EXPECT_NEAR(numeric, test::dot(g, d), 1e-7 * test::norm(g) * test::norm(d));
+}
+
+}  // namespace
+}  // namespace fascia

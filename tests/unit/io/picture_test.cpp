@@ -1,0 +1,105 @@
+#include "io/picture/results.hpp"
+#include "tests/unit/io/mesh_samples.hpp"
+#include "tests/unit/io/volume_samples.hpp"
+
+#include <vtkCell.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+
+// What a picture shows of a result; no display is needed for it.
+namespace fascia::io {
+namespace {
+
+using samples::row_of_cubes;
+using samples::TemporaryDirectory;
+
+/// Area of the polygons [m²].
+double area_of(vtkPolyData& data) {
+  double area = 0;
+  for (vtkIdType c = 0; c < data.GetNumberOfCells(); ++c) {
+    vtkCell* cell = data.GetCell(c);
+    const auto point = [&](int n) {
+      Vec3d x;
+      data.GetPoint(cell->GetPointId(n), x.v);
+      return x;
+    };
+    for (int n = 2; n < static_cast<int>(cell->GetNumberOfPoints()); ++n)
+      area += 0.5 * norm(cross(point(n - 1) - point(0), point(n) - point(0)));
+  }
+  return area;
+}
+
+PictureBody body_of(const VisualMesh& mesh, const std::string& field) {
+  const TemporaryDirectory directory;
+  write_vtu(directory.path() / "a.vtu", mesh);
+  return read_picture_body(directory.path() / "a.vtu", field);
+}
+
+struct PictureCase {
+  CellType type;
+  bool quadratic;
+  vtkIdType faces;
+};
+
+TEST(PictureBody, outer_faces_of_volume_cells) {
+  for (const PictureCase& c :
+       {PictureCase{CellType::tetrahedron, false, 28}, PictureCase{CellType::tetrahedron, true, 4 * 28},
+        PictureCase{CellType::hexahedron, false, 14}, PictureCase{CellType::hexahedron, true, 6 * 14}}) {
+    SCOPED_TRACE(testing::Message() << static_cast<int>(c.type) << " " << c.quadratic);
+    const PictureBody body = body_of(row_of_cubes(3, c.type, c.quadratic), "height");
+    EXPECT_EQ(body.surface->GetNumberOfCells(), c.faces);
+    EXPECT_NEAR(area_of(*body.surface), 14, 1e-12);
+    EXPECT_EQ(body.edges->GetNumberOfCells(), c.quadratic ? 0 : c.faces);
+    EXPECT_EQ(body.lines->GetNumberOfCells(), 0);
+    EXPECT_EQ(body.shown_on, ShownOn::points);
+    vtkDataArray* shown = body.surface->GetPointData()->GetScalars();
+    ASSERT_NE(shown, nullptr);
+    EXPECT_STREQ(shown->GetName(), shown_array);
+    for (vtkIdType p = 0; p < body.surface->GetNumberOfPoints(); ++p)
+      EXPECT_NEAR(shown->GetComponent(p, 0), body.surface->GetPoint(p)[2], 1e-7);
+  }
+}
+
+TEST(PictureBody, cell_field_where_no_point_field_has_the_name) {
+  for (const bool quadratic : {false, true}) {
+    VisualMesh mesh = row_of_cubes(3, CellType::hexahedron, quadratic);
+    mesh.lines = {{0, 1}};
+    mesh.part.push_back(0);
+    const PictureBody body = body_of(mesh, "number");
+    EXPECT_EQ(body.shown_on, ShownOn::cells);
+    EXPECT_EQ(body.lines->GetNumberOfCells(), 1);
+    vtkDataArray* shown = body.surface->GetCellData()->GetScalars();
+    ASSERT_NE(shown, nullptr);
+    for (vtkIdType c = 0; c < body.surface->GetNumberOfCells(); ++c) {
+      double bounds[6];
+      body.surface->GetCell(c)->GetBounds(bounds);
+      const double middle = 0.5 * (bounds[0] + bounds[1]);
+      const double cube = shown->GetComponent(c, 0) - 1;
+      EXPECT_GE(middle, cube);
+      EXPECT_LE(middle, cube + 1);
+    }
+  }
+}
+
+TEST(PictureBody, triangles_beside_volume_cells) {
+  VisualMesh mesh = row_of_cubes(1, CellType::hexahedron, false);
+  const int first = static_cast<int>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), {{{3, 0, 0}}, {{5, 0, 0}}, {{3, 1, 0}}});
+  mesh.triangles = {{first, first + 1, first + 2}};
+  mesh.point_fields[0].values.insert(mesh.point_fields[0].values.end(), {0, 0, 0});
+  mesh.part.push_back(0);
+  for (const char* field : {"height", "number", ""}) {
+    const PictureBody body = body_of(mesh, field);
+    EXPECT_EQ(body.surface->GetNumberOfCells(), 7) << field;
+    EXPECT_NEAR(area_of(*body.surface), 7, 1e-12) << field;
+  }
+}
+
+TEST(PictureBody, unknown_field_names_those_there_are) {
+  const std::string e = samples::input_error([] { body_of(row_of_cubes(1, CellType::hexahedron, false), "stress"); });
+  EXPECT_NE(e.find("has no field \"stress\"; it has height, number, part"), std::string::npos) << e;
+}
+
+}  // namespace
+}  // namespace fascia::io
