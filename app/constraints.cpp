@@ -51,6 +51,18 @@ void check_affine_turn(const Simulation& s, int body, const Constraint& c) {
     throw SceneError({{c.place, "turns affine frames about some axes only; let it hold all six axes (remove axes)"}});
 }
 
+/// Vertices have no rotations: all six axes mean their position, a symmetry plane its normal; other rotations would be
+/// lost without a word.
+void check_vertex_rotations(const Simulation& s, int body, const Constraint& c) {
+  const int places = c.fixed[0] + c.fixed[1] + c.fixed[2], turns = c.fixed[3] + c.fixed[4] + c.fixed[5];
+  bool symmetry = places == 1 && turns == 2;
+  for (std::size_t k = 0; k < 3; ++k) symmetry = symmetry && c.fixed[k] != c.fixed[3 + k];
+  if (turns == 0 || (places > 0 && turns == 3) || symmetry) return;
+  throw SceneError({{c.place, fmt::format("holds rotations, which nodes of {} do not have; name \"x\", \"y\" and \"z\" "
+                                          "only (a hinge: hold the position of the nodes on its axis)",
+                                          s.bodies[at(body)].body->model_name())}});
+}
+
 void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<int, Held>& held) {
   if (!moves_positions_only(c)) return;
   const int body = body_index(s, c.body);
@@ -79,11 +91,7 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
     const Body& described = s.scene.bodies[at(body)];
     const bool thin = described.radius || !described.thickness.empty();
     const bool vertices = is_mesh_model(described);
-    if (vertices && !(c.fixed[0] || c.fixed[1] || c.fixed[2]))
-      throw SceneError(
-          {{c.place, fmt::format("holds rotations only, which nodes of {} do not have; fix \"position\", or "
-                                 "two places apart",
-                                 s.bodies[at(body)].body->model_name())}});
+    if (vertices) check_vertex_rotations(s, body, c);
     const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion, places);
     const bool enough = tied > 0 && (thin || c.fixed[0] || c.fixed[1] || c.fixed[2]);
     check_affine_turn(s, body, c);

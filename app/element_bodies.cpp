@@ -30,8 +30,7 @@ ElementMesh mesh_of(const Body& body) {
   const ElementFamily family =
       body.model == BodyModel::tetrahedra ? ElementFamily::tetrahedra : ElementFamily::hexahedra;
   if (const auto* file = std::get_if<FileDomain>(&body.domain))
-    return element_mesh(io::read_mesh(file->path, body.order == 2 ? io::MidNodes::keep : io::MidNodes::drop), family,
-                        body.order);
+    return element_mesh(io::read_mesh(file->path, io::MidNodes::keep), family, body.order);
   const ElementKind kind{family, body.order, body.cells->split};
   if (const auto* box = std::get_if<BoxDomain>(&body.domain))
     return generate_box(box->min, box->max, cells_of<3>(body), kind);
@@ -43,16 +42,24 @@ ElementMesh mesh_of(const Body& body) {
   return generate_ellipsoid(ellipsoid.center, ellipsoid.radii, cells_of<2>(body), kind);
 }
 
-void place(const Transform& transform, std::vector<Vec3d>& nodes) {
-  const Mat3d R =
-      transform.angle != 0 ? rotation_about(normalized(transform.axis), transform.angle) : Mat3d::identity();
-  for (Vec3d& x : nodes) x = R * (x * transform.scale) + transform.translate;
-}
-
 double volume_of(const ElementMesh& mesh) {
   double volume = 0;
   for (std::size_t e = 0; e < mesh.size(); ++e) volume += element_volume(mesh, e);
   return volume;
+}
+
+/// @throws InputError  a translation beside which the elements vanish
+void place(const Transform& transform, ElementMesh& mesh) {
+  const double expected = volume_of(mesh) * std::pow(transform.scale, 3);
+  const Mat3d R =
+      transform.angle != 0 ? rotation_about(normalized(transform.axis), transform.angle) : Mat3d::identity();
+  for (Vec3d& x : mesh.nodes) x = R * (x * transform.scale) + transform.translate;
+  const double volume = volume_of(mesh);
+  if (!(std::abs(volume - expected) <= 1e-6 * expected) || !(volume > 0) || !std::isfinite(volume))
+    throw InputError(
+        fmt::format("rounding changes the volume from {:.6g} to {:.6g} m3 where the transform puts the mesh; "
+                    "use a smaller translate or a scale nearer to 1",
+                    expected, volume));
 }
 
 /// The first entry that selects an element, by its middle or its groups.
@@ -66,11 +73,21 @@ std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body
       return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
                                use.material.stiffness_damping, use.material.law == MaterialLaw::neo_hookean};
     }
-    throw SceneError(
-        {{body.place, fmt::format("no material at ({:.6g}, {:.6g}, {:.6g}); let the last entry of material "
-                                  "have no where",
-                                  X[0], X[1], X[2])}});
+    throw SceneError({{body.materials.back().where.place,
+                       fmt::format("no material at ({:.6g}, {:.6g}, {:.6g}); let the last entry of material "
+                                   "have no where",
+                                   X[0], X[1], X[2])}});
   };
+}
+
+/// Why a material's region holds nothing.
+std::string unused_region(const Region& region, const std::vector<BodyGroup>& groups) {
+  if (!std::holds_alternative<GroupRegion>(region.shape)) return "the region holds no element of the body; enlarge it";
+  std::string names;
+  for (const BodyGroup& g : groups)
+    if (!g.cells.empty()) names += (names.empty() ? "\"" : ", \"") + g.name + "\"";
+  return "the group holds no element of the body; " +
+         (names.empty() ? "the mesh has no groups of volume cells" : "groups of volume cells are " + names);
 }
 
 /// What the blamed key said.
@@ -88,7 +105,7 @@ std::unique_ptr<ModelBody> blaming(const Place& place, const Build& build) {
 std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, PointSetBuilder& points) {
   ElementBodySpec spec;
   spec.mesh = mesh_of(body);
-  place(body.transform, spec.mesh.nodes);
+  place(body.transform, spec.mesh);
   spec.formulation = body.formulation == Formulation::linear         ? ElementFormulation::linear
                      : body.formulation == Formulation::corotational ? ElementFormulation::corotational
                                                                      : ElementFormulation::large_strain;
@@ -98,15 +115,14 @@ std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, Po
   spec.penalty = body.incompressibility;
   spec.density = body.density ? *body.density : *body.mass / volume_of(spec.mesh);
   std::vector<BodyGroup> groups;
-  for (const ElementGroup& g : spec.mesh.groups) groups.push_back({g.name, g.number, g.nodes, g.elements});
+  for (const ElementGroup& g : spec.mesh.groups) groups.push_back({g.name, g.number, g.dimension, g.nodes, g.elements});
   std::vector<bool> used(body.materials.size());
   spec.material = material_of(body, groups, used);
   const Place& place = body.locking == Locking::automatic ? body.place : body.locking_place;
   std::unique_ptr<ModelBody> built =
       blaming(place, [&] { return std::make_unique<ElementBody>(std::move(spec), model, points); });
   for (std::size_t i = 0; i < used.size(); ++i)
-    if (!used[i])
-      throw SceneError({{body.materials[i].where.place, "the region holds no element of the body; enlarge it"}});
+    if (!used[i]) throw SceneError({{body.materials[i].where.place, unused_region(body.materials[i].where, groups)}});
   return built;
 }
 

@@ -96,12 +96,18 @@ std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region)
 /// The frames that `nearest` or `ids` pick, each with the same part.
 std::vector<Share> frame_shares(const Simulation& s, int body, const Region& region) {
   std::vector<Share> shares;
+  const SimulatedBody& b = s.bodies[at(body)];
   for (const int node : select_nodes(s, body, region)) {
-    Attachment frame;
-    frame.nodes = {node};
-    frame.influences.resize(1);
-    frame.influences[0].w = 1;
-    shares.push_back({s.model.rest_position[at(node)], std::move(frame), 1.0, {}, {}});
+    const Vec3d& X = s.model.rest_position[at(node)];
+    Attachment place;
+    if (b.groups() != nullptr) {  // a vertex takes no torque: its element does
+      place = b.body->attach(X);
+    } else {
+      place.nodes = {node};
+      place.influences.resize(1);
+      place.influences[0].w = 1;
+    }
+    shares.push_back({X, std::move(place), 1.0, {}, {}});
   }
   return shares;
 }
@@ -150,11 +156,12 @@ void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, 
   std::map<int, NodeLoad> by_node;
   for (const Share& share : shares) {
     const Attachment& a = share.attachment;
-    FollowerLoad f{schedule, share.force, share.torque, a.nodes, {}, {}};
+    FollowerLoad f{schedule, share.force, share.torque, a.nodes, {}, {}, {}};
     for (std::size_t k = 0; k < a.nodes.size(); ++k) {
       const Influence& i = a.influences[k];
       f.w.push_back(i.w);
       f.b.push_back(i.b);
+      if (s.model.kind(a.nodes[k]) == FrameKind::vertex) f.g.push_back(i.g);
       NodeLoad& n = by_node[a.nodes[k]];
       n.node = a.nodes[k];
       n.force += f.force * i.w;
@@ -180,6 +187,8 @@ void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, 
 void add_node_forces(Simulation& s, int body, const Load& load, int schedule) {
   DeadLoad dead;
   dead.schedule = schedule;
+  if (load.follower && s.bodies[at(body)].groups() != nullptr)
+    throw SceneError({{load.place, "turns with single nodes, which vertices do not; use total_force"}});
   for (const int node : select_nodes(s, body, *load.where)) {
     if (load.follower)
       s.model.followers.push_back({schedule, *load.force_per_node, {}, {node}, {1.0}, {Vec3d{}}});

@@ -61,6 +61,9 @@ void make_picture(const Simulation& s, const fs::path& directory, const std::str
   command.push_back((directory / (name + ".png")).string());
   command.insert(command.end(), {"--view", fmt::format("{},{},{}", p.view[0], p.view[1], p.view[2]), "--size",
                                  fmt::format("{}x{}", p.size[0], p.size[1]), "--field", p.field});
+  const Vec3d& g = s.scene.world.gravity;
+  const bool upright = norm(cross(g, p.view)) > 0.05 * norm(g) * norm(p.view);
+  if (upright) command.push_back(fmt::format("--up={},{},{}", 0 - g[0], 0 - g[1], 0 - g[2]));
   // xvfb-run fails at times while it cleans up, after the picture is written.
   if (run(command) != 0 && !fs::exists(directory / (name + ".png")))
     fmt::print(stderr, "no picture: \"{}\" failed; a display, or xvfb-run (Debian: xvfb, xauth), is needed\n",

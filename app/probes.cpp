@@ -63,7 +63,7 @@ void push_point_value(std::vector<double>& out, Quantity q, const ModelBody& bod
       push(out, p.X + f.u);
       break;
     case Quantity::rotation:
-      push(out, rotation_vector(polar_increment(f.D)));
+      push(out, rotation_vector(polar_increment(body.cells().nodes.empty() ? f.D : f.H)));
       break;
     case Quantity::velocity: {
       Vec3d v;

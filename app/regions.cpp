@@ -62,18 +62,27 @@ namespace {
 void select_group(const Region& region, const std::string& name, const Selectable& from, std::vector<bool>& chosen) {
   if (from.groups == nullptr)
     fail(region, "a meshless body has no mesh groups; select by box, sphere, cylinder or halfspace");
-  bool known = false;
   std::vector<std::string> names;
-  std::vector<char> marked;
+  std::vector<const BodyGroup*> found;  // by name; else by number
   for (const BodyGroup& g : *from.groups) {
     names.push_back("\"" + g.name + "\"");
-    if (g.name != name && std::to_string(g.number) != name) continue;
-    known = true;
-    const std::vector<int>& members = from.cell.empty() ? g.nodes : g.cells;
+    if (g.name == name) found.push_back(&g);
+  }
+  if (found.empty())
+    for (const BodyGroup& g : *from.groups)
+      if (std::to_string(g.number) == name) found.push_back(&g);
+  std::vector<char> marked;
+  for (const BodyGroup* g : found) {
+    const std::vector<int>& members = from.cell.empty() ? g->nodes : g->cells;
     if (!members.empty()) marked.resize(std::max(marked.size(), at(members.back()) + 1));
     for (const int member : members) marked[at(member)] = 1;
   }
-  if (!known)
+  constexpr const char* kinds[] = {"of points", "of lines", "of surfaces", "of volumes"};
+  if (from.cell.empty() && found.size() > 1)
+    fail(region,
+         fmt::format("\"{}\" means group \"{}\" {} and group \"{}\" {}; name one that is alone, or rename one", name,
+                     found[0]->name, kinds[found[0]->dimension], found[1]->name, kinds[found[1]->dimension]));
+  if (found.empty())
     fail(region, names.empty() ? "the mesh has no groups; select by box, sphere, cylinder or halfspace"
                                : fmt::format("the mesh has no group \"{}\"; it has {}", name, fmt::join(names, ", ")));
   for (std::size_t i = 0; i < chosen.size(); ++i) {

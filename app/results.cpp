@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <type_traits>
 
 namespace fascia::app {
 
@@ -18,7 +20,6 @@ using Clock = std::chrono::steady_clock;
 struct PointValue {
   Vec3d rest{}, u{}, rotation{};
   Mat3d axes = Mat3d::identity();
-  PointTensors tensors{};
 };
 
 double von_mises(const Mat3d& s) {
@@ -60,8 +61,9 @@ BodyTensors tensors(const ModelBody& body, const State& state) {
 }
 
 /// Means over the points of each cell, weighted with volume.
-std::vector<PointTensors> cell_means(const ModelBody& body, const std::vector<PointTensors>& points) {
+std::vector<PointTensors> cell_means(const ModelBody& body, std::vector<PointTensors> points) {
   std::vector<PointTensors> cells(body.cells().nodes.size() / at(body.cells().nodes_per_cell));
+  if (cells.size() == points.size()) return points;
   std::vector<double> volume(cells.size());
   for (std::size_t q = 0; q < points.size(); ++q) volume[at(body.points()[q].cell)] += body.points()[q].volume;
   for (std::size_t q = 0; q < points.size(); ++q) {
@@ -71,36 +73,40 @@ std::vector<PointTensors> cell_means(const ModelBody& body, const std::vector<Po
   return cells;
 }
 
-void add_fields(std::vector<io::FieldArray>& fields, const std::vector<PointValue>& values,
-                const std::vector<std::string>& names) {
-  const auto add = [&](const char* name, int components, const auto& fill) {
-    io::FieldArray array{name, components, {}};
-    array.values.reserve(values.size() * at(components));
-    for (const PointValue& v : values) fill(v, array.values);
-    fields.push_back(std::move(array));
-  };
-  const auto push = [](std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); };
-  const auto push_matrix = [&](std::vector<double>& out, const Mat3d& m) {
-    for (int i = 0; i < 3; ++i) push(out, m.row(i));
-  };
-  for (const std::string& name : names) {
-    if (name == "rest_position") add("rest_position", 3, [&](const PointValue& v, auto& out) { push(out, v.rest); });
-    if (name == "displacement") add("displacement", 3, [&](const PointValue& v, auto& out) { push(out, v.u); });
-    if (name == "rotation") {
-      add("rotation", 3, [&](const PointValue& v, auto& out) { push(out, v.rotation); });
-      for (int a = 0; a < 3; ++a) {
-        const std::string axis = std::string("axis_") + "xyz"[a];
-        add(axis.c_str(), 3, [&](const PointValue& v, auto& out) { push(out, v.axes.column(a)); });
-      }
-    }
-    if (name == "strain") add("strain", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.tensors.strain); });
-    if (name == "stress") add("stress", 9, [&](const PointValue& v, auto& out) { push_matrix(out, v.tensors.stress); });
-    if (name == "von_mises")
-      add("von_mises", 1, [&](const PointValue& v, auto& out) { out.push_back(von_mises(v.tensors.stress)); });
-    if (name == "energy_density")
-      add("energy_density", 1, [&](const PointValue& v, auto& out) { out.push_back(v.tensors.energy_density); });
+/// Collects arrays of values of one place each.
+class FieldWriter {
+ public:
+  FieldWriter(std::vector<io::FieldArray>& fields, std::size_t count) : fields_(fields), count_(count) {}
+
+  /// @param value  of a place: a number, a vector, or a matrix by rows
+  template <class Value>
+  void add(const std::string& name, const Value& value) {
+    using T = decltype(value(std::size_t{0}));
+    io::FieldArray array{name, std::is_same_v<T, double> ? 1 : std::is_same_v<T, Vec3d> ? 3 : 9, {}};
+    array.values.reserve(count_ * at(array.components));
+    for (std::size_t i = 0; i < count_; ++i) push(array.values, value(i));
+    fields_.push_back(std::move(array));
   }
-}
+
+  /// One of the fields that follow from tensors; false for another name.
+  bool add_tensor_field(const std::string& name, const std::vector<PointTensors>& t) {
+    if (name == "strain") add(name, [&](std::size_t i) { return t[i].strain; });
+    if (name == "stress") add(name, [&](std::size_t i) { return t[i].stress; });
+    if (name == "von_mises") add(name, [&](std::size_t i) { return von_mises(t[i].stress); });
+    if (name == "energy_density") add(name, [&](std::size_t i) { return t[i].energy_density; });
+    return name == "strain" || name == "stress" || name == "von_mises" || name == "energy_density";
+  }
+
+ private:
+  static void push(std::vector<double>& out, double v) { out.push_back(v); }
+  static void push(std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); }
+  static void push(std::vector<double>& out, const Mat3d& m) {
+    for (int i = 0; i < 3; ++i) push(out, m.row(i));
+  }
+
+  std::vector<io::FieldArray>& fields_;
+  std::size_t count_;
+};
 
 }  // namespace
 
@@ -133,61 +139,57 @@ void ResultFiles::add_probes(double time, const Snapshot& snap) {
 /// Volume cells on the nodes, with tensors by cell and averaged at the nodes.
 io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) const {
   const ModelBody& body = *b.body;
-  const BodyTensors t = tensors(body, state);
-  std::vector<PointValue> values;
+  const auto first = at(body.first_node());
   io::VisualMesh mesh;
-  for (std::size_t i = 0; i < b.nodes.size(); ++i) {
-    values.push_back({b.nodes[i], state.u[at(body.first_node()) + i], {}, {}, t.nodes[i]});
-    mesh.points.push_back(values.back().rest + values.back().u);
-  }
+  for (std::size_t i = 0; i < b.nodes.size(); ++i) mesh.points.push_back(b.nodes[i] + state.u[first + i]);
   const BodyCells& cells = body.cells();
-  const bool quadratic = cells.nodes_per_cell > node_count(cells.type);
-  mesh.volumes.push_back({cells.type, quadratic, cells.nodes});
-  std::vector<std::string> of_nodes{"rest_position"}, of_cells;
-  for (const std::string& name : simulation_.scene.output.fields) {
-    if (name == "rotation") continue;  // nodes have none
-    of_nodes.push_back(name);
-    if (name != "displacement") of_cells.push_back(name);
+  mesh.volumes.push_back({cells.type, cells.nodes_per_cell > node_count(cells.type), cells.nodes});
+  const std::vector<std::string>& names = simulation_.scene.output.fields;
+  FieldWriter of_nodes(mesh.point_fields, b.nodes.size());
+  of_nodes.add("rest_position", [&](std::size_t i) { return b.nodes[i]; });
+  const bool tensor_fields = std::any_of(
+      names.begin(), names.end(), [](const std::string& name) { return name != "displacement" && name != "rotation"; });
+  BodyTensors t = tensor_fields ? tensors(body, state) : BodyTensors{};
+  const std::vector<PointTensors> means =
+      tensor_fields ? cell_means(body, std::move(t.points)) : std::vector<PointTensors>{};
+  FieldWriter of_cells(mesh.cell_fields, means.size());
+  for (const std::string& name : names) {
+    if (name == "displacement") of_nodes.add(name, [&](std::size_t i) { return state.u[first + i]; });
+    if (tensor_fields && of_nodes.add_tensor_field(name, t.nodes)) of_cells.add_tensor_field(name, means);
   }
-  add_fields(mesh.point_fields, values, of_nodes);
-  std::vector<PointValue> means;
-  for (const PointTensors& mean : cell_means(body, t.points)) means.push_back({{}, {}, {}, {}, mean});
-  add_fields(mesh.cell_fields, means, of_cells);
   return mesh;
 }
 
+/// The surface or lines that a meshless body carries, its frames and its points.
 io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) const {
   if (b.groups() != nullptr) return visual_mesh(b, state);
   const ModelBody& body = *b.body;
   const BodyTensors t = tensors(body, state);
   const std::vector<Attachment>& surface = surface_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
   std::vector<PointValue> values;
-  const auto at_field = [&](const Vec3d& X, const Attachment& a) {
+  std::vector<PointTensors> tensors_of_values;
+  const auto add_field_value = [&](const Vec3d& X, const Attachment& a, const PointTensors& tensors_there) {
     const FieldValue f = field_at(a, state);
     const Mat3d D = polar_increment(f.D);
-    return PointValue{X, f.u, rotation_vector(D), Mat3d::identity() + D, {}};
+    values.push_back({X, f.u, rotation_vector(D), Mat3d::identity() + D});
+    tensors_of_values.push_back(tensors_there);
   };
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    PointValue v = at_field(body.surface().points[i], surface[i]);
-    for (std::size_t k = 0; k < surface[i].nodes.size(); ++k) {
-      const std::size_t frame = at(surface[i].nodes[k] - body.first_node());
-      const double w = surface[i].influences[k].w;
-      add_share(v.tensors, t.nodes[frame], w);
-    }
-    values.push_back(v);
+    PointTensors mean;
+    for (std::size_t k = 0; k < surface[i].nodes.size(); ++k)
+      add_share(mean, t.nodes[at(surface[i].nodes[k] - body.first_node())], surface[i].influences[k].w);
+    add_field_value(body.surface().points[i], surface[i], mean);
   }
   for (int i = 0; i < body.node_count(); ++i) {
     const auto node = at(body.first_node() + i);
     const Mat3d turn =
         simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node] : polar_increment(state.D[node]);
     values.push_back({b.nodes[at(i)], state.u[node], rotation_vector(turn),
-                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node], t.nodes[at(i)]});
+                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node]});
+    tensors_of_values.push_back(t.nodes[at(i)]);
   }
-  for (std::size_t q = 0; q < body.points().size(); ++q) {
-    PointValue v = at_field(body.points()[q].X, body.attach_point(q));
-    v.tensors = t.points[q];
-    values.push_back(v);
-  }
+  for (std::size_t q = 0; q < body.points().size(); ++q)
+    add_field_value(body.points()[q].X, body.attach_point(q), t.points[q]);
   io::VisualMesh mesh;
   for (const PointValue& v : values) mesh.points.push_back(v.rest + v.u);
   mesh.triangles = body.surface().triangles;
@@ -197,9 +199,17 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
     mesh.vertices.push_back(static_cast<int>(i));
     mesh.part.push_back(i < surface.size() + b.nodes.size() ? 1 : 2);
   }
-  std::vector<std::string> names = simulation_.scene.output.fields;
-  names.insert(names.begin(), "rest_position");
-  add_fields(mesh.point_fields, values, names);
+  FieldWriter fields(mesh.point_fields, values.size());
+  fields.add("rest_position", [&](std::size_t i) { return values[i].rest; });
+  for (const std::string& name : simulation_.scene.output.fields) {
+    if (name == "displacement") fields.add(name, [&](std::size_t i) { return values[i].u; });
+    if (name == "rotation") {
+      fields.add(name, [&](std::size_t i) { return values[i].rotation; });
+      for (int a = 0; a < 3; ++a)
+        fields.add(std::string("axis_") + "xyz"[a], [&, a](std::size_t i) { return values[i].axes.column(a); });
+    }
+    fields.add_tensor_field(name, tensors_of_values);
+  }
   return mesh;
 }
 

@@ -93,7 +93,7 @@ class SaveRule {
  public:
   SaveRule(const Output& output, bool statics)
       : every_(output.every), every_steps_(output.every_steps), statics_(statics) {
-    if (!statics && every_ == 0 && every_steps_ == 0) every_ = 0.04;
+    if (!statics && every_ == 0 && every_steps_ == 0) every_ = kDefaultEvery;
   }
   bool save(const StepInfo& step) {
     if (step.progress >= 1) return true;
@@ -234,7 +234,7 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
       state.u[at(i)] = Vec3d{{d[0], d[1], d[2]}} * scale;
       const bool rigid = dofs.kind(i) == FrameKind::rigid;
       state.D[at(i)] = rigid ? rotation_increment(Vec3d{{d[3], d[4], d[5]}} * scale)
-                             : frame_variation(FrameKind::affine, d + 3, {}) * scale;
+                             : frame_variation(dofs.kind(i), d + 3, {}) * scale;
     }
     const auto number = static_cast<double>(m + 1);
     files.add_probes(number, {&state, nullptr, modes.frequency[m]});

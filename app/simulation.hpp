@@ -76,6 +76,9 @@ double estimated_memory(const Scene& scene);
 /// The same from the built model, closer: a run's peak [bytes].
 double model_memory(const Simulation& simulation);
 
+/// Time between saved states of a dynamic run that names none [s].
+inline constexpr double kDefaultEvery = 0.04;
+
 /// Of central differences: the largest time step that is stable at the start [s], into Simulation::stable_step; an
 /// automatic step takes it, with as many steps as the duration needs.
 /// @throws SceneError  where time_step is larger

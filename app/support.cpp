@@ -100,8 +100,8 @@ void check_support(const Simulation& s) {
           {s.scene.bodies[b].place,
            fmt::format("nothing holds {} in a static solve ({}); add a constraint, or use kind = \"implicit-euler\"",
                        whole ? "this body"
-                             : fmt::format("its part of {} frames around ({:.4g}, {:.4g}, {:.4g})", count, center[0],
-                                           center[1], center[2]),
+                             : fmt::format("its part of {} {}s around ({:.4g}, {:.4g}, {:.4g})", count,
+                                           s.bodies[b].node_word(), center[0], center[1], center[2]),
                        free)});
     }
   }

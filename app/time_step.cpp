@@ -20,6 +20,20 @@ std::string limit_of(const Simulation& s) {
   return fmt::format("; its element {} limits it", s.bodies[0].body->fastest_cell());
 }
 
+/// With four digits, never more than it is.
+std::string rounded_down(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3);
+  return fmt::format("{:.4g}", std::floor(value / unit * (1 + 1e-12)) * unit);
+}
+
+/// Time between saved states that a step should divide [s]; 0: none.
+double saving_time(const Scene& scene) {
+  if (scene.output.every_steps > 0) return 0;
+  const double every = scene.output.every > 0 ? scene.output.every : kDefaultEvery;
+  const double count = *scene.solver.duration / every;
+  return std::abs(count - std::round(count)) < 1e-9 * count && count >= 1 ? every : 0;
+}
+
 }  // namespace
 
 void settle_time_step(Simulation& s, MechanicalSystem& system) {
@@ -33,11 +47,12 @@ void settle_time_step(Simulation& s, MechanicalSystem& system) {
   if (!solver.time_step_automatic) {
     if (solver.time_step <= s.stable_step * (1 + 1e-9)) return;
     throw SceneError(
-        {{solver.time_step_place, fmt::format("{:.4g} s is above the stable step, {:.4g} s{}; use that or \"auto\", "
+        {{solver.time_step_place, fmt::format("{:.4g} s is above the stable step, {} s{}; use that or \"auto\", "
                                               "a coarser mesh, or an implicit kind",
-                                              solver.time_step, s.stable_step, limit_of(s))}});
+                                              solver.time_step, rounded_down(s.stable_step), limit_of(s))}});
   }
-  const double steps = std::max(1.0, std::ceil(*solver.duration / s.stable_step));
+  const double part = saving_time(s.scene) > 0 ? saving_time(s.scene) : *solver.duration;
+  const double steps = std::round(*solver.duration / part) * std::max(1.0, std::ceil(part / s.stable_step));
   if (!(steps <= kMostSteps))
     throw SceneError(
         {{solver.time_step_place, fmt::format("the stable time step is {:.4g} s{}: {:.3g} steps, at most {:.0g}; use "

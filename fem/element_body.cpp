@@ -67,6 +67,7 @@ ElementBody::ElementBody(ElementBodySpec spec, Model& model, PointSetBuilder& po
   add_points(spec);
   add_elements(spec, points);
   add_mass(spec, model);
+  material_ = {};
   describe();
 }
 
@@ -77,7 +78,8 @@ std::string ElementBody::model_name() const {
 ElementLaw ElementBody::law(int element) const {
   if (formulation_ == ElementFormulation::linear) return ElementLaw::linear;
   if (formulation_ == ElementFormulation::corotational) return ElementLaw::corotational;
-  return material_[at(element)].neo_hookean ? ElementLaw::neo_hookean : ElementLaw::st_venant_kirchhoff;
+  const std::size_t first = at(element) * (points_.size() / mesh().size());
+  return points_[first].law == Law::neo_hookean ? ElementLaw::neo_hookean : ElementLaw::st_venant_kirchhoff;
 }
 
 void ElementBody::choose_formulation(const ElementBodySpec& spec) {
@@ -118,7 +120,7 @@ void ElementBody::number_nodes(Model& model) {
       high[a] = std::max(high[a], x[a]);
     }
   size_ = norm(high - low);
-  for (const ElementGroup& g : mesh().groups) groups_.push_back({g.name, g.number, g.nodes, g.elements});
+  for (const ElementGroup& g : mesh().groups) groups_.push_back({g.name, g.number, g.dimension, g.nodes, g.elements});
   cells_.type = family_of(mesh().shape) == ElementFamily::tetrahedra ? CellType::tetrahedron : CellType::hexahedron;
   cells_.nodes_per_cell = fascia::node_count(mesh().shape);
   cells_.nodes = mesh().element_nodes;
@@ -161,6 +163,11 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
     block.nodes = fascia::node_count(mesh().shape);
     block.points = static_cast<int>(rule.size());
     block.length = length;
+    const std::size_t n = chosen.size(), per_point = at(block.nodes);
+    block.node.reserve(n * per_point);
+    block.gradient.reserve(n * rule.size() * per_point);
+    block.volume.reserve(n * rule.size());
+    block.material.reserve(n);
     for (const std::size_t e : ordered(mesh(), chosen)) {
       for (const int node : mesh().element(e)) block.node.push_back(first_node_ + node);
       for (const QuadraturePoint& q : rule) {

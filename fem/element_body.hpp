@@ -68,7 +68,7 @@ class ElementBody final : public ModelBody {
 
   ElementLocator locator_;
   ElementFormulation formulation_;
-  std::vector<PointMaterialSpec> material_;  ///< of each element
+  std::vector<PointMaterialSpec> material_;  ///< of each element, while the body is built
   bool averaged_ = false;
   double penalty_ = 0;
   std::vector<char> on_boundary_;

@@ -69,10 +69,11 @@ std::vector<double> ElementBody::pressures(const State& state) const {
   std::vector<double> theta(mesh().nodes.size()), lambda(theta.size()), volume(theta.size()), result;
   for (std::size_t e = 0; e < mesh().size(); ++e) {
     const Mat3d H = field_at(attach_point(e), state).H;
-    const double strain = material_[e].neo_hookean ? NeoHookean<double>::log_volume(H) : trace(green_strain(H));
+    const double strain =
+        points_[e].law == Law::neo_hookean ? NeoHookean<double>::log_volume(H) : trace(green_strain(H));
     for (const int node : mesh().element(e)) {
       theta[at(node)] += strain * points_[e].volume;
-      lambda[at(node)] += material_[e].lambda * points_[e].volume;
+      lambda[at(node)] += points_[e].lambda * points_[e].volume;
       volume[at(node)] += points_[e].volume;
     }
   }
@@ -105,7 +106,7 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const St
   } else {
     const Mat3d F = Mat3d::identity() + H;
     Mat3d S;
-    if (material_[at(p.cell)].neo_hookean) {
+    if (p.law == Law::neo_hookean) {
       const NeoHookean<double> neo{p.lambda, p.mu};
       const double swelling = NeoHookean<double>::log_volume(H);
       S = neo.second_piola(t.strain, NeoHookean<double>::inverse_right_cauchy_green(H),

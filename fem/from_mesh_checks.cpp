@@ -176,14 +176,17 @@ void check_folds(const ElementMesh& mesh) {
   std::vector<std::int64_t> folded;
   for (std::size_t e = 0; e < mesh.size(); ++e) {
     const double length = longest_edge(mesh, e);
-    if (!(jacobians.least_jacobian(mesh, e) > least_jacobian * length * length * length))
-      folded.push_back(mesh.element_number[e]);
+    bool sound = jacobians.least_jacobian(mesh, e) > least_jacobian * length * length * length;
+    if (order_of(mesh.shape) == 2)
+      for (const Vec3d& corner : reference_corners(family_of(mesh.shape)))
+        sound = sound && shape_at(mesh, e, corner).det_J > 0;
+    if (!sound) folded.push_back(mesh.element_number[e]);
   }
   if (folded.empty()) return;
   const bool curved = order_of(mesh.shape) == 2;
   fail(mesh.file, std::string(folded.size() > 1 ? "elements " : "element ") + first_few(folded) +
                       (folded.size() > 1 ? " are" : " is") +
-                      " folded (the volume turns over at an integration point); " +
+                      " folded (the volume turns over at an integration point or a corner); " +
                       (curved ? "move their middle nodes towards the middle of their edges or use order = 1"
                               : "correct the order of their nodes or mesh again"));
 }

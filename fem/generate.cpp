@@ -20,6 +20,13 @@ constexpr std::array<Tetrahedron, 6> six{
 constexpr std::array<Tetrahedron, 5> five_even{{{0, 1, 2, 5}, {0, 2, 3, 7}, {0, 5, 7, 4}, {2, 7, 5, 6}, {0, 2, 7, 5}}};
 constexpr std::array<Tetrahedron, 5> five_odd{{{1, 2, 3, 6}, {0, 1, 3, 4}, {1, 6, 4, 5}, {3, 4, 6, 7}, {1, 3, 4, 6}}};
 
+/// The corner that takes the place of a corner in a mirrored hexahedron.
+int mirrored(int corner, const std::array<bool, 3>& along) {
+  constexpr std::array<int, 8> bits{0, 1, 3, 2, 4, 5, 7, 6};  // of x, y, z; the table is its own inverse
+  const int flip = (along[0] ? 1 : 0) + (along[1] ? 2 : 0) + (along[2] ? 4 : 0);
+  return bits[at(bits[at(corner)] ^ flip)];
+}
+
 /// Cells of a structured grid whose nodes run x fastest, then y, then z.
 template <class Place>
 HexahedronGrid structured_grid(const std::array<int, 3>& cells, Place&& place) {
@@ -38,7 +45,7 @@ HexahedronGrid structured_grid(const std::array<int, 3>& cells, Place&& place) {
           cell[c + 4] = node(i + di, j + dj, k + 1);
         }
         grid.cells.push_back(cell);
-        grid.odd.push_back(static_cast<char>((i + j + k) % 2));
+        grid.parity.push_back({i % 2 != 0, j % 2 != 0, k % 2 != 0});
       }
   return grid;
 }
@@ -86,7 +93,7 @@ ElementMesh generate_parts::elements_of(const HexahedronGrid& grid, const Elemen
   ElementMesh mesh;
   mesh.shape = element_shape(kind.family, 1);
   mesh.nodes = grid.nodes;
-  if (kind.family == ElementFamily::tetrahedra && kind.split == 5 && grid.odd.empty())
+  if (kind.family == ElementFamily::tetrahedra && kind.split == 5 && grid.parity.empty())
     throw InputError("cells around a core cannot be split into 5 tetrahedra that match; use 6");
   for (std::size_t c = 0; c < grid.cells.size(); ++c) {
     const std::array<int, 8>& cell = grid.cells[c];
@@ -94,10 +101,19 @@ ElementMesh generate_parts::elements_of(const HexahedronGrid& grid, const Elemen
       mesh.element_nodes.insert(mesh.element_nodes.end(), cell.begin(), cell.end());
       continue;
     }
-    std::span<const Tetrahedron> parts = six;
-    if (kind.split == 5) parts = grid.odd[c] ? five_odd : five_even;
-    for (const Tetrahedron& part : parts)
-      for (const int n : part) mesh.element_nodes.push_back(cell[at(n)]);
+    const std::array<bool, 3> parity = grid.parity.empty() ? std::array<bool, 3>{} : grid.parity[c];
+    const bool odd = parity[0] != (parity[1] != parity[2]);
+    if (kind.split == 5) {
+      for (const Tetrahedron& part : odd ? five_odd : five_even)
+        for (const int n : part) mesh.element_nodes.push_back(cell[at(n)]);
+      continue;
+    }
+    for (const Tetrahedron& part : six) {
+      Tetrahedron nodes;
+      for (std::size_t n = 0; n < 4; ++n) nodes[n] = cell[at(mirrored(part[n], parity))];
+      if (odd) std::swap(nodes[2], nodes[3]);
+      mesh.element_nodes.insert(mesh.element_nodes.end(), nodes.begin(), nodes.end());
+    }
   }
   mesh.node_number.resize(mesh.nodes.size());
   std::iota(mesh.node_number.begin(), mesh.node_number.end(), 1);

@@ -9,8 +9,9 @@ namespace fascia {
 struct ElementKind {
   ElementFamily family = ElementFamily::hexahedra;
   int order = 1;  ///< 1 or 2: nodes in the middle of edges; on curved surfaces they lie on the true surface
-  /// Tetrahedra a hexahedron: 6 around its diagonal from node 0 to node 6, or 5 with the corner ones mirrored from cell
-  /// to cell. Faces of neighbours match in both.
+  /// Tetrahedra a hexahedron: 6 around its main diagonal, or 5 with four at corners. Boxes and blocks are mirrored from
+  /// cell to cell, so that no direction is favoured; cells around a core all have the diagonal from node 0 to node 6.
+  /// Faces of neighbours match in both.
   int split = 6;
 };
 

@@ -10,11 +10,11 @@
 namespace fascia::generate_parts {
 
 /// Hexahedra whose diagonal from node 0 to node 6 runs from the least to the greatest of three directions in which all
-/// neighbours agree.
+/// neighbours agree; those of a grid with parity may be mirrored from cell to cell.
 struct HexahedronGrid {
   std::vector<Vec3d> nodes;
   std::vector<std::array<int, 8>> cells;
-  std::vector<char> odd;  ///< of each cell: mirrored where split in five; empty where that cannot be
+  std::vector<std::array<bool, 3>> parity;  ///< of each cell, along x, y, z: odd ones are mirrored; or empty
 };
 
 /// @throws InputError  an order other than 1 and 2, a split other than 5 and 6

@@ -115,9 +115,14 @@ void add_field(vtkFieldData& data, const FieldArray& field, std::size_t count) {
   vtkNew<vtkDoubleArray> array;
   array->SetName(field.name.c_str());
   array->SetNumberOfComponents(field.components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(count));
-  array->Fill(0);
-  for (std::size_t i = 0; i < field.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), field.values[i]);
+  const auto size = static_cast<vtkIdType>(count) * field.components;
+  if (static_cast<std::size_t>(size) == field.values.size()) {  // as it is; VTK only reads it
+    array->SetArray(const_cast<double*>(field.values.data()), size, 1);
+  } else {
+    array->SetNumberOfTuples(static_cast<vtkIdType>(count));
+    array->Fill(0);
+    for (std::size_t i = 0; i < field.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), field.values[i]);
+  }
   data.AddArray(array);
 }
 

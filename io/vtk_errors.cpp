@@ -5,6 +5,7 @@
 #include <vtkOutputWindow.h>
 
 #include <cctype>
+#include <string_view>
 
 namespace fascia::io {
 namespace {
@@ -25,7 +26,8 @@ class FirstErrorWindow : public vtkOutputWindow {
 
  private:
   void keep(const char* text) {
-    if (first_.empty()) first_ = text;
+    const std::string_view message(text);
+    if (first_.empty() && !message.starts_with("Generic Warning")) first_ = message;
   }
 
   std::string first_;
@@ -55,6 +57,11 @@ std::string VtkErrors::first() const {
     if (line.size() >= 200) break;
   }
   while (!line.empty() && line.back() == ' ') line.pop_back();
+  // Addresses differ from run to run.
+  for (std::size_t at = line.find("(0x"); at != std::string::npos; at = line.find("(0x")) {
+    const std::size_t close = line.find(')', at);
+    line.erase(at, close == std::string::npos ? close : close - at + 1);
+  }
   return line;
 }
 

@@ -49,7 +49,9 @@ void CloudBody::split_points(const CloudSpec& spec) {
     const PointMaterialSpec m = spec.material(p.place.X);
     const auto add = [&](const Vec3d& offset, double part, Law law) {
       point_places_.push_back({place, offset});
-      points_.push_back({p.place.X + offset, p.volume * part, m.lambda, m.mu, p.place.X, law, T, spec.affine});
+      const int axes = is_solid(law) ? -1 : static_cast<int>(axes_.size());
+      points_.push_back({p.place.X + offset, p.volume * part, m.lambda, m.mu, p.place.X, law, spec.affine, axes});
+      if (axes >= 0) axes_.push_back(T);
     };
     if (p.place.dimension == 3 || spec.through == 1) {
       add({}, 1, m.neo_hookean ? Law::neo_hookean : Law::solid);

@@ -95,8 +95,14 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
     const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine);
     const double stabilization = none ? 0.0 : spec.stabilization * p.mu;
-    PointSample s{p.X, p.volume, lame.lambda, lame.mu, stabilization, spec.material(p.middle).stiffness_damping,
-                  {},  p.axes};
+    PointSample s{p.X,
+                  p.volume,
+                  lame.lambda,
+                  lame.mu,
+                  stabilization,
+                  spec.material(p.middle).stiffness_damping,
+                  {},
+                  p.axes < 0 ? Mat3d{} : axes_[at(p.axes)]};
     const Attachment& a = attachments[q];
     for (const int node : nodes) {
       const auto k = std::lower_bound(a.nodes.begin(), a.nodes.end(), node) - a.nodes.begin();

@@ -56,7 +56,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       Attachment a = attach_local(s.x, s.cell, weights_ == GridWeightKind::linear ? &s.tetrahedron : nullptr);
       const PointMaterialSpec& m = materials[q];
       const Vec3d X = to_world(s.x);
-      points_.push_back({X, s.volume, m.lambda, m.mu, X, law_of(m), Mat3d::identity()});
+      points_.push_back({X, s.volume, m.lambda, m.mu, X, law_of(m)});
       point_cells_.push_back({a.cell, s.tetrahedron});
       points.push_back({X,
                         s.volume,

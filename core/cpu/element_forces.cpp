@@ -34,7 +34,7 @@ Lanes squared(const Mat3<Lanes>& m) { return contract(m, m); }
 /// and passes through the stiffness.
 Lanes rounding_of(const Mat3<Lanes>& H, const Mat3<Lanes>& P, const ElementMaterial<Lanes>& m, const Lanes& v,
                   const Lanes& squared_gradient, double motion) {
-  const Lanes stiffness = v * (m.lambda + m.mu * Lanes(2.0)), strain = squared(H);
+  const Lanes stiffness = v * (m.lambda + m.mu * Lanes(2.0)) * (Lanes(1.0) + m.viscosity), strain = squared(H);
   const Lanes moved = squared_gradient * Lanes(motion * motion);
   return squared_gradient * (v * v * squared(P) + stiffness * stiffness * (strain + moved) * (Lanes(1.0) + strain));
 }

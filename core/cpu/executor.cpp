@@ -106,7 +106,7 @@ void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& his
     if (is_tether(m)) tether += lane_sum(squared(P[b]));
     // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
     const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
-    const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0));
+    const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0)) * (Lanes(1.0) + m.viscosity);
     const Lanes strain = is_tether(m) ? Lanes{} : squared(x.H);  // a tether's H is a displacement
     rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
                                                         (Lanes(1.0) + strain)));

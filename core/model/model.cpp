@@ -23,6 +23,10 @@ int Model::constrained_dof_count() const {
   return count;
 }
 
+bool Model::has_frames() const {
+  return std::any_of(frame_kind.begin(), frame_kind.end(), [](FrameKind kind) { return kind != FrameKind::vertex; });
+}
+
 bool Model::loads_are_conservative() const {
   const auto has_torque = [](const DeadLoad& load) {
     return std::any_of(load.nodes.begin(), load.nodes.end(),
@@ -35,9 +39,8 @@ State State::at_rest(const Model& model) {
   const auto n = static_cast<std::size_t>(model.node_count());
   State state;
   state.u.resize(n);
-  state.D.resize(n);
+  state.D = state.Q_dot = FrameMatrices(n, model.has_frames());
   state.v.resize(n);
-  state.Q_dot.resize(n);
   state.turned.resize(model.constraints.size());
   return state;
 }

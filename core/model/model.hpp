@@ -2,6 +2,7 @@
 
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/model/frame_matrices.hpp"
 #include "core/model/point_set.hpp"
 
 #include <array>
@@ -37,13 +38,15 @@ struct DeadLoad {
   std::vector<NodeLoad> nodes;
 };
 
-/// A force and a torque at a material point that turn with the blended rotation Σ w Q there.
+/// A force and a torque at a material point that turn with the blended rotation Σ w Q there; among vertices, with the
+/// rotation in F = I + Σ u gᵀ, where the torque acts through the spin of F.
 struct FollowerLoad {
   int schedule = 0;
   Vec3d force{}, torque{};  ///< at rest [N], [N m]
   std::vector<int> nodes;
   std::vector<double> w;
   std::vector<Vec3d> b;
+  std::vector<Vec3d> g{};  ///< vertices only
 };
 
 /// What holds a frame: the first `translations` rows of `translation_axes` (and likewise rotations) are prescribed.
@@ -100,6 +103,7 @@ struct Model {
   int dof_count() const { return points.dofs.total(); }
   int constrained_dof_count() const;
   FrameKind kind(int node) const { return frame_kind[at(node)]; }
+  bool has_frames() const;  ///< nodes that turn
   /// Loads have a potential: no torque that keeps its direction in space, no follower.
   bool loads_are_conservative() const;
 };
@@ -107,9 +111,9 @@ struct Model {
 /// Where everything is, and how fast. Rotations as D = Q − I, with Q = R R_restᵀ; of an affine frame, D = A − I.
 struct State {
   std::vector<Vec3d> u;                       ///< displacement [m]
-  std::vector<Mat3d> D;                       ///< Q − I, A − I
+  FrameMatrices D;                            ///< Q − I, A − I
   std::vector<Vec3d> v;                       ///< du/dt [m/s]
-  std::vector<Mat3d> Q_dot;                   ///< dQ/dt [1/s]
+  FrameMatrices Q_dot;                        ///< dQ/dt [1/s]
   std::vector<std::array<double, 3>> turned;  ///< of each constraint: rotation done about its axes [rad]
   double time = 0;                            ///< [s]; in statics the load factor
 
@@ -119,11 +123,18 @@ struct State {
 /// Calls act(node, force, couple, torque) for each frame of a follower: turned with the rotation in Σ w Q, and scaled.
 template <class Act>
 void for_each_share(const FollowerLoad& load, const State& state, double factor, const Act& act) {
+  const bool vertices = !load.g.empty();
   Mat3d D;
-  for (std::size_t k = 0; k < load.nodes.size(); ++k) D += state.D[at(load.nodes[k])] * load.w[k];
-  const Mat3d Q = Mat3d::identity() + polar_increment(D);
+  for (std::size_t k = 0; k < load.nodes.size(); ++k)
+    D += vertices ? outer(state.u[at(load.nodes[k])], load.g[k]) : state.D[at(load.nodes[k])] * load.w[k];
+  const Mat3d F = Mat3d::identity() + D, Q = Mat3d::identity() + polar_increment(D);
   const Vec3d force = Q * load.force * factor, torque = Q * load.torque * factor;
+  const Mat3d couple = vertices ? skew(torque) * transpose(inverse(F)) * 0.5 : Mat3d{};
   for (std::size_t k = 0; k < load.nodes.size(); ++k) {
+    if (vertices) {
+      act(load.nodes[k], force * load.w[k] + couple * load.g[k], Mat3d{}, Vec3d{});
+      continue;
+    }
     act(load.nodes[k], force * load.w[k], outer(force, load.b[k]), torque * load.w[k]);
   }
 }

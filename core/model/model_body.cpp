@@ -7,14 +7,14 @@ namespace fascia {
 namespace {
 
 /// The point's material as the mechanics use it, without stabilisation and damping.
-ThinMaterial<double> stress_material(const BodyPoint& p) {
+ThinMaterial<double> stress_material(const BodyPoint& p, const Mat3d& axes) {
   const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
   ThinMaterial<double> m{};
   m.volume = p.volume;
   m.lambda = lame.lambda;
   m.mu = lame.mu;
   m.law = p.law;
-  m.axes = p.axes;
+  m.axes = axes;
   m.transverse = p.transverse;
   return m;
 }
@@ -22,10 +22,10 @@ ThinMaterial<double> stress_material(const BodyPoint& p) {
 Mat3d cauchy(const Mat3d& F, const Mat3d& S) { return times_transpose(F * S, F) * (1 / determinant(F)); }
 
 /// @param Hv  where the volumetric strain is taken; H without selective integration
-PointTensors tensors_of(const BodyPoint& p, const Mat3d& H, const Mat3d& Hv) {
+PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, const Mat3d& H, const Mat3d& Hv) {
   const Mat3d E = green_strain(H), F = Mat3d::identity() + H, Fv = Mat3d::identity() + Hv;
   if (!is_solid(p.law)) {
-    const ThinMaterial<double> m = stress_material(p);
+    const ThinMaterial<double> m = stress_material(p, axes[at(p.axes)]);
     return {E, cauchy(F, second_piola(m, E)), energy_density(m, E)};
   }
   if (p.law == Law::neo_hookean) {
@@ -62,7 +62,7 @@ std::vector<PointTensors> ModelBody::tensors(const State& state) const {
 
 PointTensors ModelBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {
   const Mat3d H = field_at(place, state).H;
-  return tensors_of(points_[nearest], H, selective() ? field_at(attach_volumetric(place), state).H : H);
+  return tensors_of(points_[nearest], axes_, H, selective() ? field_at(attach_volumetric(place), state).H : H);
 }
 
 }  // namespace fascia

@@ -39,9 +39,9 @@ struct BodyPoint {
   double lambda = 0, mu = 0;
   Vec3d middle{};  ///< its place on the middle of a sheet or line; X in a solid [m]
   Law law = Law::solid;
-  Mat3d axes = Mat3d::identity();  ///< of a thin law: columns, tangents first
-  bool transverse = false;         ///< as in PointRule
-  int cell = -1;                   ///< of BodyCells
+  bool transverse = false;  ///< as in PointRule
+  int axes = -1;            ///< of a thin law: index into ModelBody::axes()
+  int cell = -1;            ///< of BodyCells
 };
 
 /// Strain (Green-Lagrange), stress (Cauchy) and energy density at a point.
@@ -53,7 +53,7 @@ struct PointTensors {
 /// A named set of a body's nodes and cells, from the groups of a mesh.
 struct BodyGroup {
   std::string name;
-  int number = 0;
+  int number = 0, dimension = 0;
   std::vector<int> nodes, cells;  ///< of the body, ascending
 };
 
@@ -72,6 +72,8 @@ class ModelBody {
   int first_node() const { return first_node_; }
   int node_count() const { return node_count_; }
   const std::vector<BodyPoint>& points() const { return points_; }
+  /// Rest axes of thin points: columns, tangents first.
+  const std::vector<Mat3d>& axes() const { return axes_; }
   double volume() const { return volume_; }
   double mass() const { return mass_; }
   double size() const { return size_; }                     ///< diagonal of the bounding box [m]
@@ -123,6 +125,7 @@ class ModelBody {
   double volume_ = 0, mass_ = 0, size_ = 0;
   int first_node_ = 0, node_count_ = 0;
   std::vector<BodyPoint> points_;
+  std::vector<Mat3d> axes_;
   TriangleMesh surface_;
   std::vector<std::array<int, 2>> segments_;
   std::vector<std::string> messages_;

@@ -8,18 +8,29 @@ namespace fascia {
 
 namespace {
 
-/// Nodes that share an element with each node, ascending; itself where an element has it.
-std::vector<std::vector<int>> neighbours_in(const ElementBlock& block, int nodes) {
-  std::vector<std::vector<int>> around(at(nodes));
-  block.for_each_element([&](std::span<const int> element) {
-    for (const int a : element) around[at(a)].insert(around[at(a)].end(), element.begin(), element.end());
-  });
-  for (std::vector<int>& list : around) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+/// Elements around each node of a block.
+struct ElementsAround {
+  int nodes;                       ///< of an element
+  std::vector<int> element;        ///< (elements × nodes)
+  std::vector<int> begin, around;  ///< (nodes of the model + 1), elements of each
+
+  ElementsAround(const ElementBlock& block, int model_nodes) : nodes(block.nodes), begin(at(model_nodes) + 1) {
+    element.reserve(at(block.count) * at(nodes));
+    block.for_each_element([&](std::span<const int> e) { element.insert(element.end(), e.begin(), e.end()); });
+    for (const int node : element) ++begin[at(node) + 1];
+    for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    around.resize(element.size());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (std::size_t k = 0; k < element.size(); ++k) around[at(next[at(element[k])]++)] = static_cast<int>(k) / nodes;
   }
-  return around;
-}
+
+  /// Calls act for each node of the elements around a node, some more than once.
+  template <class Act>
+  void for_each_neighbour(int node, const Act& act) const {
+    for (int k = begin[at(node)]; k < begin[at(node + 1)]; ++k)
+      for (int a = 0; a < nodes; ++a) act(element[at(around[at(k)] * nodes + a)]);
+  }
+};
 
 }  // namespace
 
@@ -57,8 +68,8 @@ void BlockMatrix::find_pattern(const PointSet& set) {
   for (int group = 0; group < set.group_count(); ++group)
     std::fill(group_of_slot.begin() + set.slot_begin[at(group)], group_of_slot.begin() + set.slot_begin[at(group + 1)],
               group);
-  std::vector<std::vector<std::vector<int>>> around;
-  for (const ElementBlock& block : set.blocks) around.push_back(neighbours_in(block, set.node_count()));
+  std::vector<ElementsAround> around;
+  for (const ElementBlock& block : set.blocks) around.emplace_back(block, set.node_count());
   std::vector<int> last_seen(at(set.node_count()), -1);
   for (int row = 0; row < set.node_count(); ++row) {
     const std::size_t begin = column_.size();
@@ -71,11 +82,12 @@ void BlockMatrix::find_pattern(const PointSet& set) {
     for (int k = set.node_slot_begin[at(row)]; k < set.node_slot_begin[at(row + 1)]; ++k)
       for (const int column : set.nodes(group_of_slot[at(set.node_slot[at(k)])])) add(column);
     for (std::size_t b = 0; b < around.size(); ++b) {
-      for (const int column : around[b][at(row)]) {
-        add(column);
-        if (set.blocks[b].averaged)
-          for (const int further : around[b][at(column)]) add(further);
-      }
+      const std::size_t known = column_.size();
+      around[b].for_each_neighbour(row, add);
+      if (!set.blocks[b].averaged) continue;
+      const std::vector<int> near(column_.begin() + static_cast<std::ptrdiff_t>(known), column_.end());
+      around[b].for_each_neighbour(row, add);
+      for (const int column : near) around[b].for_each_neighbour(column, add);
     }
     std::sort(column_.begin() + static_cast<std::ptrdiff_t>(begin), column_.end());
     row_begin_.push_back(static_cast<int>(column_.size()));

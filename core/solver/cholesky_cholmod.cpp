@@ -11,10 +11,12 @@ namespace fascia {
 
 namespace {
 
-/// BLAS threads would share our cores and change results; OpenBLAS is asked to keep to one.
-void hold_blas_to_one_thread() {
-  using SetThreads = void (*)(int);
-  if (void* set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) reinterpret_cast<SetThreads>(set)(1);
+/// Threads of BLAS would share our cores and change results, those of CHOLMOD's own loops come whatever a scene asks
+/// for: both keep to one.
+void hold_to_one_thread() {
+  using Set = void (*)(int);
+  if (void* set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) reinterpret_cast<Set>(set)(1);
+  if (void* set = dlsym(RTLD_DEFAULT, "omp_set_max_active_levels")) reinterpret_cast<Set>(set)(0);
 }
 
 }  // namespace
@@ -29,7 +31,7 @@ struct BlockCholesky::Impl {
   cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
   Impl(const BlockMatrix& pattern, const DofFilter& f) : matrix(pattern, f), filter(f) {
-    hold_blas_to_one_thread();
+    hold_to_one_thread();
     cholmod_start(&common);
     common.print = 0;
     common.quick_return_if_not_posdef = 1;

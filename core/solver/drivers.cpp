@@ -174,6 +174,11 @@ RunReport run_implicit(MechanicalSystem& system, State& state, const FactorFunct
     if (observe && system.solves_for_middle()) {
       system.begin_step(state, 0);
       system.evaluate();
+      system.add_support_inertia([&](int node) {
+        const auto i = at(node);
+        return PoseMotion{(state.v[i] - before.v[i]) * (1 / dynamics.time_step),
+                          (state.Q_dot[i] - before.Q_dot[i]) * (1 / dynamics.time_step)};
+      });
     }
     const double progress = static_cast<double>(step) / dynamics.steps;
     if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {

@@ -48,6 +48,7 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
   ExplicitStepper stepper(system, state, dt, factors(state.time));
   const double begin = state.time;
   State good = state;
+  int good_step = 0;
   Clock::time_point start = Clock::now();
   std::vector<double> next = factors(begin + dt);
   for (int step = 1; step <= settings.steps; ++step) {
@@ -70,15 +71,20 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
       run.message = divergence(system, good, step, dt);
       state = good;
       run.time = state.time;
+      run.steps = good_step;
       return run;
     }
     run.steps = step;
     run.time = time;
-    if (seen || step % kKeepEvery == 0) good = state;
+    if (seen || step % kKeepEvery == 0) {
+      good = state;
+      good_step = step;
+    }
     if (!seen || !observe) continue;
     system.set_factors(present);
     system.begin_step(state, 0);
     system.evaluate();
+    system.add_support_inertia([&](int node) { return stepper.held_acceleration(node); });
     if (!observe(info, state, system)) {
       if (!last) run.status = RunStatus::interrupted;
       return run;

@@ -27,6 +27,7 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
   require_inertia(model_, filter_);
   const auto n = at(model_.node_count());
   state_.turned.resize(model_.constraints.size());
+  held_acceleration_.resize(model_.constraints.size());
   velocity_.resize(n);
   turning_.resize(n);
   center_.resize(n);
@@ -199,6 +200,8 @@ void ExplicitStepper::drift(int node, const Velocity& w, const double* load, Sum
 
 void ExplicitStepper::advance(std::span<const double> factors) {
   if (!model_.constraints.empty()) prescribed_increments(model_, filter_, state_, state_.turned, factors, increments_);
+  if (!stepped_) last_increments_ = increments_;  // as if the boundary had moved on like that before
+  stepped_ = true;
   const DofLayout& dofs = model_.points.dofs;
   executor_.pool().for_ranges(model_.node_count(), kNodeGrain, [&](int begin, int end) {
     Sums sums;
@@ -278,6 +281,9 @@ void ExplicitStepper::report_velocities(std::span<const double> factors) {
     const Velocity &old = velocity_[at(node)], next = kicked(node, force);
     const Velocity mean{(old.v + next.v) * 0.5, (old.spin + next.spin) * 0.5, (old.rate + next.rate) * 0.5};
     const PoseMotion v = pose_velocity(node, mean);
+    if (constraint_[at(node)] >= 0)
+      held_acceleration_[at(constraint_[at(node)])] =
+          (pose_velocity(node, next) - pose_velocity(node, old)) * (1 / dt_);
     state_.v[at(node)] = v.u;
     state_.Q_dot[at(node)] = v.Q;
   }

@@ -25,6 +25,9 @@ class ExplicitStepper {
   /// step
   void report_velocities(std::span<const double> factors);
 
+  /// Of a node that is held, at the last call of report_velocities().
+  PoseMotion held_acceleration(int node) const { return held_acceleration_[at(constraint_[at(node)])]; }
+
   double kinetic_energy() const { return kinetic_; }  ///< of nodes that nothing holds, at the last half step [J]
   /// Energy at the start, and the most that loads, boundaries and tethers have added [J].
   double given_energy() const { return start_energy_ + largest_work_; }
@@ -81,6 +84,8 @@ class ExplicitStepper {
   std::vector<Vec3d> old_forces_;  ///< of tethers
   StrainHistory history_;
   std::vector<Sums> chunk_sums_;
+  std::vector<PoseMotion> held_acceleration_;  ///< of each constraint
+  bool stepped_ = false;
   double kinetic_ = 0, work_ = 0, largest_work_ = 0, start_energy_ = 0, rounding_energy_ = 0;
 };
 

@@ -63,7 +63,7 @@ void MechanicalSystem::set_factors(std::span<const double> factors) {
 void MechanicalSystem::rebuild_state() {
   known_.reset();
   state_.u.resize(start_.u.size());
-  state_.D.resize(start_.u.size());
+  if (state_.D.size() != start_.D.size()) state_.D = start_.D;
   for (std::size_t i = 0; i < start_.u.size(); ++i) {
     state_.u[i] = start_.u[i] + increment_.du[i];
     state_.D[i] = rigid(i) ? compose_increments(increment_.Ds[i], start_.D[i]) : increment_.Ds[i] + start_.D[i];

@@ -2,6 +2,7 @@
 
 #include "core/cpu/executor.hpp"
 #include "core/model/model.hpp"
+#include "core/physics/inertia.hpp"
 #include "core/solver/newton.hpp"
 #include "core/solver/tangent_solver.hpp"
 #include "core/solver/time_scheme.hpp"
@@ -50,6 +51,17 @@ class MechanicalSystem {
   bool has_prescribed_increment() const;
   bool conservative() const { return conservative_; }
 
+  /// Adds to the gradient what accelerated supports carry of their own mass, which a state at rest does not show.
+  /// @param acceleration  of a node (of its origin and Q or A)
+  template <class Acceleration>
+  void add_support_inertia(const Acceleration& acceleration) {
+    for (const FrameConstraint& c : model_.constraints) {
+      const PoseMotion a = acceleration(c.node);
+      const InertiaForce f = inertia_force(model_.inertia[at(c.node)], a.u, a.Q);
+      add(gradient_, c.node, f.force, f.moment, {});
+    }
+  }
+
   /// Largest rotation [rad] by which a boundary motion would turn a frame from its present place.
   double prescribed_rotation() const;
 
@@ -71,7 +83,7 @@ class MechanicalSystem {
   /// What a step changes, for save() and restore().
   struct Increment {
     std::vector<Vec3d> du;
-    std::vector<Mat3d> Ds;
+    FrameMatrices Ds;
     std::vector<std::array<double, 3>> turned;  ///< as in State
   };
   void rebuild_state();
@@ -83,6 +95,7 @@ class MechanicalSystem {
   void predict_node(std::size_t node, const StepMemory& memory);
   void predict_strain(const StepMemory& memory);
   State moved_by_velocity(double time) const;
+  void follow_boundaries(State& end, const std::vector<PoseMotion>& before, StepMemory& memory) const;
   void finish_middle(State& end, std::vector<PoseMotion>& motion) const;
   void finish_middle_of_frame(std::size_t node, const FrameConstraint* held, State& end, PoseMotion& motion) const;
   bool rigid(std::size_t node) const { return model_.frame_kind[node] == FrameKind::rigid; }

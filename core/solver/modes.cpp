@@ -88,8 +88,23 @@ class Problem {
 
   const DofLayout& dofs() const { return K_.dofs(); }
 
-  /// Σ v (λ + 2μ) |g|² over points and frames.
+  /// Σ v (λ + 2μ) |g|² over points and nodes.
   void sum_stiffness(const PointSet& set) {
+    for (const ElementBlock& block : set.blocks) {
+      for (int batch = 0; batch < block.batch_count(); ++batch) {
+        for (int q = 0; q < block.points; ++q) {
+          for (int lane = 0; lane < kElementLanes; ++lane) {
+            const double lambda = block.material_of(batch)[lane], mu = block.material_of(batch)[kElementLanes + lane];
+            double squares = 0;
+            for (int k = 0; k < 3 * block.nodes; ++k) {
+              const double g = block.gradient_of(batch, q)[k * kElementLanes + lane];
+              squares += g * g;
+            }
+            stiffness_ += block.volume_of(batch, q)[lane] * (lambda + 2 * mu) * squares;
+          }
+        }
+      }
+    }
     for (int group = 0; group < set.group_count(); ++group) {
       if (set.rule[at(group)].rule.law == Law::tether) continue;
       const double* material = set.material_of_group(group);
@@ -125,7 +140,7 @@ double stabilization_part(const Model& model, CpuExecutor& executor, const std::
     const double* d = shape.data() + dofs.begin(i);
     state.u[at(i)] = Vec3d{{d[0], d[1], d[2]}} * small;
     state.D[at(i)] = dofs.kind(i) == FrameKind::rigid ? rotation_increment(Vec3d{{d[3], d[4], d[5]}} * small)
-                                                      : frame_variation(FrameKind::affine, d + 3, {}) * small;
+                                                      : frame_variation(dofs.kind(i), d + 3, {}) * small;
   }
   std::vector<double> unused(shape.size());
   const InternalEnergy energy = executor.gradient(state, {}, unused);

@@ -16,6 +16,9 @@ namespace {
 constexpr int kDirectDofs = 15000;
 /// Beyond: only where its work stays below that of the CG iterations that a bulky body of this size needs.
 constexpr double kFlopsPerNonzero = 2000;
+/// A limit of CG below this is a budget that the user set, and not too small a guess of ours.
+constexpr int kEnoughForBulk = 1000;
+constexpr double kMostFactorBytes = 2e9;
 
 constexpr int kNodeChunk = 512;
 
@@ -61,6 +64,15 @@ bool TangentSolver::direct() {
   return *direct_;
 }
 
+/// Where CG was only a guess and reaches its limit (a slender body), a factor that fits into memory takes over.
+bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
+  const bool guessed = settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations >= kEnoughForBulk;
+  if (!guessed || !report.usable || report.iterations < settings_.cg.max_iterations) return false;
+  if (factor().factor_bytes() > kMostFactorBytes) return false;
+  direct_ = true;
+  return true;
+}
+
 void TangentSolver::apply_matrix(std::span<const double> local, std::span<double> out) {
   if (!filter_.turns()) return matrix().multiply(executor_.pool(), local, out);
   std::copy(local.begin(), local.end(), work_.begin());
@@ -92,6 +104,13 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
     if (!report.trouble.empty() && !model_.tethers.empty()) {
       executor_.assemble(relinearize(TamerTangent::without_tethers), matrix());
       report = solve_cg(rhs_, x);
+    }
+    if (cg_is_too_slow(report)) {
+      const int iterations = report.iterations;
+      report = {};
+      if (!factorize(relinearize, report)) return report;
+      factor().solve(rhs_, x);
+      report.iterations = iterations;
     }
   }
   if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))

@@ -39,6 +39,7 @@ class TangentSolver {
   BlockCholesky& factor();
 
  private:
+  bool cg_is_too_slow(const TangentReport& report);
   bool factorize(const Relinearize& relinearize, TangentReport& report);
   TangentReport solve_cg(std::span<const double> b, std::span<double> x);
   void build_block_jacobi();

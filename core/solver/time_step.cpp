@@ -16,7 +16,8 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   start_ = start;
   start_.turned.resize(model_.constraints.size());  // a state made before the constraints has none
   increment_.du.assign(n, Vec3d{});
-  increment_.Ds.assign(n, Mat3d{});
+  increment_.Ds = start_.D;
+  increment_.Ds.set_zero();
   increment_.turned = start_.turned;
   form_.scheme = scheme;
   form_.step = form_.reach = form_.h = dt;
@@ -119,7 +120,10 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
   end.turned = increment_.turned;
   end.time = end_time;
   end.v.assign(n, Vec3d{});
-  end.Q_dot.assign(n, Mat3d{});
+  end.Q_dot = end.D;
+  end.Q_dot.set_zero();
+  const bool same_step = memory.step == form_.step && memory.motion.size() == n;
+  const std::vector<PoseMotion> before = same_step ? std::move(memory.motion) : std::vector<PoseMotion>{};
   memory.motion.resize(n);
   for (std::size_t i = 0; i < n; ++i) memory.motion[i] = motion_of(i);
   if (form_.scheme == TimeScheme::midpoint) finish_middle(end, memory.motion);
@@ -139,11 +143,37 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
     a.Q = (skew(spin_of(a.Q, Q)) + W * W) * Q;
   }
   if (form_.h <= 0 || form_.scheme == TimeScheme::implicit_euler) return end;
+  if (form_.scheme != TimeScheme::bdf2) follow_boundaries(end, before, memory);
   memory.step = form_.step;
   memory.velocity.resize(n);
   for (std::size_t i = 0; i < n; ++i) memory.velocity[i] = {start_.v[i], start_.Q_dot[i]};
   if (history_.inverse_step > 0) memory.E = start_strain_;
   return end;
+}
+
+/// Velocity and acceleration of what is prescribed, by differences of its motion: those that the scheme would keep ring
+/// for ever after a boundary that starts at once.
+/// @param before  motion in the step before, of the same length; or empty
+void MechanicalSystem::follow_boundaries(State& end, const std::vector<PoseMotion>& before, StepMemory& memory) const {
+  const double dt = form_.step;
+  for (const FrameConstraint& c : model_.constraints) {
+    const std::size_t i = at(c.node);
+    const PoseMotion& x = memory.motion[i];
+    const Vec3d last = before.empty() ? x.u : before[i].u;
+    const Vec3d v = (x.u * 1.5 - last * 0.5) * (1 / dt), a = (x.u - last) * (1 / (dt * dt));
+    for (int k = 0; k < c.translations; ++k) {
+      const Vec3d axis = c.translation_axes.row(k);
+      end.v[i] += axis * dot(axis, v - end.v[i]);
+      if (form_.scheme == TimeScheme::newmark) {
+        Vec3d& kept = memory.acceleration[i].u;
+        kept += axis * dot(axis, a - kept);
+      }
+    }
+    if (!rigid(i) || c.rotations < 3) continue;
+    const Mat3d Q = Mat3d::identity() + end.D[i], W = skew(spin_of(x.Q * (1 / dt), Q));
+    end.Q_dot[i] = W * Q;
+    if (form_.scheme == TimeScheme::newmark) memory.acceleration[i].Q = W * W * Q;
+  }
 }
 
 /// From the middle of the step to its end. @param motion  of the nodes to the middle, then to the end

@@ -29,6 +29,38 @@ time_step = "10 ms"
 steps = 10
 TEXT
 
+cat >"$scene/elements.toml" <<'TEXT'
+[bodies.b]
+model = "tetrahedra"
+order = 2
+formulation = "corotational"
+locking = "none"
+incompressibility = 1e5
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [2, 1, 1], split = 5 } }
+transform = { translate = [0, 0, 1], rotate = { axis = [0, 0, 1], angle = "90 degree" }, scale = 0.001 }
+density = 1000
+material = [{ where = { group = "stiff" }, use = { young = 1e6, poisson = 0.49 } },
+            { use = { young = 1e5, poisson = 0.3 } }]
+[bodies.c]
+model = "hexahedra"
+domain = { cylinder = { from = [0, 0, 0], to = [0, 0, 1], radius = 0.2, cells = [2, 8] } }
+mass = 1
+material = { young = 1e5, poisson = 0.3, law = "neo-hookean", damping = { mass = 1, stiffness = 0.01 } }
+[[constraints]]
+body = "b"
+where = { any_of = [{ group = 5 }, { boundary = true }] }
+fix = ["x", "z"]
+axes = [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]
+[[loads]]
+body = "c"
+where = { all_of = [{ group = "end" }, { not = { ids = [3] } }] }
+traction = [0, "1 kPa", 0]
+[solver]
+kind = "explicit"
+time_step = "auto"
+duration = "1 ms"
+TEXT
+
 cat >"$gmsh/tetrahedron_22.msh" <<'TEXT'
 $MeshFormat
 2.2 0 8
@@ -79,6 +111,58 @@ $Elements
 1 1 1 1
 3 1 4 1
 1 1 2 3 4
+$EndElements
+TEXT
+
+# Quadratic cells, whose middle nodes follow the corners in Gmsh's order; a name that two dimensions share.
+cat >"$gmsh/quadratic_22.msh" <<'TEXT'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+2 7 "organ"
+3 7 "organ"
+$EndPhysicalNames
+$Nodes
+10
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 0.5 0 0
+6 0.5 0.5 0
+7 0 0.5 0
+8 0 0 0.5
+9 0 0.5 0.5
+10 0.5 0 0.5
+$EndNodes
+$Elements
+2
+1 9 2 7 1 1 2 3 5 6 7
+2 11 2 7 1 1 2 3 4 5 6 7 8 9 10
+$EndElements
+TEXT
+
+cat >"$gmsh/hexahedron_22.msh" <<'TEXT'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+8
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+$EndNodes
+$Elements
+2
+1 3 2 5 1 1 4 3 2
+2 5 2 1 1 1 2 3 4 5 6 7 8
 $EndElements
 TEXT
 

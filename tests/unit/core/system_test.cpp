@@ -218,7 +218,8 @@ TEST(ImplicitEuler, FreeFallIsExactForTheScheme) {
     MechanicalSystem system(built.model, pool, settings);
     State state = State::at_rest(built.model);
     const int n = 20;
-    const RunReport report = run_implicit(system, state, kAlways, settings, {TimeScheme::implicit_euler, h, n}, nullptr);
+    const RunReport report =
+        run_implicit(system, state, kAlways, settings, {TimeScheme::implicit_euler, h, n}, nullptr);
     EXPECT_EQ(report.status, RunStatus::converged) << report.message;
     EXPECT_LE(report.newton_iterations, n);
     const double expected = -9.81 * h * h * n * (n + 1) / 2;

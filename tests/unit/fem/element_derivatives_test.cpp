@@ -240,6 +240,36 @@ TEST(ElementReference, BlocksEqualOrdinaryPoints) {
   }
 }
 
+/// Frames and vertices in one model: each as it is alone, the matrix as the product.
+TEST(ElementReference, StandBesideFrames) {
+  ElementBodySpec spec;
+  spec.mesh = distorted_mesh({});
+  spec.density = 1000;
+  spec.material = [](const Vec3d&, int) { return PointMaterialSpec{5e3, 4e3, 0, 0, false}; };
+  Model model;
+  PointSetBuilder points;
+  const GridBody frames(block_spec({}), model, points);
+  const ElementBody elements(std::move(spec), model, points);
+  model.points = std::move(points).finish(model.frame_kind);
+  EXPECT_EQ(model.dof_count(), 6 * frames.node_count() + 3 * elements.node_count());
+  EXPECT_EQ(model.points.part_count(), 2);
+  const State state = random_state(model, 0.02, 0.3);
+  ThreadPool pool(2);
+  CpuExecutor executor(model.points, pool);
+  const auto n = at(model.dof_count());
+  std::vector<double> g(n), Kd(n), assembled(n);
+  executor.gradient(state, {}, g);
+  Linearization lin;
+  executor.linearize(state, {}, Tangent::full, lin);
+  const std::vector<double> d = random_direction(model);
+  executor.multiply(lin, d, Kd);
+  BlockMatrix matrix(model.points);
+  EXPECT_FALSE(matrix.fills_upper());
+  executor.assemble(lin, matrix);
+  matrix.multiply(pool, d, assembled);
+  for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(assembled[i], Kd[i], 1e-12 * test::norm(Kd));
+}
+
 /// An element turned inside out keeps a proper rotation: energy and forces stay finite and agree.
 TEST(ElementReference, CorotationalElementsSurviveInversion) {
   ElementOptions o;
@@ -259,8 +289,7 @@ TEST(ElementReference, CorotationalElementsSurviveInversion) {
   EXPECT_TRUE(std::isfinite(e));
   const std::vector<double> d = random_direction(built.model);
   const double h = 1e-6;
-  const double numeric =
-      (energy(moved(built.model, state, d, h)) - energy(moved(built.model, state, d, -h))) / (2 * h);
+  const double numeric = (energy(moved(built.model, state, d, h)) - energy(moved(built.model, state, d, -h))) / (2 * h);
   EXPECT_NEAR(numeric, test::dot(g, d), 1e-7 * test::norm(g) * test::norm(d));
 }
 

@@ -20,8 +20,7 @@ struct ElementOptions {
 
 /// A slab of 1 × 0.8 × 0.5 m whose nodes are moved at random.
 inline ElementMesh distorted_mesh(const ElementOptions& o) {
-  ElementMesh mesh =
-      generate_box({}, {{1, 0.8, 0.5}}, o.cells, {family_of(o.shape), order_of(o.shape), 6});
+  ElementMesh mesh = generate_box({}, {{1, 0.8, 0.5}}, o.cells, {family_of(o.shape), order_of(o.shape), 6});
   std::mt19937 random(5);
   for (Vec3d& x : mesh.nodes) x += random_vector(random, o.distortion * (order_of(o.shape) == 2 ? 0.5 : 1));
   return mesh;
