@@ -30,16 +30,17 @@ constexpr int kChunkRows = 8192;
 /// What blocks of a row do: sum += A x_j, and y_j += Aᵀ x_i. Rows of a block are read four numbers at a time; the
 /// fourth, the next row's, meets the fourth of x, zero, or lands in the fourth of y, which nothing reads.
 struct RowSums {
-  Four sum[3] = {};
+  Four sum[2][3] = {};  ///< of even and odd blocks: one addition need not wait for another
   Four x[3];
 
   explicit RowSums(const double* xi) : x{all(xi[0]), all(xi[1]), all(xi[2])} {}
+  template <int Parity>
   void add(const double* b, const double* xj) {
     const Four v = load_four(xj);
-    for (int i = 0; i < 3; ++i) sum[i] += load_four(b + 3 * i) * v;
+    for (int i = 0; i < 3; ++i) sum[Parity][i] += load_four(b + 3 * i) * v;
   }
   void add_transposed(const double* b, double* yj) const {
-    const Four y = load_four(yj) + load_four(b) * x[0] + load_four(b + 3) * x[1] + load_four(b + 6) * x[2];
+    const Four y = (load_four(yj) + load_four(b) * x[0]) + (load_four(b + 3) * x[1] + load_four(b + 6) * x[2]);
     std::memcpy(yj, &y, sizeof y);
   }
 };
@@ -75,19 +76,23 @@ void BlockMatrix::multiply_chunk(int chunk) const {
     const int* column = column_.data();
     const double* b = block(first);
     RowSums sums(x + 4 * row);
-    sums.add(b, x + 4 * row);
+    sums.add<0>(b, x + 4 * row);
+    b += 9;
     int k = first + 1;
-    for (; k < last && column[k] < end; ++k) {
-      b += 9;
-      sums.add(b, x + 4 * column[k]);
+    for (; k + 1 < last && column[k + 1] < end; k += 2, b += 18) {
+      sums.add<1>(b, x + 4 * column[k]);
+      sums.add<0>(b + 9, x + 4 * column[k + 1]);
       sums.add_transposed(b, y + 4 * column[k]);
+      sums.add_transposed(b + 9, y + 4 * column[k + 1]);
     }
-    for (; k < last; ++k) {
-      b += 9;
-      sums.add(b, x + 4 * column[k]);
-      sums.add_transposed(b, beyond + 4 * (column[k] - end));
+    for (; k < last; ++k, b += 9) {
+      sums.add<1>(b, x + 4 * column[k]);
+      sums.add_transposed(b, column[k] < end ? y + 4 * column[k] : beyond + 4 * (column[k] - end));
     }
-    for (int i = 0; i < 3; ++i) y[4 * row + i] += (sums.sum[i][0] + sums.sum[i][1]) + sums.sum[i][2];
+    for (int i = 0; i < 3; ++i) {
+      const Four sum = sums.sum[0][i] + sums.sum[1][i];
+      y[4 * row + i] += (sum[0] + sum[1]) + sum[2];
+    }
   }
 }
 

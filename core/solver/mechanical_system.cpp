@@ -70,8 +70,18 @@ void MechanicalSystem::rebuild_state() {
   }
 }
 
+/// Energy of the step where it starts. The strain energy of vertices is what the step before left.
+double MechanicalSystem::energy_at_start() {
+  const bool same = reached_ && !model_.has_frames() && !model_.points.damped && model_.tethers.empty() &&
+                    reached_->first == start_.u;
+  if (!same) return evaluate().energy;
+  add_loads();
+  add_inertia();
+  return reached_->second + load_energy_ + inertia_energy_;
+}
+
 void MechanicalSystem::start_from_prediction() {
-  const double at_old_state = evaluate().energy;
+  const double at_old_state = energy_at_start();
   save();
   std::vector<char> held(start_.u.size(), 0);
   for (const FrameConstraint& c : model_.constraints) held[at(c.node)] = 1;

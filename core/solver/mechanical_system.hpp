@@ -86,6 +86,7 @@ class MechanicalSystem {
     FrameMatrices Ds;
     std::vector<std::array<double, 3>> turned;  ///< as in State
   };
+  double energy_at_start();
   void rebuild_state();
   void add_loads();
   void add_inertia();
@@ -125,6 +126,8 @@ class MechanicalSystem {
   struct PartSquares {
     std::vector<double> load, held_load, inertia, residual, reaction, unused;
   } part_squares_;
+  /// Displacements at the end of the last step, and the internal energy there; of implicit Euler on vertices [J].
+  std::optional<std::pair<std::vector<Vec3d>, double>> reached_;
   std::optional<Evaluation> known_;  ///< of the present state, where evaluate() would repeat itself
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0;

@@ -115,6 +115,8 @@ void MechanicalSystem::predict_strain(const StepMemory& memory) {
 
 State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
   reached_factors_ = factors_;
+  reached_.reset();
+  if (form_.scheme == TimeScheme::implicit_euler && !model_.has_frames()) reached_ = {state_.u, internal_.total()};
   const std::size_t n = start_.u.size();
   State end = state_;
   end.turned = increment_.turned;
