@@ -63,12 +63,26 @@ void place(const Transform& transform, ElementMesh& mesh) {
 }
 
 /// The first entry that selects an element, by its middle or its groups.
-std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body, const std::vector<BodyGroup>& groups,
+std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body, const ElementMesh& mesh,
+                                                                const std::vector<BodyGroup>& groups,
                                                                 std::vector<bool>& used) {
-  return [&](const Vec3d& X, int element) {
+  std::vector<Vec3d> middles;
+  std::vector<int> cells;
+  middles.reserve(mesh.size());
+  cells.reserve(mesh.size());
+  for (std::size_t e = 0; e < mesh.size(); ++e) {
+    middles.push_back(shape_at(mesh, e, reference_center(family_of(mesh.shape))).X);
+    cells.push_back(static_cast<int>(e));
+  }
+  std::vector<std::vector<bool>> chosen;  // by entry and element
+  for (const MaterialUse& use : body.materials) {
+    contains(use.where, middles[0], &groups, 0);  // refuses what selects nodes
+    chosen.push_back(select(use.where, {middles, {}, &groups, cells}));
+  }
+  return [&body, &used, chosen = std::move(chosen)](const Vec3d& X, int element) {
     for (std::size_t i = 0; i < body.materials.size(); ++i) {
       const MaterialUse& use = body.materials[i];
-      if (!contains(use.where, X, &groups, element)) continue;
+      if (!chosen[i][static_cast<std::size_t>(element)]) continue;
       used[i] = true;
       return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
                                use.material.stiffness_damping, use.material.law == MaterialLaw::neo_hookean};
@@ -117,7 +131,7 @@ std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, Po
   std::vector<BodyGroup> groups;
   for (const ElementGroup& g : spec.mesh.groups) groups.push_back({g.name, g.number, g.dimension, g.nodes, g.elements});
   std::vector<bool> used(body.materials.size());
-  spec.material = material_of(body, groups, used);
+  spec.material = material_of(body, spec.mesh, groups, used);
   const Place& place = body.locking == Locking::automatic ? body.place : body.locking_place;
   std::unique_ptr<ModelBody> built =
       blaming(place, [&] { return std::make_unique<ElementBody>(std::move(spec), model, points); });

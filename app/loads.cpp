@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -38,19 +39,14 @@ void add_gravity(Simulation& s) {
   s.model.loads.push_back(std::move(load));
 }
 
-/// Faces of the body's surface whose three vertices are selected; three points each, exact for quadratic weights.
+/// Faces of the body's surface whose vertices are all selected.
 std::vector<Share> surface_shares(const SimulatedBody& owner, const Region& region) {
-  const ModelBody& body = *owner.body;
-  const TriangleMesh& surface = body.surface();
+  if (owner.body->surface().triangles.empty()) return {};
   const std::vector<bool> chosen = select(region, owner.selectable_surface());
   std::vector<Share> shares;
-  for (const auto& t : surface.triangles) {
-    if (!(chosen[at(t[0])] && chosen[at(t[1])] && chosen[at(t[2])])) continue;
-    const Vec3d &a = surface.points[at(t[0])], &b = surface.points[at(t[1])], &c = surface.points[at(t[2])];
-    const double area = 0.5 * norm(cross(b - a, c - a));
-    for (const Vec3d& X : {(a * 4.0 + b + c) * (1.0 / 6), (a + b * 4.0 + c) * (1.0 / 6), (a + b + c * 4.0) * (1.0 / 6)})
-      shares.push_back({X, body.attach(X), area / 3, {}, {}});
-  }
+  for (FacePoint& p : owner.body->face_points())
+    if (std::all_of(p.nodes.begin(), p.nodes.end(), [&](int node) { return chosen[at(node)]; }))
+      shares.push_back({p.X, std::move(p.attachment), p.area, {}, {}});
   return shares;
 }
 

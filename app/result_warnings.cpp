@@ -41,8 +41,8 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   for (const SimulatedBody& b : s.bodies) {
     int inverted = 0, unresolved = 0;
     const bool rigid = s.model.kind(b.body->first_node()) == FrameKind::rigid;
-    const bool linear =
-        s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())].formulation == Formulation::linear;
+    const Formulation formulation = s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())].formulation;
+    const bool linear = formulation == Formulation::linear;
     for (std::size_t q = 0; q < b.body->points().size(); ++q) {
       const FieldValue f = field_at(b.body->attach_point(q), end);
       inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
@@ -55,10 +55,11 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
                       "it out",
                       b.name, inverted, b.body->points().size()));
     else if (inverted > 0)
-      warnings.push_back(
-          fmt::format("body \"{}\" is turned inside out at {} of {} integration points: St Venant-Kirchhoff does "
-                      "not resist that; the result is no physical state",
-                      b.name, inverted, b.body->points().size()));
+      warnings.push_back(fmt::format(
+          "body \"{}\" is turned inside out at {} of {} integration points: {} do not resist that; the "
+          "result is no physical state (law = \"neo-hookean\" would resist)",
+          b.name, inverted, b.body->points().size(),
+          formulation == Formulation::corotational ? "co-rotational elements" : "St Venant-Kirchhoff materials"));
     if (unresolved > 0)
       warnings.push_back(
           fmt::format("body \"{}\": neighbouring frames are turned against each other by more than a right angle at {} "

@@ -12,8 +12,9 @@ namespace fascia {
 
 namespace {
 
-/// Above this Poisson ratio linear elements lock (docs/manual.md, "Nearly incompressible tissue").
-constexpr double kLockingPoisson = 0.45;
+/// Above this Poisson ratio linear elements lock (docs/manual.md, "Nearly incompressible tissue"); rounding of λ and μ
+/// must not decide about the ratio itself.
+constexpr double kLockingPoisson = 0.45 + 1e-9;
 
 Vec3d middle_of(const ElementMesh& mesh, std::size_t e) {
   return shape_at(mesh, e, reference_center(family_of(mesh.shape))).X;
@@ -46,9 +47,11 @@ std::vector<std::size_t> ordered(const ElementMesh& mesh, const std::vector<std:
     }
   const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
   std::vector<std::pair<std::uint32_t, std::size_t>> keys;
+  keys.reserve(chosen.size());
   for (const std::size_t e : chosen) keys.emplace_back(morton((middle_of(mesh, e) - low) * (1 / size)), e);
   std::sort(keys.begin(), keys.end());
   std::vector<std::size_t> order;
+  order.reserve(keys.size());
   for (const auto& [key, e] : keys) order.push_back(e);
   return order;
 }

@@ -40,6 +40,7 @@ class ElementBody final : public ModelBody {
   Attachment attach_surface(std::size_t point) const override;
   std::vector<PointTensors> tensors(const State& state) const override;
   PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const override;
+  std::vector<FacePoint> face_points() const override;
   std::vector<char> nodes_on_boundary() const override { return on_boundary_; }
   double distance(const Vec3d& X) const override { return locator_.locate(X).distance; }
   std::string quality() const override { return quality_; }
@@ -53,6 +54,11 @@ class ElementBody final : public ModelBody {
     double swelling = 0;  ///< relative change of the element's volume
     Mat3d turn;           ///< rotation of the element − I
   };
+  /// What averages about nodes make of an element.
+  struct Averaged {
+    double pressure = 0;        ///< mean of λ θ [Pa]
+    double energy_density = 0;  ///< of the volumetric strain [J/m³]
+  };
   void number_nodes(Model& model);
   void choose_formulation(const ElementBodySpec& spec);
   void add_points(const ElementBodySpec& spec);
@@ -61,9 +67,9 @@ class ElementBody final : public ModelBody {
   void describe();
   Attachment attachment(std::size_t element, const Vec3d& xi) const;
   Strained strained(std::size_t element, const State& state) const;
-  std::vector<double> pressures(const State& state) const;
+  std::vector<Averaged> averages(const State& state) const;
   PointTensors tensors_of(std::size_t point, const Mat3d& H, const Strained& element,
-                          std::optional<double> pressure) const;
+                          const std::optional<Averaged>& averaged) const;
   const ElementMesh& mesh() const { return locator_.mesh(); }
 
   ElementLocator locator_;

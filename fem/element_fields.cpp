@@ -63,31 +63,38 @@ ElementBody::Strained ElementBody::strained(std::size_t e, const State& state) c
   return s;
 }
 
-/// λ θ of each element, averaged about its nodes; empty where nothing is averaged.
-std::vector<double> ElementBody::pressures(const State& state) const {
+/// Of each element, averaged about its nodes as the mechanics does, law by law; empty where nothing is averaged.
+std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) const {
   if (!averaged_) return {};
-  std::vector<double> theta(mesh().nodes.size()), lambda(theta.size()), volume(theta.size()), result;
-  for (std::size_t e = 0; e < mesh().size(); ++e) {
-    const Mat3d H = field_at(attach_point(e), state).H;
-    const double strain =
-        points_[e].law == Law::neo_hookean ? NeoHookean<double>::log_volume(H) : trace(green_strain(H));
-    for (const int node : mesh().element(e)) {
-      theta[at(node)] += strain * points_[e].volume;
-      lambda[at(node)] += points_[e].lambda * points_[e].volume;
-      volume[at(node)] += points_[e].volume;
+  const std::size_t n = mesh().nodes.size();
+  std::vector<Averaged> result(mesh().size());
+  for (const Law law : {Law::solid, Law::neo_hookean}) {
+    std::vector<double> theta(n), volume(n);
+    std::vector<LambdaMean> lambda(n);
+    for (std::size_t e = 0; e < mesh().size(); ++e) {
+      if (points_[e].law != law) continue;
+      const Mat3d H = field_at(attach_point(e), state).H;
+      const double strain = law == Law::neo_hookean ? NeoHookean<double>::log_volume(H) : trace(green_strain(H));
+      for (const int node : mesh().element(e)) {
+        theta[at(node)] += strain * points_[e].volume;
+        volume[at(node)] += points_[e].volume;
+        lambda[at(node)].add(points_[e].lambda, points_[e].volume);
+      }
     }
-  }
-  for (std::size_t e = 0; e < mesh().size(); ++e) {
-    double p = 0;
-    for (const int node : mesh().element(e))
-      p += 0.25 * lambda[at(node)] * theta[at(node)] / (volume[at(node)] * volume[at(node)]);
-    result.push_back(p);
+    for (std::size_t e = 0; e < mesh().size(); ++e) {
+      if (points_[e].law != law) continue;
+      for (const int node : mesh().element(e)) {
+        const double mean = theta[at(node)] / volume[at(node)], stiffness = lambda[at(node)].value();
+        result[e].pressure += 0.25 * stiffness * mean;
+        result[e].energy_density += 0.125 * stiffness * mean * mean;
+      }
+    }
   }
   return result;
 }
 
 PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Strained& element,
-                                     std::optional<double> pressure) const {
+                                     const std::optional<Averaged>& averaged) const {
   const BodyPoint& p = points_[point];
   const double pull = penalty_ * element.swelling * std::abs(element.swelling);
   const double penalty_energy = penalty_ * std::pow(std::abs(element.swelling), 3) / 3;
@@ -95,9 +102,8 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const St
   PointTensors t;
   t.strain = green_strain(H);
   if (formulation_ == ElementFormulation::linear) {
-    t.strain = sym(H);
-    t.stress = law.second_piola(t.strain);
-    t.energy_density = law.energy_density(t.strain);
+    t.stress = law.second_piola(sym(H));
+    t.energy_density = law.energy_density(sym(H));
   } else if (formulation_ == ElementFormulation::corotational) {
     const Mat3d R = Mat3d::identity() + element.turn;
     const Mat3d strain = sym(transpose(element.turn) + H + transpose_times(element.turn, H));
@@ -110,11 +116,13 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const St
       const NeoHookean<double> neo{p.lambda, p.mu};
       const double swelling = NeoHookean<double>::log_volume(H);
       S = neo.second_piola(t.strain, NeoHookean<double>::inverse_right_cauchy_green(H),
-                           pressure.value_or(p.lambda * swelling));
-      t.energy_density = neo.energy_density(H);
+                           averaged ? averaged->pressure : p.lambda * swelling);
+      t.energy_density =
+          averaged ? p.mu * NeoHookean<double>::distortion(H) + averaged->energy_density : neo.energy_density(H);
     } else {
-      S = t.strain * (2 * p.mu) + Mat3d::diagonal(pressure.value_or(p.lambda * trace(t.strain)));
-      t.energy_density = law.energy_density(t.strain);
+      S = t.strain * (2 * p.mu) + Mat3d::diagonal(averaged ? averaged->pressure : p.lambda * trace(t.strain));
+      t.energy_density =
+          averaged ? p.mu * contract(t.strain, t.strain) + averaged->energy_density : law.energy_density(t.strain);
     }
     t.stress = times_transpose(F * S, F) * (1 / determinant(F));
   }
@@ -124,7 +132,7 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const St
 }
 
 std::vector<PointTensors> ElementBody::tensors(const State& state) const {
-  const std::vector<double> pressure = pressures(state);
+  const std::vector<Averaged> average = averages(state);
   const std::size_t points = points_.size() / mesh().size();
   std::vector<PointTensors> all;
   all.reserve(points_.size());
@@ -132,15 +140,15 @@ std::vector<PointTensors> ElementBody::tensors(const State& state) const {
     const Strained element = strained(e, state);
     for (std::size_t q = points * e; q < points * (e + 1); ++q)
       all.push_back(tensors_of(q, field_at(attach_point(q), state).H, element,
-                               pressure.empty() ? std::nullopt : std::optional(pressure[e])));
+                               average.empty() ? std::nullopt : std::optional(average[e])));
   }
   return all;
 }
 
 PointTensors ElementBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {
-  const std::vector<double> pressure = pressures(state);
+  const std::vector<Averaged> average = averages(state);
   return tensors_of(nearest, field_at(place, state).H, strained(at(place.cell), state),
-                    pressure.empty() ? std::nullopt : std::optional(pressure[at(place.cell)]));
+                    average.empty() ? std::nullopt : std::optional(average[at(place.cell)]));
 }
 
 }  // namespace fascia

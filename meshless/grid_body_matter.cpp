@@ -14,7 +14,7 @@ namespace fascia {
 namespace {
 
 /// Above this Poisson ratio full integration locks (docs/manual.md, "Nearly incompressible tissue").
-constexpr double kSelectivePoisson = 0.45;
+constexpr double kSelectivePoisson = 0.45 + 1e-9;  // rounding of λ and μ must not decide about 0.45 itself
 
 Law law_of(const PointMaterialSpec& m) { return m.neo_hookean ? Law::neo_hookean : Law::solid; }
 

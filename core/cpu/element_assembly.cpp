@@ -1,5 +1,8 @@
 #include "core/cpu/element_batch.hpp"
+#include "core/model/errors.hpp"
 #include "core/solver/block_matrix.hpp"
+
+#include <limits>
 
 namespace fascia {
 
@@ -103,6 +106,8 @@ template <ElementLaw L, int N>
 
 void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
   const int pairs = pair_count(block_.nodes);
+  if (matrix.value_count() > std::numeric_limits<std::uint32_t>::max())
+    throw InputError("the matrix has more than 4e9 entries; use fewer elements");
   pair_slot_.resize(at(block_.batch_count()) * at(pairs) * kElementLanes);
   for (int patch = 0; patch < block_.patch_count(); ++patch) {
     const auto nodes = block_.nodes_of_patch(patch);

@@ -15,18 +15,18 @@ void ElementExecutor::prepare_average() {
   node_lambda_.assign(at(set_.node_count()), 0.0);
   node_pressure_ = node_theta_ = node_volume_;
   slot_theta_.resize(slot_u_.size());
+  std::vector<LambdaMean> means(node_volume_.size());
   int e = 0;
   block_.for_each_element([&](std::span<const int> element) {
     const double v = block_.volume_of(e / kElementLanes, 0)[e % kElementLanes];
     const double lambda = block_.material_of(e / kElementLanes)[e % kElementLanes];
     for (const int node : element) {
       node_volume_[at(node)] += v / 4;
-      node_lambda_[at(node)] += lambda * v / 4;
+      means[at(node)].add(lambda, v / 4);
     }
     ++e;
   });
-  for (std::size_t i = 0; i < node_volume_.size(); ++i)
-    if (node_volume_[i] > 0) node_lambda_[i] /= node_volume_[i];
+  for (std::size_t i = 0; i < means.size(); ++i) node_lambda_[i] = means[i].value();
 }
 
 /// λ times the mean about each node of theta(H, dH).

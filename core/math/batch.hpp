@@ -6,23 +6,20 @@
 
 namespace fascia {
 
-/// The register type of W doubles, and of W lane numbers.
+/// The register type of W doubles.
 template <int W>
 struct BatchRegister;
 template <>
 struct BatchRegister<2> {
   using Type = double __attribute__((vector_size(16)));
-  using Mask = long long __attribute__((vector_size(16)));
 };
 template <>
 struct BatchRegister<4> {
   using Type = double __attribute__((vector_size(32)));
-  using Mask = long long __attribute__((vector_size(32)));
 };
 template <>
 struct BatchRegister<8> {
   using Type = double __attribute__((vector_size(64)));
-  using Mask = long long __attribute__((vector_size(64)));
 };
 
 /// W doubles that are computed together (SIMD), as a scalar for Vec3 and Mat3.
@@ -99,22 +96,13 @@ double lane_sum(const Batch<W>& a) {
 template <int W, int Step = 1>
 void transpose_lanes(Batch<W> (&rows)[W]) {
   using Register = typename Batch<W>::Register;
-  using Mask = typename BatchRegister<W>::Mask;
-  const auto masked =
-      []<std::size_t... L>(std::index_sequence<L...>, const Register& a, const Register& b, bool upper) {
-    constexpr auto n = static_cast<long long>(W), step = static_cast<long long>(Step);
-    constexpr Mask low{
-        (static_cast<long long>(L) & step ? n + static_cast<long long>(L) - step : static_cast<long long>(L))...};
-    constexpr Mask high{
-        (static_cast<long long>(L) & step ? n + static_cast<long long>(L) : static_cast<long long>(L) + step)...};
-    return upper ? __builtin_shuffle(a, b, high) : __builtin_shuffle(a, b, low);
+  const auto exchange = []<int... L>(std::integer_sequence<int, L...>, Register & a, Register & b) {
+    const Register low = __builtin_shufflevector(a, b, ((L & Step) != 0 ? W + L - Step : L)...);
+    b = __builtin_shufflevector(a, b, ((L & Step) != 0 ? W + L : L + Step)...);
+    a = low;
   };
-  for (int i = 0; i < W; ++i) {
-    if (i & Step) continue;
-    const Register a = rows[i].v, b = rows[i + Step].v;
-    rows[i].v = masked(std::make_index_sequence<W>{}, a, b, false);
-    rows[i + Step].v = masked(std::make_index_sequence<W>{}, a, b, true);
-  }
+  for (int i = 0; i < W; ++i)
+    if ((i & Step) == 0) exchange(std::make_integer_sequence<int, W>{}, rows[i].v, rows[i + Step].v);
   if constexpr (2 * Step < W) transpose_lanes<W, 2 * Step>(rows);
 }
 

@@ -53,6 +53,17 @@ FieldValue field_at(const Attachment& a, const State& state) {
   return f;
 }
 
+std::vector<FacePoint> ModelBody::face_points() const {
+  std::vector<FacePoint> points;
+  for (const auto& t : surface_.triangles) {
+    const Vec3d &a = surface_.points[at(t[0])], &b = surface_.points[at(t[1])], &c = surface_.points[at(t[2])];
+    const double area = 0.5 * norm(cross(b - a, c - a));
+    for (const Vec3d& X : {(a * 4.0 + b + c) * (1.0 / 6), (a + b * 4.0 + c) * (1.0 / 6), (a + b + c * 4.0) * (1.0 / 6)})
+      points.push_back({X, area / 3, attach(X), {t[0], t[1], t[2]}});
+  }
+  return points;
+}
+
 std::vector<PointTensors> ModelBody::tensors(const State& state) const {
   std::vector<PointTensors> all;
   all.reserve(points_.size());

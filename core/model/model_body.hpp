@@ -50,6 +50,14 @@ struct PointTensors {
   double energy_density = 0;  ///< [J/m³]
 };
 
+/// A quadrature point of a face of the surface.
+struct FacePoint {
+  Vec3d X{};
+  double area = 0;  ///< its part of the face [m²]
+  Attachment attachment;
+  std::vector<int> nodes;  ///< of the face, by points of the surface
+};
+
 /// A named set of a body's nodes and cells, from the groups of a mesh.
 struct BodyGroup {
   std::string name;
@@ -102,6 +110,8 @@ class ModelBody {
   virtual Attachment attach_volumetric(const Attachment& at) const { return at; }
   /// The nodes that move a point of the surface.
   virtual Attachment attach_surface(std::size_t point) const { return attach(surface_.points[point]); }
+  /// Quadrature points of all faces: here three a triangle, exact for weights of degree two.
+  virtual std::vector<FacePoint> face_points() const;
   /// At each integration point.
   virtual std::vector<PointTensors> tensors(const State& state) const;
   /// At any place. @param nearest  index of the integration point whose material counts there

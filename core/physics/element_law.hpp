@@ -8,6 +8,24 @@
 /// the whole element, is in corotational.hpp.
 namespace fascia {
 
+/// λ about a node: the harmonic mean by volume, which is exact where the pressure is the same on both sides of a change
+/// of material; the arithmetic one where a λ is not positive.
+struct LambdaMean {
+  double volume = 0, sum = 0, inverse = 0;
+  bool positive = true;
+
+  void add(double lambda, double v) {
+    volume += v;
+    sum += lambda * v;
+    positive = positive && lambda > 0;
+    if (lambda > 0) inverse += v / lambda;
+  }
+  double value() const {
+    if (volume <= 0) return 0;
+    return positive ? volume / inverse : sum / volume;
+  }
+};
+
 template <class T>
 struct ElementMaterial {
   T lambda, mu;  ///< [Pa]

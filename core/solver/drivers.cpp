@@ -26,8 +26,11 @@ std::string sentence(const NewtonReport& r, const SolverSettings& settings) {
           << settings.tolerance;
       break;
     case NewtonStatus::stalled:
-      out << "Newton found no better state along its direction, residual " << r.last.relative << " > "
-          << settings.tolerance;
+      if (r.last.relative > settings.tolerance)
+        out << "Newton found no better state along its direction, residual " << r.last.relative << " > "
+            << settings.tolerance;
+      else
+        out << "the prescribed motion could not be carried out: elements or points would turn inside out";
       break;
     case NewtonStatus::not_finite:
       out << "the forces are not finite";

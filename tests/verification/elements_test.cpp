@@ -257,6 +257,55 @@ TEST(SoftCantileverElements, TetrahedraOfMirroredCells) {
   }
 }
 
+// Tractions are integrated over the curved faces of quadratic elements, not over flat facets between their nodes.
+TEST(ElementLoads, TractionOnARoundFace) {
+  for (const char* model : {"tetrahedra", "hexahedra"}) {
+    const SceneRun rod = run_text(std::string("[bodies.rod]\nmodel = \"") + model + R"("
+domain = { cylinder = { from = [0, 0, 0], to = [0.1, 0, 0], radius = 0.01, cells = [4, 8] } }
+order = 2
+density = 1000
+material = { young = 1e4, poisson = 0.3 }
+[[constraints]]
+body = "rod"
+where = { box = { min = [-0.001, -1, -1], max = [0.001, 1, 1] } }
+fix = "all"
+[[loads]]
+body = "rod"
+where = { box = { min = [0.0999, -1, -1], max = [0.1001, 1, 1] } }
+traction = [1, 0, 0]
+[solver]
+kind = "static"
+[probes.support]
+body = "rod"
+quantity = "force"
+where = { box = { min = [-0.001, -1, -1], max = [0.001, 1, 1] } }
+)");
+    const double area = static_cast<double>(rod.summary()["bodies"]["rod"]["volume"]) / 0.1;
+    EXPECT_NEAR(-rod.vector("support")[0], area, 1e-9 * area) << model;
+    EXPECT_NEAR(area, 3.14159265e-4, 2e-3 * 3.14e-4) << model;
+  }
+}
+
+// A Poisson ratio of 0.45 is not above 0.45, whatever rounding makes of lambda and mu.
+TEST(ElementLoads, StiffnessDoesNotChooseTheElements) {
+  for (const char* young : {"5e6", "5e3", "8e7", "2e8"}) {
+    const SceneRun block = run_text(std::string(R"([bodies.block]
+model = "tetrahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
+density = 1000
+material = { poisson = 0.45, young = )") +
+                                    young + R"( }
+[[constraints]]
+body = "block"
+where = "all"
+fix = "all"
+[solver]
+kind = "static"
+)");
+    EXPECT_TRUE(block.summary()["warnings"].empty()) << young << block.summary()["warnings"].dump();
+  }
+}
+
 // references.md 9. The lumped mass of 20-node hexahedra lies far out on the section: its polar inertia about the beam's
 // axis is 1 + 1.226 / n^2 times the true one with n elements across, which lowers the frequency of torsion.
 TEST(ElementModes, SteelCantilever) {

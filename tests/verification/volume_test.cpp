@@ -238,7 +238,7 @@ TEST(VolumetricLocking, HangingLiver) {
         .number("sag");
   };
   std::printf("Poisson   none [mm]   f-bar [mm]   quadratic, coarser mesh [mm]\n");
-  for (const double nu : {0.45, 0.499, 0.4999}) {
+  for (const double nu : {0.45, 0.4999}) {
     const double plain = sag("liver_m_v22.msh", "bodies.liver.locking=none", nu),
                  averaged = sag("liver_m_v22.msh", "bodies.liver.locking=f-bar", nu),
                  quadratic = sag("liver_c_v22.msh", "bodies.liver.order=2", nu);
@@ -317,6 +317,40 @@ TEST(VolumetricLocking, VolumeAtPoints) {
     EXPECT_LT(std::abs(whole), 5e-4);
     EXPECT_LT(rms[l], l == 0 ? 1e-3 : 5e-2);
     EXPECT_LT(largest, 0.2);
+  }
+}
+
+// A confined column under pressure, soft below and stiff above: each half shortens as if it were alone.
+TEST(VolumetricLocking, MaterialsThatMeet) {
+  for (const char* locking : {"none", "f-bar"}) {
+    const SceneRun column = run_text(std::string("[bodies.column]\nlocking = \"") + locking + R"("
+model = "tetrahedra"
+domain = { box = { min = [0, 0, 0], max = [0.1, 0.1, 0.4], cells = [2, 2, 8] } }
+density = 1000
+material = [{ where = { box = { min = [-1, -1, -1], max = [1, 1, 0.2] } }, use = { young = 1e4, poisson = 0.46 } },
+            { use = { young = 1e6, poisson = 0.46 } }]
+[[constraints]]
+body = "column"
+where = "all"
+fix = ["x", "y"]
+[[constraints]]
+body = "column"
+where = { box = { min = [-1, -1, -0.001], max = [1, 1, 0.001] } }
+fix = ["z"]
+[[loads]]
+body = "column"
+where = { box = { min = [-1, -1, 0.399], max = [1, 1, 0.401] } }
+traction = [0, 0, -1]
+[solver]
+kind = "static"
+[probes.middle]
+body = "column"
+at = [0.05, 0.05, 0.2]
+quantity = "displacement"
+)");
+    constexpr double kLambda = 1e4 * 0.46 / (1.46 * 0.08), kMu = 1e4 / 2.92;
+    EXPECT_NEAR(column.vector("middle")[2], -0.2 / (kLambda + 2 * kMu), 1e-7)
+        << locking << ", up to the square of the strain";
   }
 }
 
