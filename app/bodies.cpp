@@ -17,13 +17,19 @@ namespace {
 
 constexpr double kDrilling = 0.1, kAffineStabilization = 0.003;
 
+}  // namespace
+
+PointMaterialSpec point_material(const Material& m) {
+  return {m.lambda, m.mu, m.mass_damping, m.stiffness_damping, m.law == MaterialLaw::neo_hookean};
+}
+
+namespace {
+
 /// A single-material spec, or a choice by region.
 std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body) {
   return [&body](const Vec3d& X) {
     for (const MaterialUse& use : body.materials)
-      if (contains(use.where, X))
-        return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
-                                 use.material.stiffness_damping, use.material.law == MaterialLaw::neo_hookean};
+      if (contains(use.where, X)) return point_material(use.material);
     throw SceneError(
         {{body.place,
           fmt::format("no material at ({}, {}, {}); let the last entry of material have no where", X[0], X[1], X[2])}});

@@ -17,6 +17,9 @@ std::unique_ptr<ModelBody> build_body(const Body& body, Model& model, PointSetBu
 /// The same for finite elements.
 std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, PointSetBuilder& points);
 
+/// What a material is at a point.
+PointMaterialSpec point_material(const Material& material);
+
 /// How much a body will be, roughly, before anything is allocated.
 struct SampleEstimate {
   double frames = 0, points = 0, pieces = 0;

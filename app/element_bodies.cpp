@@ -71,12 +71,12 @@ std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body
   middles.reserve(mesh.size());
   cells.reserve(mesh.size());
   for (std::size_t e = 0; e < mesh.size(); ++e) {
-    middles.push_back(shape_at(mesh, e, reference_center(family_of(mesh.shape))).X);
+    middles.push_back(element_middle(mesh, e));
     cells.push_back(static_cast<int>(e));
   }
   std::vector<std::vector<bool>> chosen;  // by entry and element
   for (const MaterialUse& use : body.materials) {
-    contains(use.where, middles[0], &groups, 0);  // refuses what selects nodes
+    require_material(use.where);
     chosen.push_back(select(use.where, {middles, {}, &groups, cells}));
   }
   return [&body, &used, chosen = std::move(chosen)](const Vec3d& X, int element) {
@@ -84,8 +84,7 @@ std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body
       const MaterialUse& use = body.materials[i];
       if (!chosen[i][static_cast<std::size_t>(element)]) continue;
       used[i] = true;
-      return PointMaterialSpec{use.material.lambda, use.material.mu, use.material.mass_damping,
-                               use.material.stiffness_damping, use.material.law == MaterialLaw::neo_hookean};
+      return point_material(use.material);
     }
     throw SceneError({{body.materials.back().where.place,
                        fmt::format("no material at ({:.6g}, {:.6g}, {:.6g}); let the last entry of material "
@@ -128,8 +127,7 @@ std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, Po
                                                  : ElementLocking::automatic;
   spec.penalty = body.incompressibility;
   spec.density = body.density ? *body.density : *body.mass / volume_of(spec.mesh);
-  std::vector<BodyGroup> groups;
-  for (const ElementGroup& g : spec.mesh.groups) groups.push_back({g.name, g.number, g.dimension, g.nodes, g.elements});
+  const std::vector<BodyGroup> groups = body_groups(spec.mesh);
   std::vector<bool> used(body.materials.size());
   spec.material = material_of(body, spec.mesh, groups, used);
   const Place& place = body.locking == Locking::automatic ? body.place : body.locking_place;

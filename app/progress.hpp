@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/solver/clock.hpp"
 #include "core/solver/drivers.hpp"
 
-#include <chrono>
 #include <string>
 
 namespace fascia::app {
@@ -15,7 +15,6 @@ class Progress {
   void finish();
 
  private:
-  using Clock = std::chrono::steady_clock;
   bool quiet_, verbose_, terminal_, drawn_ = false;
   Clock::time_point start_, last_;
   int last_step_ = 0;

@@ -54,10 +54,6 @@ int nearest_point(const Vec3d& target, std::span<const Vec3d> points) {
   throw SceneError({{region.place, message}});
 }
 
-}  // namespace
-
-namespace {
-
 /// Marks what a group of the mesh has: its nodes, or the points in its cells.
 void select_group(const Region& region, const std::string& name, const Selectable& from, std::vector<bool>& chosen) {
   if (from.groups == nullptr)
@@ -146,20 +142,6 @@ std::vector<bool> select(const Region& region, const Selectable& from) {
   return chosen;
 }
 
-bool contains(const Region& region, const Vec3d& X, const std::vector<BodyGroup>* groups, int cell) {
-  const bool shape =
-      !std::holds_alternative<NearestRegion>(region.shape) && !std::holds_alternative<IdsRegion>(region.shape);
-  if (!shape) fail(region, "nearest and ids select nodes, not material; use a box, sphere, cylinder or halfspace");
-  if (const auto* all = std::get_if<AllOfRegion>(&region.shape))
-    return std::all_of(all->parts.begin(), all->parts.end(),
-                       [&](const Region& r) { return contains(r, X, groups, cell); });
-  if (const auto* any = std::get_if<AnyOfRegion>(&region.shape))
-    return std::any_of(any->parts.begin(), any->parts.end(),
-                       [&](const Region& r) { return contains(r, X, groups, cell); });
-  if (const auto* inner = std::get_if<NotRegion>(&region.shape)) return !contains(*inner->part, X, groups, cell);
-  return select(region, {std::span(&X, 1), {}, groups, std::span(&cell, 1)})[0];
-}
-
 namespace {
 
 /// Whether a region, or any that it is made of, passes a test.
@@ -175,6 +157,19 @@ bool any_part(const Region& region, const Test& test) {
 }
 
 }  // namespace
+
+void require_material(const Region& region) {
+  any_part(region, [](const Region& r) {
+    if (std::holds_alternative<NearestRegion>(r.shape) || std::holds_alternative<IdsRegion>(r.shape))
+      fail(r, "nearest and ids select nodes, not material; use a box, sphere, cylinder or halfspace");
+    return false;
+  });
+}
+
+bool contains(const Region& region, const Vec3d& X) {
+  require_material(region);
+  return select(region, {std::span(&X, 1)})[0];
+}
 
 bool names_boundary(const Region& region) {
   return any_part(region, [](const Region& r) { return std::holds_alternative<BoundaryRegion>(r.shape); });

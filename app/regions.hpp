@@ -20,10 +20,12 @@ struct Selectable {
 /// @throws SceneError  a region that these points do not know (a group, or the boundary)
 std::vector<bool> select(const Region& region, const Selectable& points);
 
-/// Whether a region (no nearest, ids, boundary) holds a position, or the cell that it is in.
-/// @param groups  of the mesh; null: a group cannot be asked for
-/// @throws SceneError  for those
-bool contains(const Region& region, const Vec3d& X, const std::vector<BodyGroup>* groups = nullptr, int cell = -1);
+/// @throws SceneError  a region that selects nodes anywhere (nearest, ids) where material is asked for
+void require_material(const Region& region);
+
+/// Whether a region of material (no boundary, no group) holds a position.
+/// @throws SceneError  for another region
+bool contains(const Region& region, const Vec3d& X);
 
 /// Whether a region names `boundary` anywhere.
 bool names_boundary(const Region& region);

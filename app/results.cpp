@@ -2,19 +2,17 @@
 
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/solver/clock.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <type_traits>
 
 namespace fascia::app {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// What the fields of a .vtu are made of, at one point.
 struct PointValue {
@@ -221,7 +219,7 @@ void ResultFiles::add_state(double time, const State& state) {
     entries_.push_back({time, body.name, file});
   }
   ++saved_;
-  seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
+  seconds_ += seconds_since(start);
 }
 
 void ResultFiles::finish() {

@@ -7,23 +7,19 @@
 #include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
 #include "core/math/rotation.hpp"
+#include "core/solver/clock.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <cmath>
 #include <csignal>
 
 namespace fascia::app {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 volatile std::sig_atomic_t interrupted = 0;
 void on_interrupt(int) { interrupted = 1; }

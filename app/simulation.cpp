@@ -4,6 +4,7 @@
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/schedule.hpp"
+#include "core/geometry/bounds.hpp"
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/model/errors.hpp"
@@ -167,12 +168,7 @@ std::vector<int> select_nodes(const Simulation& s, int body, const Region& regio
   std::vector<int> nodes = find_nodes(s, body, region);
   if (nodes.empty()) {
     const SimulatedBody& b = s.bodies[at(body)];
-    Vec3d low = b.nodes.front(), high = low;
-    for (const Vec3d& p : b.nodes)
-      for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], p[a]);
-        high[a] = std::max(high[a], p[a]);
-      }
+    const auto [low, high] = bounds_of(b.nodes);
     throw SceneError(
         {{region.place,
           fmt::format("the region selects no {} of body \"{}\"; its {}s lie between ({:.6g}, "

@@ -1,5 +1,6 @@
 #include "fem/element_body.hpp"
 
+#include "core/geometry/bounds.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "fem/quadrature.hpp"
@@ -15,10 +16,6 @@ namespace {
 /// Above this Poisson ratio linear elements lock (docs/manual.md, "Nearly incompressible tissue"); rounding of λ and μ
 /// must not decide about the ratio itself.
 constexpr double kLockingPoisson = 0.45 + 1e-9;
-
-Vec3d middle_of(const ElementMesh& mesh, std::size_t e) {
-  return shape_at(mesh, e, reference_center(family_of(mesh.shape))).X;
-}
 
 double mean_edge(const ElementMesh& mesh) {
   double sum = 0;
@@ -39,16 +36,11 @@ std::uint32_t morton(const Vec3d& x) {
 
 /// Elements of a law in an order in which neighbours are near each other.
 std::vector<std::size_t> ordered(const ElementMesh& mesh, const std::vector<std::size_t>& chosen) {
-  Vec3d low = mesh.nodes[0], high = low;
-  for (const Vec3d& x : mesh.nodes)
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], x[a]);
-      high[a] = std::max(high[a], x[a]);
-    }
-  const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  const Bounds bounds = bounds_of(mesh.nodes);
+  const double size = bounds.extent()[longest_axis(bounds)];
   std::vector<std::pair<std::uint32_t, std::size_t>> keys;
   keys.reserve(chosen.size());
-  for (const std::size_t e : chosen) keys.emplace_back(morton((middle_of(mesh, e) - low) * (1 / size)), e);
+  for (const std::size_t e : chosen) keys.emplace_back(morton((element_middle(mesh, e) - bounds.low) * (1 / size)), e);
   std::sort(keys.begin(), keys.end());
   std::vector<std::size_t> order;
   order.reserve(keys.size());
@@ -60,11 +52,17 @@ double poisson_of(const PointMaterialSpec& m) { return m.lambda / (2 * (m.lambda
 
 }  // namespace
 
+std::vector<BodyGroup> body_groups(const ElementMesh& mesh) {
+  std::vector<BodyGroup> groups;
+  for (const ElementGroup& g : mesh.groups) groups.push_back({g.name, g.number, g.dimension, g.nodes, g.elements});
+  return groups;
+}
+
 ElementBody::ElementBody(ElementBodySpec spec, Model& model, PointSetBuilder& points)
     : locator_(std::move(spec.mesh)), formulation_(spec.formulation), penalty_(spec.penalty) {
   messages_ = mesh().messages;
   for (std::size_t e = 0; e < mesh().size(); ++e)
-    material_.push_back(spec.material(middle_of(mesh(), e), static_cast<int>(e)));
+    material_.push_back(spec.material(element_middle(mesh(), e), static_cast<int>(e)));
   choose_formulation(spec);
   number_nodes(model);
   add_points(spec);
@@ -116,14 +114,8 @@ void ElementBody::number_nodes(Model& model) {
   surface_.points = mesh().nodes;
   for (const auto& t : faces.surface.triangles)
     surface_.triangles.push_back({faces.node[at(t[0])], faces.node[at(t[1])], faces.node[at(t[2])]});
-  Vec3d low = mesh().nodes[0], high = low;
-  for (const Vec3d& x : mesh().nodes)
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], x[a]);
-      high[a] = std::max(high[a], x[a]);
-    }
-  size_ = norm(high - low);
-  for (const ElementGroup& g : mesh().groups) groups_.push_back({g.name, g.number, g.dimension, g.nodes, g.elements});
+  size_ = bounds_of(mesh().nodes).diagonal();
+  groups_ = body_groups(mesh());
   cells_.type = family_of(mesh().shape) == ElementFamily::tetrahedra ? CellType::tetrahedron : CellType::hexahedron;
   cells_.nodes_per_cell = fascia::node_count(mesh().shape);
   cells_.nodes = mesh().element_nodes;

@@ -24,6 +24,9 @@ struct ElementBodySpec {
   std::function<PointMaterialSpec(const Vec3d&, int)> material;
 };
 
+/// The groups of a mesh as a body has them.
+std::vector<BodyGroup> body_groups(const ElementMesh& mesh);
+
 /// Finite elements in a model: vertices with three degrees of freedom.
 ///
 /// Mass is lumped: Σ ρ v N of linear elements, and in proportion to Σ ρ v N² of quadratic ones (Hinton, Rock and

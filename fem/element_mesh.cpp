@@ -71,6 +71,10 @@ ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d&
   return point;
 }
 
+Vec3d element_middle(const ElementMesh& mesh, std::size_t element) {
+  return shape_at(mesh, element, reference_center(family_of(mesh.shape))).X;
+}
+
 double element_volume(const ElementMesh& mesh, std::size_t element) {
   return ElementJacobians(mesh.shape).volume(mesh, element);
 }

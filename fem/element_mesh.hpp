@@ -52,6 +52,9 @@ struct ElementPoint {
 
 ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d& xi);
 
+/// An element's place at the centre of its reference element [m].
+Vec3d element_middle(const ElementMesh& mesh, std::size_t element);
+
 /// Volume of an element by the quadrature of its shape [m³]; negative where it is turned the wrong way round.
 double element_volume(const ElementMesh& mesh, std::size_t element);
 

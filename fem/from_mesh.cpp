@@ -1,5 +1,6 @@
 #include "fem/from_mesh.hpp"
 
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/weld.hpp"
 #include "core/model/errors.hpp"
 #include "fem/from_mesh_parts.hpp"
@@ -77,13 +78,7 @@ void add_file_middles(ElementMesh& mesh) {
 }
 
 void report_coincident(ElementMesh& mesh) {
-  Vec3d low = mesh.nodes.front(), high = low;
-  for (const Vec3d& X : mesh.nodes)
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], X[c]);
-      high[c] = std::max(high[c], X[c]);
-    }
-  const std::vector<int> same = weld_points(mesh.nodes, 1e-9 * norm(high - low));
+  const std::vector<int> same = weld_points(mesh.nodes, 1e-9 * bounds_of(mesh.nodes).diagonal());
   std::size_t count = 0, first = 0;
   for (std::size_t i = same.size(); i-- > 0;) {
     if (same[i] == static_cast<int>(i)) continue;

@@ -31,20 +31,15 @@ Vec3d bulge(const ElementMesh& mesh, std::size_t element) {
 }  // namespace
 
 ElementLocator::ElementLocator(ElementMesh mesh) : mesh_(std::move(mesh)), boundary_(boundary_faces(mesh_).surface) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  whole_ = {{{infinite, infinite, infinite}}, {{-infinite, -infinite, -infinite}}};
   boxes_.reserve(mesh_.size());
   for (std::size_t e = 0; e < mesh_.size(); ++e) {
     boxes_.push_back(box_of(e));
-    for (int c = 0; c < 3; ++c) {
-      whole_.low[c] = std::min(whole_.low[c], boxes_[e].low[c]);
-      whole_.high[c] = std::max(whole_.high[c], boxes_[e].high[c]);
-    }
+    whole_.include(boxes_[e]);
   }
   if (boxes_.empty()) return;
   // Points on an element's own border count as in its box, whatever the rounding.
-  const double margin = tolerance * norm(whole_.high - whole_.low);
-  for (Box& box : boxes_)
+  const double margin = tolerance * whole_.diagonal();
+  for (Bounds& box : boxes_)
     for (int c = 0; c < 3; ++c) {
       box.low[c] -= margin;
       box.high[c] += margin;
@@ -53,20 +48,9 @@ ElementLocator::ElementLocator(ElementMesh mesh) : mesh_(std::move(mesh)), bound
   fill_cells();
 }
 
-bool ElementLocator::Box::contains(const Vec3d& X) const {
-  for (int c = 0; c < 3; ++c)
-    if (!(X[c] >= low[c] && X[c] <= high[c])) return false;
-  return true;
-}
-
-ElementLocator::Box ElementLocator::box_of(std::size_t element) const {
-  const auto nodes = mesh_.element(element).first(at(corner_count(mesh_.shape)));
-  Box box{mesh_.nodes[at(nodes[0])], mesh_.nodes[at(nodes[0])]};
-  for (const int n : nodes)
-    for (int c = 0; c < 3; ++c) {
-      box.low[c] = std::min(box.low[c], mesh_.nodes[at(n)][c]);
-      box.high[c] = std::max(box.high[c], mesh_.nodes[at(n)][c]);
-    }
+Bounds ElementLocator::box_of(std::size_t element) const {
+  Bounds box;
+  for (const int n : mesh_.element(element).first(at(corner_count(mesh_.shape)))) box.include(mesh_.nodes[at(n)]);
   const Vec3d more = bulge(mesh_, element);
   return {box.low - more, box.high + more};
 }
@@ -75,7 +59,7 @@ ElementLocator::Box ElementLocator::box_of(std::size_t element) const {
 void ElementLocator::size_grid() {
   constexpr double most = 1024;
   Vec3d mean;
-  for (const Box& box : boxes_) mean += box.high - box.low;
+  for (const Bounds& box : boxes_) mean += box.extent();
   mean *= 1 / static_cast<double>(boxes_.size());
   double total = 1;
   Vec3d count;
@@ -99,7 +83,7 @@ std::size_t ElementLocator::cell_at(const Vec3d& X) const {
 }
 
 template <class Act>
-void ElementLocator::for_each_cell(const Box& box, Act&& act) const {
+void ElementLocator::for_each_cell(const Bounds& box, Act&& act) const {
   std::array<int, 3> first{}, last{};
   for (int c = 0; c < 3; ++c) {
     first[at(c)] = cell_along(c, box.low[c]);
@@ -112,7 +96,7 @@ void ElementLocator::for_each_cell(const Box& box, Act&& act) const {
 
 void ElementLocator::fill_cells() {
   begin_.assign(at(cells_[0]) * at(cells_[1]) * at(cells_[2]) + 1, 0);
-  for (const Box& box : boxes_) for_each_cell(box, [&](std::size_t cell) { ++begin_[cell + 1]; });
+  for (const Bounds& box : boxes_) for_each_cell(box, [&](std::size_t cell) { ++begin_[cell + 1]; });
   for (std::size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
   members_.resize(begin_.back());
   std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
@@ -131,11 +115,10 @@ Located ElementLocator::locate(const Vec3d& X) const {
   Located best;
   best.distance = std::numeric_limits<double>::infinity();
   if (boxes_.empty()) return best;
-  const double rounding = 1e-13 * norm(whole_.high - whole_.low);
+  const double rounding = 1e-13 * whole_.diagonal();
   const auto found = [&] {
     if (best.element < 0) return false;
-    const Box& box = boxes_[at(best.element)];
-    return best.distance <= tolerance * norm(box.high - box.low);
+    return best.distance <= tolerance * boxes_[at(best.element)].diagonal();
   };
   // Of elements that meet at the nearest place, the first stays: rounding does not decide.
   const auto offer = [&](std::size_t element) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "fem/element_mesh.hpp"
 
@@ -33,26 +34,21 @@ class ElementLocator {
   const ElementMesh& mesh() const { return mesh_; }
 
  private:
-  struct Box {
-    Vec3d low{}, high{};
-    bool contains(const Vec3d& X) const;
-  };
-
-  Box box_of(std::size_t element) const;
+  Bounds box_of(std::size_t element) const;
   void size_grid();
   void fill_cells();
   int cell_along(int axis, double coordinate) const;
   std::size_t cell_at(const Vec3d& X) const;
   template <class Act>
-  void for_each_cell(const Box& box, Act&& act) const;
+  void for_each_cell(const Bounds& box, Act&& act) const;
   /// Elements whose boxes hold X, ascending: act(element) returns whether to stop.
   template <class Act>
   void for_each_near(const Vec3d& X, Act&& act) const;
 
   ElementMesh mesh_;
   TriangleTree boundary_;
-  std::vector<Box> boxes_;
-  Box whole_;
+  std::vector<Bounds> boxes_;
+  Bounds whole_;
   std::array<int, 3> cells_{1, 1, 1};
   std::vector<std::size_t> begin_;  ///< of each cell in members_
   std::vector<int> members_;        ///< elements by cell

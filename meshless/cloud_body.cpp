@@ -1,5 +1,6 @@
 #include "meshless/cloud_body.hpp"
 
+#include "core/geometry/bounds.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "meshless/cloud_parts.hpp"
@@ -17,16 +18,9 @@ CloudBody::CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& point
   segments_ = spec.segments;
   for (const CloudPoint& p : spec.points) volume_ += p.volume;
   mass_ = spec.density * volume_;
-  Vec3d low = spec.points.front().place.X, high = low;
-  const auto include = [&](const Vec3d& x) {
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], x[a]);
-      high[a] = std::max(high[a], x[a]);
-    }
-  };
-  for (const CloudPoint& p : spec.points) include(p.place.X);
-  for (const Vec3d& x : surface_.points) include(x);
-  size_ = norm(high - low);
+  Bounds bounds = bounds_of(surface_.points);
+  for (const CloudPoint& p : spec.points) bounds.include(p.place.X);
+  size_ = bounds.diagonal();
   std::vector<ScatteredWeights> weights;
   for (const CloudPoint& p : spec.points) {
     places_.push_back(p.place);

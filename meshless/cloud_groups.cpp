@@ -1,3 +1,4 @@
+#include "core/geometry/bounds.hpp"
 #include "meshless/cloud_body.hpp"
 
 #include "core/math/index.hpp"
@@ -64,16 +65,9 @@ void CloudBody::split_group(const CloudSpec& spec, std::vector<std::size_t> memb
     throw InputError(std::to_string(attachments[members[0]].nodes.size()) + " frames reach one point; at most " +
                          std::to_string(kMaxSlots) + " may: use a smaller weights.radius or fewer neighbours",
                      Blame::weights);
-  Vec3d low = points_[members[0]].X, high = low;
-  for (const std::size_t q : members) {
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], points_[q].X[a]);
-      high[a] = std::max(high[a], points_[q].X[a]);
-    }
-  }
-  int axis = 0;
-  for (int a = 1; a < 3; ++a)
-    if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
+  Bounds bounds;
+  for (const std::size_t q : members) bounds.include(points_[q].X);
+  const int axis = longest_axis(bounds);
   std::sort(members.begin(), members.end(), [&](std::size_t p, std::size_t q) {
     const double x = points_[p].X[axis], y = points_[q].X[axis];
     return x < y || (x == y && p < q);

@@ -1,5 +1,6 @@
 #include "meshless/cloud_parts.hpp"
 
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "core/math/index.hpp"
 #include "meshless/gauss.hpp"
@@ -129,24 +130,11 @@ double rough_spacing(const MatterParts& parts, int count) {
 }
 
 double size_of(const MatterParts& parts) {
-  Vec3d low, high;
-  bool any = false;
-  const auto include = [&](const Vec3d& x) {
-    for (int a = 0; a < 3; ++a) {
-      low[a] = any ? std::min(low[a], x[a]) : x[a];
-      high[a] = any ? std::max(high[a], x[a]) : x[a];
-    }
-    any = true;
-  };
-  if (parts.solid) {
-    include(parts.solid->min);
-    include(parts.solid->max);
-  }
-  for (const SheetPart& s : parts.sheets)
-    for (const Vec3d& x : s.surface.points) include(x);
-  for (const LinePart& l : parts.lines)
-    for (const Vec3d& x : l.points) include(x);
-  return norm(high - low);
+  Bounds bounds;
+  if (parts.solid) bounds.include({parts.solid->min, parts.solid->max});
+  for (const SheetPart& s : parts.sheets) bounds.include(bounds_of(s.surface.points));
+  for (const LinePart& l : parts.lines) bounds.include(bounds_of(l.points));
+  return bounds.diagonal();
 }
 
 std::vector<CloudPoint> gauss_cells(const ThinGridSpec& choice, const Mat3d& axes) {

@@ -152,25 +152,23 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
   });
 }
 
-void CpuExecutor::forces(const State& state, const StrainHistory& history, std::span<double> gradient) {
+void CpuExecutor::sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient) {
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
       with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group); });
   });
   for (std::size_t b = 0; b < elements_.size(); ++b)
-    elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, false, {});
-  sum_forces(state, false, gradient);
+    elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, all, part_motion_);
+  sum_forces(state, all, gradient);
+}
+
+void CpuExecutor::forces(const State& state, const StrainHistory& history, std::span<double> gradient) {
+  sum_terms(state, history, false, gradient);
 }
 
 InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, std::span<double> gradient) {
   note_motion(state);
-  pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
-    for (int group = begin; group < end; ++group)
-      with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group); });
-  });
-  for (std::size_t b = 0; b < elements_.size(); ++b)
-    elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, true, part_motion_);
-  sum_forces(state, true, gradient);
+  sum_terms(state, history, true, gradient);
   InternalEnergy energy;
   std::fill(part_rounding_.begin(), part_rounding_.end(), 0.0);
   std::fill(part_tether_.begin(), part_tether_.end(), 0.0);

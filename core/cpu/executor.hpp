@@ -83,6 +83,8 @@ class CpuExecutor {
 
  private:
   std::span<const double> strain_of_block(const AlignedVector<double>& E, std::size_t block) const;
+  /// @param all  with energies, rounding, and what linearize() needs
+  void sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient);
   void sum_forces(const State& state, bool keep_moments, std::span<double> gradient);
   template <PointKind Kind>
   void gradient_of_group(const State& state, const StrainHistory& history, int group);

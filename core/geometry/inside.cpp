@@ -8,21 +8,16 @@ namespace fascia {
 
 InsideTest::InsideTest(const TriangleMesh& closed) : mesh_(closed), tree_(closed) {
   if (mesh_.triangles.empty()) return;
-  low_ = high_ = mesh_.points[static_cast<std::size_t>(mesh_.triangles[0][0])];
   for (const auto& triangle : mesh_.triangles)
-    for (const int node : triangle)
-      for (int c = 0; c < 3; ++c) {
-        low_[c] = std::min(low_[c], mesh_.points[static_cast<std::size_t>(node)][c]);
-        high_[c] = std::max(high_[c], mesh_.points[static_cast<std::size_t>(node)][c]);
-      }
+    for (const int node : triangle) bounds_.include(mesh_.points[static_cast<std::size_t>(node)]);
   fill_bins();
 }
 
 int InsideTest::bin(int axis, double coordinate) const {
   const int count = bins_[static_cast<std::size_t>(axis - 1)];
-  const double extent = high_[axis] - low_[axis];
+  const double extent = bounds_.high[axis] - bounds_.low[axis];
   if (!(extent > 0)) return 0;
-  const double place = std::floor((coordinate - low_[axis]) / extent * count);
+  const double place = std::floor((coordinate - bounds_.low[axis]) / extent * count);
   return static_cast<int>(std::clamp(place, 0.0, static_cast<double>(count - 1)));
 }
 
@@ -89,9 +84,9 @@ int InsideTest::crossing(const std::array<int, 3>& triangle, const Vec3d& x) con
 }
 
 int InsideTest::winding_number(const Vec3d& x) const {
-  if (mesh_.triangles.empty() || !(x[0] < high_[0])) return 0;
+  if (mesh_.triangles.empty() || !(x[0] < bounds_.high[0])) return 0;
   for (int axis = 1; axis < 3; ++axis)
-    if (!(x[axis] >= low_[axis] && x[axis] <= high_[axis])) return 0;
+    if (!(x[axis] >= bounds_.low[axis] && x[axis] <= bounds_.high[axis])) return 0;
   const std::size_t b = bin_number(bin(1, x[1]), bin(2, x[2]));
   int sum = 0;
   for (std::size_t m = begin_[b]; m < begin_[b + 1]; ++m)

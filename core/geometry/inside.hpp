@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/mesh.hpp"
 #include "core/geometry/triangle_tree.hpp"
 
@@ -36,7 +37,7 @@ class InsideTest {
 
   TriangleMesh mesh_;
   TriangleTree tree_;
-  Vec3d low_{}, high_{};
+  Bounds bounds_;
   std::array<int, 2> bins_{1, 1};   ///< along y, z
   std::vector<std::size_t> begin_;  ///< of each bin in members_
   std::vector<int> members_;        ///< triangles by bin

@@ -1,3 +1,4 @@
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
@@ -41,7 +42,7 @@ std::string name_of(const Solid& solid, const Edge& edge) {
 /// One closed component: whether it is outward, and what a test of points needs.
 struct Component {
   std::vector<Triangle> triangles;
-  Vec3d low, high;
+  Bounds bounds;
   bool outward = true;
 };
 
@@ -50,22 +51,11 @@ std::vector<Component> split(const Solid& solid, const std::vector<Triangle>& tr
   for (std::size_t t = 0; t < triangles.size(); ++t)
     result[static_cast<std::size_t>(components.of[t])].triangles.push_back(triangles[t]);
   for (Component& component : result) {
-    component.low = component.high = solid.points[static_cast<std::size_t>(component.triangles[0].nodes[0])];
     for (const Triangle& t : component.triangles)
-      for (const int node : t.nodes)
-        for (int c = 0; c < 3; ++c) {
-          component.low[c] = std::min(component.low[c], solid.points[static_cast<std::size_t>(node)][c]);
-          component.high[c] = std::max(component.high[c], solid.points[static_cast<std::size_t>(node)][c]);
-        }
+      for (const int node : t.nodes) component.bounds.include(solid.points[static_cast<std::size_t>(node)]);
     component.outward = enclosed_volume(solid.points, component.triangles) > 0;
   }
   return result;
-}
-
-bool within(const Component& inner, const Component& outer) {
-  for (int c = 0; c < 3; ++c)
-    if (inner.low[c] < outer.low[c] || inner.high[c] > outer.high[c]) return false;
-  return true;
 }
 
 /// For each component, in how many others it lies.
@@ -74,7 +64,7 @@ std::vector<int> nesting_depths(const Solid& solid, const std::vector<Component>
   for (std::size_t outer = 0; outer < components.size(); ++outer) {
     std::optional<InsideTest> test;
     for (std::size_t inner = 0; inner < components.size(); ++inner) {
-      if (inner == outer || !within(components[inner], components[outer])) continue;
+      if (inner == outer || !components[outer].bounds.contains(components[inner].bounds)) continue;
       if (!test) test.emplace(compact(solid, components[outer].triangles));
       const Vec3d& x = solid.points[static_cast<std::size_t>(components[inner].triangles[0].nodes[0])];
       if (test->winding_number(x) != 0) ++depth[inner];

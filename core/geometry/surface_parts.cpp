@@ -1,5 +1,6 @@
 #include "core/geometry/surface_parts.hpp"
 
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/weld.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
@@ -30,16 +31,10 @@ std::vector<int> number_used(const Mesh& mesh, bool (*wanted)(CellType)) {
 
 /// Diagonal of the box around the points that the cells use [m].
 double diagonal_of(const std::vector<Vec3d>& points, const std::vector<Cell>& cells) {
-  if (cells.empty()) return 0;
-  Vec3d low = points[at(cells[0].nodes[0])], high = low;
+  Bounds bounds;
   for (const Cell& cell : cells)
-    for (int n = 0; n < node_count(cell.type); ++n)
-      for (int c = 0; c < 3; ++c) {
-        const double x = points[at(cell.nodes[at(n)])][c];
-        low[c] = std::min(low[c], x);
-        high[c] = std::max(high[c], x);
-      }
-  return norm(high - low);
+    for (int n = 0; n < node_count(cell.type); ++n) bounds.include(points[at(cell.nodes[at(n)])]);
+  return bounds.diagonal();
 }
 
 void weld(Solid& solid, std::vector<std::string>& messages) {

@@ -38,38 +38,32 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     triangles_.push_back({point(0), point(1), point(2)});
   }
   if (triangles_.empty()) return;
-  nodes_.push_back({{}, {}, 0, static_cast<int>(triangles_.size()), -1});
+  nodes_.push_back({{}, 0, static_cast<int>(triangles_.size()), -1});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     bound(nodes_[n]);
     const Node node = nodes_[n];
     if (node.end - node.begin <= leaf_size) continue;
-    const Vec3d extent = node.high - node.low;
-    const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : (extent[1] >= extent[2] ? 1 : 2);
+    const int axis = longest_axis(node.bounds);
     const int middle = (node.begin + node.end) / 2;
     std::nth_element(triangles_.begin() + node.begin, triangles_.begin() + middle, triangles_.begin() + node.end,
                      [axis](const Corners& a, const Corners& b) {
                        return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
                      });
     nodes_[n].children = static_cast<int>(nodes_.size());
-    nodes_.push_back({{}, {}, node.begin, middle, -1});
-    nodes_.push_back({{}, {}, middle, node.end, -1});
+    nodes_.push_back({{}, node.begin, middle, -1});
+    nodes_.push_back({{}, middle, node.end, -1});
   }
 }
 
 void TriangleTree::bound(Node& node) const {
-  node.low = node.high = triangles_[static_cast<std::size_t>(node.begin)][0];
   for (int t = node.begin; t < node.end; ++t)
-    for (const Vec3d& x : triangles_[static_cast<std::size_t>(t)])
-      for (int c = 0; c < 3; ++c) {
-        node.low[c] = std::min(node.low[c], x[c]);
-        node.high[c] = std::max(node.high[c], x[c]);
-      }
+    for (const Vec3d& x : triangles_[static_cast<std::size_t>(t)]) node.bounds.include(x);
 }
 
 double TriangleTree::squared_distance(const Node& node, const Vec3d& x) {
   double sum = 0;
   for (int c = 0; c < 3; ++c) {
-    const double d = std::max({node.low[c] - x[c], 0.0, x[c] - node.high[c]});
+    const double d = std::max({node.bounds.low[c] - x[c], 0.0, x[c] - node.bounds.high[c]});
     sum += d * d;
   }
   return sum;

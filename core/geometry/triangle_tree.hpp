@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/mesh.hpp"
 
 namespace fascia {
@@ -20,7 +21,7 @@ class TriangleTree {
 
   /// A range of triangles; its children, where it has any, follow one another.
   struct Node {
-    Vec3d low{}, high{};
+    Bounds bounds;
     int begin = 0, end = 0;
     int children = -1;
   };

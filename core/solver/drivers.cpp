@@ -1,17 +1,14 @@
 #include "core/solver/drivers.hpp"
 
+#include "core/solver/clock.hpp"
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <sstream>
 
 namespace fascia {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Boundary rotations are spread over steps of at most this angle: their linear prediction still holds there [rad].
 constexpr double kRotationPerStep = 0.35;

@@ -1,18 +1,14 @@
 #include "core/solver/explicit_dynamics.hpp"
 
+#include "core/solver/clock.hpp"
 #include "core/solver/explicit_step.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <sstream>
 
 namespace fascia {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Every so many steps the state is kept, to return to where the run blows up.
 constexpr int kKeepEvery = 100;

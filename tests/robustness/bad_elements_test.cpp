@@ -80,6 +80,8 @@ const WrongElements kWrongScenes[] = {
      "bodies.beam.material[0].where", "no element"},
     {"material_of_nodes", kUse, "material = [{ where = { ids = [0] }, use = \"soft\" }, { use = \"soft\" }]",
      "bodies.beam.material[0].where", "select nodes"},
+    {"material_of_nodes_too", kUse, "material = [{ where = { any_of = [\"all\", { ids = [0] }] }, use = \"soft\" }]",
+     "bodies.beam.material[0].where.any_of[1]", "select nodes"},
     {"rotations_of_vertices", kAllFixed, "fix = \"rotation\"", "constraints[0]", "rotations"},
     {"turn_of_vertices", kAllFixed, "move = { rotate = { axis = [1, 0, 0], angle = 1 }, axes = [\"rx\"] }",
      "constraints[0]", "rotations"},

@@ -1,6 +1,6 @@
+#include "tests/support/derivatives.hpp"
 #include "core/cpu/executor.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
 
@@ -109,56 +109,16 @@ std::vector<Case> cases() {
           {"mixture", mixture}};
 }
 
-class Derivatives : public testing::TestWithParam<Case> {
+class Derivatives : public DerivativeTest<Case, BuiltModel> {
  protected:
-  Derivatives()
-      : built_(GetParam().build()),
-        executor_(built_.model.points, pool_),
-        state_(random_state(built_.model, 0.02, 0.4)) {
-    if (GetParam().dt > 0) {
-      history_.inverse_step = 1 / GetParam().dt;
-      executor_.store_strain(random_state(built_.model, 0.01, 0.2, 7), history_);
-    }
-  }
-  std::size_t size() const { return static_cast<std::size_t>(built_.model.dof_count()); }
-  double energy(const State& state) {
-    std::vector<double> unused(size());
-    return executor_.gradient(state, history_, unused).total();
-  }
-  std::vector<double> gradient(const State& state) {
-    std::vector<double> g(size());
-    executor_.gradient(state, history_, g);
-    return g;
-  }
-  Linearization linearization(Tangent tangent) {
-    gradient(state_);
-    Linearization lin;
-    executor_.linearize(state_, history_, tangent, lin);
-    return lin;
-  }
-
-  BuiltModel built_;
-  ThreadPool pool_{1};
-  CpuExecutor executor_;
-  State state_;
-  StrainHistory history_;
+  Derivatives() : DerivativeTest(GetParam().build(), 0.02, 0.4) {}
 };
 
-TEST_P(Derivatives, GradientIsThatOfTheEnergy) {
-  const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
-  const double h = 1e-6;  // truncation h² and rounding eps/h balance near here
-  const double numeric =
-      (energy(moved(built_.model, state_, d, h)) - energy(moved(built_.model, state_, d, -h))) / (2 * h);
-  const double error = std::abs(numeric - test::dot(g, d)) / (test::norm(g) * test::norm(d));
-  std::printf("%-12s gradient against differences of the energy: %.1e\n", GetParam().name.c_str(), error);
-  EXPECT_LT(error, 1e-8);
-}
+TEST_P(Derivatives, GradientIsThatOfTheEnergy) { expect_gradient_of_the_energy(); }
 
 TEST_P(Derivatives, TangentIsTheSecondDerivativeAlongExponentials) {
   const std::vector<double> d = random_direction(built_.model);
-  const Linearization lin = linearization(Tangent::full);
-  std::vector<double> Kd(size());
-  executor_.multiply(lin, d, Kd);
+  const std::vector<double> Kd = product(linearization(Tangent::full), d);
   const double h = 1e-4;
   const double numeric =
       (energy(moved(built_.model, state_, d, h)) - 2 * energy(state_) + energy(moved(built_.model, state_, d, -h))) /
@@ -171,9 +131,7 @@ TEST_P(Derivatives, TangentIsTheSecondDerivativeAlongExponentials) {
 /// The derivative of successive increments is K − ½ [torque]× on the rotation blocks (docs/notation.md).
 TEST_P(Derivatives, DifferencesOfTheGradientAreTangentMinusHalfTorque) {
   const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
-  const Linearization lin = linearization(Tangent::full);
-  std::vector<double> Kd(size());
-  executor_.multiply(lin, d, Kd);
+  std::vector<double> Kd = product(linearization(Tangent::full), d);
   for (int node = 0; node < built_.model.node_count(); ++node) {
     if (built_.model.kind(node) == FrameKind::affine) continue;
     const auto i = static_cast<std::size_t>(built_.model.points.dofs.begin(node));
@@ -181,41 +139,12 @@ TEST_P(Derivatives, DifferencesOfTheGradientAreTangentMinusHalfTorque) {
     const Vec3d correction = cross(torque, dr) * 0.5;
     for (std::size_t k = 0; k < 3; ++k) Kd[i + 3 + k] -= correction[static_cast<int>(k)];
   }
-  const double h = 1e-6;
-  const std::vector<double> plus = gradient(moved(built_.model, state_, d, h)),
-                            minus = gradient(moved(built_.model, state_, d, -h));
-  std::vector<double> difference(size());
-  for (std::size_t i = 0; i < size(); ++i) difference[i] = (plus[i] - minus[i]) / (2 * h) - Kd[i];
-  const double error = test::norm(difference) / test::norm(Kd);
-  std::printf("%-12s product against differences of the gradient: %.1e\n", GetParam().name.c_str(), error);
-  EXPECT_LT(error, 1e-8);
+  expect_derivative_of_the_gradient(d, Kd);
 }
 
-TEST_P(Derivatives, AssembledMatrixEqualsTheProduct) {
-  for (const Tangent tangent : {Tangent::full, Tangent::material}) {
-    const Linearization lin = linearization(tangent);
-    BlockMatrix matrix(built_.model.points);
-    executor_.assemble(lin, matrix);
-    const std::vector<double> d = random_direction(built_.model);
-    std::vector<double> free(size()), assembled(size());
-    executor_.multiply(lin, d, free);
-    matrix.multiply(pool_, d, assembled);
-    for (std::size_t i = 0; i < size(); ++i) assembled[i] -= free[i];
-    EXPECT_LT(test::norm(assembled), 1e-12 * test::norm(free)) << GetParam().name;
-  }
-}
+TEST_P(Derivatives, AssembledMatrixEqualsTheProduct) { expect_assembled_equals_product(); }
 
-TEST_P(Derivatives, MaterialTangentIsSymmetricAndNotNegative) {
-  const Linearization lin = linearization(Tangent::material);
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    const std::vector<double> a = random_direction(built_.model, seed), b = random_direction(built_.model, seed + 100);
-    std::vector<double> Ka(size()), Kb(size());
-    executor_.multiply(lin, a, Ka);
-    executor_.multiply(lin, b, Kb);
-    EXPECT_GE(test::dot(a, Ka), 0);
-    EXPECT_NEAR(test::dot(a, Kb), test::dot(b, Ka), 1e-12 * test::norm(Ka) * test::norm(b));
-  }
-}
+TEST_P(Derivatives, MaterialTangentIsSymmetricAndNotNegative) { expect_symmetric_and_not_negative(); }
 
 INSTANTIATE_TEST_SUITE_P(Terms, Derivatives, testing::ValuesIn(cases()), [](const auto& parameter) {
   std::string name = parameter.param.name;

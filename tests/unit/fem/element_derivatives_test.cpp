@@ -1,5 +1,4 @@
-#include "core/cpu/executor.hpp"
-#include "core/solver/block_matrix.hpp"
+#include "tests/support/derivatives.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
 #include <gtest/gtest.h>
@@ -77,97 +76,26 @@ std::vector<Case> cases() {
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
-class ElementDerivatives : public testing::TestWithParam<Case> {
+class ElementDerivatives : public DerivativeTest<Case, ElementModel> {
  protected:
-  ElementDerivatives()
-      : built_(element_model(GetParam().options)),
-        executor_(built_.model.points, pool_),
-        state_(random_state(built_.model, 0.03, 0)) {
-    turn(state_);
-    if (GetParam().dt > 0) {
-      history_.inverse_step = 1 / GetParam().dt;
-      executor_.store_strain(random_state(built_.model, 0.01, 0, 7), history_);
-    }
-  }
+  ElementDerivatives() : DerivativeTest(element_model(GetParam().options), 0.03, 0) { turn(state_); }
   /// Adds a rotation of half a radian.
   void turn(State& state) const {
     const Mat3d D = rotation_increment(Vec3d{{0.3, -0.4, 0.1}});
     for (std::size_t i = 0; i < state.u.size(); ++i) state.u[i] += D * (built_.model.rest_position[i] + state.u[i]);
   }
-  std::size_t size() const { return static_cast<std::size_t>(built_.model.dof_count()); }
-  double energy(const State& state) {
-    std::vector<double> unused(size());
-    return executor_.gradient(state, history_, unused).total();
-  }
-  std::vector<double> gradient(const State& state) {
-    std::vector<double> g(size());
-    executor_.gradient(state, history_, g);
-    return g;
-  }
-  Linearization linearization(Tangent tangent) {
-    gradient(state_);
-    Linearization lin;
-    executor_.linearize(state_, history_, tangent, lin);
-    return lin;
-  }
-
-  ElementModel built_;
-  ThreadPool pool_{1};
-  CpuExecutor executor_;
-  State state_;
-  StrainHistory history_;
 };
 
-TEST_P(ElementDerivatives, GradientIsThatOfTheEnergy) {
-  const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
-  const double h = 1e-6;
-  const double numeric =
-      (energy(moved(built_.model, state_, d, h)) - energy(moved(built_.model, state_, d, -h))) / (2 * h);
-  const double error = std::abs(numeric - test::dot(g, d)) / (test::norm(g) * test::norm(d));
-  std::printf("%-28s gradient against differences of the energy: %.1e\n", GetParam().name.c_str(), error);
-  EXPECT_LT(error, 1e-8);
-}
+TEST_P(ElementDerivatives, GradientIsThatOfTheEnergy) { expect_gradient_of_the_energy(); }
 
 TEST_P(ElementDerivatives, TangentIsTheDerivativeOfTheGradient) {
   const std::vector<double> d = random_direction(built_.model);
-  const Linearization lin = linearization(Tangent::full);
-  std::vector<double> Kd(size());
-  executor_.multiply(lin, d, Kd);
-  const double h = 1e-6;
-  const std::vector<double> plus = gradient(moved(built_.model, state_, d, h)),
-                            minus = gradient(moved(built_.model, state_, d, -h));
-  std::vector<double> difference(size());
-  for (std::size_t i = 0; i < size(); ++i) difference[i] = (plus[i] - minus[i]) / (2 * h) - Kd[i];
-  const double error = test::norm(difference) / test::norm(Kd);
-  std::printf("%-28s product against differences of the gradient: %.1e\n", GetParam().name.c_str(), error);
-  EXPECT_LT(error, 1e-8);
+  expect_derivative_of_the_gradient(d, product(linearization(Tangent::full), d));
 }
 
-TEST_P(ElementDerivatives, AssembledMatrixEqualsTheProduct) {
-  for (const Tangent tangent : {Tangent::full, Tangent::material}) {
-    const Linearization lin = linearization(tangent);
-    BlockMatrix matrix(built_.model.points);
-    executor_.assemble(lin, matrix);
-    const std::vector<double> d = random_direction(built_.model);
-    std::vector<double> free(size()), assembled(size());
-    executor_.multiply(lin, d, free);
-    matrix.multiply(pool_, d, assembled);
-    for (std::size_t i = 0; i < size(); ++i) assembled[i] -= free[i];
-    EXPECT_LT(test::norm(assembled), 1e-12 * test::norm(free)) << GetParam().name;
-  }
-}
+TEST_P(ElementDerivatives, AssembledMatrixEqualsTheProduct) { expect_assembled_equals_product(); }
 
-TEST_P(ElementDerivatives, MaterialTangentIsSymmetricAndNotNegative) {
-  const Linearization lin = linearization(Tangent::material);
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    const std::vector<double> a = random_direction(built_.model, seed), b = random_direction(built_.model, seed + 100);
-    std::vector<double> Ka(size()), Kb(size());
-    executor_.multiply(lin, a, Ka);
-    executor_.multiply(lin, b, Kb);
-    EXPECT_GE(test::dot(a, Ka), 0);
-    EXPECT_NEAR(test::dot(a, Kb), test::dot(b, Ka), 1e-12 * test::norm(Ka) * test::norm(b));
-  }
-}
+TEST_P(ElementDerivatives, MaterialTangentIsSymmetricAndNotNegative) { expect_symmetric_and_not_negative(); }
 
 TEST_P(ElementDerivatives, ForcesWithoutEnergiesAreTheSame) {
   const std::vector<double> g = gradient(state_);
@@ -188,8 +116,11 @@ TEST_P(ElementDerivatives, InternalForcesBalance) {
   EXPECT_LT(norm(force), 1e-12 * test::norm(g));
   const bool linear = GetParam().options.formulation == ElementFormulation::linear;
   const bool viscous = GetParam().dt > 0 && GetParam().options.formulation == ElementFormulation::corotational;
-  if (linear) EXPECT_GT(norm(moment), 1e-4 * test::norm(g));
-  if (!linear && !viscous) EXPECT_LT(norm(moment), 1e-12 * test::norm(g));
+  if (linear) {
+    EXPECT_GT(norm(moment), 1e-4 * test::norm(g));
+  } else if (!viscous) {
+    EXPECT_LT(norm(moment), 1e-12 * test::norm(g));
+  }
   if (GetParam().dt > 0) return;
   const double turned = energy(rigid_state(built_.model, rotation_increment(Vec3d{{0, 1, 2}}), {{1, 2, 3}}));
   const double scale = GetParam().options.young * built_.body->volume();

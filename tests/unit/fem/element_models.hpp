@@ -31,6 +31,15 @@ struct ElementModel {
   std::unique_ptr<ElementBody> body;
 };
 
+inline ElementModel element_model(ElementBodySpec spec) {
+  ElementModel built;
+  PointSetBuilder points;
+  built.body = std::make_unique<ElementBody>(std::move(spec), built.model, points);
+  built.body->block_count = points.block_count();
+  built.model.points = std::move(points).finish(built.model.frame_kind);
+  return built;
+}
+
 inline ElementModel element_model(const ElementOptions& o, ElementMesh mesh) {
   ElementBodySpec spec;
   spec.mesh = std::move(mesh);
@@ -42,12 +51,7 @@ inline ElementModel element_model(const ElementOptions& o, ElementMesh mesh) {
   spec.material = [=](const Vec3d&, int) {
     return PointMaterialSpec{lame.lambda, lame.mu, o.mass_damping, o.stiffness_damping, o.neo_hookean};
   };
-  ElementModel built;
-  PointSetBuilder points;
-  built.body = std::make_unique<ElementBody>(std::move(spec), built.model, points);
-  built.body->block_count = points.block_count();
-  built.model.points = std::move(points).finish(built.model.frame_kind);
-  return built;
+  return element_model(std::move(spec));
 }
 
 inline ElementModel element_model(const ElementOptions& o) { return element_model(o, distorted_mesh(o)); }

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "core/cpu/executor.hpp"
+#include "core/solver/block_matrix.hpp"
+#include "tests/support/models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fascia::test {
+
+/// Forces and tangents of a model at a random state, and what holds of each.
+///
+/// Case has a name and a dt (above 0: with viscous stress), Built a model.
+template <class Case, class Built>
+class DerivativeTest : public testing::TestWithParam<Case> {
+ protected:
+  /// @param displacement, rotation  largest of the state [m], [rad]
+  DerivativeTest(Built built, double displacement, double rotation)
+      : built_(std::move(built)),
+        executor_(built_.model.points, pool_),
+        state_(random_state(built_.model, displacement, rotation)) {
+    if (tested().dt <= 0) return;
+    history_.inverse_step = 1 / tested().dt;
+    executor_.store_strain(random_state(built_.model, 0.01, 0.5 * rotation, 7), history_);
+  }
+  std::size_t size() const { return static_cast<std::size_t>(built_.model.dof_count()); }
+  double energy(const State& state) {
+    std::vector<double> unused(size());
+    return executor_.gradient(state, history_, unused).total();
+  }
+  std::vector<double> gradient(const State& state) {
+    std::vector<double> g(size());
+    executor_.gradient(state, history_, g);
+    return g;
+  }
+  Linearization linearization(Tangent tangent) {
+    gradient(state_);
+    Linearization lin;
+    executor_.linearize(state_, history_, tangent, lin);
+    return lin;
+  }
+  std::vector<double> product(const Linearization& lin, const std::vector<double>& d) {
+    std::vector<double> Kd(size());
+    executor_.multiply(lin, d, Kd);
+    return Kd;
+  }
+
+  void expect_gradient_of_the_energy() {
+    const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
+    const double h = 1e-6;  // truncation h² and rounding eps/h balance near here
+    const double numeric =
+        (energy(moved(built_.model, state_, d, h)) - energy(moved(built_.model, state_, d, -h))) / (2 * h);
+    const double error = std::abs(numeric - dot(g, d)) / (norm(g) * norm(d));
+    std::printf("%-28s gradient against differences of the energy: %.1e\n", tested().name.c_str(), error);
+    EXPECT_LT(error, 1e-8);
+  }
+
+  /// @param Kd  what the derivative of the gradient along d must be
+  void expect_derivative_of_the_gradient(const std::vector<double>& d, const std::vector<double>& Kd) {
+    const double h = 1e-6;
+    const std::vector<double> plus = gradient(moved(built_.model, state_, d, h)),
+                              minus = gradient(moved(built_.model, state_, d, -h));
+    std::vector<double> difference(size());
+    for (std::size_t i = 0; i < size(); ++i) difference[i] = (plus[i] - minus[i]) / (2 * h) - Kd[i];
+    const double error = norm(difference) / norm(Kd);
+    std::printf("%-28s product against differences of the gradient: %.1e\n", tested().name.c_str(), error);
+    EXPECT_LT(error, 1e-8);
+  }
+
+  void expect_assembled_equals_product() {
+    for (const Tangent tangent : {Tangent::full, Tangent::material}) {
+      const Linearization lin = linearization(tangent);
+      BlockMatrix matrix(built_.model.points);
+      executor_.assemble(lin, matrix);
+      const std::vector<double> d = random_direction(built_.model), free = product(lin, d);
+      std::vector<double> assembled(size());
+      matrix.multiply(pool_, d, assembled);
+      for (std::size_t i = 0; i < size(); ++i) assembled[i] -= free[i];
+      EXPECT_LT(norm(assembled), 1e-12 * norm(free)) << tested().name;
+    }
+  }
+
+  void expect_symmetric_and_not_negative() {
+    const Linearization lin = linearization(Tangent::material);
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      const std::vector<double> a = random_direction(built_.model, seed),
+                                b = random_direction(built_.model, seed + 100);
+      const std::vector<double> Ka = product(lin, a), Kb = product(lin, b);
+      EXPECT_GE(dot(a, Ka), 0);
+      EXPECT_NEAR(dot(a, Kb), dot(b, Ka), 1e-12 * norm(Ka) * norm(b));
+    }
+  }
+
+  static const Case& tested() { return testing::TestWithParam<Case>::GetParam(); }
+
+  Built built_;
+  ThreadPool pool_{1};
+  CpuExecutor executor_;
+  State state_;
+  StrainHistory history_;
+};
+
+}  // namespace fascia::test
