@@ -59,6 +59,10 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
     strain_begin_.push_back(strains);
     strains += elements_.emplace_back(block, set, pool).strain_size();
   }
+  for (const ShellBlock& shell : set.shells) {
+    strain_begin_.push_back(strains);
+    strains += shells_.emplace_back(shell, set, pool).strain_size();
+  }
   strain_begin_.push_back(strains);
   for (int group = 0; group < set.group_count(); ++group) {
     if (set.rule[at(group)].rule.law != Law::tether) continue;
@@ -134,9 +138,15 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
       double* g = gradient.data() + set_.dofs.begin(node);
       Vec3d force;
       for (const ElementExecutor& block : elements_) force += block.sum_at(node);
-      if (set_.group_count() == 0) {
+      if (set_.group_count() == 0 && shells_.empty()) {
         for (int k = 0; k < 3; ++k) g[k] = force[k];
         continue;
+      }
+      Vec3d torque;
+      for (const ShellExecutor& shell : shells_) {
+        const ShellExecutor::Force f = shell.sum_at(node);
+        force += f.force;
+        torque += f.torque;
       }
       const NodeSum sum = gather(set_, slot_sums_, node, [](int) { return true; });
       if (keep_moments) node_L_[at(node)] = sum.N + times_transpose(sum.N, state.D[at(node)]);  // N Qᵀ
@@ -148,6 +158,8 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
       for (int k = 0; k < 3; ++k) g[k] = force[k];
       std::fill(g + 3, g + set_.dofs.size(node), 0.0);
       add_moment(set_.dofs.kind(node), sum.N, Mat3d::identity() + state.D[at(node)], g + 3);
+      if (set_.dofs.kind(node) == FrameKind::rigid)
+        for (int k = 0; k < 3; ++k) g[3 + k] += torque[k];
     }
   });
 }
@@ -159,6 +171,10 @@ void CpuExecutor::sum_terms(const State& state, const StrainHistory& history, bo
   });
   for (std::size_t b = 0; b < elements_.size(); ++b)
     elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, all, part_motion_);
+  for (std::size_t b = 0; b < shells_.size(); ++b)
+    shells_[b].compute_forces(
+        {state.u, state.D.values(), strain_of_block(history.E, elements_.size() + b), history.inverse_step}, all,
+        part_motion_);
   sum_forces(state, all, gradient);
 }
 
@@ -183,6 +199,11 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
     energy.elastic += block.elastic();
     energy.viscous += block.viscous();
     block.add_rounding(part_rounding_);
+  }
+  for (const ShellExecutor& shell : shells_) {
+    energy.elastic += shell.elastic();
+    energy.viscous += shell.viscous();
+    shell.add_rounding(part_rounding_);
   }
   for (double& r : part_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
   return energy;
@@ -221,6 +242,10 @@ void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
   });
   for (std::size_t b = 0; b < elements_.size(); ++b)
     elements_[b].store_strain(state.u, std::span(history.E).subspan(strain_begin_[b], elements_[b].strain_size()));
+  for (std::size_t b = 0; b < shells_.size(); ++b)
+    shells_[b].store_strain(
+        {state.u, state.D.values(), {}},
+        std::span(history.E).subspan(strain_begin_[elements_.size() + b], shells_[b].strain_size()));
 }
 
 void CpuExecutor::linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out,
@@ -238,10 +263,11 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);
   }
-  if (!elements_.empty()) {
+  if (!elements_.empty() || !shells_.empty()) {
     out.u = state.u;
     out.E = history.E;
   }
+  if (!shells_.empty()) out.D.assign(state.D.values().begin(), state.D.values().end());
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
       with_kind(group, [&](auto kind) { linearize_group<kind.value>(state, history, group, out); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/cpu/element_executor.hpp"
+#include "core/cpu/shell_executor.hpp"
 #include "core/cpu/thread_pool.hpp"
 #include "core/model/model.hpp"
 #include "core/physics/point_physics.hpp"
@@ -19,7 +20,9 @@ struct InternalEnergy {
 
 /// Strains at the start of a time step, for stiffness damping.
 struct StrainHistory {
-  AlignedVector<double> E;  ///< (groups × 6 × 8, then points of element batches × 6 × 8): 11 22 33 23 13 12; or empty
+  /// (groups × 6 × 8, then points of element batches × 6 × 8): 11 22 33 23 13 12; then batches of shells × 12 × 8; or
+  /// empty
+  AlignedVector<double> E;
   double inverse_step = 0;  ///< 1/dt [1/s]; 0 switches the viscous stress off
 };
 
@@ -30,8 +33,9 @@ struct Linearization {
   std::vector<Mat3d> Q;             ///< I + D of each frame
   std::vector<double> node_blocks;  ///< what acts on one frame alone, by rows: rotation-rotation terms, inertia, loads
   AlignedVector<double> points;     ///< (groups × 24 × 8): H (9), Dbar (9), S (6)
-  std::vector<Vec3d> u;             ///< displacements, where there are elements
-  AlignedVector<double> E;          ///< StrainHistory::E, where elements are damped
+  std::vector<Vec3d> u;             ///< displacements, where there are elements or shells
+  std::vector<Mat3d> D;             ///< rotations − I, where there are shells
+  AlignedVector<double> E;          ///< StrainHistory::E, where elements or shells are damped
 };
 
 /// Executes a point set on the processor: one pass over groups of points, one gather over frames. No atomics, sums in
@@ -67,6 +71,7 @@ class CpuExecutor {
 
   /// Elastic energy of a block of elements at the last call of gradient() [J].
   double block_elastic(int block) const { return elements_[static_cast<std::size_t>(block)].elastic(); }
+  double shell_elastic(int shell) const { return shells_[static_cast<std::size_t>(shell)].elastic(); }
   /// Elastic and stabilisation energy of each group at the last call of gradient() [J].
   std::span<const double> group_elastic() const { return group_elastic_; }
   std::span<const double> group_stabilization() const { return group_stabilization_; }
@@ -82,7 +87,10 @@ class CpuExecutor {
   ThreadPool& pool() { return pool_; }
 
  private:
+  /// @param block  of elements, then of shells
   std::span<const double> strain_of_block(const AlignedVector<double>& E, std::size_t block) const;
+  ElementExecutor::At element_at(const Linearization& lin, std::size_t block) const;
+  ShellExecutor::At shell_at(const Linearization& lin, std::size_t shell) const;
   /// @param all  with energies, rounding, and what linearize() needs
   void sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient);
   void sum_forces(const State& state, bool keep_moments, std::span<double> gradient);
@@ -102,6 +110,7 @@ class CpuExecutor {
   const PointSet& set_;
   ThreadPool& pool_;
   std::vector<ElementExecutor> elements_;
+  std::vector<ShellExecutor> shells_;
   std::vector<std::size_t> strain_begin_;  ///< of each block in StrainHistory::E
   std::vector<Vec3d> element_direction_;
   AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)

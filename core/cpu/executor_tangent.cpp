@@ -54,6 +54,14 @@ void CpuExecutor::multiply_group(const Linearization& lin, int group) {
   }
 }
 
+ElementExecutor::At CpuExecutor::element_at(const Linearization& lin, std::size_t block) const {
+  return {lin.u, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent};
+}
+
+ShellExecutor::At CpuExecutor::shell_at(const Linearization& lin, std::size_t shell) const {
+  return {lin.u, lin.D, strain_of_block(lin.E, elements_.size() + shell), lin.inverse_step, lin.tangent};
+}
+
 void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, std::span<double> y) {
   pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
@@ -76,7 +84,8 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
       std::copy_n(x.data() + set_.dofs.begin(node), 3, element_direction_[at(node)].v);
   }
   for (std::size_t b = 0; b < elements_.size(); ++b)
-    elements_[b].compute_product({lin.u, strain_of_block(lin.E, b), lin.inverse_step, lin.tangent}, element_direction_);
+    elements_[b].compute_product(element_at(lin, b), element_direction_);
+  for (std::size_t b = 0; b < shells_.size(); ++b) shells_[b].compute_product(shell_at(lin, b), x);
   pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       std::array<double, 12> sum{};
@@ -85,6 +94,12 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
       for (const ElementExecutor& block : elements_) {
         const Vec3d force = block.sum_at(node);
         for (int i = 0; i < 3; ++i) sum[at(i)] += force[i];
+      }
+      Vec3d torque;
+      for (const ShellExecutor& shell : shells_) {
+        const ShellExecutor::Force f = shell.sum_at(node);
+        for (int i = 0; i < 3; ++i) sum[at(i)] += f.force[i];
+        torque += f.torque;
       }
       const int n = set_.dofs.size(node);
       const double* block = lin.node_blocks.data() + set_.dofs.block_begin(node);
@@ -95,6 +110,8 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
         for (int j = 0; j < n; ++j) yn[i] += block[n * i + j] * xn[j];
       }
       add_moment(set_.dofs.kind(node), stored_matrix(sum.data() + 3), lin.Q[at(node)], yn + 3);
+      if (set_.dofs.kind(node) == FrameKind::rigid)
+        for (int i = 0; i < 3; ++i) yn[3 + i] += torque[i];
     }
   });
 }
@@ -195,8 +212,8 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out) {
       }
     });
   }
-  for (std::size_t b = 0; b < elements_.size(); ++b)
-    elements_[b].assemble({lin.u, strain_of_block(lin.E, b), lin.inverse_step, lin.tangent}, matrix_out);
+  for (std::size_t b = 0; b < elements_.size(); ++b) elements_[b].assemble(element_at(lin, b), matrix_out);
+  for (std::size_t b = 0; b < shells_.size(); ++b) shells_[b].assemble(shell_at(lin, b), matrix_out);
   for (int node = 0; node < set_.node_count(); ++node) {
     double* diagonal = matrix_out.block(matrix_out.diagonal(node));
     const double* own = lin.node_blocks.data() + set_.dofs.block_begin(node);

@@ -35,7 +35,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   triangles_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
     const auto point = [&](std::size_t n) { return mesh.points[static_cast<std::size_t>(t[n])]; };
-    triangles_.push_back({point(0), point(1), point(2)});
+    triangles_.push_back({{point(0), point(1), point(2)}, static_cast<int>(triangles_.size())});
   }
   if (triangles_.empty()) return;
   nodes_.push_back({{}, 0, static_cast<int>(triangles_.size()), -1});
@@ -46,7 +46,8 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     const int axis = longest_axis(node.bounds);
     const int middle = (node.begin + node.end) / 2;
     std::nth_element(triangles_.begin() + node.begin, triangles_.begin() + middle, triangles_.begin() + node.end,
-                     [axis](const Corners& a, const Corners& b) {
+                     [axis](const Leaf& first, const Leaf& second) {
+                       const auto &a = first.corners, &b = second.corners;
                        return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
                      });
     nodes_[n].children = static_cast<int>(nodes_.size());
@@ -57,7 +58,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
 
 void TriangleTree::bound(Node& node) const {
   for (int t = node.begin; t < node.end; ++t)
-    for (const Vec3d& x : triangles_[static_cast<std::size_t>(t)]) node.bounds.include(x);
+    for (const Vec3d& x : triangles_[static_cast<std::size_t>(t)].corners) node.bounds.include(x);
 }
 
 double TriangleTree::squared_distance(const Node& node, const Vec3d& x) {
@@ -69,7 +70,7 @@ double TriangleTree::squared_distance(const Node& node, const Vec3d& x) {
   return sum;
 }
 
-double TriangleTree::distance(const Vec3d& x, Vec3d* nearest) const {
+double TriangleTree::distance(const Vec3d& x, Vec3d* nearest, int* triangle) const {
   double best = std::numeric_limits<double>::infinity();
   std::vector<int> open;
   if (!nodes_.empty()) open.push_back(0);
@@ -87,11 +88,12 @@ double TriangleTree::distance(const Vec3d& x, Vec3d* nearest) const {
       continue;
     }
     for (int t = node.begin; t < node.end; ++t) {
-      const Corners& corners = triangles_[static_cast<std::size_t>(t)];
+      const auto& [corners, number] = triangles_[static_cast<std::size_t>(t)];
       const Vec3d y = nearest_on_triangle(x, corners[0], corners[1], corners[2]);
       if (squared_norm(y - x) >= best) continue;
       best = squared_norm(y - x);
       if (nearest) *nearest = y;
+      if (triangle) *triangle = number;
     }
   }
   return std::sqrt(best);

@@ -13,11 +13,15 @@ class TriangleTree {
  public:
   explicit TriangleTree(const TriangleMesh& mesh);
 
-  /// Distance to the nearest triangle [m]; infinite where there is none. `nearest` receives the point.
-  double distance(const Vec3d& x, Vec3d* nearest = nullptr) const;
+  /// Distance to the nearest triangle [m]; infinite where there is none. `nearest` receives the point, `triangle` its
+  /// number.
+  double distance(const Vec3d& x, Vec3d* nearest = nullptr, int* triangle = nullptr) const;
 
  private:
-  using Corners = std::array<Vec3d, 3>;
+  struct Leaf {
+    std::array<Vec3d, 3> corners;
+    int number = 0;
+  };
 
   /// A range of triangles; its children, where it has any, follow one another.
   struct Node {
@@ -29,7 +33,7 @@ class TriangleTree {
   void bound(Node& node) const;
   static double squared_distance(const Node& node, const Vec3d& x);
 
-  std::vector<Corners> triangles_;
+  std::vector<Leaf> triangles_;
   std::vector<Node> nodes_;
 };
 

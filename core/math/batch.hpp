@@ -71,11 +71,35 @@ Batch<W> abs(const Batch<W>& a) {
   return where_positive(a, a, -a);
 }
 
-template <int W>
-Batch<W> log1p(Batch<W> a) {
-  for (int i = 0; i < W; ++i) a.v[i] = std::log1p(a.v[i]);
+/// A function of doubles, lane by lane.
+template <int W, class Function>
+Batch<W> for_each(Batch<W> a, const Function& f) {
+  for (int i = 0; i < W; ++i) a.v[i] = f(a.v[i]);
   return a;
 }
+template <class Function>
+double for_each(double a, const Function& f) {
+  return f(a);
+}
+
+template <int W>
+Batch<W> log1p(const Batch<W>& a) {
+  return for_each(a, [](double x) { return std::log1p(x); });
+}
+
+template <int W>
+Batch<W> sqrt(const Batch<W>& a) {
+  return for_each(a, [](double x) { return std::sqrt(x); });
+}
+
+/// The largest lane.
+template <int W>
+double largest(const Batch<W>& a) {
+  double most = a.v[0];
+  for (int i = 1; i < W; ++i) most = a.v[i] > most ? a.v[i] : most;
+  return most;
+}
+inline double largest(double a) { return a; }
 
 /// Sum over the lanes, always in the same order.
 template <int W>

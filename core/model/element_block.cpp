@@ -1,10 +1,12 @@
 #include "core/model/element_block.hpp"
 
 #include "core/math/index.hpp"
+#include "core/model/coloring.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 namespace fascia {
 
@@ -67,25 +69,6 @@ void number_patch(const ElementBlockSpec& spec, int first_batch, int last_batch,
   block.patch_begin.push_back(block.slot_count());
 }
 
-void color_patches(ElementBlock& block, int nodes_of_model) {
-  std::vector<int> color(at(block.patch_count()));
-  std::vector<std::vector<bool>> taken;  // colour → node is taken
-  for (int patch = 0; patch < block.patch_count(); ++patch) {
-    const auto nodes = block.nodes_of_patch(patch);
-    std::size_t c = 0;
-    while (c < taken.size() && std::any_of(nodes.begin(), nodes.end(), [&](int node) { return taken[c][at(node)]; }))
-      ++c;
-    if (c == taken.size()) taken.emplace_back(at(nodes_of_model), false);
-    for (const int node : nodes) taken[c][at(node)] = true;
-    color[at(patch)] = static_cast<int>(c);
-  }
-  for (int c = 0; c < static_cast<int>(taken.size()); ++c) {
-    for (int patch = 0; patch < block.patch_count(); ++patch)
-      if (color[at(patch)] == c) block.color_patch.push_back(patch);
-    block.color_begin.push_back(static_cast<int>(block.color_patch.size()));
-  }
-}
-
 }  // namespace
 
 ElementBlock make_element_block(const ElementBlockSpec& spec) {
@@ -117,7 +100,10 @@ void finish_element_block(ElementBlock& block, int nodes_of_model) {
   std::vector<int> next(block.node_slot_begin.begin(), block.node_slot_begin.end() - 1);
   for (int slot = 0; slot < block.slot_count(); ++slot)
     block.node_slot[at(next[at(block.patch_node[at(slot)])]++)] = slot;
-  color_patches(block, nodes_of_model);
+  Coloring colors =
+      color_items(block.patch_count(), nodes_of_model, [&](int patch) { return block.nodes_of_patch(patch); });
+  block.color_begin = std::move(colors.begin);
+  block.color_patch = std::move(colors.item);
 }
 
 }  // namespace fascia

@@ -2,6 +2,7 @@
 
 #include "core/math/mat3.hpp"
 
+#include <span>
 #include <vector>
 
 namespace fascia {
@@ -21,6 +22,8 @@ class FrameMatrices {
     lost_ = {};
     return lost_;
   }
+  /// By node; empty where no node turns.
+  std::span<const Mat3d> values() const { return values_; }
   void set_zero() { values_.assign(values_.size(), Mat3d{}); }
   std::vector<Mat3d>::iterator begin() { return values_.begin(); }
   std::vector<Mat3d>::iterator end() { return values_.end(); }

@@ -76,4 +76,8 @@ PointTensors ModelBody::tensors_at(const Attachment& place, std::size_t nearest,
   return tensors_of(points_[nearest], axes_, H, selective() ? field_at(attach_volumetric(place), state).H : H);
 }
 
+Mat3d ModelBody::strain_at(const Attachment& place, const State& state) const {
+  return green_strain(field_at(place, state).H);
+}
+
 }  // namespace fascia

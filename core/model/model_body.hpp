@@ -65,7 +65,15 @@ struct BodyGroup {
   std::vector<int> nodes, cells;  ///< of the body, ascending
 };
 
-/// Volume cells that a body carries: nodes of the body, corners first.
+/// A field of results that only some bodies have: values by node or by cell.
+struct BodyField {
+  std::string name;
+  bool of_cells = false;
+  int components = 1;
+  std::vector<double> values;
+};
+
+/// Cells that a body carries: nodes of the body, corners first.
 struct BodyCells {
   CellType type = CellType::tetrahedron;
   int nodes_per_cell = 4;
@@ -91,12 +99,13 @@ class ModelBody {
   const std::vector<std::string>& messages() const { return messages_; }
   int first_group = 0, group_count = 0;  ///< in the model's point set; set by who closes the set
   int first_block = 0, block_count = 0;  ///< of elements, likewise
+  int first_shell = 0, shell_count = 0;  ///< blocks of shells, likewise
   const std::vector<BodyGroup>& groups() const { return groups_; }
   const BodyCells& cells() const { return cells_; }
   /// Weight of each node over its mass, where a static load of gravity is not shared as the mass is; else empty [kg].
   const std::vector<double>& weights() const { return weights_; }
 
-  /// What a scene calls it: "meshless", "tetrahedra", "hexahedra".
+  /// What a scene calls it: "meshless", "tetrahedra", "hexahedra", "shell".
   virtual std::string model_name() const { return "meshless"; }
   /// λ is integrated at one point a cell.
   virtual bool selective() const { return false; }
@@ -116,6 +125,10 @@ class ModelBody {
   virtual std::vector<PointTensors> tensors(const State& state) const;
   /// At any place. @param nearest  index of the integration point whose material counts there
   virtual PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const;
+  /// Green-Lagrange strain at any place.
+  virtual Mat3d strain_at(const Attachment& place, const State& state) const;
+  /// What only this kind of body shows in results.
+  virtual std::vector<BodyField> own_fields(const State& /*state*/) const { return {}; }
   /// Nodes on the outside: 1 (one entry a node of the body).
   virtual std::vector<char> nodes_on_boundary() const = 0;
   /// Distance from X to the body [m]; 0 inside.

@@ -1,5 +1,7 @@
 #include "core/model/point_set.hpp"
 
+#include "core/model/coloring.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -63,6 +65,11 @@ void PointSetBuilder::add_rule(std::span<const PointSample> points, double lengt
   group_length_.push_back(length);
 }
 
+void PointSetBuilder::add_shell(ShellBlock shell) {
+  set_.damped = set_.damped || shell.damped;
+  set_.shells.push_back(std::move(shell));
+}
+
 void PointSetBuilder::add_elements(ElementBlock block) {
   set_.damped = set_.damped || block.damped;
   set_.blocks.push_back(std::move(block));
@@ -101,14 +108,15 @@ void find_parts(PointSet& set, const std::vector<double>& group_length) {
       parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
     }
   }
-  for (const ElementBlock& block : set.blocks) {
-    block.for_each_element([&](std::span<const int> element) {
-      for (const int node : element) {
-        const int a = root(node), b = root(element[0]);
-        parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-      }
-    });
-  }
+  const auto join = [&](const auto& element) {
+    for (const int node : element) {
+      const int a = root(node), b = root(element[0]);
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  };
+  for (const ElementBlock& block : set.blocks) block.for_each_element(join);
+  for (const ShellBlock& shell : set.shells)
+    for (int e = 0; e < shell.count; ++e) join(shell.element(e));
   std::vector<double> nodes, volume;
   set.node_part.resize(n);
   for (int i = 0; i < set.node_count(); ++i) {
@@ -132,39 +140,17 @@ void find_parts(PointSet& set, const std::vector<double>& group_length) {
       length[part] += v * group_length[static_cast<std::size_t>(group)];
     }
   }
-  for (const ElementBlock& block : set.blocks) {
-    block.for_each_element([&](std::span<const int> element) {
-      const auto part = static_cast<std::size_t>(set.node_part[static_cast<std::size_t>(element[0])]);
-      const double v = std::pow(block.length, 3);
-      volume[part] += v;
-      length[part] += v * block.length;
-    });
-  }
+  const auto weigh = [&](int node, double edge) {
+    const auto part = static_cast<std::size_t>(set.node_part[static_cast<std::size_t>(node)]);
+    const double v = std::pow(edge, 3);
+    volume[part] += v;
+    length[part] += v * edge;
+  };
+  for (const ElementBlock& block : set.blocks)
+    block.for_each_element([&](std::span<const int> element) { weigh(element[0], block.length); });
+  for (const ShellBlock& shell : set.shells)
+    for (int e = 0; e < shell.count; ++e) weigh(shell.element(e)[0], shell.length);
   for (std::size_t p = 0; p < nodes.size(); ++p) set.part_length.push_back(volume[p] > 0 ? length[p] / volume[p] : 1.0);
-}
-
-/// Greedy colouring: the lowest colour that no group with a common frame has.
-void color_groups(PointSet& set) {
-  const int groups = set.group_count();
-  std::vector<int> color(static_cast<std::size_t>(groups), -1);
-  std::vector<std::vector<bool>> taken;  // colour → frame is taken
-  for (int group = 0; group < groups; ++group) {
-    const auto nodes = set.nodes(group);
-    std::size_t c = 0;
-    const auto blocked = [&](std::size_t candidate) {
-      return std::any_of(nodes.begin(), nodes.end(),
-                         [&](int node) { return taken[candidate][static_cast<std::size_t>(node)]; });
-    };
-    while (c < taken.size() && blocked(c)) ++c;
-    if (c == taken.size()) taken.emplace_back(static_cast<std::size_t>(set.node_count()), false);
-    for (const int node : nodes) taken[c][static_cast<std::size_t>(node)] = true;
-    color[static_cast<std::size_t>(group)] = static_cast<int>(c);
-  }
-  for (int c = 0; c < static_cast<int>(taken.size()); ++c) {
-    for (int group = 0; group < groups; ++group)
-      if (color[static_cast<std::size_t>(group)] == c) set.color_group.push_back(group);
-    set.color_begin.push_back(static_cast<int>(set.color_group.size()));
-  }
 }
 
 }  // namespace
@@ -173,8 +159,11 @@ PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   set_.dofs = DofLayout(std::move(frames));
   transpose_incidence(set_);
   find_parts(set_, group_length_);
-  color_groups(set_);
+  Coloring colors = color_items(set_.group_count(), set_.node_count(), [&](int group) { return set_.nodes(group); });
+  set_.color_begin = std::move(colors.begin);
+  set_.color_group = std::move(colors.item);
   for (ElementBlock& block : set_.blocks) finish_element_block(block, set_.node_count());
+  for (ShellBlock& shell : set_.shells) finish_shell_block(shell, set_.node_count());
   return std::move(set_);
 }
 

@@ -4,6 +4,7 @@
 #include "core/model/aligned.hpp"
 #include "core/model/dof_layout.hpp"
 #include "core/model/element_block.hpp"
+#include "core/model/shell_block.hpp"
 #include "core/physics/point_rule.hpp"
 
 #include <span>
@@ -62,6 +63,7 @@ struct PointSet {
   std::vector<int> color_group;
 
   std::vector<ElementBlock> blocks;  ///< finite elements
+  std::vector<ShellBlock> shells;
 
   int node_count() const { return dofs.node_count(); }
   int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
@@ -98,6 +100,10 @@ class PointSetBuilder {
   void add_elements(ElementBlock block);
 
   int block_count() const { return static_cast<int>(set_.blocks.size()); }
+
+  void add_shell(ShellBlock shell);
+
+  int shell_count() const { return static_cast<int>(set_.shells.size()); }
 
   PointSet finish(std::vector<FrameKind> frames) &&;
 

@@ -14,9 +14,19 @@ struct ElementsAround {
   std::vector<int> element;        ///< (elements × nodes)
   std::vector<int> begin, around;  ///< (nodes of the model + 1), elements of each
 
-  ElementsAround(const ElementBlock& block, int model_nodes) : nodes(block.nodes), begin(at(model_nodes) + 1) {
+  ElementsAround(const ElementBlock& block, int model_nodes) : nodes(block.nodes) {
     element.reserve(at(block.count) * at(nodes));
     block.for_each_element([&](std::span<const int> e) { element.insert(element.end(), e.begin(), e.end()); });
+    count(model_nodes);
+  }
+  ElementsAround(const ShellBlock& shell, int model_nodes) : nodes(3) {
+    for (int e = 0; e < shell.count; ++e)
+      for (const int node : shell.element(e)) element.push_back(node);
+    count(model_nodes);
+  }
+
+  void count(int model_nodes) {
+    begin.assign(at(model_nodes) + 1, 0);
     for (const int node : element) ++begin[at(node) + 1];
     for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
     around.resize(element.size());
@@ -70,6 +80,7 @@ void BlockMatrix::find_pattern(const PointSet& set) {
               group);
   std::vector<ElementsAround> around;
   for (const ElementBlock& block : set.blocks) around.emplace_back(block, set.node_count());
+  for (const ShellBlock& shell : set.shells) around.emplace_back(shell, set.node_count());
   std::vector<int> last_seen(at(set.node_count()), -1);
   for (int row = 0; row < set.node_count(); ++row) {
     const std::size_t begin = column_.size();
@@ -84,7 +95,7 @@ void BlockMatrix::find_pattern(const PointSet& set) {
     for (std::size_t b = 0; b < around.size(); ++b) {
       const std::size_t known = column_.size();
       around[b].for_each_neighbour(row, add);
-      if (!set.blocks[b].averaged) continue;
+      if (b >= set.blocks.size() || !set.blocks[b].averaged) continue;
       const std::vector<int> near(column_.begin() + static_cast<std::ptrdiff_t>(known), column_.end());
       around[b].for_each_neighbour(row, add);
       for (const int column : near) around[b].for_each_neighbour(column, add);

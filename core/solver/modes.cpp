@@ -90,6 +90,17 @@ class Problem {
 
   /// Σ v (λ + 2μ) |g|² over points and nodes.
   void sum_stiffness(const PointSet& set) {
+    for (const ShellBlock& shell : set.shells) {
+      for (int e = 0; e < shell.count; ++e) {
+        const double* rows = shell.constants_of(e / kElementLanes) + e % kElementLanes;
+        double squares = 0;
+        for (int k = 0; k < 6; ++k) {
+          const double g = rows[(ShellBlock::kGradients + k) * kElementLanes];
+          squares += g * g;
+        }
+        stiffness_ += rows[ShellBlock::kMembrane * kElementLanes] * squares;
+      }
+    }
     for (const ElementBlock& block : set.blocks) {
       for (int batch = 0; batch < block.batch_count(); ++batch) {
         for (int q = 0; q < block.points; ++q) {

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "core/geometry/triangle_tree.hpp"
+#include "shells/shell_mesh.hpp"
+#include "shells/shell_stiffness.hpp"
+
+#include <functional>
+
+namespace fascia {
+
+struct ShellBodySpec {
+  ShellMesh mesh;
+  double density = 0;                       ///< [kg/m³]
+  std::vector<double> thickness;            ///< of each triangle [m]
+  std::vector<PointMaterialSpec> material;  ///< of each triangle
+  /// Stiffness of a triangle.
+  std::function<ShellConstants<double>(const PlaneTriangle&, const ShellSection&)> stiffness = shell_stiffness;
+};
+
+/// A thin wall in a model: triangles on frames with six degrees of freedom, whose third axis is the wall's normal.
+///
+/// A third of a triangle's mass goes to each corner, with the rotary inertia of the fibre through the thickness,
+/// m t²/12, and one of the drilling rotation as if the mass were spread over a disc of a small part of the triangle.
+class ShellBody final : public ModelBody {
+ public:
+  /// Appends frames to the model and triangles to the builder.
+  ShellBody(ShellBodySpec spec, Model& model, PointSetBuilder& points);
+
+  std::string model_name() const override { return "shell"; }
+  /// A place off the middle surface moves with the director: X = Y + ζ n.
+  Attachment attach(const Vec3d& X) const override;
+  Attachment attach_point(std::size_t point) const override;
+  Attachment attach_surface(std::size_t point) const override;
+  std::vector<FacePoint> face_points() const override;
+  /// In the middle surface.
+  std::vector<PointTensors> tensors(const State& state) const override;
+  /// At the place's height over the middle surface.
+  PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const override;
+  Mat3d strain_at(const Attachment& place, const State& state) const override;
+  std::vector<BodyField> own_fields(const State& state) const override;
+  std::vector<char> nodes_on_boundary() const override;  ///< the rim
+  double distance(const Vec3d& X) const override;
+  std::string quality() const override { return quality_; }
+  std::int64_t fastest_cell() const override { return fastest_cell_; }
+
+  double thickness(std::size_t triangle) const { return thickness_[triangle]; }
+
+ private:
+  /// Membrane strain (E₁₁, E₂₂, 2E₁₂) and curvature of a triangle at a state, and where its axes are.
+  struct Strained {
+    std::array<double, 3> membrane{}, curvature{};
+    std::array<double, 3> stretch{};  ///< U₁₁, U₁₂, U₂₂
+    Mat3d rest_axes, axes;
+  };
+  PlaneTriangle corners(std::size_t triangle) const;
+  ShellSection section(std::size_t triangle) const;
+  Attachment attachment(std::size_t triangle, const std::array<double, 3>& L, double offset) const;
+  Strained strained(std::size_t triangle, const std::array<double, 3>& L, const State& state) const;
+  std::array<double, 3> membrane_stress(std::size_t triangle, const std::array<double, 3>& strain) const;
+  Mat3d cauchy(std::size_t triangle, const Strained& s, double offset) const;
+  PointTensors tensors_of(std::size_t triangle, const Strained& s, double offset) const;
+  void number_nodes(Model& model);
+  void add_triangles(const ShellBodySpec& spec, PointSetBuilder& points);
+  void add_mass(double density, Model& model);
+  void describe();
+
+  ShellMesh mesh_;
+  std::vector<double> thickness_;
+  std::vector<PointMaterialSpec> material_;
+  std::vector<Mat3d> triangle_axes_;  ///< columns: in the plane, then the normal
+  std::vector<double> area_;
+  TriangleTree tree_;
+  std::string quality_;
+  std::int64_t fastest_cell_ = 0;
+};
+
+}  // namespace fascia
