@@ -16,6 +16,9 @@ namespace {
 /// Second moment of a corner's mass in the plane over m A: that of a small disc around it.
 constexpr double kDrillingInertia = 1.0 / 36;
 
+/// Cosine of the angle between triangles beyond which an edge is a crease.
+constexpr double kCrease = 0.5;
+
 }  // namespace
 
 ShellBody::ShellBody(ShellBodySpec spec, Model& model, PointSetBuilder& points)
@@ -30,6 +33,9 @@ ShellBody::ShellBody(ShellBodySpec spec, Model& model, PointSetBuilder& points)
     triangle_axes_.push_back(Mat3d::from_columns(e, cross(n, e), n));
     area_.push_back(0.5 * norm(normal));
   }
+  around_.resize(mesh_.nodes.size());
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+    for (const int node : mesh_.triangles[t]) around_[at(node)].push_back(static_cast<int>(t));
   number_nodes(model);
   add_triangles(spec, points);
   add_mass(spec.density, model);
@@ -72,12 +78,38 @@ void ShellBody::number_nodes(Model& model) {
   for (const auto& t : mesh_.triangles) cells_.nodes.insert(cells_.nodes.end(), t.begin(), t.end());
 }
 
+/// Mean square angle to the smooth surface's normals at the corners: the means over the triangles there, but not across
+/// creases.
+double ShellBody::tilt(std::size_t t) const {
+  const Vec3d own = triangle_axes_[t].column(2);
+  double squares = 0;
+  for (const int node : mesh_.triangles[t]) {
+    Vec3d sum;
+    for (const int other : around_[at(node)]) {
+      const Vec3d n = triangle_axes_[at(other)].column(2);
+      if (dot(n, own) > kCrease) sum += n * angle_at(at(other), node);
+    }
+    squares += squared_norm(normalized(sum) - own) / 3;
+  }
+  return squares;
+}
+
+/// Angle of a triangle at one of its nodes [rad].
+double ShellBody::angle_at(std::size_t t, int node) const {
+  const auto& nodes = mesh_.triangles[t];
+  const auto k = static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+  const Vec3d &o = mesh_.nodes[at(node)], u = mesh_.nodes[at(nodes[(k + 1) % 3])] - o,
+              v = mesh_.nodes[at(nodes[(k + 2) % 3])] - o;
+  return std::atan2(norm(cross(u, v)), dot(u, v));
+}
+
 void ShellBody::add_triangles(const ShellBodySpec& spec, PointSetBuilder& builder) {
   std::vector<ShellElementSpec> elements;
   double edges = 0, fastest = 0;
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const PlaneTriangle p = corners(t);
-    const ShellSection s = section(t);
+    ShellSection s = section(t);
+    s.tilt = tilt(t);
     ShellElementSpec e;
     for (std::size_t a = 0; a < 3; ++a) {
       e.node[a] = first_node_ + mesh_.triangles[t][a];

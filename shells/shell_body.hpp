@@ -60,6 +60,8 @@ class ShellBody final : public ModelBody {
   Mat3d cauchy(std::size_t triangle, const Strained& s, double offset) const;
   PointTensors tensors_of(std::size_t triangle, const Strained& s, double offset) const;
   void number_nodes(Model& model);
+  double tilt(std::size_t triangle) const;
+  double angle_at(std::size_t triangle, int node) const;
   void add_triangles(const ShellBodySpec& spec, PointSetBuilder& points);
   void add_mass(double density, Model& model);
   void describe();
@@ -69,6 +71,7 @@ class ShellBody final : public ModelBody {
   std::vector<PointMaterialSpec> material_;
   std::vector<Mat3d> triangle_axes_;  ///< columns: in the plane, then the normal
   std::vector<double> area_;
+  std::vector<std::vector<int>> around_;  ///< triangles of each node, while the body is built
   TriangleTree tree_;
   std::string quality_;
   std::int64_t fastest_cell_ = 0;

@@ -9,7 +9,11 @@ namespace {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-constexpr double kAlpha = 1.5;       ///< of OPT's mean strain
+constexpr double kAlpha = 1.5;  ///< of OPT's mean strain
+/// Where the surface is curved, inextensional bending turns the corners out of the triangle's plane by the tilt, and
+/// the deviations' stiffness, 12 β (tilt · size / thickness)² of the bending one, would lock
+/// (docs/decisions/shells.md).
+constexpr double kCurvature = 100;
 constexpr double kLeastBeta = 0.01;  ///< of OPT's deviations: at ν = ½ rotations would be free
 constexpr double kShearCorrection = 5.0 / 6;
 
@@ -78,7 +82,9 @@ void add_membrane(const PlaneTriangle& p, const ShellSection& section, double ar
   }
   const double volume = area * section.thickness;
   add_square(mean, C, volume, out);
-  const double beta = std::max(kLeastBeta, 0.5 * (1 - 4 * section.poisson * section.poisson));
+  const double optimal = std::max(kLeastBeta, 0.5 * (1 - 4 * section.poisson * section.poisson));
+  const double beta = std::max(
+      kLeastBeta * optimal, optimal / (1 + kCurvature * section.tilt * area / (section.thickness * section.thickness)));
   const Matrix3 T = from_sides(p, area);
   std::array<Matrix3, 3> Q;
   for (std::size_t corner = 0; corner < 3; ++corner) Q[corner] = product(T, side_deviations(p, area, corner));

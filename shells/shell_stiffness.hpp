@@ -14,6 +14,7 @@ using PlaneTriangle = std::array<std::array<double, 2>, 3>;
 struct ShellSection {
   double young = 0, poisson = 0;  ///< [Pa], [-]
   double thickness = 0;           ///< [m]
+  double tilt = 0;                ///< mean square angle between the triangle and the surface at its corners [rad²]
 };
 
 /// Stiffness of a triangle against its 12 strains: a membrane that bends exactly in its plane, and a plate that is

@@ -73,6 +73,32 @@ class DerivativeTest : public testing::TestWithParam<Case> {
     EXPECT_LT(error, 1e-8);
   }
 
+  void expect_second_derivative_along_exponentials() {
+    const std::vector<double> d = random_direction(built_.model);
+    const std::vector<double> Kd = product(linearization(Tangent::full), d);
+    const double h = 1e-4;
+    const double numeric =
+        (energy(moved(built_.model, state_, d, h)) - 2 * energy(state_) + energy(moved(built_.model, state_, d, -h))) /
+        (h * h);
+    const double error = std::abs(numeric - dot(d, Kd)) / std::abs(numeric);
+    std::printf("%-28s dᵀKd against second differences: %.1e\n", tested().name.c_str(), error);
+    EXPECT_LT(error, 1e-6);
+  }
+
+  /// The derivative of successive increments is K − ½ [torque]× on the rotation blocks (docs/notation.md).
+  void expect_differences_to_be_tangent_minus_half_torque() {
+    const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
+    std::vector<double> Kd = product(linearization(Tangent::full), d);
+    for (int node = 0; node < built_.model.node_count(); ++node) {
+      if (built_.model.kind(node) == FrameKind::affine) continue;
+      const auto i = static_cast<std::size_t>(built_.model.points.dofs.begin(node));
+      const Vec3d torque{{g[i + 3], g[i + 4], g[i + 5]}}, dr{{d[i + 3], d[i + 4], d[i + 5]}};
+      const Vec3d correction = cross(torque, dr) * 0.5;
+      for (std::size_t k = 0; k < 3; ++k) Kd[i + 3 + k] -= correction[static_cast<int>(k)];
+    }
+    expect_derivative_of_the_gradient(d, Kd);
+  }
+
   void expect_assembled_equals_product() {
     for (const Tangent tangent : {Tangent::full, Tangent::material}) {
       const Linearization lin = linearization(tangent);

@@ -116,30 +116,10 @@ class Derivatives : public DerivativeTest<Case, BuiltModel> {
 
 TEST_P(Derivatives, GradientIsThatOfTheEnergy) { expect_gradient_of_the_energy(); }
 
-TEST_P(Derivatives, TangentIsTheSecondDerivativeAlongExponentials) {
-  const std::vector<double> d = random_direction(built_.model);
-  const std::vector<double> Kd = product(linearization(Tangent::full), d);
-  const double h = 1e-4;
-  const double numeric =
-      (energy(moved(built_.model, state_, d, h)) - 2 * energy(state_) + energy(moved(built_.model, state_, d, -h))) /
-      (h * h);
-  const double error = std::abs(numeric - test::dot(d, Kd)) / std::abs(numeric);
-  std::printf("%-12s dᵀKd against second differences: %.1e\n", GetParam().name.c_str(), error);
-  EXPECT_LT(error, 1e-6);
-}
+TEST_P(Derivatives, TangentIsTheSecondDerivativeAlongExponentials) { expect_second_derivative_along_exponentials(); }
 
-/// The derivative of successive increments is K − ½ [torque]× on the rotation blocks (docs/notation.md).
 TEST_P(Derivatives, DifferencesOfTheGradientAreTangentMinusHalfTorque) {
-  const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
-  std::vector<double> Kd = product(linearization(Tangent::full), d);
-  for (int node = 0; node < built_.model.node_count(); ++node) {
-    if (built_.model.kind(node) == FrameKind::affine) continue;
-    const auto i = static_cast<std::size_t>(built_.model.points.dofs.begin(node));
-    const Vec3d torque{{g[i + 3], g[i + 4], g[i + 5]}}, dr{{d[i + 3], d[i + 4], d[i + 5]}};
-    const Vec3d correction = cross(torque, dr) * 0.5;
-    for (std::size_t k = 0; k < 3; ++k) Kd[i + 3 + k] -= correction[static_cast<int>(k)];
-  }
-  expect_derivative_of_the_gradient(d, Kd);
+  expect_differences_to_be_tangent_minus_half_torque();
 }
 
 TEST_P(Derivatives, AssembledMatrixEqualsTheProduct) { expect_assembled_equals_product(); }
