@@ -1,1 +1,126 @@
+// Plates of triangle shells: thin and thick, static, vibrating, and in free flight.
+#include "core/solver/modes.hpp"
+#include "tests/support/shell_models.hpp"
+
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace fascia {
+namespace {
+
+using namespace test;
+
+bool on_x(const Vec3d& X) { return std::abs(X[0]) < 1e-9 || std::abs(X[0] - 1) < 1e-9; }
+bool on_y(const Vec3d& X) { return std::abs(X[1]) < 1e-9 || std::abs(X[1] - 1) < 1e-9; }
+
+ShellModel square(int n, double thickness, bool clamped, double jitter = 0) {
+  ShellModel b = shell_model(patch_mesh(
+                                 [](double u, double v) {
+                                   return Vec3d{{u, v, 0}};
+                                 },
+                                 {n, n, Diagonals::alternating, jitter}),
+                             {1e6, 0.3, thickness, 1000});
+  hold(b.model, on_x, clamped ? "xyzXYZ" : "zX");
+  hold(b.model, on_y, clamped ? "xyzXYZ" : "zY");
+  if (clamped) return b;
+  hold(
+      b.model, [](const Vec3d& X) { return norm(X) < 1e-9; }, "xyZ");
+  hold(
+      b.model,
+      [](const Vec3d& X) {
+        return norm(X - Vec3d{{1, 0, 0}}) < 1e-9;
+      },
+      "y");
+  return b;
+}
+
+/// Centre deflections of square plates under uniform load over q L⁴ / D.
+/// Thin: 0.00406235 (Navier), 0.00126532 (Timoshenko and Woinowsky-Krieger 1959). Simply supported thick ones add the
+/// membrane that shear makes, 0.0736713 q L² / (κ G t); clamped at t / L = 0.1: 0.0015046.
+TEST(ShellPlates, NoShearLocking) {
+  std::printf("centre / reference  t/L       8      16      32 (irregular 16)\n");
+  for (const bool clamped : {false, true})
+    for (const double t : {0.1, 0.01, 1e-3, 1e-4}) {
+      const double D = 1e6 * t * t * t / 12 / 0.91, shear = 5.0 / 6 * 1e6 / 2.6 * t;
+      const double thick = clamped ? (t == 0.1 ? 0.0015046 - 0.00126532 : t * t * (0.0015046 - 0.00126532) / 0.01)
+                                   : 0.0736713 * D / shear;
+      const double reference = ((clamped ? 0.00126532 : 0.00406235) + thick) / D;
+      std::printf("%-18s %6g", clamped ? "clamped" : "simply supported", t);
+      for (const auto& [n, jitter] : {std::pair{8, 0.0}, {16, 0.0}, {32, 0.0}, {16, 0.25}}) {
+        ShellModel b = square(n, t, clamped, jitter);
+        add_area_load(b, {{0, 0, 1}});
+        double centre = 0;
+        const Attachment a = b.body->attach({{0.5, 0.5, 0}});
+        const State state = small_response(b.model, 1e-6 * D);
+        for (std::size_t k = 0; k < a.nodes.size(); ++k) centre += a.influences[k].w * state.u[at(a.nodes[k])][2];
+        std::printf("  %.4f", centre / reference);
+        if (n >= 16) {
+          EXPECT_NEAR(centre / reference, 1, 0.02) << t;
+        }
+      }
+      std::printf("\n");
+    }
+}
+
+/// ω L² √(ρ t / D) of a clamped square plate (Leissa 1969, table 4.23).
+TEST(ShellPlates, ClampedFrequencies) {
+  const double reference[] = {35.992, 73.413, 73.413, 108.27, 131.64, 132.25};
+  const double t = 0.005, D = 1e6 * t * t * t / 12 / 0.91;
+  for (const int n : {12, 24}) {
+    const ShellModel b = square(n, t, true);
+    ThreadPool pool(1);
+    const Modes modes = natural_modes(b.model, pool, 6);
+    std::printf("clamped plate, %d x %d:", n, n);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double value = 2 * std::numbers::pi * modes.frequency[k] * std::sqrt(1000 * t / D);
+      std::printf(" %.2f (%+.2f %%)", value, 100 * (value / reference[k] - 1));
+      if (n == 24) {
+        EXPECT_NEAR(value / reference[k], 1, 0.03);
+      }
+    }
+    std::printf("\n");
+  }
+}
+
+/// A spinning, bent shell: linear momentum under implicit Euler, angular under the midpoint rule; implicit Euler gains
+/// no energy.
+TEST(ShellPlates, FreeFlight) {
+  const auto map = [](double u, double v) { return Vec3d{{u, v, 0.4 * u * (1 - u)}}; };
+  const ShellModel b = shell_model(patch_mesh(map, {6, 6, Diagonals::alternating, 0.2}), {1e6, 0.3, 0.02, 1000});
+  const State start = spinning_state(b.model, {{3, 1, 5}}, {{1, -2, 0.5}});
+  const Momentum before = total_momentum(b.model, start);
+  for (const TimeScheme scheme : {TimeScheme::implicit_euler, TimeScheme::midpoint}) {
+    ThreadPool pool(1);
+    SolverSettings settings;
+    settings.tolerance = 1e-12;
+    MechanicalSystem system(b.model, pool, settings);
+    State state = start;
+    double energy = before.kinetic_energy, largest_gain = 0;
+    const RunReport run = run_implicit(system, state, kAlways, settings, {scheme, 0.01, 60},
+                                       [&](const StepInfo&, const State& now, MechanicalSystem& s) {
+                                         const double next =
+                                             total_momentum(b.model, now).kinetic_energy + s.internal_energy().total();
+                                         largest_gain = std::max(largest_gain, next - energy);
+                                         energy = next;
+                                         return true;
+                                       });
+    ASSERT_EQ(run.status, RunStatus::converged) << run.message;
+    const Momentum after = total_momentum(b.model, state);
+    const double linear = norm(after.linear - before.linear) / norm(before.linear);
+    const double angular = norm(after.angular - before.angular) / norm(before.angular);
+    const bool euler = scheme == TimeScheme::implicit_euler;
+    std::printf("%-15s linear momentum %.1e, angular %.1e, largest gain of energy in a step %.1e\n",
+                euler ? "implicit Euler" : "midpoint", linear, angular, largest_gain / before.kinetic_energy);
+    EXPECT_LT(linear, 1e-9);
+    if (euler)
+      EXPECT_LT(largest_gain, 1e-10 * before.kinetic_energy);
+    else
+      EXPECT_LT(angular, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace fascia
