@@ -3,8 +3,10 @@
 #include "app/domains.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
+#include "app/shell_meshes.hpp"
 #include "io/point_table.hpp"
 #include "meshless/grid_body.hpp"
+#include "shells/surface_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -145,11 +147,31 @@ void describe_thin_grid(const Body& body, const MatterParts& parts, CloudSpec& s
   grid_cloud(thin, spec);
 }
 
+[[noreturn]] void check_shell(const Body& body, std::vector<std::string>& messages) {
+  const ShellMesh mesh = shell_mesh_of(body);
+  messages = thickness_warnings(mesh, shell_thickness(body, mesh));
+  shell_materials(body, mesh);
+  throw SceneError({{body.place, "shells are not supported yet"}});
+}
+
+/// Nodes and triangles of a generated surface.
+SampleEstimate estimated_triangles(const Body& body) {
+  SampleEstimate e;
+  if (!body.cells) return e;
+  const std::vector<int>& count = body.cells->count;
+  e.frames = count.size() == 2 ? 1.0 * count[0] * count[1] : 0.25 * count[0] * count[0];
+  e.points = 2 * e.frames;
+  e.neighbours = 3;
+  e.coupled = 7;
+  return e;
+}
+
 }  // namespace
 
 std::unique_ptr<ModelBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
                                       std::vector<std::string>& messages) {
   if (is_mesh_model(body)) return build_element_body(body, model, points);
+  if (is_shell(body)) check_shell(body, messages);
   const MatterParts parts = make_domain(body, messages);
   const bool grid = std::holds_alternative<GridFrames>(body.frames);
   std::unique_ptr<ModelBody> built;
@@ -210,6 +232,7 @@ double measure_of(const Body& body) {
 
 SampleEstimate estimated_samples(const Body& body) {
   if (is_mesh_model(body)) return estimated_elements(body);
+  if (is_shell(body)) return estimated_triangles(body);
   SampleEstimate e;
   const bool line = std::holds_alternative<LineDomain>(body.domain);
   const bool sheet = std::holds_alternative<RectangleDomain>(body.domain) || !body.thickness.empty();

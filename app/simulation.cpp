@@ -40,7 +40,7 @@ void check_memory(const Scene& scene) {
   const SampleEstimate e = estimated_samples(*largest);
   const bool grid = std::holds_alternative<GridFrames>(largest->frames);
   const bool by_points = !std::holds_alternative<std::monostate>(largest->points) && e.points > 100 * e.frames;
-  if (is_mesh_model(*largest))
+  if (is_mesh_model(*largest) || is_shell(*largest))
     throw SceneError(
         {{largest->cells_place,
           fmt::format("{:.6g} nodes and {:.6g} integration points need about {:.3g} GB, {:.3g} GB are free; "
