@@ -66,7 +66,7 @@ void place(const Transform& transform, ShellMesh& mesh) {
 
 /// Why an entry holds no triangle.
 std::string unused_entry(const Region& region, bool selects, const ShellMesh& mesh) {
-  if (selects) return "entries before it hold all triangles of the region; put this one first";
+  if (selects) return "entries before it hold all triangles of the region; remove it or put it before them";
   if (!std::holds_alternative<GroupRegion>(region.shape)) return "the region holds no triangle's centre; enlarge it";
   std::string names;
   for (const BodyGroup& g : mesh.groups)

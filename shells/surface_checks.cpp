@@ -144,7 +144,15 @@ ShellQuality shell_quality(const ShellMesh& mesh) {
                          "); they are too stiff and slow the solver down, mesh again");
   if (folded.count > 0)
     q.messages.push_back(prefix(mesh) + "the surface folds back on itself at " + std::to_string(folded.count) +
-                         " edges (the sharpest: " + name_of(mesh, folded.triangle) + "); mesh again");
+                         (folded.count > 1 ? " edges" : " edge") + " (the sharpest: " + name_of(mesh, folded.triangle) +
+                         "); mesh again");
+  const ShellParts parts = parts_of(mesh);
+  if (parts.count > 1)
+    q.messages.push_back(prefix(mesh) + "falls into " + std::to_string(parts.count) + " parts that share no node");
+  if (!parts.pinched.empty())
+    q.messages.push_back(prefix(mesh) + "parts of the surface meet in single nodes (" +
+                         std::to_string(parts.pinched.size()) + ", the first at " +
+                         text(mesh.nodes[at(parts.pinched.front())]) + "); they are joined there by one frame");
   return q;
 }
 

@@ -17,11 +17,12 @@ std::string name_of(const ShellMesh& mesh, std::size_t triangle);
 
 /// Shape of the triangles.
 struct ShellQuality {
-  double area = 0;                    ///< of all [m²]
-  double worst_aspect = 0;            ///< longest edge / height on it [-]: 1.15 equilateral, 2 half a square
-  std::size_t worst = 0;              ///< the triangle that has it
-  std::string sentence;               ///< counts, sizes and aspect in words
-  std::vector<std::string> messages;  ///< triangles of an aspect above 20, edges about which neighbours fold back
+  double area = 0;          ///< of all [m²]
+  double worst_aspect = 0;  ///< longest edge / height on it [-]: 1.15 equilateral, 2 half a square
+  std::size_t worst = 0;    ///< the triangle that has it
+  std::string sentence;     ///< counts, sizes and aspect in words
+  /// Triangles of an aspect above 20, edges about which neighbours fold back, parts that share no node or single ones.
+  std::vector<std::string> messages;
 };
 ShellQuality shell_quality(const ShellMesh& mesh);
 
@@ -47,6 +48,13 @@ std::vector<ShellHole> holes(const ShellMesh& mesh);
 inline bool closed(const ShellMesh& mesh) { return holes(mesh).empty(); }
 /// "is open: ..." with number and places of the holes; empty where the surface is closed.
 std::string openness(const ShellMesh& mesh);
+
+/// How many parts share no node, and the nodes in which parts meet that share no edge there.
+struct ShellParts {
+  int count = 0;
+  std::vector<int> pinched;  ///< ascending
+};
+ShellParts parts_of(const ShellMesh& mesh);
 
 /// Volume that a closed surface encloses [m³].
 double enclosed_volume(const ShellMesh& mesh);

@@ -29,13 +29,13 @@ std::vector<Edge> free_edges(const ShellMesh& mesh) {
   return result;
 }
 
-/// Nodes that edges join, by a representative.
-class JoinedNodes {
+/// Things that are joined, by a representative.
+class Joined {
  public:
-  explicit JoinedNodes(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int node) {
-    while (parent_[at(node)] != node) node = parent_[at(node)] = parent_[at(parent_[at(node)])];
-    return node;
+  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
   }
   void join(int a, int b) { parent_[at(find(a))] = find(b); }
 
@@ -47,7 +47,7 @@ class JoinedNodes {
 
 std::vector<ShellHole> holes(const ShellMesh& mesh) {
   const std::vector<Edge> edges = free_edges(mesh);
-  JoinedNodes nodes(mesh.nodes.size());
+  Joined nodes(mesh.nodes.size());
   for (const Edge& edge : edges) nodes.join(edge.low, edge.high);
   std::vector<int> hole_of(mesh.nodes.size(), -1);
   std::vector<ShellHole> result;
@@ -83,6 +83,33 @@ std::string openness(const ShellMesh& mesh) {
   return "is open: it has " + std::to_string(found.size()) + (found.size() > 1 ? " holes, the longest" : " hole,") +
          " of " + std::to_string(hole.edges) + " edges about " + text(hole.middle) + ", next to " +
          name_of(mesh, hole.triangle);
+}
+
+ShellParts parts_of(const ShellMesh& mesh) {
+  Joined nodes(mesh.nodes.size()), corners(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    nodes.join(t[0], t[1]);
+    nodes.join(t[0], t[2]);
+  }
+  const auto corner = [&](int triangle, int node) {
+    const auto& t = mesh.triangles[at(triangle)];
+    return 3 * triangle + static_cast<int>(std::find(t.begin(), t.end(), node) - t.begin());
+  };
+  const std::vector<Edge> edges = surface_parts::sorted_edges(triangles_of(mesh));
+  for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
+    if (!edges[e].same_as(edges[e + 1])) continue;
+    for (const int node : {edges[e].low, edges[e].high})
+      corners.join(corner(edges[e].triangle, node), corner(edges[e + 1].triangle, node));
+  }
+  ShellParts parts;
+  std::vector<int> fans(mesh.nodes.size(), 0);  // triangles about a node that hang together by edges
+  for (std::size_t c = 0; c < 3 * mesh.triangles.size(); ++c)
+    if (corners.find(static_cast<int>(c)) == static_cast<int>(c)) ++fans[at(mesh.triangles[c / 3][c % 3])];
+  for (std::size_t i = 0; i < fans.size(); ++i) {
+    if (nodes.find(static_cast<int>(i)) == static_cast<int>(i)) ++parts.count;
+    if (fans[i] > 1) parts.pinched.push_back(static_cast<int>(i));
+  }
+  return parts;
 }
 
 double enclosed_volume(const ShellMesh& mesh) { return surface_parts::enclosed_volume(mesh.nodes, triangles_of(mesh)); }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace fascia::app {
@@ -46,20 +47,13 @@ BlockDomain read_block(const TableReader& block) {
   return domain;
 }
 
-/// The keys `angle` and `closed` of a surface about an axis.
+/// The keys `angle` and `closed` of a surface about an axis, which read_shell checks.
 void read_turn(const TableReader& table, std::array<double, 2>& angle, bool& closed) {
   constexpr double whole = 2 * std::numbers::pi;
   if (const Value* list = table.value("angle"))
     for (std::size_t i = 0; i < 2; ++i) angle[i] = std::get<double>((*list->as_array())[i].data);
-  const double turn = angle[1] - angle[0];
-  if (!(turn > 0) || !(turn <= whole * (1 + 1e-9)))
-    table.error("angle", fmt::format("goes from {:.6g} to {:.6g} rad; must be ascending, by a whole turn (\"360 "
-                                     "degree\") at most",
-                                     angle[0], angle[1]));
-  const bool is_whole = turn >= whole * (1 - 1e-9);
+  const bool is_whole = std::abs(angle[1] - angle[0] - whole) <= 1e-9 * whole;
   if (is_whole) angle[1] = angle[0] + whole;
-  if (!is_whole && table.boolean("closed").value_or(false))
-    table.error("closed", "a sector has two edges apart; must be false, or angle a whole turn");
   closed = is_whole && table.boolean("closed").value_or(true);
 }
 
@@ -68,8 +62,6 @@ CylinderDomain read_cylinder(const TableReader& cylinder) {
   if (from && to && *from == *to) cylinder.error("to", "is the same point as from; must be another point");
   CylinderDomain domain{from.value_or(Vec3d{}), to.value_or(Vec3d{}), cylinder.number("radius").value_or(1)};
   read_turn(cylinder, domain.angle, domain.closed);
-  if (!domain.closed && cylinder.boolean("caps").value_or(false))
-    cylinder.error("caps", "a skin that does not close around the axis has no caps; must be false");
   domain.caps = domain.closed && cylinder.boolean("caps").value_or(true);
   return domain;
 }

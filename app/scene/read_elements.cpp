@@ -29,16 +29,15 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
   body.cells_place = shape.place("cells");
   if (body.model == BodyModel::hexahedra) shape.refuse({"split"}, unused_by(body.model));
   const Shape domain = domain_schema();
-  const Shape& wanted = domain.find(kind)->shape.find("cells")->shape;
-  if (!shape.has("cells")) {
-    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}", word(body.model),
-                                     in_words(array(wanted.items.front(), 2, wanted.max_items))));
-  }
+  const Shape& any = domain.find(kind)->shape.find("cells")->shape;
+  const std::string wanted = in_words(array(any.items.front(), any.max_items, any.max_items));
+  if (!shape.has("cells"))
+    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}", word(body.model), wanted));
   const auto count = shape.integers("cells");
   if (!count) return;
-  if (count->size() < 2)
-    return shape.error("cells", fmt::format("has one number, as of a shell; must be {} for model = \"{}\"",
-                                            in_words(array(wanted.items.front(), 2, 2)), word(body.model)));
+  if (count->size() < any.max_items)
+    return shape.error(
+        "cells", fmt::format("has one number, as of a shell; must be {} for model = \"{}\"", wanted, word(body.model)));
   if (kind == "cylinder") check_around(shape, 1);
   if (kind == "ellipsoid" || kind == "sphere") check_around(shape, 0);
   if (const double cells = cell_count(kind, *count); cells > most)

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
 namespace fascia::app {
 namespace {
 
@@ -11,6 +13,20 @@ const char* generated_surface(const TableReader& domain) {
   for (const char* kind : {"rectangle", "annulus", "cylinder", "ellipsoid", "sphere"})
     if (domain.value(kind)) return kind;
   return nullptr;
+}
+
+/// A surface about an axis: its angle, and that what the user wants closed can be.
+void check_turn(const TableReader& shape, const std::array<double, 2>& angle, bool closed) {
+  constexpr double whole = 2 * std::numbers::pi;
+  const double turn = angle[1] - angle[0];
+  if (!(turn > 0) || !(turn <= whole * (1 + 1e-9)))
+    return shape.error("angle", fmt::format("goes from {:.6g} to {:.6g} rad; must be ascending, by a whole turn (\"360 "
+                                            "degree\") at most",
+                                            angle[0], angle[1]));
+  if (!closed && turn < whole && shape.boolean("closed").value_or(false))
+    shape.error("closed", "a sector has two edges apart; must be false, or angle a whole turn");
+  if (!closed && shape.boolean("caps").value_or(false))
+    shape.error("caps", "a skin that does not close around the axis has no caps; must be false");
 }
 
 void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
@@ -33,6 +49,8 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
   const auto* cylinder = std::get_if<CylinderDomain>(&body.domain);
   const auto* annulus = std::get_if<AnnulusDomain>(&body.domain);
   const bool closed = (cylinder && cylinder->closed) || (annulus && annulus->closed);
+  if (cylinder) check_turn(shape, cylinder->angle, closed);
+  if (annulus) check_turn(shape, annulus->angle, closed);
   if (closed && (*count)[1] < 3)
     shape.error("cells", fmt::format("{} cells around enclose nothing; must be at least 3 where closed", (*count)[1]));
   const std::string diagonal = shape.text("diagonal").value_or("right");
