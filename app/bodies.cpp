@@ -3,8 +3,11 @@
 #include "app/domains.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
+#include "app/shell_meshes.hpp"
 #include "io/point_table.hpp"
 #include "meshless/grid_body.hpp"
+#include "shells/shell_body.hpp"
+#include "shells/surface_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -145,11 +148,37 @@ void describe_thin_grid(const Body& body, const MatterParts& parts, CloudSpec& s
   grid_cloud(thin, spec);
 }
 
+std::unique_ptr<ModelBody> build_shell(const Body& body, Model& model, PointSetBuilder& points,
+                                       std::vector<std::string>& messages) {
+  ShellBodySpec spec;
+  spec.mesh = shell_mesh_of(body);
+  spec.thickness = shell_thickness(body, spec.mesh);
+  messages = thickness_warnings(spec.mesh, spec.thickness);
+  for (const MaterialUse* use : shell_materials(body, spec.mesh)) spec.material.push_back(point_material(use->material));
+  double volume = 0;
+  for (std::size_t t = 0; t < spec.thickness.size(); ++t) volume += spec.thickness[t] * area(spec.mesh, t);
+  spec.density = body.density ? *body.density : *body.mass / volume;
+  return std::make_unique<ShellBody>(std::move(spec), model, points);
+}
+
+/// Nodes and triangles of a generated surface.
+SampleEstimate estimated_triangles(const Body& body) {
+  SampleEstimate e;
+  if (!body.cells) return e;
+  const std::vector<int>& count = body.cells->count;
+  e.frames = count.size() == 2 ? 1.0 * count[0] * count[1] : 0.25 * count[0] * count[0];
+  e.points = 2 * e.frames;
+  e.neighbours = 3;
+  e.coupled = 7;
+  return e;
+}
+
 }  // namespace
 
 std::unique_ptr<ModelBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
                                       std::vector<std::string>& messages) {
   if (is_mesh_model(body)) return build_element_body(body, model, points);
+  if (is_shell(body)) return build_shell(body, model, points, messages);
   const MatterParts parts = make_domain(body, messages);
   const bool grid = std::holds_alternative<GridFrames>(body.frames);
   std::unique_ptr<ModelBody> built;
@@ -210,6 +239,7 @@ double measure_of(const Body& body) {
 
 SampleEstimate estimated_samples(const Body& body) {
   if (is_mesh_model(body)) return estimated_elements(body);
+  if (is_shell(body)) return estimated_triangles(body);
   SampleEstimate e;
   const bool line = std::holds_alternative<LineDomain>(body.domain);
   const bool sheet = std::holds_alternative<RectangleDomain>(body.domain) || !body.thickness.empty();

@@ -40,7 +40,7 @@ void check_memory(const Scene& scene) {
   const SampleEstimate e = estimated_samples(*largest);
   const bool grid = std::holds_alternative<GridFrames>(largest->frames);
   const bool by_points = !std::holds_alternative<std::monostate>(largest->points) && e.points > 100 * e.frames;
-  if (is_mesh_model(*largest))
+  if (is_mesh_model(*largest) || is_shell(*largest))
     throw SceneError(
         {{largest->cells_place,
           fmt::format("{:.6g} nodes and {:.6g} integration points need about {:.3g} GB, {:.3g} GB are free; "
@@ -185,12 +185,14 @@ Simulation build_simulation(Scene scene) {
   PointSetBuilder points;
   s.bodies.reserve(s.scene.bodies.size());
   for (const Body& body : s.scene.bodies) {
-    const int group = points.group_count(), block = points.block_count();
+    const int group = points.group_count(), block = points.block_count(), shell = points.shell_count();
     add_body(s, body, points);
     s.bodies.back().body->first_group = group;
     s.bodies.back().body->group_count = points.group_count() - group;
     s.bodies.back().body->first_block = block;
     s.bodies.back().body->block_count = points.block_count() - block;
+    s.bodies.back().body->first_shell = shell;
+    s.bodies.back().body->shell_count = points.shell_count() - shell;
   }
   add_constraints(s, points);
   s.model.points = std::move(points).finish(s.model.frame_kind);

@@ -82,8 +82,9 @@ void read_young(const TableReader& table, Material& material) {
 std::optional<BodyModel> read_model(const TableReader& body) {
   const auto word = body.text("model");
   if (!word) return std::nullopt;
-  if (*word == "tetrahedra") return BodyModel::tetrahedra;
-  return *word == "hexahedra" ? BodyModel::hexahedra : BodyModel::meshless;
+  for (const BodyModel model : {BodyModel::tetrahedra, BodyModel::hexahedra, BodyModel::shell})
+    if (*word == app::word(model)) return model;
+  return BodyModel::meshless;
 }
 
 /// Thin bodies: their laws hold for a vanishing stress through the thickness or across the section.
@@ -164,6 +165,7 @@ Body read_body(const TableReader& table, const Materials& materials, const std::
   body.model = model.value_or(BodyModel::meshless);
   if (model == BodyModel::meshless) read_meshless(table, folder, body);
   if (model && is_mesh_model(body)) read_elements(table, body);
+  if (model && is_shell(body)) read_shell(table, body);
   body.initial = read_initial(table.table("initial"));
   return body;
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace fascia::app {
 namespace {
@@ -45,10 +47,40 @@ BlockDomain read_block(const TableReader& block) {
   return domain;
 }
 
+/// The keys `angle` and `closed` of a surface about an axis, which read_shell checks.
+void read_turn(const TableReader& table, std::array<double, 2>& angle, bool& closed) {
+  constexpr double whole = 2 * std::numbers::pi;
+  if (const Value* list = table.value("angle"))
+    for (std::size_t i = 0; i < 2; ++i) angle[i] = std::get<double>((*list->as_array())[i].data);
+  const bool is_whole = std::abs(angle[1] - angle[0] - whole) <= 1e-9 * whole;
+  if (is_whole) angle[1] = angle[0] + whole;
+  closed = is_whole && table.boolean("closed").value_or(true);
+}
+
 CylinderDomain read_cylinder(const TableReader& cylinder) {
   const auto from = cylinder.vector("from"), to = cylinder.vector("to");
   if (from && to && *from == *to) cylinder.error("to", "is the same point as from; must be another point");
-  return {from.value_or(Vec3d{}), to.value_or(Vec3d{}), cylinder.number("radius").value_or(1)};
+  CylinderDomain domain{from.value_or(Vec3d{}), to.value_or(Vec3d{}), cylinder.number("radius").value_or(1)};
+  read_turn(cylinder, domain.angle, domain.closed);
+  domain.caps = domain.closed && cylinder.boolean("caps").value_or(true);
+  return domain;
+}
+
+AnnulusDomain read_annulus(const TableReader& annulus) {
+  AnnulusDomain domain{annulus.vector("center").value_or(Vec3d{}),
+                       annulus.direction("normal").value_or(Vec3d{{0, 0, 1}})};
+  const auto inner = annulus.number("inner"), outer = annulus.number("outer");
+  if (inner && outer && !(*outer > *inner))
+    annulus.error("outer", fmt::format("{} m is not above inner, {} m; must be above it", *outer, *inner));
+  domain.inner = inner.value_or(1);
+  domain.outer = outer.value_or(2);
+  read_turn(annulus, domain.angle, domain.closed);
+  return domain;
+}
+
+EllipsoidDomain read_sphere(const TableReader& sphere) {
+  const double radius = sphere.number("radius").value_or(1);
+  return {sphere.vector("center").value_or(Vec3d{}), Vec3d{{radius, radius, radius}}};
 }
 
 RectangleDomain read_rectangle(const TableReader& rectangle) {
@@ -71,16 +103,6 @@ FileDomain read_file(const TableReader& domain, const std::filesystem::path& fol
   return {folder / name};
 }
 
-std::vector<ThicknessUse> read_thickness(const TableReader& body) {
-  const Value* value = body.value("thickness");
-  if (!value) return {};
-  if (!value->as_array()) return {{{body.place("thickness"), AllRegion{}}, *body.number("thickness")}};
-  std::vector<ThicknessUse> uses;
-  for (const TableReader& part : read_choices(body, "thickness"))
-    uses.push_back({read_region(part, "where"), part.number("value").value_or(1)});
-  return uses;
-}
-
 void require(const TableReader& table, const char* key, const char* message) {
   if (!table.has(key)) table.error(key, message);
 }
@@ -93,6 +115,8 @@ Domain read_domain(const TableReader& domain, const std::filesystem::path& folde
   if (domain.value("cylinder")) return read_cylinder(domain.table("cylinder"));
   if (domain.value("rectangle")) return read_rectangle(domain.table("rectangle"));
   if (domain.value("line")) return read_line(domain.table("line"));
+  if (domain.value("annulus")) return read_annulus(domain.table("annulus"));
+  if (domain.value("sphere")) return read_sphere(domain.table("sphere"));
   if (domain.value("ellipsoid")) {
     const TableReader ellipsoid = domain.table("ellipsoid");
     return EllipsoidDomain{ellipsoid.vector("center").value_or(Vec3d{}),
@@ -101,12 +125,23 @@ Domain read_domain(const TableReader& domain, const std::filesystem::path& folde
   return read_box(domain.table("box"));
 }
 
+std::vector<ThicknessUse> read_thickness(const TableReader& body) {
+  const Value* value = body.value("thickness");
+  if (!value) return {};
+  if (!value->as_array()) return {{{body.place("thickness"), AllRegion{}}, *body.number("thickness")}};
+  std::vector<ThicknessUse> uses;
+  for (const TableReader& part : read_choices(body, "thickness"))
+    uses.push_back({read_region(part, "where"), part.number("value").value_or(1)});
+  return uses;
+}
+
 std::optional<Extent> read_extent(const TableReader& body) {
   const TableReader domain = body.table("domain");
   if (domain.has("rectangle")) return Extent::surface;
   if (domain.has("line")) return Extent::line;
   if (domain.has("file")) return body.has("thickness") || body.has("radius") ? Extent::thin_mesh : Extent::solid;
-  if (domain.has("box") || domain.has("cylinder") || domain.has("ellipsoid")) return Extent::solid;
+  for (const char* solid : {"box", "cylinder", "ellipsoid", "sphere"})
+    if (domain.has(solid)) return Extent::solid;
   return std::nullopt;
 }
 

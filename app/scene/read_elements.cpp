@@ -6,14 +6,7 @@
 namespace fascia::app {
 namespace {
 
-constexpr std::array<const char*, 4> generated{"box", "block", "cylinder", "ellipsoid"};
-
-const char* word(BodyModel model) {
-  if (model == BodyModel::meshless) return "meshless";
-  return model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra";
-}
-
-std::string unused_by(BodyModel model) { return fmt::format("is not used by model = \"{}\"", word(model)); }
+constexpr std::array<const char*, 5> generated{"box", "block", "cylinder", "ellipsoid", "sphere"};
 
 /// The kind of a domain whose mesh is generated; null for others.
 const char* generated_kind(const TableReader& domain) {
@@ -27,43 +20,36 @@ const char* generated_kind(const TableReader& domain) {
 double cell_count(const std::string& kind, const std::vector<int>& cells) {
   const auto square = [](double x) { return x * x; };
   if (kind == "cylinder") return cells[0] * (square(cells[1] / 4.0) + square(cells[1]) / 12.0);
-  if (kind == "ellipsoid") return square(cells[0] / 4.0) * (cells[0] / 4.0 + 6.0 * cells[1]);
+  if (kind == "ellipsoid" || kind == "sphere") return square(cells[0] / 4.0) * (cells[0] / 4.0 + 6.0 * cells[1]);
   return 1.0 * cells[0] * cells[1] * cells[2];
-}
-
-/// The cells around a cylinder or ellipsoid are as many on each of four sides.
-void check_around(const TableReader& shape, std::size_t index) {
-  const Value& around = (*shape.value("cells")->as_array())[index];
-  const auto count = std::get<std::int64_t>(around.data), below = count / 4 * 4;
-  if (count == below) return;
-  const std::string right = below > 0 ? fmt::format("{} or {}", below, below + 4) : "4";
-  shape.diagnostics().add(around.position, join(shape.path_of("cells"), index),
-                          fmt::format("{} cells around are no multiple of 4; must be {}", count, right));
 }
 
 void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
   constexpr double most = 1e7;
   body.cells_place = shape.place("cells");
   if (body.model == BodyModel::hexahedra) shape.refuse({"split"}, unused_by(body.model));
-  if (!shape.has("cells")) {
-    const Shape schema = domain_schema();
-    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}", word(body.model),
-                                     in_words(schema.find(kind)->shape.find("cells")->shape)));
-  }
+  const Shape domain = domain_schema();
+  const Shape& any = domain.find(kind)->shape.find("cells")->shape;
+  const std::string wanted = in_words(array(any.items.front(), any.max_items, any.max_items));
+  if (!shape.has("cells"))
+    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}", word(body.model), wanted));
   const auto count = shape.integers("cells");
   if (!count) return;
+  if (count->size() < any.max_items)
+    return shape.error(
+        "cells", fmt::format("has one number, as of a shell; must be {} for model = \"{}\"", wanted, word(body.model)));
   if (kind == "cylinder") check_around(shape, 1);
-  if (kind == "ellipsoid") check_around(shape, 0);
+  if (kind == "ellipsoid" || kind == "sphere") check_around(shape, 0);
   if (const double cells = cell_count(kind, *count); cells > most)
     shape.error("cells", fmt::format("asks for about {:.3g} cells; must be at most {}", cells, most));
   body.cells = MeshCells{*count, shape.integer("split").value_or(6)};
 }
 
 void read_mesh(const TableReader& domain, Body& body) {
-  for (const char* thin : {"rectangle", "line"})
+  for (const char* thin : {"rectangle", "annulus", "line"})
     if (domain.has(thin))
       domain.error(thin, fmt::format("is no solid, which model = \"{}\" needs; must be box, block, cylinder, "
-                                     "ellipsoid or file",
+                                     "ellipsoid, sphere or file",
                                      word(body.model)));
   if (const char* kind = generated_kind(domain)) read_cells(domain.table(kind), kind, body);
 }
@@ -95,9 +81,36 @@ void read_locking(const TableReader& table, Body& body) {
 
 }  // namespace
 
+const char* word(BodyModel model) {
+  switch (model) {
+    case BodyModel::meshless:
+      return "meshless";
+    case BodyModel::tetrahedra:
+      return "tetrahedra";
+    case BodyModel::hexahedra:
+      return "hexahedra";
+    case BodyModel::shell:
+      return "shell";
+  }
+  return "";
+}
+
+std::string unused_by(BodyModel model) { return fmt::format("is not used by model = \"{}\"", word(model)); }
+
+/// The cells around a cylinder or ellipsoid are as many on each of four sides.
+void check_around(const TableReader& shape, std::size_t index) {
+  const Value& around = (*shape.value("cells")->as_array())[index];
+  const auto count = std::get<std::int64_t>(around.data), below = count / 4 * 4;
+  if (count == below) return;
+  const std::string right = below > 0 ? fmt::format("{} or {}", below, below + 4) : "4";
+  shape.diagnostics().add(around.position, join(shape.path_of("cells"), index),
+                          fmt::format("{} cells around are no multiple of 4; must be {}", count, right));
+}
+
 void read_elements(const TableReader& table, Body& body) {
   table.refuse({"frames", "points", "weights", "thickness", "radius"}, unused_by(body.model));
   if (body.model == BodyModel::hexahedra) table.refuse({"incompressibility", "locking"}, unused_by(body.model));
+  refuse_shell_keys(table);
   read_mesh(table.table("domain"), body);
   read_formulation(table, body);
   body.order = table.integer("order").value_or(body.order);
@@ -112,8 +125,13 @@ void refuse_element_keys(const TableReader& table) {
   table.refuse({"formulation", "order", "incompressibility", "locking"}, unused);
   const TableReader domain = table.table("domain");
   if (domain.has("block"))
-    return domain.error("block", "is for mesh models; must be box, cylinder, ellipsoid, file, rectangle or line");
+    return domain.error("block",
+                        "is for mesh models; must be box, cylinder, ellipsoid, sphere, file, rectangle or line");
+  if (domain.has("annulus"))
+    return domain.error("annulus", "is for shells; must be box, cylinder, ellipsoid, sphere, file, rectangle or line");
   if (const char* kind = generated_kind(domain)) domain.table(kind).refuse({"cells", "split"}, unused);
+  domain.table("rectangle").refuse({"cells"}, unused);
+  refuse_shell_keys(table);
 }
 
 }  // namespace fascia::app

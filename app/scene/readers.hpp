@@ -37,6 +37,9 @@ enum class Extent {
 /// By the keys `domain`, `thickness` and `radius` of a body; none where the domain is missing or wrong.
 std::optional<Extent> read_extent(const TableReader& body);
 
+/// The key `thickness` of a body; empty where it is missing or wrong.
+std::vector<ThicknessUse> read_thickness(const TableReader& body);
+
 /// The keys `thickness` and `radius` of a body.
 void read_section(const TableReader& table, Body& body);
 
@@ -49,6 +52,19 @@ void read_discretisation(const TableReader& table, const std::filesystem::path& 
 void read_elements(const TableReader& table, Body& body);
 /// Reports the keys of read_elements that a meshless body has.
 void refuse_element_keys(const TableReader& table);
+
+/// What only shells take: the triangles of their domain, the thickness.
+/// @param body  its materials are known
+void read_shell(const TableReader& table, Body& body);
+/// Reports the keys of read_shell that the domain of another model has.
+void refuse_shell_keys(const TableReader& table);
+
+/// As the key `model` says it.
+const char* word(BodyModel model);
+/// "is not used by model = "tetrahedra""
+std::string unused_by(BodyModel model);
+/// Reports a number of cells around, at an index of the list `cells`, that is no multiple of 4.
+void check_around(const TableReader& shape, std::size_t index);
 
 /// Where a body names the material of one of its uses, which were read.
 Place place_of_material(const TableReader& body, std::size_t use);

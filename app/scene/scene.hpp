@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/scene/domain.hpp"
 #include "core/math/mat3.hpp"
 
 #include <array>
@@ -100,42 +101,6 @@ struct MaterialUse {
   Material material;
 };
 
-struct BoxDomain {
-  Vec3d min, max;
-};
-struct CylinderDomain {
-  Vec3d from, to;
-  double radius = 0;
-};
-struct EllipsoidDomain {
-  Vec3d center, radii;
-};
-struct FileDomain {
-  std::filesystem::path path;
-};  ///< already resolved against the scene's folder
-/// A parallelogram: origin + u edge_u + v edge_v, u and v from 0 to 1.
-struct RectangleDomain {
-  Vec3d origin, edge_u, edge_v;
-};
-struct LineDomain {
-  Vec3d from, to;
-};
-/// The trilinear map of a cube onto eight corners [m], in the order of a VTK hexahedron: four of the lower face,
-/// counter-clockwise seen from above, then the four above them. Its Jacobian is positive at every corner.
-struct BlockDomain {
-  std::array<Vec3d, 8> corners{};
-};
-using Domain =
-    std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain, RectangleDomain, LineDomain, BlockDomain>;
-
-/// x → R(axis, angle) (scale x) + translate
-struct Transform {
-  Vec3d translate{};
-  Vec3d axis{{0, 0, 1}};
-  double angle = 0;  ///< [rad]
-  double scale = 1;
-};
-
 struct InitialMotion {
   Vec3d velocity{}, angular_velocity{};
   std::optional<Vec3d> about;  ///< default: the body's mass centre
@@ -182,7 +147,7 @@ enum class WeightKind { automatic, trilinear, linear, mls, shepard, wendland, cu
 enum class Blend { automatic, half, full };
 enum class Integration { automatic, full, selective };
 
-enum class BodyModel { meshless, tetrahedra, hexahedra };
+enum class BodyModel { meshless, tetrahedra, hexahedra, shell };
 
 /// Strain of finite elements. large_strain: the material's law; corotational: linear in a frame that turns with the
 /// element; linear: small displacements.
@@ -191,10 +156,16 @@ enum class Formulation { large_strain, corotational, linear };
 /// Remedy of tetrahedra against volumetric locking; automatic: chosen by Poisson's ratio.
 enum class Locking { automatic, none, f_bar };
 
+/// What cuts a cell of a shell into triangles, see shells/generate.hpp.
+enum class CellDiagonal { right, left, alternating };
+
 /// Cells of a generated mesh.
 struct MeshCells {
-  std::vector<int> count;  ///< box, block: along each edge; cylinder: along, around; ellipsoid: around, layers
-  int split = 6;           ///< tetrahedra of a cell: 5 or 6
+  /// Box, block, rectangle: along each edge; cylinder: along, around; annulus: outward, around; ellipsoid: around and,
+  /// of a solid, layers.
+  std::vector<int> count;
+  int split = 6;  ///< tetrahedra of a cell: 5 or 6
+  CellDiagonal diagonal = CellDiagonal::right;
 };
 
 struct Body {
@@ -206,7 +177,7 @@ struct Body {
   Transform transform;
   std::vector<MaterialUse> materials;   ///< first match wins
   std::optional<double> mass, density;  ///< exactly one [kg], [kg/m³]
-  std::vector<ThicknessUse> thickness;  ///< surface domains; first match wins; empty: none given
+  std::vector<ThicknessUse> thickness;  ///< surface domains, shells; first match wins; empty: none given
   Place thickness_place;
   std::optional<double> radius;  ///< line domains [m]
   Place radius_place;
@@ -238,7 +209,12 @@ struct Body {
   Place locking_place;
 };
 
-inline bool is_mesh_model(const Body& body) { return body.model != BodyModel::meshless; }
+/// Finite elements of the volume: the nodes are vertices, without rotation.
+inline bool is_mesh_model(const Body& body) {
+  return body.model == BodyModel::tetrahedra || body.model == BodyModel::hexahedra;
+}
+/// Triangles with thickness: the nodes are frames.
+inline bool is_shell(const Body& body) { return body.model == BodyModel::shell; }
 
 // ------------------------------------------------------------------------------------------------ constraints, loads
 struct Motion {

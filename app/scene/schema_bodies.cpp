@@ -16,7 +16,7 @@ Shape body_material() {
 }
 
 Shape thickness() {
-  const Shape part = table({key("where", region(), "Points that take this thickness.").defaults("\"all\""),
+  const Shape part = table({key("where", region(), "Points or triangles that take this thickness.").defaults("\"all\""),
                             key("value", number("m", above(0)), "The thickness.").needed()});
   return one_of({number("m", above(0)), array(part, 1)});
 }
@@ -39,7 +39,7 @@ Shape model_schema() {
   return choice({{"meshless", "Frames and integration points."},
                  {"tetrahedra", "Finite elements; 3 degrees of freedom a node."},
                  {"hexahedra", "Finite elements; 3 degrees of freedom a node."},
-                 {"shell", "Thin wall.", false},
+                 {"shell", "Triangles with thickness; 6 degrees of freedom a node."},
                  {"rigid", "One frame that carries a surface.", false}});
 }
 
@@ -78,8 +78,8 @@ Shape body_schema() {
       key("initial", initial_schema(), "Motion at time 0."),
       key("transform", transform_schema(), "Moves the domain before anything is built."),
       key("thickness", thickness(),
-          "Thickness of a meshless sheet: of a rectangle, or of a file's triangles that bound no solid. A value, or a "
-          "list of which the first that selects a point counts."),
+          "Thickness of a shell, which needs it, or of a meshless sheet: of a rectangle, or of a file's triangles that "
+          "bound no solid. A value, or a list of which the first that selects a point or a triangle's centre counts."),
       key("radius", number("m", above(0)), "Radius of a meshless line, or of a file's lines."),
       key("inertia", array(vector3("kg m2"), 3, 3), "Inertia of a rigid body.").not_yet(),
       key("fluid", table({}), "What fills a closed shell.").not_yet()};

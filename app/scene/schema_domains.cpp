@@ -8,15 +8,46 @@ Key cells(std::size_t count, const std::string& meaning) {
              meaning + " Needed by `model = \"tetrahedra\"` and `\"hexahedra\"`, refused by others.");
 }
 
+Key surface_cells(const std::string& meaning) {
+  return key("cells", array(integer(between(1, 10000)), 2, 2),
+             meaning + " Needed by `model = \"shell\"`, refused by others.");
+}
+
+/// Cells of a domain that is a solid or its skin.
+Key solid_or_skin_cells(std::size_t least, const std::string& meaning) {
+  return key("cells", array(integer(between(1, 10000)), least, 2),
+             meaning + " Needed by `model = \"tetrahedra\"`, `\"hexahedra\"` and `\"shell\"`, refused by others.");
+}
+
+Key diagonal() {
+  return key("diagonal",
+             choice({{"right", "From the lower left corner to the upper right."},
+                     {"left", "From the lower right corner to the upper left."},
+                     {"alternating", "Both in turn, as on a chessboard."}}),
+             "What cuts a cell into two triangles, seen with its first direction to the right, its second up and the "
+             "normal to the viewer. Only for `model = \"shell\"`.")
+      .defaults("\"right\"");
+}
+
+Key angle(const char* about) {
+  return key("angle", array(number("rad"), 2, 2),
+             std::string("Where a sector begins and ends, ascending, about ") + about +
+                 "; 0 is along the coordinate axis that follows the one nearest to it: x about z, y about x, z about "
+                 "y. Only for `model = \"shell\"`.")
+      .defaults("a whole turn");
+}
+
+Key closed() {
+  return key("closed", boolean(),
+             "Whether the two edges of a whole turn are one; `false`: a slit. Only for `model = \"shell\"`.")
+      .defaults("true for a whole turn");
+}
+
 Key split() {
   return key("split", integer(between(5, 6)),
              "Tetrahedra of a cell: 6 around its main diagonal, or 5, mirrored from cell to cell. Only for `model = "
              "\"tetrahedra\"`.")
       .defaults("6");
-}
-
-Key skin_only(const char* name, Shape shape, const char* doc) {
-  return key(name, std::move(shape), doc).refused("is not used by a solid");
 }
 
 Shape box() {
@@ -36,15 +67,33 @@ Shape cylinder() {
   return table({key("from", vector3("m"), "Centre of one end.").needed(),
                 key("to", vector3("m"), "Centre of the other end.").needed(),
                 key("radius", number("m", above(0)), "Radius.").needed(),
-                cells(2, "Cells along the axis and around it, a multiple of 4."),
-                skin_only("angle", array(number("rad"), 2, 2), "Sector of the skin."),
-                skin_only("caps", boolean(), "Close the skin's ends.")});
+                solid_or_skin_cells(2, "Cells along the axis and around it; around a solid a multiple of 4."),
+                diagonal(), angle("the axis from `from` to `to`"), closed(),
+                key("caps", boolean(), "Flat disks that close both ends of the skin. Only for `model = \"shell\"`.")
+                    .defaults("true for a closed skin")});
+}
+
+Key ellipsoid_cells() {
+  return solid_or_skin_cells(1,
+                             "Cells around, a multiple of 4, and, of a solid only, layers between core and surface.");
 }
 
 Shape ellipsoid() {
   return table({key("center", vector3("m"), "Centre.").needed(),
-                key("radii", vector3("m", above(0)), "Half axes along x, y and z.").needed(),
-                cells(2, "Cells around, a multiple of 4, and layers between core and surface.")});
+                key("radii", vector3("m", above(0)), "Half axes along x, y and z.").needed(), ellipsoid_cells()});
+}
+
+Shape sphere() {
+  return table({key("center", vector3("m"), "Centre.").needed(),
+                key("radius", number("m", above(0)), "Radius.").needed(), ellipsoid_cells()});
+}
+
+Shape annulus() {
+  return table({key("center", vector3("m"), "Centre.").needed(),
+                key("normal", vector3("1"), "Direction of the surface's normal.").needed(),
+                key("inner", number("m", above(0)), "Inner radius.").needed(),
+                key("outer", number("m", above(0)), "Outer radius, above the inner.").needed(),
+                surface_cells("Cells outward and around."), diagonal(), angle("the normal"), closed()});
 }
 
 Shape rectangle() {
@@ -52,8 +101,7 @@ Shape rectangle() {
       {key("origin", vector3("m"), "A corner.").needed(),
        key("edge_u", vector3("m"), "From `origin` to the next corner.").needed(),
        key("edge_v", vector3("m"), "From `origin` to the corner on the other side; not parallel to `edge_u`.").needed(),
-       key("cells", array(integer(between(1, 10000)), 2, 2), "Cells along both edges.")
-           .refused("is only for shells, which are not supported yet")});
+       surface_cells("Cells along both edges."), diagonal()});
 }
 
 Shape line() {
@@ -66,19 +114,22 @@ Shape domain_schema() {
   return table(
       {key("box", box(), "An axis-aligned box."),
        key("block", block(), "A tapered block between eight corners; for tetrahedra and hexahedra."),
-       key("cylinder", cylinder(), "A solid cylinder."), key("ellipsoid", ellipsoid(), "A solid ellipsoid."),
+       key("cylinder", cylinder(), "A solid cylinder; for shells its skin."),
+       key("ellipsoid", ellipsoid(), "A solid ellipsoid; for shells its skin."),
+       key("sphere", sphere(), "A solid ball; for shells its skin."),
        key("file", text("a path"),
            "A mesh: Gmsh 2.2 or 4.1, VTK legacy, VTU, STL, OBJ or PLY. Closed surfaces and volume cells are solids; "
            "with "
-           "`thickness`, triangles that bound no solid are sheets; with `radius`, its lines are lines. The path is "
-           "relative to the scene file."),
+           "`thickness`, triangles that bound no solid are sheets; with `radius`, its lines are lines. A shell takes "
+           "the triangles, or the boundary of volume cells where there are none. The path is relative to the scene "
+           "file."),
        key("rectangle", rectangle(), "A flat sheet between two edges; the body needs `thickness`."),
-       key("annulus", table({}), "A flat ring.").not_yet(),
+       key("annulus", annulus(), "A flat ring or a sector of it; for shells."),
        key("line", line(), "A straight line; the body needs `radius`."),
        key("between", array(text(), 2, 2), "The space between the surfaces of two bodies.").not_yet(),
        key("where", reference("region", region_schema), "Parts of the surfaces of `between`.").not_yet(),
        key("as", choice({{"volume", ""}, {"sheet", ""}, {"strands", ""}}), "What `between` becomes.").not_yet()},
-      {{{"box", "block", "cylinder", "ellipsoid", "file", "rectangle", "annulus", "line", "between"}}});
+      {{{"box", "block", "cylinder", "ellipsoid", "sphere", "file", "rectangle", "annulus", "line", "between"}}});
 }
 
 }  // namespace fascia::app

@@ -1,6 +1,5 @@
 #include "core/geometry/mesh_parts.hpp"
 
-#include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
@@ -29,59 +28,6 @@ ClosedSurface solid_of(const Solid& all, std::vector<std::string>& messages) {
   const std::vector<Triangle> triangles = boundary_of_cells(solid, messages);
   check_closed(solid, triangles);
   return enclose(solid, triangles);
-}
-
-/// A part of the sheet that hangs together across edges of two triangles.
-struct Patch {
-  std::vector<std::size_t> triangles;
-  std::size_t disagreeing = 0;  ///< triangles that must turn to agree with the first
-  bool closed = true;
-};
-
-std::vector<Patch> split(const Neighbours& neighbours, const Components& components) {
-  std::vector<Patch> patches(at(components.count));
-  for (std::size_t t = 0; t < neighbours.of.size(); ++t) {
-    Patch& patch = patches[at(components.of[t])];
-    patch.triangles.push_back(t);
-    patch.disagreeing += components.turn[t] ? 1u : 0u;
-    for (const Neighbours::Link& link : neighbours.of[t]) patch.closed = patch.closed && link.triangle >= 0;
-  }
-  return patches;
-}
-
-void turn_over(Triangle& triangle) { std::swap(triangle.nodes[1], triangle.nodes[2]); }
-
-/// Makes neighbours agree, by as few turns as possible in each patch; then closed patches face outward.
-void orient_sheet(const Solid& sheet, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
-  const Neighbours neighbours(triangles.size(), sorted_edges(triangles));
-  const Components components(neighbours);
-  if (!components.orientable)
-    fail(sheet, "a sheet has one side only, as a Moebius strip (at triangle " +
-                    std::to_string(triangles[at(components.twisted)].file_number) +
-                    "); cut it open or give a sheet with two sides");
-  std::size_t turned = 0, first = triangles.size(), inward = 0;
-  for (const Patch& patch : split(neighbours, components)) {
-    const bool minority = 2 * patch.disagreeing <= patch.triangles.size();
-    for (const std::size_t t : patch.triangles) {
-      if (components.turn[t] != minority) continue;
-      turn_over(triangles[t]);
-      first = std::min(first, t);
-      ++turned;
-    }
-    if (!patch.closed) continue;
-    std::vector<Triangle> own;
-    for (const std::size_t t : patch.triangles) own.push_back(triangles[t]);
-    if (enclosed_volume(sheet.points, own) >= 0) continue;
-    for (const std::size_t t : patch.triangles) turn_over(triangles[t]);
-    ++inward;
-  }
-  if (turned > 0)
-    messages.push_back(sheet.file + ": turned over " + std::to_string(turned) + " of " +
-                       std::to_string(triangles.size()) +
-                       " triangles of sheets that disagreed with their neighbours (the first: triangle " +
-                       std::to_string(triangles[first].file_number) + ")");
-  if (inward > 0)
-    messages.push_back(sheet.file + ": turned over " + std::to_string(inward) + " closed sheets that faced inward");
 }
 
 TriangleMesh sheet_of(const Solid& all, std::vector<std::string>& messages) {

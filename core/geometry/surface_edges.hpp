@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-/// Edges, neighbours and connected parts of triangulated surfaces; for surface*.cpp and mesh_parts.cpp only.
+/// Edges, neighbours and connected parts of triangulated surfaces; for the files of surface_parts.hpp only.
 namespace fascia::surface_parts {
 
 /// An edge of a triangle, under the name that all its triangles give it.

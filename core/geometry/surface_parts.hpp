@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// The steps of closed_surface() and mesh_parts(); for surface*.cpp and mesh_parts.cpp only.
+/// The steps of closed_surface(), mesh_parts() and, in shells, shell_mesh(); for their files only.
 namespace fascia::surface_parts {
 
 /// A cell whose points are numbered in the welded, compact numbering.
@@ -71,6 +71,11 @@ void check_closed(const Solid& solid, const std::vector<Triangle>& triangles);
 /// Turns a surface outward: every component outward, or inward where it bounds a cavity.
 /// @throws InputError  some components the right way, some not
 void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages);
+
+/// Makes neighbours of a sheet agree, by as few turns as possible in each part that hangs together; then closed parts
+/// face outward.
+/// @throws InputError  a part with one side only
+void orient_sheet(const Solid& sheet, std::vector<Triangle>& triangles, std::vector<std::string>& messages);
 
 /// Volume by the divergence theorem, about the mean of the points [m³].
 double enclosed_volume(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles);

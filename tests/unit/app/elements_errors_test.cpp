@@ -56,11 +56,12 @@ TEST(ElementErrors, MeshlessBodiesTakeNoKeysOfElements) {
   EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
                                 "ellipsoid = { center = [0, 0, 0], radii = [1, 1, 1], cells = [8, 2] }")),
             "a.toml:6:73: bodies.beam.domain.ellipsoid.cells: is not used by model = \"meshless\"; remove it");
-  EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
-                                "block = { corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, "
-                                "1], [1, 1, 1], [0, 1, 1]], cells = [1, 1, 1] }")),
-            "a.toml:6:20: bodies.beam.domain.block: is for mesh models; must be box, cylinder, ellipsoid, file, "
-            "rectangle or line");
+  EXPECT_EQ(
+      errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
+                          "block = { corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, "
+                          "1], [1, 1, 1], [0, 1, 1]], cells = [1, 1, 1] }")),
+      "a.toml:6:20: bodies.beam.domain.block: is for mesh models; must be box, cylinder, ellipsoid, sphere, file, "
+      "rectangle or line");
 }
 
 TEST(ElementErrors, Values) {
@@ -84,8 +85,8 @@ TEST(ElementErrors, Values) {
   EXPECT_EQ(errors_of_tetrahedra("lokcing = \"none\"\n"),
             "a.toml:9:1: bodies.block.lokcing: is no known key; did you mean \"locking\"?");
   EXPECT_EQ(errors_of(mesh_body("tetrahedron", meshed_box)),
-            "a.toml:5:9: bodies.block.model: \"tetrahedron\" is no known value; must be \"meshless\", \"tetrahedra\" "
-            "or \"hexahedra\" (did you mean \"tetrahedra\"?)");
+            "a.toml:5:9: bodies.block.model: \"tetrahedron\" is no known value; must be \"meshless\", \"tetrahedra\", "
+            "\"hexahedra\" or \"shell\" (did you mean \"tetrahedra\"?)");
 }
 
 TEST(ElementErrors, RemediesBelongToTetrahedra) {
@@ -166,7 +167,7 @@ TEST(ElementErrors, CellsAreNeeded) {
             "a.toml:6:73: bodies.block.domain.ellipsoid.cells: asks for about 1.3e+07 cells; must be at most 10000000");
   EXPECT_EQ(errors_of_domain("file = \"a.msh\", cells = [1, 1, 1]"),
             "a.toml:6:28: bodies.block.domain.cells: is no known key; known here: box, block, cylinder, ellipsoid, "
-            "file, rectangle, line");
+            "sphere, file, rectangle, annulus, line");
 }
 
 TEST(ElementErrors, CellsAround) {
@@ -193,10 +194,10 @@ TEST(ElementErrors, SplitBelongsToTetrahedra) {
 TEST(ElementErrors, SurfacesAndLinesAreNoSolids) {
   EXPECT_EQ(errors_of_domain(std::string(test::rectangle)),
             "a.toml:6:24: bodies.block.domain.rectangle: is no solid, which model = \"tetrahedra\" needs; must be box, "
-            "block, cylinder, ellipsoid or file");
+            "block, cylinder, ellipsoid, sphere or file");
   EXPECT_EQ(errors_of_domain(std::string(test::line), "hexahedra"),
             "a.toml:6:19: bodies.block.domain.line: is no solid, which model = \"hexahedra\" needs; must be box, "
-            "block, cylinder, ellipsoid or file");
+            "block, cylinder, ellipsoid, sphere or file");
 }
 
 TEST(ElementErrors, BlocksAreNeitherInvertedNorFlat) {

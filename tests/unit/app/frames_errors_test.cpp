@@ -29,10 +29,9 @@ TEST(ThinBodyErrors, Shapes) {
             "than 0");
   EXPECT_EQ(errors_of_domain("rectangle = { origin = [0, 0, 0], edge_u = [1, 0, 0] }"),
             "a.toml:6:24: bodies.skin.domain.rectangle.edge_v: is missing; must be a list of 3, each a length in m");
-  EXPECT_EQ(
-      errors_of_domain(
-          "rectangle = { origin = [0, 0, 0], edge_u = [1e-120, 0, 0], edge_v = [0, 1e-120, 0], cells = [1, 1] }"),
-      "a.toml:6:104: bodies.skin.domain.rectangle.cells: is only for shells, which are not supported yet; remove it");
+  EXPECT_EQ(errors_of_domain(
+                "rectangle = { origin = [0, 0, 0], edge_u = [1e-120, 0, 0], edge_v = [0, 1e-120, 0], cells = [1, 1] }"),
+            "a.toml:6:104: bodies.skin.domain.rectangle.cells: is not used by model = \"meshless\"; remove it");
   EXPECT_EQ(errors_of(test::thin_body("line = { from = [1, 0, 0], to = [\"1 m\", 0, 0] }", line_grid)),
             "a.toml:6:44: bodies.skin.domain.line.to: is the same point as from; must be another point");
 }
@@ -76,9 +75,9 @@ TEST(ThinBodyErrors, ValuesOfThickness) {
 
 TEST(ThinBodyErrors, AWrongDomainIsTheOnlyError) {
   EXPECT_EQ(
-      errors_of_domain("annulus = {}"),
-      "a.toml:6:22: bodies.skin.domain.annulus: is not supported yet; must be box, block, cylinder, ellipsoid, file, "
-      "rectangle or line");
+      errors_of_domain("between = [\"a\", \"b\"]"),
+      "a.toml:6:22: bodies.skin.domain.between: is not supported yet; must be box, block, cylinder, ellipsoid, sphere, "
+      "file, rectangle, annulus or line");
 }
 
 TEST(FrameErrors, GridsHaveANumberForEachDirection) {

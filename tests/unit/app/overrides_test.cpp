@@ -59,9 +59,9 @@ TEST(Overrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(errors_of_override("solver.newton.tolerence=1"),
             "--set:1:15: solver.newton.tolerence: is no known key; did you mean \"tolerance\"?");
   EXPECT_EQ(
-      errors_of_override("bodies.beam.domain.sphere.radius=1"),
-      "--set:1:20: bodies.beam.domain.sphere: is no known key; known here: box, block, cylinder, ellipsoid, file, "
-      "rectangle, line");
+      errors_of_override("bodies.beam.domain.torus.radius=1"),
+      "--set:1:20: bodies.beam.domain.torus: is no known key; known here: box, block, cylinder, ellipsoid, sphere, "
+      "file, rectangle, annulus, line");
 }
 
 TEST(Overrides, WrongPaths) {

@@ -61,6 +61,12 @@ inline std::string mesh_body(std::string_view model, std::string_view domain, st
 }
 inline constexpr std::string_view meshed_box = "box = { min = [0, 0, 0], max = [4, 1, 1], cells = [8, 2, 2] }";
 
+/// A shell "skin": keys from line 7 on.
+inline std::string shell_body(std::string_view domain, std::string_view more) {
+  return "[materials.soft]\nyoung = 1\npoisson = 0.3\n[bodies.skin]\nmodel = \"shell\"\ndomain = { " +
+         std::string(domain) + " }\n" + std::string(more) + "mass = 1\nmaterial = \"soft\"\n";
+}
+
 /// A body "skin" on another domain: keys from line 7 on.
 inline std::string thin_body(std::string_view domain, std::string_view more) {
   return "[materials.soft]\nyoung = 1\npoisson = 0.3\n[bodies.skin]\nmodel = \"meshless\"\ndomain = { " +

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "core/math/vec3.hpp"
+
+#include <array>
+#include <filesystem>
+#include <numbers>
+#include <variant>
+
+/// What a body fills, as the user wrote it, in SI units.
+namespace fascia::app {
+
+struct BoxDomain {
+  Vec3d min, max;
+};
+/// A solid, for shells its skin or a sector of that; angle 0 and the sense of rotation: shells/generate.hpp.
+struct CylinderDomain {
+  Vec3d from, to;
+  double radius = 0;
+  std::array<double, 2> angle{0, 2 * std::numbers::pi};  ///< [rad], ascending
+  bool caps = true;                                      ///< of a closed skin: the ends are closed by disks
+  bool closed = true;                                    ///< a whole turn whose two edges are one
+};
+/// A flat ring or a sector of it, angles about `normal` as above.
+struct AnnulusDomain {
+  Vec3d center, normal;
+  double inner = 0, outer = 0;
+  std::array<double, 2> angle{0, 2 * std::numbers::pi};  ///< [rad], ascending
+  bool closed = true;                                    ///< a whole turn whose two edges are one
+};
+/// A solid, for shells its skin.
+struct EllipsoidDomain {
+  Vec3d center, radii;
+};
+struct FileDomain {
+  std::filesystem::path path;
+};  ///< already resolved against the scene's folder
+/// A parallelogram: origin + u edge_u + v edge_v, u and v from 0 to 1.
+struct RectangleDomain {
+  Vec3d origin, edge_u, edge_v;
+};
+struct LineDomain {
+  Vec3d from, to;
+};
+/// The trilinear map of a cube onto eight corners [m], in the order of a VTK hexahedron: four of the lower face,
+/// counter-clockwise seen from above, then the four above them. Its Jacobian is positive at every corner.
+struct BlockDomain {
+  std::array<Vec3d, 8> corners{};
+};
+using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain, RectangleDomain, LineDomain,
+                            BlockDomain, AnnulusDomain>;
+
+/// x → R(axis, angle) (scale x) + translate
+struct Transform {
+  Vec3d translate{};
+  Vec3d axis{{0, 0, 1}};
+  double angle = 0;  ///< [rad]
+  double scale = 1;
+};
+
+}  // namespace fascia::app

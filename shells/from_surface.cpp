@@ -1,0 +1,180 @@
+#include "core/geometry/surface_edges.hpp"
+#include "core/geometry/surface_parts.hpp"
+#include "core/math/index.hpp"
+#include "core/model/errors.hpp"
+#include "shells/shell_mesh.hpp"
+#include "shells/surface_checks.hpp"
+#include "shells/text.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace fascia {
+namespace {
+
+using namespace surface_parts;
+using shell_parts::text;
+
+bool is_any(CellType) { return true; }
+
+/// Points that are neither corners nor middle nodes of cells.
+void report_unused_points(const Mesh& mesh, std::vector<std::string>& messages) {
+  std::vector<char> used(mesh.points.size(), 0);
+  for (const CellBlock& block : mesh.blocks)
+    for (const std::vector<int>* nodes : {&block.nodes, &block.mid_nodes})
+      for (const int node : *nodes) used[at(node)] = 1;
+  const auto first = std::find(used.begin(), used.end(), 0);
+  if (first == used.end()) return;
+  messages.push_back(mesh.file + ": left out " + std::to_string(std::count(used.begin(), used.end(), 0)) +
+                     " points that no cell uses (the first: node " +
+                     std::to_string(mesh.point_file_number[static_cast<std::size_t>(first - used.begin())]) + ")");
+}
+
+/// What the shell takes of a mesh, where that may surprise.
+void report_choice(const Mesh& mesh, std::vector<std::string>& messages) {
+  const std::size_t triangles = count_cells(mesh, is_surface), volumes = count_cells(mesh, is_volume);
+  if (triangles > 0 && volumes > 0)
+    messages.push_back(mesh.file + ": the shell is its " + std::to_string(triangles) + " surface cells; its " +
+                       std::to_string(volumes) + " volume cells are left out");
+  if (triangles == 0)
+    messages.push_back(mesh.file + ": has no triangles; the shell is the boundary of its " + std::to_string(volumes) +
+                       " volume cells");
+  for (const CellBlock& block : mesh.blocks)
+    if (block.mid_nodes_per_cell > 0 && (is_surface(block.type) || triangles == 0) && block.size() > 0) {
+      messages.push_back(mesh.file + ": its cells are quadratic; only their corners are used");
+      break;
+    }
+}
+
+/// @throws InputError  an edge of three triangles or more
+void check_edges(const Solid& sheet, const std::vector<Triangle>& triangles) {
+  const std::vector<Edge> edges = sorted_edges(triangles);
+  std::size_t first = 0, most = 0, count = 0;
+  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
+    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
+    if (end - e <= 2) continue;
+    if (count++ == 0) first = e, most = end - e;
+  }
+  if (count == 0) return;
+  const auto node = [&](int n) { return std::to_string(sheet.point_file_number[at(n)]); };
+  const auto number = [&](std::size_t e) { return std::to_string(triangles[at(edges[e].triangle)].file_number); };
+  std::string numbers = number(first);
+  for (std::size_t e = first + 1; e < first + most; ++e) numbers += (e + 1 < first + most ? ", " : " and ") + number(e);
+  const Edge& edge = edges[first];
+  fail(sheet, "triangles " + numbers + " share the edge between nodes " + node(edge.low) + " and " + node(edge.high) +
+                  ", at " + text((sheet.points[at(edge.low)] + sheet.points[at(edge.high)]) * 0.5) +
+                  (count > 1 ? " (" + std::to_string(count) + " such edges)" : "") +
+                  "; an edge of a shell must belong to one triangle or two: remove what overlaps, or make the parts "
+                  "that branch off bodies of their own");
+}
+
+/// Triangles by their sorted nodes.
+class TriangleFinder {
+ public:
+  explicit TriangleFinder(const std::vector<Triangle>& triangles) {
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      entries_.push_back({sorted(triangles[t].nodes), static_cast<int>(t)});
+    std::sort(entries_.begin(), entries_.end());
+  }
+
+  /// Adds the triangle with these nodes, if there is one.
+  void add(const std::array<int, 3>& nodes, std::vector<int>& to) const {
+    const std::pair key{sorted(nodes), -1};
+    const auto found = std::lower_bound(entries_.begin(), entries_.end(), key);
+    if (found != entries_.end() && found->first == key.first) to.push_back(found->second);
+  }
+
+ private:
+  static std::array<int, 3> sorted(std::array<int, 3> nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+  }
+  std::vector<std::pair<std::array<int, 3>, int>> entries_;
+};
+
+/// The triangles of the surface that a cell of the file has.
+void add_triangles(const Cell& cell, const TriangleFinder& finder, std::vector<int>& to) {
+  const auto& n = cell.nodes;
+  if (cell.type == CellType::triangle) finder.add({n[0], n[1], n[2]}, to);
+  if (cell.type != CellType::quadrilateral) return;
+  for (std::size_t left_out = 0; left_out < 4; ++left_out)
+    finder.add({n[(left_out + 1) % 4], n[(left_out + 2) % 4], n[(left_out + 3) % 4]}, to);
+}
+
+void make_unique(std::vector<int>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+/// @param node  of each point of `all`; −1 where it is none
+/// @param of_volumes  the triangles are the boundary of volume cells, whose file numbers they have
+std::vector<BodyGroup> groups_of(const Mesh& mesh, const Solid& all, const std::vector<Triangle>& triangles,
+                                 const std::vector<int>& node, bool of_volumes) {
+  std::vector<BodyGroup> groups;
+  for (const MeshGroup& g : mesh.groups) groups.push_back({g.name, g.number, g.dimension, {}, {}});
+  const TriangleFinder finder(triangles);
+  std::multimap<std::int64_t, int> by_number;
+  if (of_volumes)
+    for (std::size_t t = 0; t < triangles.size(); ++t) by_number.emplace(triangles[t].file_number, static_cast<int>(t));
+  for (const Cell& cell : all.cells) {
+    if (cell.group < 0) continue;
+    BodyGroup& group = groups[at(cell.group)];
+    for (int n = 0; n < node_count(cell.type); ++n)
+      if (const int i = node[at(cell.nodes[at(n)])]; i >= 0) group.nodes.push_back(i);
+    add_triangles(cell, finder, group.cells);
+    if (!of_volumes || !is_volume(cell.type)) continue;
+    const auto [begin, end] = by_number.equal_range(cell.file_number);
+    for (auto t = begin; t != end; ++t) group.cells.push_back(t->second);
+  }
+  for (BodyGroup& group : groups) {
+    make_unique(group.nodes);
+    make_unique(group.cells);
+  }
+  return groups;
+}
+
+/// The number of each point among those that triangles use, in their order; −1 for the others.
+std::vector<int> number_nodes(const Solid& solid, const std::vector<Triangle>& triangles) {
+  std::vector<int> number(solid.points.size(), -1);
+  for (const Triangle& t : triangles)
+    for (const int node : t.nodes) number[at(node)] = 0;
+  int next = 0;
+  for (int& n : number)
+    if (n == 0) n = next++;
+  return number;
+}
+
+}  // namespace
+
+ShellMesh shell_mesh(const Mesh& mesh) {
+  check_points(mesh);
+  const bool of_volumes = count_cells(mesh, is_surface) == 0;
+  if (of_volumes && count_cells(mesh, is_volume) == 0)
+    throw InputError(mesh.file + ": has no triangles; a shell needs a surface of triangles or quadrilaterals");
+  ShellMesh result;
+  result.file = mesh.file;
+  report_choice(mesh, result.messages);
+  report_unused_points(mesh, result.messages);
+
+  const Solid all = make_solid(mesh, is_any, result.messages);
+  std::vector<Cell> cells;
+  for (const Cell& cell : all.cells)
+    if (of_volumes ? is_volume(cell.type) : is_surface(cell.type)) cells.push_back(cell);
+  const Solid used = with_cells(all, std::move(cells));
+  std::vector<Triangle> triangles = of_volumes ? boundary_of_cells(used, result.messages) : triangles_of_cells(used);
+  check_edges(used, triangles);
+  orient_sheet(used, triangles, result.messages);
+
+  TriangleMesh surface = compact(used, triangles);
+  result.nodes = std::move(surface.points);
+  result.triangles = std::move(surface.triangles);
+  for (const Triangle& t : triangles) result.file_number.push_back(t.file_number);
+  result.groups = groups_of(mesh, all, triangles, number_nodes(used, triangles), of_volumes);
+  for (const BodyGroup& group : result.groups)
+    if (group.nodes.empty())
+      result.messages.push_back(mesh.file + ": group \"" + group.name + "\" has no nodes of the shell");
+  return result;
+}
+
+}  // namespace fascia

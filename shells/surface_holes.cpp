@@ -1,0 +1,117 @@
+#include "core/geometry/surface_edges.hpp"
+#include "core/math/index.hpp"
+#include "shells/surface_checks.hpp"
+#include "shells/text.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace fascia {
+namespace {
+
+using surface_parts::Edge;
+
+std::vector<surface_parts::Triangle> triangles_of(const ShellMesh& mesh) {
+  std::vector<surface_parts::Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& nodes : mesh.triangles) triangles.push_back({nodes, 0});
+  return triangles;
+}
+
+/// Edges that one triangle has.
+std::vector<Edge> free_edges(const ShellMesh& mesh) {
+  const std::vector<Edge> edges = surface_parts::sorted_edges(triangles_of(mesh));
+  std::vector<Edge> result;
+  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
+    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
+    if (end - e == 1) result.push_back(edges[e]);
+  }
+  return result;
+}
+
+/// Things that are joined, by a representative.
+class Joined {
+ public:
+  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
+  }
+  void join(int a, int b) { parent_[at(find(a))] = find(b); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace
+
+std::vector<ShellHole> holes(const ShellMesh& mesh) {
+  const std::vector<Edge> edges = free_edges(mesh);
+  Joined nodes(mesh.nodes.size());
+  for (const Edge& edge : edges) nodes.join(edge.low, edge.high);
+  std::vector<int> hole_of(mesh.nodes.size(), -1);
+  std::vector<ShellHole> result;
+  for (const Edge& edge : edges) {
+    int& index = hole_of[at(nodes.find(edge.low))];
+    if (index < 0) {
+      index = static_cast<int>(result.size());
+      result.emplace_back().triangle = at(edge.triangle);
+    }
+    ShellHole& hole = result[at(index)];
+    const Vec3d &a = mesh.nodes[at(edge.low)], &b = mesh.nodes[at(edge.high)];
+    ++hole.edges;
+    hole.length += norm(b - a);
+    hole.middle += norm(b - a) / 2 * (a + b);
+    hole.nodes.push_back(edge.low);
+    hole.nodes.push_back(edge.high);
+  }
+  for (ShellHole& hole : result) {
+    hole.middle *= 1 / hole.length;
+    std::sort(hole.nodes.begin(), hole.nodes.end());
+    hole.nodes.erase(std::unique(hole.nodes.begin(), hole.nodes.end()), hole.nodes.end());
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const ShellHole& a, const ShellHole& b) { return a.length > b.length; });
+  return result;
+}
+
+std::string openness(const ShellMesh& mesh) {
+  using shell_parts::text;
+  const std::vector<ShellHole> found = holes(mesh);
+  if (found.empty()) return "";
+  const ShellHole& hole = found.front();
+  return "is open: it has " + std::to_string(found.size()) + (found.size() > 1 ? " holes, the longest" : " hole,") +
+         " of " + std::to_string(hole.edges) + " edges about " + text(hole.middle) + ", next to " +
+         name_of(mesh, hole.triangle);
+}
+
+ShellParts parts_of(const ShellMesh& mesh) {
+  Joined nodes(mesh.nodes.size()), corners(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    nodes.join(t[0], t[1]);
+    nodes.join(t[0], t[2]);
+  }
+  const auto corner = [&](int triangle, int node) {
+    const auto& t = mesh.triangles[at(triangle)];
+    return 3 * triangle + static_cast<int>(std::find(t.begin(), t.end(), node) - t.begin());
+  };
+  const std::vector<Edge> edges = surface_parts::sorted_edges(triangles_of(mesh));
+  for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
+    if (!edges[e].same_as(edges[e + 1])) continue;
+    for (const int node : {edges[e].low, edges[e].high})
+      corners.join(corner(edges[e].triangle, node), corner(edges[e + 1].triangle, node));
+  }
+  ShellParts parts;
+  std::vector<int> fans(mesh.nodes.size(), 0);  // triangles about a node that hang together by edges
+  for (std::size_t c = 0; c < 3 * mesh.triangles.size(); ++c)
+    if (corners.find(static_cast<int>(c)) == static_cast<int>(c)) ++fans[at(mesh.triangles[c / 3][c % 3])];
+  for (std::size_t i = 0; i < fans.size(); ++i) {
+    if (nodes.find(static_cast<int>(i)) == static_cast<int>(i)) ++parts.count;
+    if (fans[i] > 1) parts.pinched.push_back(static_cast<int>(i));
+  }
+  return parts;
+}
+
+double enclosed_volume(const ShellMesh& mesh) { return surface_parts::enclosed_volume(mesh.nodes, triangles_of(mesh)); }
+
+}  // namespace fascia

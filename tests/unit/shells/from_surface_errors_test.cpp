@@ -1,0 +1,82 @@
+#include "core/math/index.hpp"
+#include "shells/shell_mesh.hpp"
+#include "tests/unit/io/mesh_samples.hpp"
+
+#include <cmath>
+#include <numbers>
+
+// Surfaces that no shell can be made of: the file's own numbers, the place, and what would be right.
+namespace fascia {
+namespace {
+
+using samples::mesh_of;
+
+std::string error_of(const Mesh& mesh) {
+  return samples::input_error([&] { shell_mesh(mesh); });
+}
+
+const std::vector<Vec3d> kPoints{{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}, {{0.5, 0, 1}}};
+
+TEST(ShellFromSurfaceErrors, ThreeTrianglesAtAnEdge) {
+  EXPECT_EQ(error_of(mesh_of(CellType::triangle, kPoints, {0, 1, 2, 1, 0, 4, 0, 1, 3})),
+            "sample.msh: triangles 1, 2 and 3 share the edge between nodes 1 and 2, at (0.5, 0, 0); an edge of a shell "
+            "must belong to one triangle or two: remove what overlaps, or make the parts that branch off bodies of "
+            "their own");
+  // A wall within a box: four edges.
+  const std::vector<int> box{0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7, 0, 2, 6, 4};
+  const std::string walls = error_of(mesh_of(CellType::quadrilateral, samples::cube_points(), box));
+  EXPECT_NE(walls.find(" such edges)"), std::string::npos) << walls;
+}
+
+TEST(ShellFromSurfaceErrors, OneSideOnly) {
+  std::vector<Vec3d> points;
+  std::vector<int> nodes;
+  const int count = 12;
+  for (int i = 0; i < count; ++i) {
+    const double a = 2 * std::numbers::pi * i / count;
+    const Vec3d out{{std::cos(a), std::sin(a), 0}};
+    const Vec3d across = out * (0.3 * std::cos(a / 2)) + Vec3d{{0, 0, 0.3 * std::sin(a / 2)}};
+    points.push_back(out - across);
+    points.push_back(out + across);
+  }
+  for (int i = 0; i < count; ++i) {
+    const bool last = i + 1 == count;
+    const int a = 2 * i, b = a + 1, c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    nodes.insert(nodes.end(), {a, b, c, b, d, c});
+  }
+  const std::string error = error_of(mesh_of(CellType::triangle, points, nodes));
+  EXPECT_NE(error.find("sample.msh: a sheet has one side only, as a Moebius strip (at triangle "), std::string::npos)
+      << error;
+}
+
+TEST(ShellFromSurfaceErrors, FlatAndRepeatedTriangles) {
+  std::vector<Vec3d> points = kPoints;
+  points[2] = {{2, 1e-12, 0}};
+  EXPECT_EQ(error_of(mesh_of(CellType::triangle, points, {0, 1, 3, 0, 1, 2})),
+            "sample.msh: triangle 2 is flat (its area is below 1e-10 of its longest edge squared); remove it or mesh "
+            "again");
+  EXPECT_EQ(error_of(mesh_of(CellType::triangle, kPoints, {0, 1, 2, 1, 1, 3})),
+            "sample.msh: triangle 2 is flat (its area is below 1e-10 of its longest edge squared); remove it or mesh "
+            "again");
+  points[2] = points[1];
+  EXPECT_EQ(error_of(mesh_of(CellType::triangle, points, {0, 1, 3, 0, 1, 2})),
+            "sample.msh: triangle 2 is flat (its area is below 1e-10 of its longest edge squared); remove it or mesh "
+            "again")
+      << "welding its corners makes it flat";
+  EXPECT_EQ(error_of(mesh_of(CellType::triangle, kPoints, {0, 1, 2, 0, 2, 3, 2, 0, 1})),
+            "sample.msh: cells 1 and 3 have the same nodes; remove one of them");
+}
+
+TEST(ShellFromSurfaceErrors, NoNumbersNoExtentNoTriangles) {
+  std::vector<Vec3d> points = kPoints;
+  points[3][1] = std::nan("");
+  const std::string nan = error_of(mesh_of(CellType::triangle, points, {0, 1, 2}));
+  EXPECT_NE(nan.find("sample.msh: node 4: coordinate "), std::string::npos) << nan;
+  EXPECT_EQ(error_of(mesh_of(CellType::triangle, {{{1, 1, 1}}, {{1, 1, 1}}, {{1, 1, 1}}}, {0, 1, 2})),
+            "sample.msh: all its points coincide; give a mesh that has an extent");
+  EXPECT_EQ(error_of(mesh_of(CellType::line, kPoints, {0, 1, 1, 2})),
+            "sample.msh: has no triangles; a shell needs a surface of triangles or quadrilaterals");
+}
+
+}  // namespace
+}  // namespace fascia

@@ -1,0 +1,208 @@
+#include "core/geometry/primitives.hpp"
+#include "core/math/index.hpp"
+#include "io/mesh_reader.hpp"
+#include "shells/shell_mesh.hpp"
+#include "shells/surface_checks.hpp"
+#include "tests/unit/io/mesh_samples.hpp"
+
+#include <algorithm>
+#include <utility>
+
+// From a mesh as a file holds it to a shell's surface: what is kept, what is repaired and said.
+namespace fascia {
+namespace {
+
+using samples::cube_points;
+using samples::mesh_of;
+
+using Messages = std::vector<std::string>;
+
+/// Two triangles over the unit square.
+Mesh square() {
+  return mesh_of(CellType::triangle, {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}}, {0, 1, 2, 0, 2, 3});
+}
+
+void add_block(Mesh& mesh, CellType type, std::vector<int> nodes, int group, std::int64_t first_number) {
+  CellBlock block{type, std::move(nodes), {}, {}};
+  block.group.assign(block.size(), group);
+  for (std::size_t c = 0; c < block.size(); ++c)
+    block.file_number.push_back(first_number + static_cast<std::int64_t>(c));
+  mesh.blocks.push_back(std::move(block));
+}
+
+TEST(ShellFromSurface, TrianglesAreKeptInOrder) {
+  const ShellMesh shell = shell_mesh(square());
+  EXPECT_EQ(shell.file, "sample.msh");
+  EXPECT_EQ(shell.nodes, square().points);
+  EXPECT_EQ(shell.triangles, (std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(shell.file_number, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(shell.messages, Messages{});
+}
+
+TEST(ShellFromSurface, QuadrilateralsAreSplit) {
+  const ShellMesh shell = shell_mesh(mesh_of(CellType::quadrilateral, cube_points(), {4, 5, 6, 7, 1, 2, 6, 5}));
+  EXPECT_EQ(shell.triangles.size(), 4u);
+  EXPECT_EQ(shell.file_number, (std::vector<std::int64_t>{1, 1, 2, 2}));
+  EXPECT_DOUBLE_EQ(area(shell), 2);
+  EXPECT_EQ(shell.messages, Messages{"sample.msh: left out 2 points that no cell uses (the first: node 1)"});
+}
+
+TEST(ShellFromSurface, GroupsHaveTrianglesAndNodes) {
+  Mesh mesh = square();
+  mesh.groups = {{"wall", 7, 2}, {"rim", 8, 1}, {"tip", 9, 0}, {"elsewhere", 10, 0}, {"both", 11, 2}};
+  mesh.points.push_back({{5, 5, 5}});
+  mesh.point_file_number.push_back(5);
+  mesh.blocks[0].group = {-1, 0};
+  add_block(mesh, CellType::line, {0, 1, 1, 2}, 1, 3);
+  add_block(mesh, CellType::vertex, {3}, 2, 5);
+  add_block(mesh, CellType::vertex, {4}, 3, 6);
+  add_block(mesh, CellType::triangle, {3, 2, 0, 1, 2, 0}, 4, 7);  // repeats both, as of another group
+  const ShellMesh shell = shell_mesh(mesh);
+  ASSERT_EQ(shell.groups.size(), 5u);
+  const auto expect = [&](std::size_t g, const char* name, std::vector<int> nodes, std::vector<int> cells) {
+    EXPECT_EQ(shell.groups[g].name, name);
+    EXPECT_EQ(shell.groups[g].nodes, nodes) << name;
+    EXPECT_EQ(shell.groups[g].cells, cells) << name;
+  };
+  expect(0, "wall", {0, 2, 3}, {1});
+  expect(1, "rim", {0, 1, 2}, {});
+  expect(2, "tip", {3}, {});
+  expect(3, "elsewhere", {}, {});
+  expect(4, "both", {0, 1, 2, 3}, {0, 1});
+  EXPECT_EQ(shell.triangles.size(), 2u);
+  EXPECT_EQ(shell.nodes.size(), 4u);
+  EXPECT_EQ(shell.messages, Messages{"sample.msh: group \"elsewhere\" has no nodes of the shell"});
+}
+
+TEST(ShellFromSurface, GroupsOfQuadrilateralsHaveBothHalves) {
+  Mesh mesh = mesh_of(CellType::quadrilateral, cube_points(), {4, 5, 6, 7, 1, 2, 6, 5});
+  mesh.groups = {{"side", 1, 2}};
+  mesh.blocks[0].group = {-1, 0};
+  EXPECT_EQ(shell_mesh(mesh).groups[0].cells, (std::vector<int>{2, 3}));
+}
+
+TEST(ShellFromSurface, DuplicateNodesAreWelded) {
+  // As STL stores them: each triangle has nodes of its own.
+  const TriangleMesh box = box_surface({}, {{1, 1, 1}}, 2, 2, 2);
+  TriangleMesh apart;
+  for (const auto& t : box.triangles) {
+    const int first = static_cast<int>(apart.points.size());
+    for (const int node : t) apart.points.push_back(box.points[at(node)]);
+    apart.triangles.push_back({first, first + 1, first + 2});
+  }
+  const ShellMesh shell = shell_mesh(mesh_of(apart));
+  EXPECT_EQ(shell.nodes.size(), box.points.size());
+  EXPECT_TRUE(closed(shell));
+  EXPECT_EQ(shell.messages, Messages{"sample.msh: welded 118 points that coincide with others"});
+}
+
+TEST(ShellFromSurface, TrianglesAgainstTheirNeighboursTurnOver) {
+  TriangleMesh box = box_surface({}, {{1, 1, 1}}, 2, 2, 2);
+  for (const std::size_t t : {4u, 9u}) std::swap(box.triangles[t][0], box.triangles[t][1]);
+  const ShellMesh shell = shell_mesh(mesh_of(box));
+  EXPECT_NEAR(enclosed_volume(shell), 1, 1e-14);
+  EXPECT_EQ(shell.messages, Messages{"sample.msh: turned over 2 of 48 triangles of sheets that disagreed with their "
+                                     "neighbours (the first: triangle 5)"});
+  for (auto& t : box.triangles) std::swap(t[0], t[1]);
+  EXPECT_NEAR(enclosed_volume(shell_mesh(mesh_of(box))), 1, 1e-14) << "closed parts face outward";
+}
+
+TEST(ShellFromSurface, VolumeCellsGiveTheirBoundary) {
+  Mesh mesh = mesh_of(CellType::hexahedron, cube_points(), {0, 1, 2, 3, 4, 5, 6, 7});
+  mesh.groups = {{"organ", 1, 3}};
+  mesh.blocks[0].group = {0};
+  const ShellMesh shell = shell_mesh(mesh);
+  EXPECT_NEAR(enclosed_volume(shell), 1, 1e-15);
+  EXPECT_EQ(shell.messages, Messages{"sample.msh: has no triangles; the shell is the boundary of its 1 volume cells"});
+  EXPECT_EQ(shell.groups[0].cells.size(), 12u);
+  EXPECT_EQ(shell.groups[0].nodes.size(), 8u);
+  add_block(mesh, CellType::triangle, {4, 5, 6}, -1, 2);
+  const ShellMesh patch = shell_mesh(mesh);
+  EXPECT_EQ(patch.triangles.size(), 1u);
+  EXPECT_EQ(patch.groups[0].nodes.size(), 3u);
+  EXPECT_EQ(patch.messages, Messages{"sample.msh: the shell is its 1 surface cells; its 1 volume cells are left out"});
+}
+
+TEST(ShellFromSurface, QuadraticTrianglesGiveTheirCorners) {
+  Mesh mesh =
+      mesh_of(CellType::triangle,
+              {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0.5, -0.1, 0}}, {{0.6, 0.6, 0}}, {{0, 0.5, 0}}}, {0, 1, 2});
+  mesh.blocks[0].mid_nodes_per_cell = 3;
+  mesh.blocks[0].mid_nodes = {3, 4, 5};
+  const ShellMesh shell = shell_mesh(mesh);
+  EXPECT_EQ(shell.nodes.size(), 3u);
+  EXPECT_EQ(shell.messages, Messages{"sample.msh: its cells are quadratic; only their corners are used"});
+}
+
+/// The same tetrahedron in each format.
+class ShellFromFile : public testing::Test {
+ protected:
+  void expect_tetrahedron(const std::string& name, const std::string& text) const {
+    SCOPED_TRACE(name);
+    const ShellMesh shell = shell_mesh(io::read_mesh(folder_.write(name, text)));
+    EXPECT_EQ(shell.nodes.size(), 4u);
+    EXPECT_EQ(shell.triangles.size(), 4u);
+    EXPECT_NEAR(enclosed_volume(shell), 1.0 / 6, 1e-7);
+  }
+  samples::TemporaryDirectory folder_;
+};
+
+TEST_F(ShellFromFile, OfEveryFormat) {
+  expect_tetrahedron("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  expect_tetrahedron("a.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+                     "z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 "
+                     "1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+  const auto facet = [](const char* a, const char* b, const char* c) {
+    return std::string("facet normal 0 0 0\nouter loop\nvertex ") + a + "\nvertex " + b + "\nvertex " + c +
+           "\nendloop\nendfacet\n";
+  };
+  expect_tetrahedron("a.stl", "solid a\n" + facet("0 0 0", "0 1 0", "1 0 0") + facet("0 0 0", "1 0 0", "0 0 1") +
+                                  facet("1 0 0", "0 1 0", "0 0 1") + facet("0 0 0", "0 0 1", "0 1 0") + "endsolid a\n");
+  expect_tetrahedron("a.vtk",
+                     "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 "
+                     "1\nPOLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+  expect_tetrahedron("a.msh",
+                     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 "
+                     "1\n$EndNodes\n$Elements\n4\n1 2 2 0 1 1 3 2\n2 2 2 0 1 1 2 4\n3 2 2 0 1 2 3 4\n4 2 2 0 1 1 4 "
+                     "3\n$EndElements\n");
+  expect_tetrahedron(
+      "a.vtu",
+      "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+      "NumberOfPoints=\"4\" NumberOfCells=\"4\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+      "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells><DataArray type=\"Int64\" "
+      "Name=\"connectivity\" format=\"ascii\">0 2 1 0 1 3 1 2 3 0 3 2</DataArray><DataArray type=\"Int64\" "
+      "Name=\"offsets\" format=\"ascii\">3 6 9 12</DataArray><DataArray type=\"UInt8\" Name=\"types\" "
+      "format=\"ascii\">5 5 5 5</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n");
+}
+
+struct Organ {
+  const char* file;
+  std::size_t nodes, triangles;
+};
+
+class ShellOfAnOrgan : public testing::TestWithParam<Organ> {};
+
+TEST_P(ShellOfAnOrgan, IsClosedAndOutward) {
+  const std::filesystem::path file = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / GetParam().file;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "absent: " << file;
+  const ShellMesh shell = shell_mesh(io::read_mesh(file));
+  EXPECT_EQ(shell.nodes.size(), GetParam().nodes);
+  EXPECT_EQ(shell.triangles.size(), GetParam().triangles);
+  EXPECT_EQ(openness(shell), "");
+  EXPECT_GT(enclosed_volume(shell), 0);
+  std::printf("%s\n", shell_quality(shell).sentence.c_str());
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, ShellOfAnOrgan,
+                         testing::Values(Organ{"liver_sofa_surface.obj", 2194, 4384},
+                                         Organ{"liver_c_v22.msh", 337, 670}, Organ{"liver_m_v41.msh", 680, 1356},
+                                         Organ{"liver_sofa_181.msh", 140, 276}),
+                         [](const auto& test) {
+                           std::string name = test.param.file;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace fascia
