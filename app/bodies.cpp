@@ -154,7 +154,8 @@ std::unique_ptr<ModelBody> build_shell(const Body& body, Model& model, PointSetB
   spec.mesh = shell_mesh_of(body);
   spec.thickness = shell_thickness(body, spec.mesh);
   messages = thickness_warnings(spec.mesh, spec.thickness);
-  for (const MaterialUse* use : shell_materials(body, spec.mesh)) spec.material.push_back(point_material(use->material));
+  for (const MaterialUse* use : shell_materials(body, spec.mesh))
+    spec.material.push_back(point_material(use->material));
   double volume = 0;
   for (std::size_t t = 0; t < spec.thickness.size(); ++t) volume += spec.thickness[t] * area(spec.mesh, t);
   spec.density = body.density ? *body.density : *body.mass / volume;

@@ -66,7 +66,7 @@ void check_vertex_rotations(const Simulation& s, int body, const Constraint& c) 
 void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<int, Held>& held) {
   if (!moves_positions_only(c)) return;
   const int body = body_index(s, c.body);
-  if (is_mesh_model(s.scene.bodies[at(body)])) return;
+  if (s.scene.bodies[at(body)].model != BodyModel::meshless) return;
   const std::vector<int> nodes = find_nodes(s, body, c.where);
   const auto turns = [&](int node) {
     const auto found = held.find(node);

@@ -96,7 +96,7 @@ std::vector<Share> frame_shares(const Simulation& s, int body, const Region& reg
   for (const int node : select_nodes(s, body, region)) {
     const Vec3d& X = s.model.rest_position[at(node)];
     Attachment place;
-    if (b.groups() != nullptr) {  // a vertex takes no torque: its element does
+    if (b.vertices) {  // a vertex takes no torque: its element does
       place = b.body->attach(X);
     } else {
       place.nodes = {node};
@@ -183,7 +183,7 @@ void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, 
 void add_node_forces(Simulation& s, int body, const Load& load, int schedule) {
   DeadLoad dead;
   dead.schedule = schedule;
-  if (load.follower && s.bodies[at(body)].groups() != nullptr)
+  if (load.follower && s.bodies[at(body)].vertices)
     throw SceneError({{load.place, "turns with single nodes, which vertices do not; use total_force"}});
   for (const int node : select_nodes(s, body, *load.where)) {
     if (load.follower)

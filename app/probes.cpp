@@ -55,6 +55,7 @@ void push(std::vector<double>& out, const Mat3d& m) {
 void push_point_value(std::vector<double>& out, Quantity q, const ModelBody& body, const ProbePoint& p,
                       const State& state) {
   const FieldValue f = field_at(p.field, state);
+  const bool turns = body.cells().nodes.empty() || body.cells().type == CellType::triangle;
   switch (q) {
     case Quantity::displacement:
       push(out, f.u);
@@ -63,7 +64,7 @@ void push_point_value(std::vector<double>& out, Quantity q, const ModelBody& bod
       push(out, p.X + f.u);
       break;
     case Quantity::rotation:
-      push(out, rotation_vector(polar_increment(body.cells().nodes.empty() ? f.D : f.H)));
+      push(out, rotation_vector(polar_increment(turns ? f.D : f.H)));
       break;
     case Quantity::velocity: {
       Vec3d v;
@@ -74,7 +75,7 @@ void push_point_value(std::vector<double>& out, Quantity q, const ModelBody& bod
       break;
     }
     case Quantity::strain:
-      push(out, green_strain(f.H));
+      push(out, body.strain_at(p.field, state));
       break;
     default:
       push(out, body.tensors_at(p.field, p.nearest, state).stress);
@@ -111,6 +112,8 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
     }
     for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
       e.elastic += snap.system->executor().block_elastic(block);
+    for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
+      e.elastic += snap.system->executor().shell_elastic(shell);
   }
   for (const int i : probe.nodes)
     e.kinetic += 0.5 * inertia_product(s.model.inertia[at(i)], snap.state->v[at(i)], snap.state->Q_dot[at(i)]);

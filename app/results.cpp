@@ -134,7 +134,7 @@ void ResultFiles::add_probes(double time, const Snapshot& snap) {
   csv_ += "\n";
 }
 
-/// Volume cells on the nodes, with tensors by cell and averaged at the nodes.
+/// Cells on the nodes, with tensors by cell and averaged at the nodes.
 io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) const {
   const ModelBody& body = *b.body;
   const auto first = at(body.first_node());
@@ -151,10 +151,16 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
   const std::vector<PointTensors> means =
       tensor_fields ? cell_means(body, std::move(t.points)) : std::vector<PointTensors>{};
   FieldWriter of_cells(mesh.cell_fields, means.size());
+  std::vector<BodyField> fields = body.own_fields(state);
   for (const std::string& name : names) {
     if (name == "displacement") of_nodes.add(name, [&](std::size_t i) { return state.u[first + i]; });
-    if (tensor_fields && of_nodes.add_tensor_field(name, t.nodes)) of_cells.add_tensor_field(name, means);
+    if (name == "rotation" && !b.vertices)
+      of_nodes.add(name, [&](std::size_t i) { return rotation_vector(state.D[first + i]); });
+    const bool own = std::any_of(fields.begin(), fields.end(), [&](const BodyField& f) { return f.name == name; });
+    if (tensor_fields && !own && of_nodes.add_tensor_field(name, t.nodes)) of_cells.add_tensor_field(name, means);
   }
+  for (BodyField& f : fields)
+    (f.of_cells ? mesh.cell_fields : mesh.point_fields).push_back({f.name, f.components, std::move(f.values)});
   return mesh;
 }
 

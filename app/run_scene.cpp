@@ -299,6 +299,7 @@ int run_scene(const RunOptions& options) {
 std::string describe(const SimulatedBody& b) {
   const BodyCells& cells = b.body->cells();
   if (cells.nodes.empty()) return b.body->model_name();
+  if (cells.type == CellType::triangle) return fmt::format("shell of {} triangles", cells.nodes.size() / 3);
   return fmt::format("{} {}{}", cells.nodes.size() / static_cast<std::size_t>(cells.nodes_per_cell),
                      cells.nodes_per_cell > node_count(cells.type) ? "quadratic " : "", b.body->model_name());
 }

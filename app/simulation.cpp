@@ -82,7 +82,9 @@ void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
     std::vector<Vec3d> nodes(s.model.rest_position.begin() + built->first_node(), s.model.rest_position.end());
     std::vector<char> boundary = built->nodes_on_boundary();
     std::vector<char> surface(built->surface().points.size(), 1);
-    s.bodies.push_back({body.name, std::move(built), std::move(nodes), std::move(boundary), std::move(surface)});
+    const bool vertices = s.model.kind(built->first_node()) == FrameKind::vertex;
+    s.bodies.push_back(
+        {body.name, std::move(built), std::move(nodes), std::move(boundary), std::move(surface), vertices});
   } catch (const InputError& e) {
     const Place& place = e.blame == Blame::frames    ? body.frames_place
                          : e.blame == Blame::points  ? body.points_place

@@ -24,7 +24,8 @@ struct SimulatedBody {
   Selectable selectable_nodes() const;
   /// Points of the surface, all on the boundary.
   Selectable selectable_surface() const;
-  const char* node_word() const { return groups() == nullptr ? "frame" : "node"; }
+  bool vertices = false;                  ///< its nodes do not turn
+  const char* node_word() const { return vertices ? "node" : "frame"; }
   const std::vector<BodyGroup>* groups() const;  ///< null where the body has no mesh
 };
 

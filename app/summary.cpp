@@ -54,7 +54,7 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   for (const SimulatedBody& b : s.bodies) {
     j["bodies"][b.name] = {
         {"model", b.body->model_name()},
-        {b.groups() == nullptr ? "frames" : "nodes", b.body->node_count()},
+        {b.vertices ? "nodes" : "frames", b.body->node_count()},
         {"points", b.body->points().size()},
         {"cells", b.body->cells().nodes.size() / static_cast<std::size_t>(b.body->cells().nodes_per_cell)},
         {"volume", b.body->volume()},

@@ -39,7 +39,9 @@ void check_sizes(const VisualMesh& mesh) {
   const auto valid = [&](int node) { return node >= 0 && node < n_points; };
   bool right = mesh.part.empty() || mesh.part.size() == cell_count(mesh);
   for (const VisualCells& cells : mesh.volumes) {
-    right = right && (cells.type == CellType::tetrahedron || cells.type == CellType::hexahedron) &&
+    right = right &&
+            (cells.type == CellType::tetrahedron || cells.type == CellType::hexahedron ||
+             (cells.type == CellType::triangle && !cells.quadratic)) &&
             cells.nodes.size() % cells.nodes_per_cell() == 0;
     for (const int node : cells.nodes) right = right && valid(node);
   }
@@ -82,6 +84,7 @@ void add_points(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
 }
 
 int vtk_type(const VisualCells& cells) {
+  if (cells.type == CellType::triangle) return VTK_TRIANGLE;
   if (cells.type == CellType::tetrahedron) return cells.quadratic ? VTK_QUADRATIC_TETRA : VTK_TETRA;
   return cells.quadratic ? VTK_QUADRATIC_HEXAHEDRON : VTK_HEXAHEDRON;
 }

@@ -18,9 +18,9 @@ struct FieldArray {
   std::vector<double> values;
 };
 
-/// Volume cells of one type and order.
+/// Cells of one type and order that fields belong to.
 struct VisualCells {
-  CellType type = CellType::tetrahedron;  ///< tetrahedron or hexahedron
+  CellType type = CellType::tetrahedron;  ///< tetrahedron, hexahedron or triangle
   bool quadratic = false;
   std::vector<int> nodes;  ///< point indices, cell by cell: corners, then mid-side nodes in the order of CellBlock
 

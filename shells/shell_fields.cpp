@@ -122,9 +122,11 @@ Mat3d ShellBody::strain_at(const Attachment& place, const State& state) const {
 std::vector<BodyField> ShellBody::own_fields(const State& state) const {
   BodyField director{"director", false, 3, {}}, force{"membrane_force", true, 9, {}},
       moment{"bending_moment", true, 9, {}}, outer_face{"stress_outer", true, 9, {}},
-      inner_face{"stress_inner", true, 9, {}}, thickness{"thickness", true, 1, {}},
-      worst{"von_mises_faces", true, 1, {}};
+      inner_face{"stress_inner", true, 9, {}}, thickness{"thickness", true, 1, {}}, worst{"von_mises", true, 1, {}},
+      worst_of_nodes{"von_mises", false, 1, {}};
   std::vector<Vec3d> normal(mesh_.nodes.size());
+  std::vector<double> around(mesh_.nodes.size());
+  worst_of_nodes.values.resize(mesh_.nodes.size());
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const Strained s = strained(t, kMiddle, state);
     const double h = thickness_[t];
@@ -137,14 +139,19 @@ std::vector<BodyField> ShellBody::own_fields(const State& state) const {
     append(inner_face.values, in);
     worst.values.push_back(std::max(von_mises(out), von_mises(in)));
     thickness.values.push_back(h);
-    for (const int node : mesh_.triangles[t]) normal[at(node)] += triangle_axes_[t].column(2) * area_[t];
+    for (const int node : mesh_.triangles[t]) {
+      normal[at(node)] += triangle_axes_[t].column(2) * area_[t];
+      around[at(node)] += area_[t];
+      worst_of_nodes.values[at(node)] += area_[t] * worst.values.back();
+    }
   }
   for (std::size_t i = 0; i < normal.size(); ++i) {
+    worst_of_nodes.values[i] /= around[i];
     const Vec3d n = squared_norm(normal[i]) > 0 ? normalized(normal[i]) : Vec3d{{0, 0, 1}};
     const Vec3d d = n + state.D[at(first_node_) + i] * n;
     director.values.insert(director.values.end(), d.v, d.v + 3);
   }
-  return {director, thickness, force, moment, outer_face, inner_face, worst};
+  return {director, thickness, force, moment, outer_face, inner_face, worst, worst_of_nodes};
 }
 
 }  // namespace fascia
