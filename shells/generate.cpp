@@ -75,9 +75,9 @@ ShellMesh grid(const std::array<int, 2>& cells, const std::array<bool, 2>& wraps
     const std::size_t across = edge / 2;
     if (wraps[across]) continue;
     const int place_across = edge % 2 == 0 ? 0 : cells[across];
-    std::vector<int> nodes;
+    std::vector<int> nodes(at(count[1 - across]));
     for (int k = 0; k < count[1 - across]; ++k)
-      nodes.push_back(across == 0 ? node(place_across, k) : node(k, place_across));
+      nodes[at(k)] = across == 0 ? node(place_across, k) : node(k, place_across);
     add_group(mesh, names[edge], 1, std::move(nodes));
   }
   return mesh;
