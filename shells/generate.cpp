@@ -33,10 +33,32 @@ void check_turn(const Turn& turn) {
   if (turn.closed && !(angle >= whole * (1 - 1e-9))) throw InputError("a closed turn must be a whole one");
 }
 
-/// Nodes at place(i, j), i first, and the cells between them; `wraps`: the last column or row is the first.
-/// The normal points along (place along i) × (place along j).
+/// @param dimension  1: an edge, 2: triangles
+void add_group(ShellMesh& mesh, const char* name, int dimension, std::vector<int> nodes, std::vector<int> cells = {}) {
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const int number = static_cast<int>(mesh.groups.size()) + 1;
+  mesh.groups.push_back({name, number, dimension, std::move(nodes), std::move(cells)});
+}
+
+/// The triangles from `first` on and their nodes.
+void add_face(ShellMesh& mesh, const char* name, std::size_t first) {
+  std::vector<int> nodes, cells;
+  for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
+    cells.push_back(static_cast<int>(t));
+    nodes.insert(nodes.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+  }
+  add_group(mesh, name, 2, std::move(nodes), std::move(cells));
+}
+
+/// Names of the first and last column and the first and last row of a grid.
+using EdgeNames = std::array<const char*, 4>;
+
+/// Nodes at place(i, j), i first, and the cells between them; `wraps`: the last column or row is the first, and has no
+/// name. The normal points along (place along i) × (place along j).
 template <class Place>
-ShellMesh grid(const std::array<int, 2>& cells, const std::array<bool, 2>& wraps, Diagonal diagonal, Place&& place) {
+ShellMesh grid(const std::array<int, 2>& cells, const std::array<bool, 2>& wraps, const EdgeNames& names,
+               Diagonal diagonal, Place&& place) {
   ShellMesh mesh;
   const std::array<int, 2> count{cells[0] + (wraps[0] ? 0 : 1), cells[1] + (wraps[1] ? 0 : 1)};
   for (int j = 0; j < count[1]; ++j)
@@ -49,6 +71,15 @@ ShellMesh grid(const std::array<int, 2>& cells, const std::array<bool, 2>& wraps
       mesh.triangles.push_back(right ? std::array{a, b, c} : std::array{a, b, d});
       mesh.triangles.push_back(right ? std::array{a, c, d} : std::array{b, c, d});
     }
+  for (std::size_t edge = 0; edge < 4; ++edge) {
+    const std::size_t across = edge / 2;
+    if (wraps[across]) continue;
+    const int place_across = edge % 2 == 0 ? 0 : cells[across];
+    std::vector<int> nodes(at(count[1 - across]));
+    for (int k = 0; k < count[1 - across]; ++k)
+      nodes[at(k)] = across == 0 ? node(place_across, k) : node(k, place_across);
+    add_group(mesh, names[edge], 1, std::move(nodes));
+  }
   return mesh;
 }
 
@@ -89,7 +120,7 @@ ShellMesh rectangle(const Vec3d& origin, const Vec3d& edge_u, const Vec3d& edge_
   if (!has_direction(edge_u) || !has_direction(edge_v) ||
       norm(cross(edge_u, edge_v)) < 1e-6 * norm(edge_u) * norm(edge_v))
     throw InputError("the rectangle's edges vanish or are parallel; must have two directions");
-  return grid(cells, {false, false}, diagonal,
+  return grid(cells, {false, false}, {"u0", "u1", "v0", "v1"}, diagonal,
               [&](int i, int j) { return origin + edge_u * (1.0 * i / cells[0]) + edge_v * (1.0 * j / cells[1]); });
 }
 
@@ -101,7 +132,7 @@ ShellMesh annulus(const Vec3d& center, const Vec3d& normal, double inner, double
   if (!(inner > 0) || !(outer > inner) || !std::isfinite(outer))
     throw InputError("the annulus has no width; its radii must be 0 < inner < outer");
   const Around direction(normal, turn, cells[1]);
-  return grid(cells, {false, turn.closed}, diagonal, [&](int i, int j) {
+  return grid(cells, {false, turn.closed}, {"inner", "outer", "start", "end"}, diagonal, [&](int i, int j) {
     const double radius = i == cells[0] ? outer : inner + (outer - inner) * i / cells[0];
     return center + radius * direction(j);
   });
@@ -116,16 +147,22 @@ ShellMesh cylinder_skin(const Vec3d& from, const Vec3d& to, double radius, const
   if (caps && !turn.closed) throw InputError("a sector of a cylinder has no caps; leave them out");
   const int along = cells[0], around = cells[1];
   const Around direction(to - from, turn, around);
-  ShellMesh mesh = grid({around, along}, {turn.closed, false}, diagonal, [&](int i, int j) {
-    const Vec3d middle = j == along ? to : from + (to - from) * (1.0 * j / along);
-    return middle + radius * direction(i);
-  });
+  ShellMesh mesh =
+      grid({around, along}, {turn.closed, false}, {"start", "end", "from", "to"}, diagonal, [&](int i, int j) {
+        const Vec3d middle = j == along ? to : from + (to - from) * (1.0 * j / along);
+        return middle + radius * direction(i);
+      });
   if (!caps) return mesh;
   std::vector<int> rim(at(around));
   for (int i = 0; i < around; ++i) rim[at(i)] = i + around * along;
+  add_face(mesh, "side", 0);
+  std::size_t first = mesh.triangles.size();
   shell_parts::add_cap(mesh, rim);
+  add_face(mesh, "cap_to", first);
+  first = mesh.triangles.size();
   for (int i = 0; i < around; ++i) rim[at(i)] = (around - i) % around;  // counter-clockwise from the other side
   shell_parts::add_cap(mesh, rim);
+  add_face(mesh, "cap_from", first);
   return mesh;
 }
 

@@ -28,9 +28,9 @@ Vec3d double_area(const ShellMesh& mesh, std::size_t t) {
   return cross(corner(mesh, t, 1) - corner(mesh, t, 0), corner(mesh, t, 2) - corner(mesh, t, 0));
 }
 
-std::vector<double> edge_lengths(const ShellMesh& mesh, std::size_t t) {
-  std::vector<double> lengths;
-  for (std::size_t n = 0; n < 3; ++n) lengths.push_back(norm(corner(mesh, t, n + 1) - corner(mesh, t, n)));
+std::array<double, 3> edge_lengths(const ShellMesh& mesh, std::size_t t) {
+  std::array<double, 3> lengths{};
+  for (std::size_t n = 0; n < 3; ++n) lengths[n] = norm(corner(mesh, t, n + 1) - corner(mesh, t, n));
   return lengths;
 }
 
@@ -79,6 +79,7 @@ std::vector<double> curvatures(const ShellMesh& mesh) {
     add(b, edge, angle);
   });
   std::vector<double> result;
+  result.reserve(tensors.size());
   for (const PlaneTensor& tensor : tensors) result.push_back(tensor.largest());
   return result;
 }

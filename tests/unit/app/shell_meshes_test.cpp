@@ -102,8 +102,8 @@ TEST(ShellMeshes, ThicknessErrors) {
             "a.toml:7:24: bodies.skin.thickness[0].where: no thickness for triangle 4 at (1.333, 0.1667, 0); let the "
             "last entry of thickness have no where");
   EXPECT_EQ(thickness_error(square, "[{ where = { group = \"wall\" }, value = 1 }, { value = 2 }]"),
-            "a.toml:7:24: bodies.skin.thickness[0].where: the mesh has no groups; select by box, sphere, cylinder or "
-            "halfspace");
+            "a.toml:7:24: bodies.skin.thickness[0].where: the mesh has no group \"wall\"; it has \"u0\", "
+            "\"u1\", \"v0\", \"v1\"");
   EXPECT_EQ(thickness_error(square, "[{ where = { ids = [0] }, value = 1 }, { value = 2 }]"),
             "a.toml:7:24: bodies.skin.thickness[0].where: nearest and ids select nodes, not material; use a box, "
             "sphere, cylinder or halfspace");

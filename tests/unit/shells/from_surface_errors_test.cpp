@@ -1,9 +1,13 @@
 #include "core/math/index.hpp"
 #include "shells/shell_mesh.hpp"
+#include "shells/surface_checks.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <set>
+#include <utility>
 
 // Surfaces that no shell can be made of: the file's own numbers, the place, and what would be right.
 namespace fascia {
@@ -76,6 +80,49 @@ TEST(ShellFromSurfaceErrors, NoNumbersNoExtentNoTriangles) {
             "sample.msh: all its points coincide; give a mesh that has an extent");
   EXPECT_EQ(error_of(mesh_of(CellType::line, kPoints, {0, 1, 1, 2})),
             "sample.msh: has no triangles; a shell needs a surface of triangles or quadrilaterals");
+}
+
+TEST(ShellFromSurfaceErrors, AnythingIsRefusedOrSound) {
+  std::mt19937 random(7);
+  const auto below = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+  int sound = 0, refused = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::vector<Vec3d> points;
+    const int n = 4 + below(8), cells = 1 + below(7);
+    for (int i = 0; i < n; ++i) points.push_back({{1.0 * below(3), 1.0 * below(3), 0.5 * below(3)}});
+    std::vector<int> nodes;
+    const CellType type = below(4) == 0 ? CellType::quadrilateral : CellType::triangle;
+    for (int k = 0; k < cells * node_count(type); ++k) nodes.push_back(below(n));
+    Mesh mesh = mesh_of(type, points, nodes);
+    mesh.groups = {{"some", 1, 2}};
+    for (int& group : mesh.blocks[0].group) group = below(2) - 1;
+    ShellMesh shell;
+    try {
+      shell = shell_mesh(mesh);
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find("sample.msh: "), 0u);
+      ++refused;
+      continue;
+    }
+    ++sound;
+    std::set<std::pair<int, int>> directed;
+    for (const auto& t : shell.triangles)
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_TRUE(directed.insert({t[k], t[(k + 1) % 3]}).second) << "not oriented alike";
+    ASSERT_EQ(shell.file_number.size(), shell.triangles.size());
+    for (const BodyGroup& group : shell.groups) {
+      EXPECT_TRUE(group.nodes.empty() || group.nodes.back() < static_cast<int>(shell.nodes.size()));
+      EXPECT_TRUE(group.cells.empty() || group.cells.back() < static_cast<int>(shell.triangles.size()));
+    }
+    const ShellQuality quality = shell_quality(shell);
+    EXPECT_TRUE(std::isfinite(quality.worst_aspect) && quality.area > 0);
+    for (const std::string& w : thickness_warnings(shell, std::vector(shell.triangles.size(), 0.7)))
+      EXPECT_EQ(w.find("nan"), std::string::npos) << w;
+    EXPECT_EQ(closed(shell), openness(shell).empty());
+  }
+  std::printf("%d sound, %d refused\n", sound, refused);
+  EXPECT_GT(sound, 100);
+  EXPECT_GT(refused, 100);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "shells/surface_checks.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -89,6 +90,44 @@ TEST(ShellAnnulus, AreaAndDirections) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) EXPECT_NEAR(normal_of(mesh, t)[2], 1, 1e-14);
     expect_sound(mesh);
   }
+}
+
+std::string names_of(const ShellMesh& mesh) {
+  std::string names;
+  for (const BodyGroup& g : mesh.groups)
+    names += g.name + ":" + std::to_string(g.nodes.size()) + "/" + std::to_string(g.cells.size()) + " ";
+  return names;
+}
+
+/// Nodes of a group pass a test, and no other nodes do.
+template <class Test>
+void expect_group(const ShellMesh& mesh, const std::string& name, const Test& test) {
+  const auto group =
+      std::find_if(mesh.groups.begin(), mesh.groups.end(), [&](const auto& g) { return g.name == name; });
+  ASSERT_NE(group, mesh.groups.end()) << name;
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    EXPECT_EQ(test(mesh.nodes[i]), std::binary_search(group->nodes.begin(), group->nodes.end(), static_cast<int>(i)))
+        << name << ", node " << i;
+}
+
+TEST(ShellGenerators, EdgesAndFacesAreGroups) {
+  const ShellMesh plate = rectangle({}, {{2, 0, 0}}, {{0, 1, 0}}, {4, 3}, Diagonal::left);
+  EXPECT_EQ(names_of(plate), "u0:4/0 u1:4/0 v0:5/0 v1:5/0 ");
+  expect_group(plate, "u1", [](const Vec3d& X) { return X[0] == 2; });
+  expect_group(plate, "v0", [](const Vec3d& X) { return X[1] == 0; });
+  EXPECT_EQ(names_of(annulus({}, {{0, 0, 1}}, 6, 10, whole, {4, 30}, Diagonal::right)), "inner:30/0 outer:30/0 ");
+  const ShellMesh split = annulus({}, {{0, 0, 1}}, 6, 10, slit, {4, 30}, Diagonal::right);
+  EXPECT_EQ(names_of(split), "inner:31/0 outer:31/0 start:5/0 end:5/0 ");
+  EXPECT_EQ(split.groups[2].nodes, (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(split.groups[3].nodes, (std::vector<int>{150, 151, 152, 153, 154}));
+  const ShellMesh drum = cylinder_skin({}, {{0, 0, 3}}, 1, whole, true, {3, 6}, Diagonal::right);
+  EXPECT_EQ(names_of(drum), "from:6/0 to:6/0 side:24/36 cap_to:7/6 cap_from:7/6 ");
+  expect_group(drum, "cap_to", [](const Vec3d& X) { return X[2] == 3; });
+  expect_group(drum, "cap_from", [](const Vec3d& X) { return X[2] == 0; });
+  expect_group(drum, "to", [](const Vec3d& X) { return X[2] == 3 && norm(X) > 3.1; });
+  const Turn quarter{0, pi / 2, false};
+  EXPECT_EQ(names_of(cylinder_skin({}, {{0, 0, 3}}, 1, quarter, false, {3, 6}, Diagonal::right)),
+            "start:4/0 end:4/0 from:7/0 to:7/0 ");
 }
 
 TEST(ShellAnnulus, ASlitHasEdgesApart) {
