@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/cpu/element_executor.hpp"
+#include "core/cpu/surface_tangent.hpp"
 #include "core/cpu/thread_pool.hpp"
 #include "core/model/model.hpp"
 #include "core/physics/point_physics.hpp"
@@ -32,6 +33,8 @@ struct Linearization {
   AlignedVector<double> points;     ///< (groups × 24 × 8): H (9), Dbar (9), S (6)
   std::vector<Vec3d> u;             ///< displacements, where there are elements
   AlignedVector<double> E;          ///< StrainHistory::E, where elements are damped
+  std::vector<SurfaceTangent> surfaces;  ///< of surface loads; added by who knows them, as to node_blocks
+  std::vector<RankOne> low_rank;         ///< terms that no matrix holds; products have them
 };
 
 /// Executes a point set on the processor: one pass over groups of points, one gather over frames. No atomics, sums in

@@ -97,6 +97,8 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
       add_moment(set_.dofs.kind(node), stored_matrix(sum.data() + 3), lin.Q[at(node)], yn + 3);
     }
   });
+  for (const SurfaceTangent& surface : lin.surfaces) add_product(surface, set_.dofs, lin.Q, x, y);
+  for (const RankOne& term : lin.low_rank) add_product(term, x, y);
 }
 
 namespace {
@@ -202,6 +204,7 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out) {
     const double* own = lin.node_blocks.data() + set_.dofs.block_begin(node);
     for (int k = 0; k < set_.dofs.size(node) * set_.dofs.size(node); ++k) diagonal[k] += own[k];
   }
+  for (const SurfaceTangent& surface : lin.surfaces) add_blocks(surface, lin.Q, matrix_out);
   matrix_out.mirror_lower();
 }
 

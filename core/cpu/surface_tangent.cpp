@@ -1,0 +1,129 @@
+#include "core/cpu/surface_tangent.hpp"
+
+#include "core/math/index.hpp"
+#include "core/math/rotation.hpp"
+#include "core/model/model.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace fascia {
+
+namespace {
+
+using FaceBlocks = std::array<std::array<Mat3d, kMostFaceNodes>, kMostFaceNodes>;
+
+void face_blocks(const SurfaceTangent& tangent, std::span<const int> face, FaceBlocks& K) {
+  const std::size_t n = face.size();
+  for (std::size_t i = 0; i < n; ++i) std::fill_n(K[i].begin(), n, Mat3d{});
+  const Vec3d& g = tangent.gradient;
+  for (const FaceRulePoint& q : face_rule(static_cast<int>(n))) {
+    Vec3d x, xs, xt;
+    for (std::size_t a = 0; a < n; ++a) {
+      const Vec3d& v = tangent.x[at(face[a])];
+      x += v * q.N[a];
+      xs += v * q.ds[a];
+      xt += v * q.dt[a];
+    }
+    const double half = -0.5 * q.weight, p = half * (tangent.pressure + dot(g, x));
+    const Vec3d normal = cross(xs, xt);
+    const Mat3d slope = (outer(normal, g) + outer(g, normal)) * half;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        K[i][j] +=
+            skew(xs * (p * (q.N[i] * q.dt[j] - q.N[j] * q.dt[i])) - xt * (p * (q.N[i] * q.ds[j] - q.N[j] * q.ds[i]))) +
+            slope * (q.N[i] * q.N[j]);
+  }
+}
+
+/// How the degrees of freedom of a node move a vertex: column by column.
+using Columns = std::array<Vec3d, kMostDofs>;
+
+Columns columns_of(const SurfaceShare& share, FrameKind kind, const Mat3d& Q) {
+  Columns J{};
+  for (int k = 0; k < 3; ++k) J[at(k)][k] = share.w;
+  for (int k = 0; k < dof_count(kind) - 3; ++k) {
+    double unit[kMostDofs - 3] = {};
+    unit[k] = 1;
+    J[at(3 + k)] = frame_variation(kind, unit, Q) * share.b;
+  }
+  return J;
+}
+
+}  // namespace
+
+void gather_forces(const SurfaceLoad& load, const std::vector<Vec3d>& force, const State& state, const DofLayout& dofs,
+                   std::span<double> out) {
+  for (int v = 0; v < load.vertex_count(); ++v) {
+    const Vec3d& f = force[at(v)];
+    for (const SurfaceShare& share : load.shares_of(v)) {
+      double* g = out.data() + dofs.begin(share.node);
+      for (int k = 0; k < 3; ++k) g[k] += share.w * f[k];
+      if (dofs.kind(share.node) == FrameKind::vertex) continue;
+      add_moment(dofs.kind(share.node), outer(f, share.b), Mat3d::identity() + state.D[at(share.node)], g + 3);
+    }
+  }
+}
+
+void add_product(const SurfaceTangent& tangent, const DofLayout& dofs, const std::vector<Mat3d>& Q,
+                 std::span<const double> x, std::span<double> y) {
+  const SurfaceLoad& load = *tangent.load;
+  std::vector<Vec3d> dx(load.X.size()), force(load.X.size());
+  for (int v = 0; v < load.vertex_count(); ++v)
+    for (const SurfaceShare& share : load.shares_of(v)) {
+      const double* d = x.data() + dofs.begin(share.node);
+      dx[at(v)] += Vec3d{{d[0], d[1], d[2]}} * share.w +
+                   frame_variation(dofs.kind(share.node), d + 3, Q[at(share.node)]) * share.b;
+    }
+  FaceBlocks K;
+  for (int f = 0; f < load.face_count(); ++f) {
+    const std::span<const int> face = load.face(f);
+    face_blocks(tangent, face, K);
+    for (std::size_t i = 0; i < face.size(); ++i)
+      for (std::size_t j = 0; j < face.size(); ++j) force[at(face[i])] += K[i][j] * dx[at(face[j])];
+  }
+  for (int v = 0; v < load.vertex_count(); ++v)
+    for (const SurfaceShare& share : load.shares_of(v)) {
+      double* out = y.data() + dofs.begin(share.node);
+      for (int k = 0; k < 3; ++k) out[k] += share.w * force[at(v)][k];
+      add_moment(dofs.kind(share.node), outer(force[at(v)], share.b), Q[at(share.node)], out + 3);
+    }
+}
+
+void add_product(const RankOne& update, std::span<const double> x, std::span<double> y) {
+  double along = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) along += update.g[i] * x[i];
+  along *= update.stiffness;
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] += update.g[i] * along;
+}
+
+void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, BlockMatrix& matrix) {
+  const SurfaceLoad& load = *tangent.load;
+  const DofLayout& dofs = matrix.dofs();
+  FaceBlocks K;
+  const auto add_pair = [&](const SurfaceShare& a, const SurfaceShare& b, const Mat3d& Kab) {
+    if (matrix.fills_upper() ? b.node < a.node : b.node > a.node) return;
+    const int index = matrix.find(a.node, b.node);
+    const std::span<const int> columns = matrix.columns(a.node);
+    const std::size_t place = at(index - matrix.row_begin(a.node));
+    if (place >= columns.size() || columns[place] != b.node) return;
+    double* block = matrix.block(index);
+    const int n = dofs.size(a.node), m = dofs.size(b.node);
+    const Columns Ja = columns_of(a, dofs.kind(a.node), Q[at(a.node)]),
+                  Jb = columns_of(b, dofs.kind(b.node), Q[at(b.node)]);
+    for (int j = 0; j < m; ++j) {
+      const Vec3d column = Kab * Jb[at(j)];
+      for (int i = 0; i < n; ++i) block[m * i + j] += dot(Ja[at(i)], column);
+    }
+  };
+  for (int f = 0; f < load.face_count(); ++f) {
+    const std::span<const int> face = load.face(f);
+    face_blocks(tangent, face, K);
+    for (std::size_t i = 0; i < face.size(); ++i)
+      for (std::size_t j = 0; j < face.size(); ++j)
+        for (const SurfaceShare& a : load.shares_of(face[i]))
+          for (const SurfaceShare& b : load.shares_of(face[j])) add_pair(a, b, K[i][j]);
+  }
+}
+
+}  // namespace fascia
