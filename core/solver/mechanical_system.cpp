@@ -298,6 +298,7 @@ DirectionReport MechanicalSystem::direction() {
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
   filter_.to_global(direction_);
+  surfaces_.aim(lin_, direction_);
   for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
   for (int node = 0; node < model_.node_count(); ++node)
     report.largest_rotation = std::max(report.largest_rotation, rotation_in(node, direction_.data()));
@@ -305,6 +306,7 @@ DirectionReport MechanicalSystem::direction() {
 }
 
 void MechanicalSystem::apply(double step) {
+  surfaces_.approach(step);
   for (int i = 0; i < model_.node_count(); ++i) {
     const double* d = direction_.data() + model_.points.dofs.begin(i);
     increment_.du[at(i)] += Vec3d{{d[0], d[1], d[2]}} * step;
@@ -324,10 +326,14 @@ void MechanicalSystem::apply(double step) {
   rebuild_state();
 }
 
-void MechanicalSystem::save() { saved_ = increment_; }
+void MechanicalSystem::save() {
+  saved_ = increment_;
+  surfaces_.save();
+}
 
 void MechanicalSystem::restore() {
   increment_ = saved_;
+  surfaces_.restore();
   rebuild_state();
 }
 

@@ -25,13 +25,36 @@ void SurfaceLoads::linearize(const State& state, std::span<const double> factors
     const SurfaceForces& f = forces_[s];
     if (f.stiffness > 0) lin.low_rank.push_back({f.stiffness, volume_gradient(s, state)});
     if (lin.tangent != Tangent::full) continue;
-    lin.surfaces.push_back({&load, f.x, f.pressure, load.weight * factors[at(load.weight_schedule)]});
-    for (int v = 0; v < load.vertex_count(); ++v)
+    const double pressure = f.stiffness > 0 && !newton_.empty() ? newton_[s] : f.pressure;
+    lin.surfaces.push_back({&load, f.x, pressure, load.weight * factors[at(load.weight_schedule)]});
+    for (int v = 0; v < load.vertex_count(); ++v) {
+      const Vec3d force = f.force[at(v)] + f.area[at(v)] * (pressure - f.pressure);
       for (const SurfaceShare& share : load.shares_of(v))
         if (model_.kind(share.node) == FrameKind::rigid)
           add_rotation_block(lin.node_blocks.data() + dofs.block_begin(share.node),
-                             rotation_tangent(outer(f.force[at(v)], lin.Q[at(share.node)] * share.b)) * -1.0);
+                             rotation_tangent(outer(force, lin.Q[at(share.node)] * share.b)) * -1.0);
+    }
   }
+}
+
+void SurfaceLoads::begin_step() {
+  reached_.resize(forces_.size(), 0.0);
+  newton_ = saved_ = aimed_ = reached_;
+}
+
+void SurfaceLoads::aim(const Linearization& lin, std::span<const double> direction) {
+  std::size_t term = 0;
+  for (std::size_t s = 0; s < forces_.size(); ++s) {
+    if (!(forces_[s].stiffness > 0)) continue;
+    const RankOne& volume = lin.low_rank[term++];
+    double change = 0;
+    for (std::size_t i = 0; i < direction.size(); ++i) change += volume.g[i] * direction[i];
+    aimed_[s] = forces_[s].pressure - volume.stiffness * change;
+  }
+}
+
+void SurfaceLoads::approach(double step) {
+  for (std::size_t s = 0; s < newton_.size(); ++s) newton_[s] += step * (aimed_[s] - newton_[s]);
 }
 
 std::vector<double> SurfaceLoads::volume_gradient(std::size_t surface, const State& state) const {
