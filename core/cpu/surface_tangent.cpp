@@ -50,6 +50,15 @@ Columns columns_of(const SurfaceShare& share, FrameKind kind, const Mat3d& Q) {
   return J;
 }
 
+/// A block that assembly fills; null where the pattern has none.
+double* filled_block(BlockMatrix& matrix, int row, int column) {
+  if (matrix.fills_upper() ? column < row : column > row) return nullptr;
+  const int index = matrix.find(row, column);
+  const std::span<const int> columns = matrix.columns(row);
+  const std::size_t place = at(index - matrix.row_begin(row));
+  return place < columns.size() && columns[place] == column ? matrix.block(index) : nullptr;
+}
+
 }  // namespace
 
 void gather_forces(const SurfaceLoad& load, const std::vector<Vec3d>& force, const State& state, const DofLayout& dofs,
@@ -101,28 +110,40 @@ void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, Bloc
   const SurfaceLoad& load = *tangent.load;
   const DofLayout& dofs = matrix.dofs();
   FaceBlocks K;
-  const auto add_pair = [&](const SurfaceShare& a, const SurfaceShare& b, const Mat3d& Kab) {
-    if (matrix.fills_upper() ? b.node < a.node : b.node > a.node) return;
-    const int index = matrix.find(a.node, b.node);
-    const std::span<const int> columns = matrix.columns(a.node);
-    const std::size_t place = at(index - matrix.row_begin(a.node));
-    if (place >= columns.size() || columns[place] != b.node) return;
-    double* block = matrix.block(index);
-    const int n = dofs.size(a.node), m = dofs.size(b.node);
-    const Columns Ja = columns_of(a, dofs.kind(a.node), Q[at(a.node)]),
-                  Jb = columns_of(b, dofs.kind(b.node), Q[at(b.node)]);
-    for (int j = 0; j < m; ++j) {
-      const Vec3d column = Kab * Jb[at(j)];
-      for (int i = 0; i < n; ++i) block[m * i + j] += dot(Ja[at(i)], column);
-    }
-  };
+  std::vector<int> nodes;                    // of a face
+  std::vector<Columns> J;                    // (nodes × vertices of the face)
+  std::array<Columns, kMostFaceNodes> pull;  // Σ K_ij J_j of one node, by vertices
   for (int f = 0; f < load.face_count(); ++f) {
     const std::span<const int> face = load.face(f);
+    const std::size_t n = face.size();
+    nodes.clear();
+    J.clear();
+    for (std::size_t i = 0; i < n; ++i)
+      for (const SurfaceShare& share : load.shares_of(face[i])) {
+        const auto known = std::find(nodes.begin(), nodes.end(), share.node);
+        const auto k = static_cast<std::size_t>(known - nodes.begin());
+        if (known == nodes.end()) {
+          nodes.push_back(share.node);
+          J.resize(J.size() + n);
+        }
+        J[k * n + i] = columns_of(share, dofs.kind(share.node), Q[at(share.node)]);
+      }
     face_blocks(tangent, face, K);
-    for (std::size_t i = 0; i < face.size(); ++i)
-      for (std::size_t j = 0; j < face.size(); ++j)
-        for (const SurfaceShare& a : load.shares_of(face[i]))
-          for (const SurfaceShare& b : load.shares_of(face[j])) add_pair(a, b, K[i][j]);
+    for (std::size_t b = 0; b < nodes.size(); ++b) {
+      const int column = nodes[b], m = dofs.size(column);
+      for (std::size_t i = 0; i < n; ++i)
+        for (int k = 0; k < m; ++k) {
+          pull[i][at(k)] = {};
+          for (std::size_t j = 0; j < n; ++j) pull[i][at(k)] += K[i][j] * J[b * n + j][at(k)];
+        }
+      for (std::size_t a = 0; a < nodes.size(); ++a) {
+        double* block = filled_block(matrix, nodes[a], column);
+        if (block == nullptr) continue;
+        for (int l = 0; l < dofs.size(nodes[a]); ++l)
+          for (int k = 0; k < m; ++k)
+            for (std::size_t i = 0; i < n; ++i) block[m * l + k] += dot(J[a * n + i][at(l)], pull[i][at(k)]);
+      }
+    }
   }
 }
 

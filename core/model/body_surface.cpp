@@ -63,21 +63,40 @@ std::vector<BodyFace> turned_over(const std::vector<BodyFace>& faces) {
   return turned;
 }
 
+namespace {
+
+std::vector<SurfaceShare> shares_of(const Attachment& a) {
+  std::vector<SurfaceShare> shares;
+  for (std::size_t k = 0; k < a.nodes.size(); ++k)
+    if (a.influences[k].w != 0 || squared_norm(a.influences[k].b) > 0)
+      shares.push_back({a.nodes[k], a.influences[k].w, a.influences[k].b});
+  return shares;
+}
+
+}  // namespace
+
 SurfaceLoad surface_of(const ModelBody& body, const std::vector<BodyFace>& faces) {
   SurfaceLoad load;
+  const std::vector<Vec3d>& X = body.surface().points;
   std::map<int, int> vertex;
   for (const BodyFace& face : faces)
     for (const int point : face) vertex.try_emplace(point, 0);
+  bool nodes = true;  // every vertex is one
   for (auto& [point, number] : vertex) {
     const Attachment a = body.attach_surface(at(point));
-    std::vector<SurfaceShare> shares;
-    for (std::size_t k = 0; k < a.nodes.size(); ++k)
-      shares.push_back({a.nodes[k], a.influences[k].w, a.influences[k].b});
-    number = add_vertex(load, body.surface().points[at(point)], shares);
+    nodes = nodes && a.nodes.size() == 1;
+    number = add_vertex(load, X[at(point)], shares_of(a));
   }
+  std::map<std::pair<int, int>, int> middle;
   for (const BodyFace& face : faces) {
     std::vector<int> vertices;
     for (const int point : face) vertices.push_back(vertex[point]);
+    for (std::size_t k = 0; !nodes && face.size() == 3 && k < 3; ++k) {
+      const auto [edge, fresh] = middle.try_emplace(std::minmax(face[k], face[(k + 1) % 3]), load.vertex_count());
+      const Vec3d half = (X[at(edge->first.first)] + X[at(edge->first.second)]) * 0.5;
+      if (fresh) add_vertex(load, half, shares_of(body.attach(half)));
+      vertices.push_back(edge->second);
+    }
     add_face(load, vertices);
   }
   load.closed = free_edges(faces).empty();

@@ -19,7 +19,9 @@ std::vector<std::vector<BodyFace>> connected_faces(const std::vector<BodyFace>& 
 /// The same faces, each seen from its other side.
 std::vector<BodyFace> turned_over(const std::vector<BodyFace>& faces);
 
-/// Faces of a body as a surface that its nodes move, without pressure; measured at rest.
+/// Faces of a body as a surface that its nodes move, without pressure; measured at rest. Triangles whose corners are
+/// moved by several nodes each get vertices in the middle of their edges: quadratic, as products of weights along a
+/// face are.
 SurfaceLoad surface_of(const ModelBody& body, const std::vector<BodyFace>& faces);
 
 }  // namespace fascia
