@@ -95,15 +95,20 @@ std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region,
   return shares;
 }
 
-/// Of an open surface its free edges count, and segments of lines; of a closed one every edge.
+/// Of an open surface its free edges count, and segments of lines; of a closed one every edge, if they make up lines.
 std::vector<Share> line_shares(const SimulatedBody& owner, const Region& region) {
   Edges free;
   for (const auto& [a, b] : free_edges(owner.body->faces())) free.insert({a, b});
   std::vector<Share> shares = edge_shares(owner, region, free.empty() ? nullptr : &free);
+  const auto fail = [&](const char* what) {
+    throw SceneError({{region.place, fmt::format(fmt::runtime(what), owner.name)}});
+  };
   if (shares.empty())
-    throw SceneError({{region.place, fmt::format("the region holds no {}edge of body \"{}\" with both its ends; "
-                                                 "enlarge it",
-                                                 free.empty() ? "" : "free ", owner.name)}});
+    fail(free.empty() ? "the region holds no edge of body \"{}\" with both its ends; enlarge it"
+                      : "the region holds no free edge of body \"{}\" with both its ends; enlarge it");
+  if (free.empty() && !surface_shares(owner, region).empty())
+    fail("the region holds whole faces of body \"{}\", which is closed; must hold edges along a line only, for faces "
+         "use traction");
   return shares;
 }
 
