@@ -2,6 +2,7 @@
 #include "app/scene/errors.hpp"
 #include "app/simulation.hpp"
 #include "core/math/index.hpp"
+#include "core/model/body_surface.hpp"
 
 #include <fmt/format.h>
 
@@ -65,18 +66,23 @@ std::vector<Share> volume_shares(const SimulatedBody& owner, const Region& regio
   return shares;
 }
 
-/// Edges of the surface's triangles, and segments of lines, whose ends are selected; two Gauss points each.
-std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region) {
+using Edges = std::set<std::pair<int, int>>;
+
+/// Edges of the surface's triangles, and segments of lines, whose ends are selected; two Gauss points each, whose parts
+/// are lengths.
+/// @param among  edges of the surface that count; null for all
+std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region, const Edges* among = nullptr) {
   const ModelBody& body = *owner.body;
   const std::vector<Vec3d>& points = body.surface().points;
   if (points.empty()) return {};
   const std::vector<bool> chosen = select(region, owner.selectable_surface());
-  std::set<std::pair<int, int>> edges;
+  Edges edges;
   const auto add = [&](int a, int b) {
     if (chosen[at(a)] && chosen[at(b)]) edges.insert(std::minmax(a, b));
   };
   for (const auto& t : body.surface().triangles)
-    for (std::size_t k = 0; k < 3; ++k) add(t[k], t[(k + 1) % 3]);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (among == nullptr || among->contains(std::minmax(t[k], t[(k + 1) % 3]))) add(t[k], t[(k + 1) % 3]);
   for (const auto& s : body.segments()) add(s[0], s[1]);
   std::vector<Share> shares;
   for (const auto& [i, j] : edges) {
@@ -86,6 +92,23 @@ std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region)
       shares.push_back({X, body.attach(X), 0.5 * norm(b - a), {}, {}});
     }
   }
+  return shares;
+}
+
+/// Of an open surface its free edges count, and segments of lines; of a closed one every edge, if they make up lines.
+std::vector<Share> line_shares(const SimulatedBody& owner, const Region& region) {
+  Edges free;
+  for (const auto& [a, b] : free_edges(owner.body->faces())) free.insert({a, b});
+  std::vector<Share> shares = edge_shares(owner, region, free.empty() ? nullptr : &free);
+  const auto fail = [&](const char* what) {
+    throw SceneError({{region.place, fmt::format(fmt::runtime(what), owner.name)}});
+  };
+  if (shares.empty())
+    fail(free.empty() ? "the region holds no edge of body \"{}\" with both its ends; enlarge it"
+                      : "the region holds no free edge of body \"{}\" with both its ends; enlarge it");
+  if (free.empty() && !surface_shares(owner, region).empty())
+    fail("the region holds whole faces of body \"{}\", which is closed; must hold edges along a line only, for faces "
+         "use traction");
   return shares;
 }
 
@@ -217,6 +240,12 @@ void add_loads(Simulation& s) {
       for (Share& share : shares) share.force = *load.traction * share.part;
       add_shares(s, shares, false, schedule);
     }
+    if (load.pressure) add_pressure(s, body, load, schedule);
+    if (load.line_force) {
+      std::vector<Share> shares = line_shares(b, *load.where);
+      for (Share& share : shares) share.force = *load.line_force * share.part;
+      add_shares(s, shares, load.follower, schedule);
+    }
     if (load.force_per_node) add_node_forces(s, body, load, schedule);
     if (load.at) {
       const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
@@ -224,6 +253,7 @@ void add_loads(Simulation& s) {
                  load.follower, schedule);
     }
   }
+  add_fluids(s);
 }
 
 }  // namespace fascia::app

@@ -47,6 +47,19 @@ void select_tethers(const Simulation& s, ResolvedProbe& r) {
 
 bool over_time_only(Quantity q) { return q == Quantity::velocity || q == Quantity::kinetic_energy; }
 
+/// The fluid of the probe's body, or the only one of the scene; −1 where another quantity is asked for.
+int find_fluid(const Simulation& s, const ResolvedProbe& r) {
+  const Quantity q = r.probe->quantity;
+  if (q != Quantity::fluid_volume && q != Quantity::fluid_pressure) return -1;
+  std::vector<int> found;
+  for (std::size_t f = 0; f < s.fluids.size(); ++f)
+    if (!r.probe->body || s.fluids[f].body == r.body) found.push_back(static_cast<int>(f));
+  if (found.size() == 1) return found[0];
+  throw SceneError(
+      {{r.probe->place, found.empty() ? "asks for a fluid where there is none; give the body a fluid"
+                                      : fmt::format("asks for one of {} fluids; name its body", found.size())}});
+}
+
 }  // namespace
 
 Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place) {
@@ -79,6 +92,7 @@ void resolve_probes(Simulation& s) {
       r.points.push_back(std::move(p));
     }
     select_tethers(s, r);
+    r.fluid = find_fluid(s, r);
     if (probe.where) {
       r.nodes = r.tethered.empty() ? select_nodes(s, r.body, *probe.where) : find_nodes(s, r.body, *probe.where);
     } else {

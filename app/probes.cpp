@@ -40,6 +40,8 @@ constexpr QuantityInfo kQuantities[] = {
     {Quantity::max_displacement, "max_displacement", "m", Shape::scalar},
     {Quantity::mean_displacement, "mean_displacement", "m", Shape::vector},
     {Quantity::frequency, "frequency", "Hz", Shape::scalar},
+    {Quantity::fluid_volume, "fluid_volume", "m3", Shape::scalar},
+    {Quantity::fluid_pressure, "fluid_pressure", "Pa", Shape::scalar},
 };
 
 const QuantityInfo& info(Quantity q) {
@@ -125,6 +127,12 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
       if (chosen[at(n.node)] != 0)
         e.potential -= factors[at(load.schedule)] *
                        (dot(n.force, snap.state->u[at(n.node)]) + contract(n.couple, snap.state->D[at(n.node)]));
+  SurfaceForces forces;
+  for (const SurfaceLoad& load : s.model.surfaces) {
+    if (chosen[at(load.shares[0].node)] == 0) continue;
+    evaluate(load, *snap.state, factors, forces);
+    e.potential += forces.energy;
+  }
   return e;
 }
 
@@ -195,6 +203,16 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
                      const Mat3d Q = Mat3d::identity() + snap.state->D[at(node)];
                      add(node, f, axl(Q * transpose(couple)) + torque);
                    });
+  SurfaceForces forces;
+  for (const SurfaceLoad& load : s.model.surfaces) {
+    evaluate(load, *snap.state, factors, forces);
+    for (int v = 0; v < load.vertex_count(); ++v)
+      for (const SurfaceShare& share : load.shares_of(v)) {
+        if (chosen[at(share.node)] == 0) continue;
+        const Mat3d Q = Mat3d::identity() + snap.state->D[at(share.node)];
+        add(share.node, forces.force[at(v)] * share.w, cross(Q * share.b, forces.force[at(v)]));
+      }
+  }
 }
 
 }  // namespace
@@ -253,6 +271,12 @@ std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe
       push(out, mean);
       break;
     }
+    case Quantity::fluid_volume:
+      out.push_back(fluid_state(s, probe.fluid, state).volume);
+      break;
+    case Quantity::fluid_pressure:
+      out.push_back(fluid_state(s, probe.fluid, state).pressure);
+      break;
     default:
       out.push_back(snap.frequency);
       break;

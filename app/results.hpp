@@ -46,7 +46,9 @@ struct RunTimes {
 };
 
 /// summary.json. Modes put a list into the probes of quantity frequency.
+/// @param fluids  of Simulation::fluids at the end; none of modes
 nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
-                               const std::vector<nlohmann::json>& probe_values, double stabilization_energy);
+                               const std::vector<nlohmann::json>& probe_values, double stabilization_energy,
+                               const std::vector<FluidState>& fluids);
 
 }  // namespace fascia::app

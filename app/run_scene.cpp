@@ -114,6 +114,7 @@ struct Outcome {
   RunTimes times;
   std::vector<nlohmann::json> probes;
   double stabilization = 0;
+  std::vector<FluidState> fluids;
 };
 
 Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, const RunOptions& options) {
@@ -184,6 +185,7 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     }
   }
   add_result_warnings(s, state, out.run, out.warnings);
+  for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
   if (!snaps.warning().empty()) out.warnings.push_back(snaps.warning());
   out.times.output = output_seconds;
   if (out.run.status == RunStatus::interrupted) out.run.message = fmt::format("interrupted at {:.6g}", out.run.time);
@@ -283,7 +285,8 @@ int run_scene(const RunOptions& options) {
     fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
     s.warnings.push_back(w);
   }
-  const nlohmann::ordered_json j = summary(s, out.run, out.times, pool.size(), out.probes, out.stabilization);
+  const nlohmann::ordered_json j =
+      summary(s, out.run, out.times, pool.size(), out.probes, out.stabilization, out.fluids);
   io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
   directory.commit();
   if (options.json)

@@ -207,8 +207,9 @@ Simulation build_simulation(Scene scene) {
         {{s.scene.solver.place, "the constraints hold every degree of freedom; leave some free for modes"}});
   add_loads(s);
   if (s.scene.solver.kind == SolverKind::statics) check_support(s);
-  if (s.scene.solver.kind == SolverKind::modes && !(s.model.loads.empty() && s.model.followers.empty()))
-    s.warnings.push_back("modes are those of the unloaded rest state: gravity and loads are not used");
+  if (s.scene.solver.kind == SolverKind::modes &&
+      !(s.model.loads.empty() && s.model.followers.empty() && s.model.surfaces.empty()))
+    s.warnings.push_back("modes are those of the unloaded rest state: gravity, loads and fluids are not used");
   resolve_probes(s);
   return s;
 }

@@ -51,7 +51,13 @@ struct ResolvedProbe {
   std::vector<ProbePoint> points;
   std::vector<int> nodes;     ///< of the model, by `where`
   std::vector<int> tethered;  ///< of Simulation::tethered
+  int fluid = -1;             ///< of Simulation::fluids
   Vec3d about{};              ///< of moments and angular momentum
+};
+
+/// What fills a body.
+struct FluidOfBody {
+  int body = 0, surface = 0;  ///< the latter of the model
 };
 
 /// A scene ready to run.
@@ -62,6 +68,7 @@ struct Simulation {
   std::vector<Schedule> schedules;  ///< index = DeadLoad::schedule and so on
   std::vector<ResolvedProbe> probes;
   std::vector<TetheredMaterial> tethered;
+  std::vector<FluidOfBody> fluids;
   State initial;
   std::vector<std::string> warnings;
   int gravity_load = -1;   ///< index of gravity in Model::loads
@@ -94,8 +101,16 @@ Simulation build_simulation(Scene scene);
 // Parts of build_simulation, in files of their own.
 void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< constraints.cpp
 void add_loads(Simulation& simulation);                                 ///< loads.cpp
-void check_support(const Simulation& simulation);                       ///< support.cpp
-void resolve_probes(Simulation& simulation);                            ///< probe_setup.cpp
+/// Pressure on faces, dead or following; surface_loads.cpp.
+/// @throws SceneError  no face selected
+void add_pressure(Simulation& simulation, int body, const Load& load, int schedule);
+void add_fluids(Simulation& simulation);           ///< surface_loads.cpp
+void check_support(const Simulation& simulation);  ///< support.cpp
+void resolve_probes(Simulation& simulation);       ///< probe_setup.cpp
+struct FluidState {
+  double volume = 0, pressure = 0;  ///< [m³]; at the level of its centre at rest [Pa]
+};
+FluidState fluid_state(const Simulation& simulation, int fluid, const State& state);
 /// Registers a schedule. @throws SceneError a sine in statics, which has no time
 int new_schedule(Simulation& simulation, const Schedule& schedule, const Place& place);
 int body_index(const Simulation& simulation, const std::string& name);

@@ -40,7 +40,8 @@ double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 }  // namespace
 
 nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
-                               const std::vector<nlohmann::json>& probe_values, double stabilization_energy) {
+                               const std::vector<nlohmann::json>& probe_values, double stabilization_energy,
+                               const std::vector<FluidState>& fluids) {
   nlohmann::ordered_json j;
   j["fascia"] = FASCIA_VERSION;
   j["scene"] = s.scene.path.filename().string();
@@ -60,6 +61,9 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
         {"volume", b.body->volume()},
         {"mass", b.body->mass()}};
   }
+  for (std::size_t f = 0; f < fluids.size(); ++f)
+    j["bodies"][s.bodies[static_cast<std::size_t>(s.fluids[f].body)].name]["fluid"] = {
+        {"volume", finite(fluids[f].volume)}, {"pressure", finite(fluids[f].pressure)}};
   j["couplings"] = nlohmann::ordered_json::object();
   j["dofs"] = s.model.dof_count() - s.model.constrained_dof_count();
   j["steps"] = run.steps;

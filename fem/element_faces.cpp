@@ -53,6 +53,15 @@ std::vector<int> nodes_of_face(const ElementMesh& mesh, std::size_t e, const std
 
 }  // namespace
 
+std::vector<std::vector<int>> ElementBody::faces() const {
+  std::vector<std::vector<int>> outer;
+  const std::vector<element_parts::ElementFace> faces = element_parts::sorted_faces(mesh());
+  element_parts::for_each_face(faces, [&](std::span<const element_parts::ElementFace> same) {
+    if (same.size() == 1) outer.push_back(element_parts::face_nodes(mesh(), same[0]));
+  });
+  return outer;
+}
+
 std::vector<FacePoint> ElementBody::face_points() const {
   const ElementFamily family = family_of(mesh().shape);
   const std::vector<FacePlace> rule = family == ElementFamily::tetrahedra ? triangle_rule() : quadrilateral_rule();

@@ -5,23 +5,6 @@ namespace {
 
 using namespace element_parts;
 
-/// Corners of an outer face with the middle nodes of its edges behind them, if there are any.
-std::vector<int> face_nodes(const ElementMesh& mesh, const ElementFace& face) {
-  std::vector<int> nodes = face_corners(mesh, face);
-  if (order_of(mesh.shape) == 1) return nodes;
-  const auto element = mesh.element(at(face.element));
-  const auto edges = edges_of(family_of(mesh.shape));
-  const std::size_t corners = nodes.size();
-  for (std::size_t c = 0; c < corners; ++c) {
-    const int i = nodes[c], j = nodes[(c + 1) % corners];
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      const int a = element[at(edges[e][0])], b = element[at(edges[e][1])];
-      if ((a == i && b == j) || (a == j && b == i)) nodes.push_back(element[at(corner_count(mesh.shape)) + e]);
-    }
-  }
-  return nodes;
-}
-
 using Triangles = std::vector<std::array<int, 3>>;
 
 /// Cuts a quadrilateral at its lowest node.
@@ -50,6 +33,22 @@ std::vector<int> element_parts::face_corners(const ElementMesh& mesh, const Elem
   for (const int n : faces_of(family_of(mesh.shape))[at(face.face)])
     if (n >= 0) corners.push_back(nodes[at(n)]);
   return corners;
+}
+
+std::vector<int> element_parts::face_nodes(const ElementMesh& mesh, const ElementFace& face) {
+  std::vector<int> nodes = face_corners(mesh, face);
+  if (order_of(mesh.shape) == 1) return nodes;
+  const auto element = mesh.element(at(face.element));
+  const auto edges = edges_of(family_of(mesh.shape));
+  const std::size_t corners = nodes.size();
+  for (std::size_t c = 0; c < corners; ++c) {
+    const int i = nodes[c], j = nodes[(c + 1) % corners];
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const int a = element[at(edges[e][0])], b = element[at(edges[e][1])];
+      if ((a == i && b == j) || (a == j && b == i)) nodes.push_back(element[at(corner_count(mesh.shape)) + e]);
+    }
+  }
+  return nodes;
 }
 
 std::vector<ElementFace> element_parts::sorted_faces(const ElementMesh& mesh) {

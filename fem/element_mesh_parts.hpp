@@ -56,6 +56,8 @@ void for_each_face(std::span<const ElementFace> sorted, Act&& act) {
 
 /// The corners of a face of an element, three or four, outward.
 std::vector<int> face_corners(const ElementMesh& mesh, const ElementFace& face);
+/// The same with the middle nodes of the face's edges behind them, if there are any.
+std::vector<int> face_nodes(const ElementMesh& mesh, const ElementFace& face);
 
 /// Adds to each group the middle nodes of its elements' and of its own edges. `edge_node` holds the middle node of each
 /// edge of the elements.

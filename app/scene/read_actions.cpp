@@ -95,19 +95,17 @@ void read_move(const TableReader& table, Constraint& constraint) {
 
 /// The quantities of a load belong either to `where` or to `at`.
 void check_load_keys(const TableReader& table) {
-  const std::vector<std::string> of_region{"total_force", "total_torque", "force_per_node", "traction"},
+  const std::vector<std::string> of_region{"total_force", "total_torque", "force_per_node",
+                                           "traction",    "pressure",     "line_force"},
       of_point{"force", "torque"};
   const bool at = table.has("at"), where = table.has("where");
   if (at == where) return;
   table.refuse(at ? of_region : of_point,
                at ? "goes with where, not with at"
                   : "goes with at, not with where (there: total_force, total_torque, traction)");
-  std::vector<std::string> wanted = at ? of_point : of_region;
-  const std::vector<std::string> unsupported{"pressure", "line_force"};
+  const std::vector<std::string>& wanted = at ? of_point : of_region;
   const auto given = [&](const std::string& key) { return table.has(key); };
-  if (std::none_of(of_region.begin(), of_region.end(), given) &&
-      std::none_of(of_point.begin(), of_point.end(), given) &&
-      std::none_of(unsupported.begin(), unsupported.end(), given))
+  if (std::none_of(of_region.begin(), of_region.end(), given) && std::none_of(of_point.begin(), of_point.end(), given))
     table.error(fmt::format("applies nothing; must have {}", join_or(wanted)));
 }
 
@@ -151,6 +149,9 @@ Load read_load(const TableReader& table, const std::vector<std::string>& bodies)
   load.force = table.vector("force");
   load.torque = table.vector("torque");
   load.traction = table.vector("traction");
+  load.pressure = table.number("pressure");
+  load.pressure_follows = table.boolean("follower").value_or(true);
+  load.line_force = table.vector("line_force");
   load.follower = table.boolean("follower").value_or(false);
   load.schedule = read_schedule(table);
   check_load_keys(table);

@@ -48,6 +48,18 @@ InitialMotion read_initial(const TableReader& initial) {
           initial.vector("about")};
 }
 
+Fluid read_fluid(const TableReader& table) {
+  Fluid fluid;
+  fluid.place = table.place();
+  fluid.pressure = table.number("pressure");
+  fluid.bulk_modulus = table.number("bulk_modulus");
+  fluid.volume = table.number("volume");
+  fluid.density = table.number("density").value_or(0);
+  fluid.schedule = read_schedule(table);
+  if (!table.has("bulk_modulus")) table.refuse({"volume"}, "is used only beside bulk_modulus");
+  return fluid;
+}
+
 Transform read_transform(const TableReader& transform) {
   Transform result;
   const TableReader rotate = transform.table("rotate");
@@ -167,6 +179,7 @@ Body read_body(const TableReader& table, const Materials& materials, const std::
   if (model && is_mesh_model(body)) read_elements(table, body);
   if (model && is_shell(body)) read_shell(table, body);
   body.initial = read_initial(table.table("initial"));
+  if (table.has("fluid")) body.fluid = read_fluid(table.table("fluid"));
   return body;
 }
 

@@ -14,7 +14,7 @@ struct QuantityName {
   Quantity quantity;
 };
 
-constexpr std::array<QuantityName, 18> quantity_names{{
+constexpr std::array<QuantityName, 20> quantity_names{{
     {"displacement", Quantity::displacement},
     {"position", Quantity::position},
     {"rotation", Quantity::rotation},
@@ -33,9 +33,12 @@ constexpr std::array<QuantityName, 18> quantity_names{{
     {"max_displacement", Quantity::max_displacement},
     {"mean_displacement", Quantity::mean_displacement},
     {"frequency", Quantity::frequency},
+    {"fluid_volume", Quantity::fluid_volume},
+    {"fluid_pressure", Quantity::fluid_pressure},
 }};
 
 bool is_at_points(Quantity q) { return q <= Quantity::stress; }
+bool is_of_fluid(Quantity q) { return q == Quantity::fluid_volume || q == Quantity::fluid_pressure; }
 bool is_on_nodes(Quantity q) { return q == Quantity::force || q == Quantity::moment; }
 
 void need(const TableReader& probe, const char* key, const std::string& quantity, const char* what) {
@@ -54,6 +57,7 @@ void check_quantity(const TableReader& probe, Quantity quantity, const std::stri
   } else {
     probe.refuse({"at"}, unused);
   }
+  if (is_of_fluid(quantity)) probe.refuse({"where"}, unused);
   if (is_on_nodes(quantity)) need(probe, "where", name, "a region");
   if (is_at_points(quantity) || is_on_nodes(quantity)) need(probe, "body", name, "the name of a body");
   if (quantity == Quantity::frequency) {

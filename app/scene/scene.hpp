@@ -142,6 +142,15 @@ struct ThicknessUse {
   double value = 0;  ///< [m]
 };
 
+/// What fills a closed body: either a pressure or a bulk modulus.
+struct Fluid {
+  Place place;
+  std::optional<double> pressure, bulk_modulus;  ///< [Pa]
+  std::optional<double> volume;                  ///< that it would have without pressure; default: at rest [m³]
+  double density = 0;                            ///< [kg/m³]
+  Schedule schedule;
+};
+
 /// automatic: trilinear on a grid, mls for scattered frames
 enum class WeightKind { automatic, trilinear, linear, mls, shepard, wendland, cubic_spline };
 enum class Blend { automatic, half, full };
@@ -195,6 +204,7 @@ struct Body {
   std::optional<double> drilling;  ///< relative to mu; default: 0.1, affine frames 0.003
   Integration integration = Integration::automatic;
   InitialMotion initial;
+  std::optional<Fluid> fluid;
 
   // Finite elements.
   std::optional<MeshCells> cells;  ///< of generated domains
@@ -237,11 +247,14 @@ struct Constraint {
 struct Load {
   Place place;
   std::string body;
-  std::optional<Region> where;  ///< with total_force, total_torque, force_per_node, traction
+  std::optional<Region> where;  ///< with what acts on a region
   std::optional<Vec3d> at;      ///< with force, torque
   Place at_place;
   std::optional<Vec3d> total_force, total_torque, force_per_node, force, torque;  ///< [N], [N m]
-  std::optional<Vec3d> traction;  ///< dead force per rest area of the selected faces [Pa]
+  std::optional<Vec3d> traction;   ///< dead force per rest area of the selected faces [Pa]
+  std::optional<double> pressure;  ///< against the normals of the selected faces [Pa]
+  bool pressure_follows = true;
+  std::optional<Vec3d> line_force;  ///< on the selected edges [N/m]
   bool follower = false;
   Schedule schedule;
 };
@@ -306,7 +319,9 @@ enum class Quantity {
   angular_momentum,
   max_displacement,
   mean_displacement,
-  frequency
+  frequency,
+  fluid_volume,
+  fluid_pressure
 };
 
 struct Probe {

@@ -48,16 +48,24 @@ Shape load_schema() {
   return table(
       {key("body", text("the name of a body"), "The body.").needed(),
        key("where", region(),
-           "Its nodes, for `total_force`, `total_torque` and `force_per_node`; its faces, for `traction`."),
+           "Its nodes, for `total_force`, `total_torque` and `force_per_node`; its faces, for `traction` and "
+           "`pressure`; its edges, for `line_force`."),
        key("at", vector3("m"), "A material point by its rest position, for `force` and `torque`."),
        key("total_force", vector3("N"), "Shared by volume among what is selected."),
        key("total_torque", vector3("N m"), "Shared likewise."), key("force_per_node", vector3("N"), "On each node."),
        key("force", vector3("N"), "At the point."), key("torque", vector3("N m"), "At the point."),
        key("traction", vector3("Pa"),
            "Force per area of the undeformed surface, on the faces whose nodes `where` selects. Keeps its direction."),
-       key("follower", boolean(), "Turns with the material; not for `traction`.").defaults("false"), over_key(),
-       profile_key(), key("pressure", number("Pa"), "On a surface, against its normal.").not_yet(),
-       key("line_force", vector3("N/m"), "On the edge of a shell.").not_yet()},
+       key("pressure", number("Pa"),
+           "Against the outward normal of the faces whose nodes `where` selects; of an open surface, against the "
+           "normal "
+           "by the right-hand rule of its triangles."),
+       key("line_force", vector3("N/m"),
+           "Force per length of the undeformed edges whose ends `where` selects: the free edges of a surface, where it "
+           "has any."),
+       key("follower", boolean(), "Turns with the material; not for `traction`.")
+           .defaults("false; true for `pressure`"),
+       over_key(), profile_key()},
       {{{"where", "at"}}});
 }
 

@@ -27,6 +27,19 @@ Shape initial_schema() {
                 key("about", vector3("m"), "Point that the rotation leaves where it is.").defaults("the mass centre")});
 }
 
+Shape fluid_schema() {
+  return table({key("pressure", number("Pa"), "Pushes outward; kept whatever the volume."),
+                key("bulk_modulus", number("Pa", above(0)),
+                    "K of the pressure K (V* - V) / V*, where V is the enclosed volume."),
+                key("volume", number("m3", above(0)),
+                    "V* in the end; beside `bulk_modulus`. It grows from the rest volume over the schedule.")
+                    .defaults("the rest volume"),
+                key("density", number("kg/m3", at_least(0)), "Of its weight in `world.gravity`; it has no inertia.")
+                    .defaults("0"),
+                over_key(), profile_key()},
+               {{{"pressure", "bulk_modulus"}}});
+}
+
 Shape transform_schema() {
   const Shape rotate = table(
       {key("axis", vector3("1"), "Axis through the origin.").needed(), key("angle", number("rad"), "Angle.").needed()});
@@ -82,7 +95,7 @@ Shape body_schema() {
           "bound no solid. A value, or a list of which the first that selects a point or a triangle's centre counts."),
       key("radius", number("m", above(0)), "Radius of a meshless line, or of a file's lines."),
       key("inertia", array(vector3("kg m2"), 3, 3), "Inertia of a rigid body.").not_yet(),
-      key("fluid", table({}), "What fills a closed shell.").not_yet()};
+      key("fluid", fluid_schema(), "What fills a closed body: its cavities, or all that its surface encloses.")};
   const std::vector<Key> elements = element_keys();
   keys.insert(keys.end(), elements.begin(), elements.end());
   return table(std::move(keys), {{{"mass", "density"}}}, "model");

@@ -16,13 +16,16 @@ std::vector<Choice> quantities() {
           {"mass", "[kg]"},
           {"energy", "Elastic energy without stabilisation [J]."},
           {"kinetic_energy", "[J]"},
-          {"total_energy", "With stabilisation, kinetic energy and the potential of gravity and dead loads [J]."},
+          {"total_energy",
+           "With stabilisation, kinetic energy and the potential of gravity, dead loads, fluids and pressure on closed "
+           "surfaces [J]."},
           {"momentum", "[kg m/s]"},
           {"angular_momentum", "About `about` [kg m2/s]."},
           {"max_displacement", "Of the nodes [m]."},
           {"mean_displacement", "Of the nodes [m]."},
           {"frequency", "Of `solver.kind = \"modes\"` [1/s]."},
-          {"fluid_volume", "Of a closed shell.", false}};
+          {"fluid_volume", "What the fluid of a body fills [m3]."},
+          {"fluid_pressure", "Of the fluid of a body, at the level of its centre at rest [Pa]."}};
 }
 
 Shape probe_schema() {

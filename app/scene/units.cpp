@@ -34,7 +34,7 @@ constexpr std::array<Dimension, 22> dimensions{{
     {"1/s", "a rate", "2 Hz"},
     {"rad/s", "an angular velocity", "10 degree/s"},
     {"kg/m3", "a density", "1 g/cm3"},
-    {"N/m", "a stiffness", "5 N/mm"},
+    {"N/m", "a force per length", "5 N/mm"},
     {"m2", "an area", "4 cm2"},
     {"m3", "a volume", "1 l"},
     {"Pa s", "a viscosity", "1 mPa s"},

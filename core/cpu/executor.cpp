@@ -252,6 +252,8 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
                             bool tethers_turn) {
   out.tangent = tangent;
   out.inverse_step = history.inverse_step;
+  out.surfaces.clear();
+  out.low_rank.clear();
   out.Q.resize(at(set_.node_count()));
   out.node_blocks.assign(set_.dofs.block_total(), 0.0);
   out.points.resize(at(set_.group_count()) * 24 * kGroupSize);

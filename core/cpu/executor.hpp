@@ -2,6 +2,7 @@
 
 #include "core/cpu/element_executor.hpp"
 #include "core/cpu/shell_executor.hpp"
+#include "core/cpu/surface_tangent.hpp"
 #include "core/cpu/thread_pool.hpp"
 #include "core/model/model.hpp"
 #include "core/physics/point_physics.hpp"
@@ -36,6 +37,8 @@ struct Linearization {
   std::vector<Vec3d> u;             ///< displacements, where there are elements or shells
   std::vector<Mat3d> D;             ///< rotations − I, where there are shells
   AlignedVector<double> E;          ///< StrainHistory::E, where elements or shells are damped
+  std::vector<SurfaceTangent> surfaces;  ///< of surface loads; added by who knows them, as to node_blocks
+  std::vector<RankOne> low_rank;         ///< terms that no matrix holds; products have them
 };
 
 /// Executes a point set on the processor: one pass over groups of points, one gather over frames. No atomics, sums in

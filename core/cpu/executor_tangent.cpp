@@ -114,6 +114,8 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
         for (int i = 0; i < 3; ++i) yn[3 + i] += torque[i];
     }
   });
+  for (const SurfaceTangent& surface : lin.surfaces) add_product(surface, set_.dofs, lin.Q, x, y);
+  for (const RankOne& term : lin.low_rank) add_product(term, x, y);
 }
 
 namespace {
@@ -219,6 +221,7 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out) {
     const double* own = lin.node_blocks.data() + set_.dofs.block_begin(node);
     for (int k = 0; k < set_.dofs.size(node) * set_.dofs.size(node); ++k) diagonal[k] += own[k];
   }
+  for (const SurfaceTangent& surface : lin.surfaces) add_blocks(surface, lin.Q, matrix_out);
   matrix_out.mirror_lower();
 }
 

@@ -32,7 +32,8 @@ bool Model::loads_are_conservative() const {
     return std::any_of(load.nodes.begin(), load.nodes.end(),
                        [](const NodeLoad& n) { return squared_norm(n.torque) > 0; });
   };
-  return followers.empty() && std::none_of(loads.begin(), loads.end(), has_torque);
+  return followers.empty() && std::none_of(loads.begin(), loads.end(), has_torque) &&
+         std::all_of(surfaces.begin(), surfaces.end(), [](const SurfaceLoad& s) { return s.closed; });
 }
 
 State State::at_rest(const Model& model) {

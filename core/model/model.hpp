@@ -4,6 +4,7 @@
 #include "core/math/rotation.hpp"
 #include "core/model/frame_matrices.hpp"
 #include "core/model/point_set.hpp"
+#include "core/model/surface_load.hpp"
 
 #include <array>
 #include <vector>
@@ -95,6 +96,7 @@ struct Model {
   PointSet points;
   std::vector<DeadLoad> loads;
   std::vector<FollowerLoad> followers;
+  std::vector<SurfaceLoad> surfaces;
   std::vector<PrescribedMotion> motions;
   std::vector<FrameConstraint> constraints;  ///< at most one a frame, ascending
   std::vector<Tether> tethers;
@@ -104,7 +106,7 @@ struct Model {
   int constrained_dof_count() const;
   FrameKind kind(int node) const { return frame_kind[at(node)]; }
   bool has_frames() const;  ///< nodes that turn
-  /// Loads have a potential: no torque that keeps its direction in space, no follower.
+  /// Loads have a potential: no torque that keeps its direction in space, no follower, no pressure on an open surface.
   bool loads_are_conservative() const;
 };
 

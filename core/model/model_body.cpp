@@ -53,6 +53,12 @@ FieldValue field_at(const Attachment& a, const State& state) {
   return f;
 }
 
+std::vector<std::vector<int>> ModelBody::faces() const {
+  std::vector<std::vector<int>> faces;
+  for (const auto& t : surface_.triangles) faces.push_back({t.begin(), t.end()});
+  return faces;
+}
+
 std::vector<FacePoint> ModelBody::face_points() const {
   std::vector<FacePoint> points;
   for (const auto& t : surface_.triangles) {

@@ -119,6 +119,9 @@ class ModelBody {
   virtual Attachment attach_volumetric(const Attachment& at) const { return at; }
   /// The nodes that move a point of the surface.
   virtual Attachment attach_surface(std::size_t point) const { return attach(surface_.points[point]); }
+  /// Faces of the surface by its points: corners counter-clockwise seen from outside, then the middle nodes of edges 01
+  /// 12 .. of quadratic ones. Here its triangles.
+  virtual std::vector<std::vector<int>> faces() const;
   /// Quadrature points of all faces: here three a triangle, exact for weights of degree two.
   virtual std::vector<FacePoint> face_points() const;
   /// At each integration point.

@@ -21,6 +21,7 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       model_(system.model()),
       executor_(system.executor()),
       filter_(system.filter()),
+      surfaces_(system.model()),
       state_(state),
       dt_(dt),
       factors_(factors.begin(), factors.end()) {
@@ -37,7 +38,7 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
   for (std::size_t k = 0; k < model_.constraints.size(); ++k)
     constraint_[at(model_.constraints[k].node)] = static_cast<int>(k);
   gradient_.resize(at(model_.dof_count()));
-  if (!model_.followers.empty()) follower_.resize(gradient_.size());
+  if (!model_.followers.empty() || !model_.surfaces.empty()) follower_.resize(gradient_.size());
   increments_.resize(gradient_.size());
   last_increments_.resize(gradient_.size());
   chunk_sums_.resize((n + kNodeGrain - 1) / kNodeGrain);
@@ -124,6 +125,7 @@ void ExplicitStepper::update_forces() {
                      add_node_force(model_.kind(node), state_.D[at(node)], force, couple, torque,
                                     follower_.data() + model_.points.dofs.begin(node));
                    });
+  surfaces_.add_forces(state_, factors_, follower_);
 }
 
 /// What loads do on a node, and all that acts on it.

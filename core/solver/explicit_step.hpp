@@ -66,6 +66,7 @@ class ExplicitStepper {
   const Model& model_;
   CpuExecutor& executor_;
   const DofFilter& filter_;
+  SurfaceLoads surfaces_;
   State& state_;
   double dt_;
 
@@ -78,8 +79,8 @@ class ExplicitStepper {
   std::vector<int> affine_;                           ///< index into it
   std::vector<int> load_begin_;                       ///< by node
   std::vector<PlacedLoad> loads_;
-  std::vector<double> factors_, gradient_, follower_;
-  std::vector<double> increments_, last_increments_;  ///< prescribed, in constraint axes
+  std::vector<double> factors_, gradient_, follower_;  ///< the last: of followers and surface loads
+  std::vector<double> increments_, last_increments_;   ///< prescribed, in constraint axes
   std::vector<double> old_targets_;
   std::vector<Vec3d> old_forces_;  ///< of tethers
   StrainHistory history_;

@@ -13,17 +13,6 @@
 
 namespace fascia {
 
-namespace {
-
-void add_rotation_block(double* block, const Mat3d& rr) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) block[6 * (3 + i) + 3 + j] += rr(i, j);
-}
-
-Mat3d rotation_tangent(const Mat3d& L) { return sym(L) - Mat3d::diagonal(trace(L)); }
-
-}  // namespace
-
 MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings)
     : model_(model),
       settings_(settings),
@@ -31,6 +20,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       executor_(model.points, pool),
       tangent_(model, executor_, filter_, settings),
       conservative_(model.loads_are_conservative()),
+      surfaces_(model),
       state_(State::at_rest(model)) {
   const auto n = at(model.dof_count());
   gradient_.resize(n);
@@ -45,6 +35,7 @@ std::vector<double> zero_factors(const Model& model) {
   int schedules = 0;
   for (const DeadLoad& l : model.loads) schedules = std::max(schedules, l.schedule + 1);
   for (const FollowerLoad& l : model.followers) schedules = std::max(schedules, l.schedule + 1);
+  for (const SurfaceLoad& l : model.surfaces) schedules = std::max({schedules, l.schedule + 1, l.weight_schedule + 1});
   for (const PrescribedMotion& m : model.motions) schedules = std::max(schedules, m.schedule + 1);
   return std::vector<double>(at(schedules), 0.0);
 }
@@ -120,6 +111,7 @@ void MechanicalSystem::add_loads() {
                    [&](int node, const Vec3d& force, const Mat3d& couple, const Vec3d& torque) {
                      add(load_, node, force, couple, torque);
                    });
+  load_energy_ += surfaces_.add_forces(state_, factors_, load_);
 }
 
 /// |x − q − h w|² / (2 h²) + α |x − q|² / (2 h), in the pose form of inertia.hpp.
@@ -169,6 +161,7 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
               lin.node_blocks.data() + dofs.block_begin(n.node),
               rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) * -factors_[at(load.schedule)]);
   }
+  surfaces_.linearize(state_, factors_, lin);
   if (form_.h <= 0) return;
   const double scale = 1 / (form_.h * form_.h), damping_scale = 1 / form_.h;
   for (int i = 0; i < model_.node_count(); ++i) {
@@ -257,13 +250,14 @@ Evaluation MechanicalSystem::evaluate() {
   add_squares(gradient_, part_squares_.residual, part_squares_.reaction);
   double total = 0;
   for (std::size_t p = 0; p < part_squares_.residual.size(); ++p) {
+    const int part = static_cast<int>(p);
     total += part_squares_.residual[p];
     const double residual = std::sqrt(part_squares_.residual[p]);
     const double reference =
         std::sqrt(std::max({part_squares_.load[p] + part_squares_.held_load[p], part_squares_.inertia[p],
-                            part_squares_.reaction[p], executor_.squared_tether_force(static_cast<int>(p))}));
+                            part_squares_.reaction[p], executor_.squared_tether_force(part)}));
     // 4: sums of a few terms of the estimated size in each entry.
-    const double floor = 4 * std::hypot(executor_.rounding(static_cast<int>(p)), inertia_rounding_[p]);
+    const double floor = 4 * std::hypot(executor_.rounding(part), inertia_rounding_[p], surfaces_.rounding(part));
     const double allowed = std::max(settings_.tolerance * reference, floor);
     const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
     if (excess < e.excess && p > 0) continue;
@@ -304,6 +298,7 @@ DirectionReport MechanicalSystem::direction() {
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
   filter_.to_global(direction_);
+  surfaces_.aim(lin_, direction_);
   for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
   for (int node = 0; node < model_.node_count(); ++node)
     report.largest_rotation = std::max(report.largest_rotation, rotation_in(node, direction_.data()));
@@ -311,6 +306,7 @@ DirectionReport MechanicalSystem::direction() {
 }
 
 void MechanicalSystem::apply(double step) {
+  surfaces_.approach(step);
   for (int i = 0; i < model_.node_count(); ++i) {
     const double* d = direction_.data() + model_.points.dofs.begin(i);
     increment_.du[at(i)] += Vec3d{{d[0], d[1], d[2]}} * step;
@@ -330,10 +326,14 @@ void MechanicalSystem::apply(double step) {
   rebuild_state();
 }
 
-void MechanicalSystem::save() { saved_ = increment_; }
+void MechanicalSystem::save() {
+  saved_ = increment_;
+  surfaces_.save();
+}
 
 void MechanicalSystem::restore() {
   increment_ = saved_;
+  surfaces_.restore();
   rebuild_state();
 }
 

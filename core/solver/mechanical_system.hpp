@@ -4,6 +4,7 @@
 #include "core/model/model.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/newton.hpp"
+#include "core/solver/surface_loads.hpp"
 #include "core/solver/tangent_solver.hpp"
 #include "core/solver/time_scheme.hpp"
 
@@ -72,11 +73,13 @@ class MechanicalSystem {
   /// Gradient of the internal energy, loads and inertia: what supports add to hold the model (by degrees of freedom).
   std::span<const double> gradient() const { return gradient_; }
   InternalEnergy internal_energy() const { return internal_; }
-  double load_energy() const { return load_energy_; }  ///< potential of the conservative dead loads [J]
+  double load_energy() const { return load_energy_; }  ///< potential of dead loads and closed surfaces [J]
   const CpuExecutor& executor() const { return executor_; }
   CpuExecutor& executor() { return executor_; }
   const Model& model() const { return model_; }
   const DofFilter& filter() const { return filter_; }
+  /// At the state of the last evaluation.
+  const SurfaceLoads& surfaces() const { return surfaces_; }
   TangentSolver& tangent() { return tangent_; }
 
  private:
@@ -111,6 +114,7 @@ class MechanicalSystem {
   CpuExecutor executor_;
   TangentSolver tangent_;
   bool conservative_;
+  SurfaceLoads surfaces_;
 
   State start_, state_;
   StepForm form_;

@@ -15,6 +15,15 @@ inline void add_node_force(FrameKind kind, const Mat3d& D, const Vec3d& force, c
   add_moment(kind, squared_norm(torque) > 0 ? N + moment_of_torque(torque, A) : N, A, g + 3);
 }
 
+/// Of a moment L = Σ f (Q b)ᵀ on a rigid frame: minus the second derivative of its work f · Q b along rotation
+/// increments.
+inline Mat3d rotation_tangent(const Mat3d& L) { return sym(L) - Mat3d::diagonal(trace(L)); }
+
+inline void add_rotation_block(double* block, const Mat3d& rr) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) block[6 * (3 + i) + 3 + j] += rr(i, j);
+}
+
 /// ω of a motion Q_dot of a rotation Q: the spin of Q_dot Qᵀ.
 inline Vec3d spin_of(const Mat3d& Q_dot, const Mat3d& Q) { return axl(transpose(times_transpose(Q_dot, Q))) * 0.5; }
 

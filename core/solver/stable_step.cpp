@@ -36,11 +36,30 @@ double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector
   return high;
 }
 
+/// Stiffness of enclosed volumes, the largest of their schedules.
+std::vector<RankOne> fluids_of(const Model& model, const State& state) {
+  std::vector<RankOne> fluids;
+  SurfaceLoads surfaces(model);
+  std::vector<double> unused(at(model.dof_count()));
+  surfaces.add_forces(state, zero_factors(model), unused);
+  for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
+    const SurfaceLoad& load = model.surfaces[s];
+    if (load.bulk_modulus > 0)
+      fluids.push_back(
+          {load.bulk_modulus / std::min(load.rest_volume, load.volume), surfaces.volume_gradient(s, state)});
+  }
+  return fluids;
+}
+
 /// The largest eigenvalue of M⁻¹ K on the free degrees of freedom, K with the viscous stress of any time step.
 class HighestFrequency {
  public:
   HighestFrequency(MechanicalSystem& system, const State& state)
-      : executor_(system.executor()), filter_(system.filter()), dofs_(system.model().points.dofs), state_(state) {
+      : executor_(system.executor()),
+        filter_(system.filter()),
+        dofs_(system.model().points.dofs),
+        state_(state),
+        fluids_(fluids_of(system.model(), state)) {
     const Model& model = system.model();
     require_inertia(model, filter_);
     inverse_mass_.resize(dofs_.block_total());
@@ -66,6 +85,7 @@ class HighestFrequency {
     history_.inverse_step = inverse_step;
     executor_.gradient(state_, history_, w);
     executor_.linearize(state_, history_, Tangent::full, lin_);
+    lin_.low_rank = fluids_;
     std::mt19937 random(1);
     for (double& x : y) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
     filter_.clear_fixed(y);
@@ -126,6 +146,7 @@ class HighestFrequency {
   const DofFilter& filter_;
   const DofLayout& dofs_;
   const State& state_;
+  std::vector<RankOne> fluids_;
   StrainHistory history_;
   Linearization lin_;
   std::vector<double> inverse_mass_, global_;

@@ -74,11 +74,20 @@ bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
 }
 
 void TangentSolver::apply_matrix(std::span<const double> local, std::span<double> out) {
-  if (!filter_.turns()) return matrix().multiply(executor_.pool(), local, out);
-  std::copy(local.begin(), local.end(), work_.begin());
-  filter_.to_global(work_);
-  matrix().multiply(executor_.pool(), work_, out);
-  filter_.to_local(out);
+  if (!filter_.turns()) {
+    matrix().multiply(executor_.pool(), local, out);
+  } else {
+    std::copy(local.begin(), local.end(), work_.begin());
+    filter_.to_global(work_);
+    matrix().multiply(executor_.pool(), work_, out);
+    filter_.to_local(out);
+  }
+  low_rank_.add_product(local, out);
+}
+
+void TangentSolver::solve_with_factor(std::span<const double> b, std::span<double> x) {
+  factor().solve(b, x);
+  low_rank_.correct([&](std::span<const double> g, std::span<double> z) { factor().solve(g, z); }, b, x);
 }
 
 TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed,
@@ -86,6 +95,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   const std::size_t n = b.size();
   work_.resize(n);
   executor_.assemble(lin, matrix());
+  low_rank_.set(lin.low_rank, filter_);
   rhs_.assign(b.begin(), b.end());
   if (!prescribed.empty()) {
     solution_.resize(n);
@@ -98,7 +108,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
     std::fill(x.begin(), x.end(), 0.0);
   } else if (direct()) {
     if (!factorize(relinearize, report)) return report;
-    factor().solve(rhs_, x);
+    solve_with_factor(rhs_, x);
   } else {
     report = solve_cg(rhs_, x);
     if (!report.trouble.empty() && !model_.tethers.empty()) {
@@ -109,7 +119,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
       const int iterations = report.iterations;
       report = {};
       if (!factorize(relinearize, report)) return report;
-      factor().solve(rhs_, x);
+      solve_with_factor(rhs_, x);
       report.iterations = iterations;
     }
   }

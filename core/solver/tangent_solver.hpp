@@ -3,6 +3,7 @@
 #include "core/cpu/executor.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/dof_filter.hpp"
+#include "core/solver/low_rank.hpp"
 #include "core/solver/settings.hpp"
 #include "core/solver/vectors.hpp"
 
@@ -44,6 +45,7 @@ class TangentSolver {
   TangentReport solve_cg(std::span<const double> b, std::span<double> x);
   void build_block_jacobi();
   void apply_matrix(std::span<const double> local, std::span<double> out);
+  void solve_with_factor(std::span<const double> b, std::span<double> x);
 
   const Model& model_;
   CpuExecutor& executor_;
@@ -53,6 +55,7 @@ class TangentSolver {
   std::optional<BlockMatrix> matrix_, material_matrix_;
   std::optional<BlockCholesky> cholesky_;
   std::optional<bool> direct_;
+  LowRank low_rank_;
   bool factor_is_preconditioner_ = false;
   double shift_ = 0;  ///< of the last factorisation that needed one
   std::vector<double> inverse_blocks_, work_, rhs_, solution_, chunk_sums_;

@@ -19,6 +19,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   increment_.Ds = start_.D;
   increment_.Ds.set_zero();
   increment_.turned = start_.turned;
+  surfaces_.begin_step();
   form_.scheme = scheme;
   form_.step = form_.reach = form_.h = dt;
   if (scheme == TimeScheme::newmark || scheme == TimeScheme::midpoint) form_.h = 0.5 * dt;
@@ -115,6 +116,7 @@ void MechanicalSystem::predict_strain(const StepMemory& memory) {
 
 State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
   reached_factors_ = factors_;
+  surfaces_.finish_step();
   reached_.reset();
   if (form_.scheme == TimeScheme::implicit_euler && !model_.has_frames()) reached_ = {state_.u, internal_.total()};
   const std::size_t n = start_.u.size();

@@ -97,6 +97,28 @@ const WrongScene kWrongScenes[] = {
     {"newmark_with_automatic_step", "kind = \"static\"", "kind = \"newmark\"\ntime_step = \"auto\"\nduration = 1",
      "solver.time_step", "explicit"},
     {"time_step_missing", "kind = \"static\"", "kind = \"implicit-euler\"\nsteps = 3", "solver", "time_step"},
+    {"pressure_on_no_face", "[solver]",
+     "[[loads]]\nbody = \"beam\"\nwhere = { box = { min = [0.4, -1, -1], max = [0.6, 1, 1] } }\npressure = 1\n[solver]",
+     "loads[0].where", "no face"},
+    {"pressure_at_a_point", "[solver]", "[[loads]]\nbody = \"beam\"\nat = [1, 0.1, 0.1]\npressure = 1\n[solver]",
+     "loads[0].pressure", "with where"},
+    {"line_force_on_no_edge", "[solver]",
+     "[[loads]]\nbody = \"beam\"\nwhere = { box = { min = [0.4, -1, -1], max = [0.45, 1, 1] } }\nline_force = [0, 0, "
+     "1]\n[solver]",
+     "loads[0].where", "no edge"},
+    {"line_force_on_faces", "[solver]", "[[loads]]\nbody = \"beam\"\nwhere = \"all\"\nline_force = [0, 0, 1]\n[solver]",
+     "loads[0].where", "traction"},
+    {"fluid_in_an_open_sheet",
+     "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] } }\ndensity  = 1000\nmaterial = \"soft\"\nframes   = { grid = [3, "
+     "2, 2] }",
+     "rectangle = { origin = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0.2, 0] } }\nthickness = 0.01\ndensity = "
+     "1\nmaterial = \"soft\"\nframes = { grid = [3, 2] }\nfluid = { pressure = 1 }",
+     "bodies.beam.fluid", "is open: "},
+    {"fluid_without_pressure", "material = \"soft\"", "material = \"soft\"\nfluid = { density = 1000 }",
+     "bodies.beam.fluid", "bulk_modulus"},
+    {"fluid_volume_without_modulus", "material = \"soft\"", "material = \"soft\"\nfluid = { pressure = 1, volume = 2 }",
+     "bodies.beam.fluid.volume", "bulk_modulus"},
+    {"probe_of_no_fluid", "quantity = \"mass\"", "quantity = \"fluid_volume\"", "probes.weight", "there is none"},
     {"free_body", "fix   = \"all\"", "fix   = [\"x\"]", "bodies.beam", "translation along y"}};
 
 class BadScene : public SceneRuns, public ::testing::WithParamInterface<WrongScene> {};

@@ -77,12 +77,12 @@ TEST(Overrides, WrongPaths) {
 }
 
 TEST(Overrides, ErrorsOfTheFileComeFirst) {
-  EXPECT_EQ(
-      test::errors_of_beam("titel = 1\n", {"foo=1"}),
-      "a.toml:10:1: bodies.beam.titel: is no known key; known here: model, domain, mass, density, material, "
-      "frames, points, weights, initial, transform, thickness, radius, formulation, order, incompressibility, locking\n"
-      "--set:1:1: foo: is no known key; known here: title, world, materials, bodies, constraints, loads, solver, "
-      "probes, output");
+  EXPECT_EQ(test::errors_of_beam("titel = 1\n", {"foo=1"}),
+            "a.toml:10:1: bodies.beam.titel: is no known key; known here: model, domain, mass, density, material, "
+            "frames, points, weights, initial, transform, thickness, radius, fluid, formulation, order, "
+            "incompressibility, locking\n"
+            "--set:1:1: foo: is no known key; known here: title, world, materials, bodies, constraints, loads, solver, "
+            "probes, output");
 }
 
 }  // namespace
