@@ -5,8 +5,10 @@
 #include "core/model/model.hpp"
 #include "core/model/model_body.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/solver/path_following.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +63,7 @@ struct Simulation {
   std::vector<Schedule> schedules;  ///< index = DeadLoad::schedule and so on
   std::vector<ResolvedProbe> probes;
   std::vector<TetheredMaterial> tethered;
+  std::optional<ControlledPoint> controlled;  ///< of control = "displacement"
   State initial;
   std::vector<std::string> warnings;
   int gravity_load = -1;   ///< index of gravity in Model::loads
@@ -95,7 +98,8 @@ void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< con
 void add_loads(Simulation& simulation);                                 ///< loads.cpp
 void check_support(const Simulation& simulation);                       ///< support.cpp
 void resolve_probes(Simulation& simulation);                            ///< probe_setup.cpp
-/// Registers a schedule. @throws SceneError a sine in statics, which has no time
+void resolve_controlled(Simulation& simulation);                        ///< probe_setup.cpp
+/// Registers a schedule. @throws SceneError a sine in statics, which has no time; "smooth" where a path is followed
 int new_schedule(Simulation& simulation, const Schedule& schedule, const Place& place);
 int body_index(const Simulation& simulation, const std::string& name);
 /// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.

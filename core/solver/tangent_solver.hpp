@@ -33,6 +33,12 @@ class TangentSolver {
   TangentReport solve(const Linearization& at, std::span<const double> prescribed, std::span<const double> b,
                       std::span<double> x, const Relinearize& relinearize);
 
+  /// Factorises K as it is, indefinite or not, and counts the directions in which the equilibrium is unstable. None
+  /// where a pivot vanishes. (path_system.cpp)
+  std::optional<int> factorize_as_is(const Linearization& at);
+  /// Solves with that factor. False where rounding spoils the solution: K is all but singular.
+  bool solve_as_is(std::span<const double> prescribed, std::span<const double> b, std::span<double> x);
+
   /// Cholesky is used, and not CG.
   bool direct();
   BlockMatrix& matrix();
@@ -51,7 +57,7 @@ class TangentSolver {
   SolverSettings settings_;
   CpuVectors vectors_;
   std::optional<BlockMatrix> matrix_, material_matrix_;
-  std::optional<BlockCholesky> cholesky_;
+  std::optional<BlockCholesky> cholesky_, indefinite_;
   std::optional<bool> direct_;
   bool factor_is_preconditioner_ = false;
   double shift_ = 0;  ///< of the last factorisation that needed one
