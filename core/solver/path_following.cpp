@@ -14,7 +14,7 @@ namespace {
 constexpr double kSmallest = 1.0 / 1024, kLongest = 10;  ///< steps, in lengths of the first
 constexpr double kDesiredIterations = 5;
 constexpr int kMostIterations = 15;            ///< of a step; one that needs more is better taken in halves
-constexpr double kLeastCosine = 0.5;           ///< between a step and the path's tangents at its ends
+constexpr double kMostBent = 0.3;              ///< what the mean of the tangents at the ends of a step may miss of it
 constexpr double kSlopeWidth = 2e-4;           ///< load factors apart for the slopes of factors
 constexpr double kRotationPerIteration = 0.8;  ///< [rad]
 
@@ -157,8 +157,11 @@ class PathFollower {
     double length = std::min(length_, kRotationPerStep / std::max(tangent_.largest_rotation * std::abs(rate_), 1e-300));
     const double left = to_go();
     NewtonReport failed;
-    bool never_ends = false;  // the path seemed to come to λ = 1 within the step and does not
-    for (length = std::min(length, left); length >= kSmallest * std::min(first_, left); length *= 0.5) {
+    bool at_extremum = false;  // the step was shortened to a limit point
+    bool never_ends = false;   // the path seemed to come to λ = 1 within the step and does not
+    // The first step may be far too long: its length was a guess.
+    const double smallest = std::min(first_, left) * (run_.steps == 0 ? kSmallest * kSmallest : kSmallest);
+    for (length = std::min(length, left); length >= smallest; length *= 0.5) {
       NewtonReport report = attempt(length);
       if (report.status != NewtonStatus::converged) {
         failed = report;
@@ -171,6 +174,14 @@ class PathFollower {
       const LoadCurve curve{state_.time, rate_ * p, lambda_, rate * p};
       const double s =
           ends_by_displacement() || never_ends ? 2.0 : curve.first_at(1 - 1e-6 * std::abs(curve.b - curve.a));
+      if (s > 1 && !at_extremum && !has_corner() && curve.has_extremum()) {
+        // A step ends there, which locates the limit point to second order.
+        at_extremum = true;
+        if (const double e = curve.extremum(); e > 0.1 && e < 0.9) {
+          length = 2 * e * p;
+          continue;
+        }
+      }
       if (s > 1) return accept(report, end, rate, ends_by_displacement() && length >= left * (1 - 1e-9));
       const bool short_of_it = lambda_ < 1;
       if (s < 1 - 1e-3) report = attempt(s * p);
@@ -219,20 +230,28 @@ class PathFollower {
     return path_rate(end, along < 0 ? -1 : 1);
   }
 
-  /// The step goes along the path's tangents at both of its ends.
+  /// A cubic through both ends with the tangents there explains the step, in displacements and in λ: it did not leave
+  /// the path for another one, and is short enough to show the path's shape.
   bool follows(const PathDirections& end, double rate) const {
     if (!end.usable || !std::isfinite(rate)) return false;
     if (has_corner()) return true;
-    const double step = Translations::norm(system_.step_displacement());
-    const auto along = [&](const PathDirections& tangent, double slope) {
-      const double product = (slope < 0 ? -1 : 1) * dots_.dot(system_.step_displacement(), tangent.d_f);
-      return product >= kLeastCosine * step * dots_.norm(tangent.d_f);
-    };
-    return along(tangent_, rate_) && along(end, rate);
+    const double p = moved(), a = rate_ * p, b = rate * p, dlambda = lambda_ - state_.time;
+    const double off = std::abs(dlambda - 0.5 * (a + b));
+    if (off > kMostBent * std::max({std::abs(dlambda), std::abs(a), std::abs(b)})) return false;
+    const std::span<const Vec3d> du = system_.step_displacement();
+    double squared = 0;
+    for (std::size_t i = 0; i < du.size(); ++i) {
+      const int node = static_cast<int>(i);
+      const Vec3d mean =
+          dots_.translation(tangent_.d_f, node) * (0.5 * a) + dots_.translation(end.d_f, node) * (0.5 * b);
+      squared += squared_norm(du[i] - mean);
+    }
+    return std::sqrt(squared) <= kMostBent * Translations::norm(du);
   }
 
   NewtonReport accept(NewtonReport report, PathDirections& end, double rate, bool done) {
     const double p = moved();
+    if (run_.steps == 0) first_ = std::min(first_, p);
     const bool corner = has_corner();
     const LoadCurve curve{state_.time, rate_ * p, lambda_, rate * p};
     state_ = system_.finish_step(lambda_);
@@ -257,10 +276,10 @@ class PathFollower {
 
   /// @param more  change of the number of unstable directions
   void note_events(const LoadCurve& curve, int more) {
-    const bool limit = (curve.da > 0) != (curve.db > 0);
+    const bool limit = curve.has_extremum();
     std::ostringstream text;
     if (limit)
-      text << "limit point passed at load factor " << curve.extremum() << " (step " << run_.steps << ")";
+      text << "limit point passed at load factor " << curve.value(curve.extremum()) << " (step " << run_.steps << ")";
     else if (more != 0)
       text << "bifurcation passed between load factors " << curve.a << " and " << curve.b << " (step " << run_.steps
            << "): " << std::abs(more) << (more > 0 ? " more" : " fewer")

@@ -37,8 +37,9 @@ struct PathSettings {
 ///
 /// with p = |Δu| over the translations of all nodes (cylindrical arc length), or the controlled displacement. K is
 /// factorised as it is, indefinite past a limit point. Steps grow and shrink with the number of iterations; they are
-/// cut in half where Newton fails or the path turns by more than 60 degrees, down to 1/1024 of the first. λ goes on the
-/// way that makes an angle below 90 degrees with the step before, so that limit points are passed.
+/// cut in half where Newton fails, or where the tangents at both ends do not explain the step (the path bends too far,
+/// or another one was met), down to 1/1024 of the first. λ goes on the way that makes an angle below 90 degrees with
+/// the step before, so that limit points are passed.
 ///
 /// @param factors  of any λ, below 0 and above 1 too
 RunReport run_path(MechanicalSystem& system, State& state, const FactorFunction& factors,

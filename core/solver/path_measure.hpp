@@ -102,9 +102,10 @@ struct LoadCurve {
                       [&](double s) { return value(s) < wanted; });
     return 2;
   }
-  /// The extremum between slopes of different sign.
+  bool has_extremum() const { return (da > 0) != (db > 0); }
+  /// Where it is, between slopes of different sign.
   double extremum() const {
-    return value(bisect(0, 1, [&](double s) { return (slope(s) > 0) == (da > 0); }));
+    return bisect(0, 1, [&](double s) { return (slope(s) > 0) == (da > 0); });
   }
 
  private:
