@@ -62,8 +62,8 @@ class MechanicalSystem {
   // What path following asks for (path_system.cpp).
   /// At the present state, which was evaluated. @param ahead, behind  factors at two load factors `width` apart
   PathDirections path_directions(std::span<const double> ahead, std::span<const double> behind, double width);
-  /// Makes d_r + rate d_f the direction that apply() takes; returns its largest rotation [rad].
-  double steer(const PathDirections& directions, double rate);
+  /// Makes weight d_r + rate d_f the direction that apply() takes; returns its largest rotation [rad].
+  double steer(const PathDirections& directions, double weight, double rate);
   /// Displacements since the start of the step [m].
   std::span<const Vec3d> step_displacement() const { return increment_.du; }
 

@@ -110,7 +110,7 @@ class PathFollower {
   /// One step to where p is `length`, from the state of the last one.
   NewtonReport attempt(double length) {
     begin();
-    move(tangent_, rate_ * length);
+    move(tangent_, 0, rate_ * length);
     const double allowed = displacement() ? 1e-9 * length : 0.1 * length;
     return correct([&](const PathDirections& d) { return (length - moved() - moved_by(d.d_r)) / moved_by(d.d_f); },
                    [&] { return std::abs(moved() - length) <= allowed; });
@@ -121,9 +121,10 @@ class PathFollower {
     return correct([&](const PathDirections&) { return 1 - lambda_; }, [&] { return std::abs(1 - lambda_) < 1e-12; });
   }
 
-  /// Applies d_r + dλ d_f and dλ, less of both where frames would turn too far.
-  void move(const PathDirections& d, double dlambda) {
-    const double part = std::min(1.0, kRotationPerIteration / std::max(system_.steer(d, dlambda), 1e-300));
+  /// Applies weight d_r + dλ d_f and dλ, less of both where frames would turn too far.
+  void move(const PathDirections& d, double weight, double dlambda) {
+    const double turn = system_.steer(d, weight, dlambda);
+    const double part = std::min(1.0, kRotationPerIteration / std::max(turn, 1e-300));
     system_.apply(part);
     lambda_ += part * dlambda;
     system_.set_factors(factors_(lambda_));
@@ -146,7 +147,7 @@ class PathFollower {
       const double dlambda = d.usable ? constraint(d) : 0.0;
       report.status = NewtonStatus::linear_failure;
       if (!d.usable || !std::isfinite(dlambda)) break;
-      move(d, dlambda);
+      move(d, 1, dlambda);
     }
     run_.newton_iterations += report.iterations;
     return report;

@@ -90,8 +90,9 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   return out;
 }
 
-double MechanicalSystem::steer(const PathDirections& directions, double rate) {
-  for (std::size_t i = 0; i < direction_.size(); ++i) direction_[i] = directions.d_r[i] + rate * directions.d_f[i];
+double MechanicalSystem::steer(const PathDirections& directions, double weight, double rate) {
+  for (std::size_t i = 0; i < direction_.size(); ++i)
+    direction_[i] = weight * directions.d_r[i] + rate * directions.d_f[i];
   return largest_rotation_in(direction_);
 }
 
