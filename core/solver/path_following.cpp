@@ -60,7 +60,9 @@ class PathFollower {
     tangent_ = directions();
     if (!tangent_.usable) return give_up({}, "the tangent stiffness is singular at the start: is everything held?");
     if (!(dots_.norm(tangent_.d_f) > 0))
-      return give_up({}, "no load or motion that grows with the load factor moves a node");
+      return give_up({},
+                     "no load or motion that grows with the load factor displaces a node (what only turns nodes is for "
+                     "control = \"load\")");
     if (displacement() && !path_.controlled) path_.controlled = most_moved(system_.model(), tangent_.d_f);
     const double lambda = 1.0 / (path_.load_steps > 0 ? path_.load_steps : 10);
     if (displacement()) {

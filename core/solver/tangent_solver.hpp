@@ -58,6 +58,8 @@ class TangentSolver {
   CpuVectors vectors_;
   std::optional<BlockMatrix> matrix_, material_matrix_;
   std::optional<BlockCholesky> cholesky_, indefinite_;
+  BlockCholesky* as_is_ = nullptr;  ///< what factorize_as_is() left
+  int unstable_ = 0;                ///< negative pivots that it met last
   std::optional<bool> direct_;
   bool factor_is_preconditioner_ = false;
   double shift_ = 0;  ///< of the last factorisation that needed one
