@@ -114,8 +114,8 @@ TEST(Path, StartsFromTheEquilibriumOfConstantLoads) {
 TEST(Path, FollowsAPrescribedMotion) {
   const SceneRun run(
       "snap_through",
-      {"loads=[]", "constraints[1]={body='bar',where={nearest=[1,0.1,0]},fix=['rx','ry']}",
-       "constraints[2]={body='bar',where={nearest=[1,0.1,0]},move={translate=[0,-0.2,0],axes=['x','y','z']}}",
+      {"loads=[]",
+       "constraints[1]={body='bar',where={nearest=[1,0.1,0]},move={translate=[0,-0.2,0],axes=['x','y','z','rx','ry']}}",
        "probes.force={body='bar',where={nearest=[1,0.1,0]},quantity='force'}"});
   ASSERT_TRUE(run.ok());
   for (const auto& row : run.history()) {
