@@ -177,7 +177,7 @@ class PathFollower {
       const LoadCurve curve{state_.time, rate_ * p, lambda_, rate * p};
       const double s =
           ends_by_displacement() || never_ends ? 2.0 : curve.first_at(1 - 1e-6 * std::abs(curve.b - curve.a));
-      if (s > 1 && !at_extremum && !has_corner() && curve.has_extremum()) {
+      if (s > 1 && !at_extremum && !has_corner() && system_.conservative() && curve.has_extremum()) {
         // A step ends there, which locates the limit point to second order.
         at_extremum = true;
         if (const double e = curve.extremum(); e > 0.1 && e < 0.9) {
@@ -200,9 +200,10 @@ class PathFollower {
       }
     }
     begin();
-    give_up(failed, displacement() ? "the path could not be followed; where the controlled displacement turns back "
-                                     "(snap-back) control = \"arc-length\" follows"
-                                   : "the path could not be followed; try more load_steps");
+    const std::string why = failed.status == NewtonStatus::converged ? "steps of any length meet another path; " : "";
+    give_up(failed, why + (displacement() ? "where the controlled displacement turns back (snap-back), only control = "
+                                            "\"arc-length\" follows"
+                                          : "the path could not be followed further; try more load_steps"));
     failed.status = NewtonStatus::limit;
     return failed;
   }
@@ -237,7 +238,8 @@ class PathFollower {
   /// the path for another one, and is short enough to show the path's shape.
   bool follows(const PathDirections& end, double rate) const {
     if (!end.usable || !std::isfinite(rate)) return false;
-    if (has_corner()) return true;
+    // Around a corner they say nothing, and of loads without a potential the tangent is not that of the path.
+    if (has_corner() || !system_.conservative()) return true;
     const double p = moved(), a = rate_ * p, b = rate * p, dlambda = lambda_ - state_.time;
     const double off = std::abs(dlambda - 0.5 * (a + b));
     if (off > kMostBent * std::max({std::abs(dlambda), std::abs(a), std::abs(b)})) return false;
@@ -262,7 +264,7 @@ class PathFollower {
     run_.time = lambda_;
     run_.residual = std::max(run_.residual, report.last.relative);
     run_.residual_floor = std::max(run_.residual_floor, report.last.relative_floor);
-    if (!corner) note_events(curve, end.unstable - tangent_.unstable);
+    if (!corner && system_.conservative()) note_events(curve, end.unstable - tangent_.unstable);
     report.trouble = run_.trouble = describe(end.unstable);
     tangent_ = std::move(end);
     rate_ = rate;

@@ -148,6 +148,23 @@ TEST(Path, AColumnSnapsBackOnTheClosedForm) {
   EXPECT_NEAR(limit_points(run).at(0), 1000 / (3 * std::sqrt(3.0)) / 250, 2e-4);
 }
 
+/// The far face turns back: displacement control stops there and does not leap to another path.
+TEST(Path, DisplacementControlStopsAtSnapBack) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path / "out").string();
+  const ProgramResult result =
+      run_program({FASCIA_EXECUTABLE, "run", std::string(FASCIA_SOURCE_DIR) + "/scenes/snap_back.toml", "--output", out,
+                   "--set", "solver.control=displacement"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("snap-back"), std::string::npos) << result.err;
+  std::ifstream file(folder.path / "out" / "probes.csv");
+  std::string line, last;
+  while (std::getline(file, line)) last = line;
+  // Past the limit point and short of 0.16183 m, where the load factor is 0.74.
+  EXPECT_LT(std::stod(last), 0.77) << last;
+  EXPECT_GT(std::stod(last), 0.70) << last;
+}
+
 /// DaDeppo and Schmidt, J. Appl. Mech. 42 (1975): a circular arch of 215 degrees, clamped and hinged, inextensible, has
 /// its limit load at 8.97 E I / R². Here R = 100, E I = 1e6, E A = 1e8; chords stiffen it, by 0.7 % with 160.
 TEST(Path, ADeepArchHasThePublishedLimitLoad) {

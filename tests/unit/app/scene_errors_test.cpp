@@ -117,8 +117,6 @@ TEST(SceneErrors, NotSupportedYet) {
             "a.toml:9:38: bodies.beam.frames.share: is not supported yet; remove it");
   EXPECT_EQ(errors_of_beam("[couplings.a]\nkind = \"weld\"\n"),
             "a.toml:10:1: couplings: is not supported yet; remove it");
-  EXPECT_EQ(errors_of_beam("[solver]\ncontrol = \"arc-length\"\n"),
-            "a.toml:11:11: solver.control: \"arc-length\" is not supported yet; must be \"load\"");
   EXPECT_EQ(errors_of_load("line_force = [0, 0, 1]\n"),
             "a.toml:13:14: loads[0].line_force: is not supported yet; remove it");
   EXPECT_EQ(errors_of_load("pressure = 1\n"), "a.toml:13:12: loads[0].pressure: is not supported yet; remove it");
