@@ -11,7 +11,7 @@ namespace fascia {
 
 namespace {
 
-constexpr double kSmallest = 1.0 / 1024, kLongest = 10;  ///< steps, in lengths of the first
+constexpr double kSmallest = 1.0 / 1024, kLongest = 100;  ///< steps, in lengths of the first
 constexpr double kDesiredIterations = 5;
 constexpr int kMostIterations = 15;            ///< of a step; one that needs more is better taken in halves
 constexpr double kMostBent = 0.3;              ///< what the mean of the tangents at the ends of a step may miss of it
@@ -137,12 +137,19 @@ class PathFollower {
   NewtonReport correct(const Constraint& constraint, const Satisfied& satisfied) {
     NewtonReport report;
     const int limit = std::min(settings_.max_iterations, kMostIterations);
+    bool polished = false;
+    effort_ = 0;
     for (;; ++report.iterations) {
       report.last = system_.evaluate();
       report.status = NewtonStatus::not_finite;
       if (!report.last.finite()) break;
       report.status = NewtonStatus::converged;
-      if (report.last.converged() && satisfied() && !system_.has_prescribed_increment()) break;
+      if (report.last.converged() && satisfied() && !system_.has_prescribed_increment()) {
+        // Where rounding is the limit, once more: what is left hides how the path goes on.
+        if (report.last.relative <= settings_.tolerance || polished) break;
+        polished = true;
+        effort_ = report.iterations;
+      }
       report.status = NewtonStatus::limit;
       if (report.iterations >= limit) break;
       const PathDirections d = directions();
@@ -268,7 +275,7 @@ class PathFollower {
     report.trouble = run_.trouble = describe(end.unstable);
     tangent_ = std::move(end);
     rate_ = rate;
-    const double growth = std::sqrt(kDesiredIterations / std::max(1, report.iterations));
+    const double growth = std::sqrt(kDesiredIterations / std::max(1, effort_ > 0 ? effort_ : report.iterations));
     length_ = std::min(kLongest * first_, p * std::clamp(growth, 0.5, 2.0));
     done_ = done;
     return report;
@@ -320,6 +327,7 @@ class PathFollower {
   double lambda_ = 0;       ///< of the present state
   double first_ = 0;        ///< length of the first step
   double length_ = 0;       ///< of the next one
+  int effort_ = 0;          ///< iterations of the present step before the last one, where rounding is the limit
   double growth_ = 1;       ///< sign of the controlled displacement
   bool done_ = false;
 };

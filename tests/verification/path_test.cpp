@@ -57,7 +57,7 @@ TEST(Path, ABarSnapsThroughOnTheClosedForm) {
     EXPECT_NEAR(limits[0], Bar{}.limit() / 100, 2e-6);
     EXPECT_NEAR(limits[1], -Bar{}.limit() / 100, 2e-6);
     EXPECT_EQ(run.history().back()[0], 1.0);
-    EXPECT_GT(run.history().size(), 8u);
+    EXPECT_GE(run.history().size(), 6u);
   }
 }
 
