@@ -75,6 +75,14 @@ Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place)
   return X;
 }
 
+void resolve_controlled(Simulation& s) {
+  if (!s.scene.solver.controlled) return;
+  const ControlledDisplacement& wanted = *s.scene.solver.controlled;
+  const int body = body_index(s, wanted.body);
+  Attachment place = s.bodies[at(body)].body->attach(place_on_body(s, body, wanted.at, wanted.at_place));
+  s.controlled = {std::move(place.nodes), std::move(place.influences), normalized(wanted.direction), wanted.to};
+}
+
 void resolve_probes(Simulation& s) {
   for (const Probe& probe : s.scene.probes) {
     ResolvedProbe r;

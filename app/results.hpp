@@ -19,7 +19,8 @@ class ResultFiles {
 
   /// A row of probes.csv. @param time  load factor in statics, number of the mode in modes
   void add_probes(double time, const Snapshot& at);
-  /// The .vtu files of a state. @throws FileError, InputError
+  /// The .vtu files of a state. @param time  in the .pvd, where times must not decrease: of a path its step
+  /// @throws FileError, InputError
   void add_state(double time, const State& state);
   /// Writes the .pvd and probes.csv.
   void finish();

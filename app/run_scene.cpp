@@ -55,6 +55,12 @@ SolverSettings settings_of(const Solver& solver) {
   return s;
 }
 
+PathSettings path_of(const Simulation& s) {
+  const Solver& solver = s.scene.solver;
+  const bool arc = solver.control == StaticControl::arc_length;
+  return {arc ? PathControl::arc_length : PathControl::displacement, solver.load_steps, solver.max_steps, s.controlled};
+}
+
 TimeScheme scheme_of(SolverKind kind) {
   switch (kind) {
     case SolverKind::bdf2:
@@ -128,32 +134,37 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
   Progress progress(options.quiet || options.json, options.verbose);
   SaveRule rule(s.scene.output, statics);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
+  const bool path = s.scene.solver.control != StaticControl::load;
   double output_seconds = 0, saved_time = -1;
+  int saved_step = 0;
   SnapWatch snaps(s);
-  const auto save = [&](double time, const State& at, bool fields) {
+  const auto save = [&](double time, int step, const State& at, bool fields) {
     const Clock::time_point start = Clock::now();
     files.add_probes(time, {&at, &system, 0});
-    if (fields) files.add_state(time, at);
+    if (fields) files.add_state(path ? step : time, at);
     if (fields) saved_time = time;
+    if (fields) saved_step = step;
     output_seconds += seconds_since(start);
   };
   const auto observe = [&](const StepInfo& step, const State& at, MechanicalSystem&) {
     out.times.steps.push_back(step.seconds);
     progress.update(step);
     const bool due = rule.save(step);
-    if (due || statics) save(step.time, at, due);
+    if (due || statics) save(step.time, step.step, at, due);
     out.stabilization = system.internal_energy().stabilization;
-    if (statics) snaps.look(step.time, system.internal_energy().elastic);
+    if (statics && !path) snaps.look(step.time, system.internal_energy().elastic);
     return interrupted == 0;
   };
   const Clock::time_point start = Clock::now();
-  if (statics) {
+  if (path) {
+    out.run = run_path(system, state, factors, settings, path_of(s), observe);
+  } else if (statics) {
     out.run = run_statics(system, state, factors, settings, {s.scene.solver.load_steps}, observe);
   } else {
     system.set_factors(factors(0));
     system.begin_step(state, 0);
     system.evaluate();
-    save(0, state, true);
+    save(0, 0, state, true);
     if (s.scene.solver.kind == SolverKind::central_differences) {
       const auto observed = [&](const StepInfo& step) {
         out.times.steps.push_back(step.seconds);
@@ -162,7 +173,7 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
       };
       out.run = run_explicit(system, state, factors, {s.scene.solver.time_step, s.scene.solver.steps, observed},
                              [&](const StepInfo& step, const State& at, MechanicalSystem&) {
-                               save(step.time, at, true);
+                               save(step.time, step.step, at, true);
                                out.stabilization = system.internal_energy().stabilization;
                                return interrupted == 0;
                              });
@@ -174,14 +185,15 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
   progress.finish();
   out.times.solve = seconds_since(start) - output_seconds;
   // What was computed up to a failure is a result too.
-  if (out.run.status != RunStatus::converged && saved_time != state.time) {
+  const bool unsaved = path ? saved_step != out.run.steps || saved_step == 0 : saved_time != state.time;
+  if (out.run.status != RunStatus::converged && unsaved) {
     if (statics && out.run.steps > 0) {
-      files.add_state(state.time, state);
+      files.add_state(path ? out.run.steps : state.time, state);
     } else {
       system.set_factors(factors(state.time));
       system.begin_step(state, 0);
       system.evaluate();
-      save(state.time, state, true);
+      save(state.time, out.run.steps, state, true);
     }
   }
   add_result_warnings(s, state, out.run, out.warnings);

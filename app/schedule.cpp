@@ -31,4 +31,16 @@ double schedule_factor(const Schedule& schedule, double time, bool statics) {
   return std::holds_alternative<SmoothProfile>(schedule.profile) ? s * s * (3 - 2 * s) : s;
 }
 
+double path_factor(const Schedule& schedule, double load_factor) {
+  const auto* table = std::get_if<TableProfile>(&schedule.profile);
+  if (table == nullptr) return load_factor;
+  const auto& points = table->points;
+  const std::size_t last = points.size() - 1;
+  const double t = load_factor * points[last][0];
+  const bool before = t < 0 && points[0][0] <= 0, after = t > points[last][0];
+  if (last == 0 || (!before && !after)) return interpolate(*table, t);
+  const auto &a = points[before ? 0 : last - 1], &b = points[before ? 1 : last];
+  return a[1] + (b[1] - a[1]) * (t - a[0]) / (b[0] - a[0]);
+}
+
 }  // namespace fascia::app

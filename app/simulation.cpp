@@ -132,13 +132,18 @@ double model_memory(const Simulation& s) {
 
 std::vector<double> Simulation::factors(double time) const {
   std::vector<double> f;
-  for (const Schedule& s : schedules) f.push_back(schedule_factor(s, time, scene.solver.kind == SolverKind::statics));
+  const bool statics = scene.solver.kind == SolverKind::statics, path = scene.solver.control != StaticControl::load;
+  for (const Schedule& s : schedules) f.push_back(path ? path_factor(s, time) : schedule_factor(s, time, statics));
   return f;
 }
 
 int new_schedule(Simulation& s, const Schedule& schedule, const Place& place) {
   if (s.scene.solver.kind == SolverKind::statics && std::holds_alternative<SineProfile>(schedule.profile))
     throw SceneError({{place, "a sine profile needs time; use a dynamic solver, or a table of [load factor, factor]"}});
+  if (s.scene.solver.control != StaticControl::load && std::holds_alternative<SmoothProfile>(schedule.profile))
+    throw SceneError({{place,
+                       "a smooth profile does not go with a load factor that the path decides (solver.control); "
+                       "use \"linear\" or a table"}});
   s.schedules.push_back(schedule);
   return static_cast<int>(s.schedules.size()) - 1;
 }
@@ -211,6 +216,7 @@ Simulation build_simulation(Scene scene) {
       !(s.model.loads.empty() && s.model.followers.empty() && s.model.surfaces.empty()))
     s.warnings.push_back("modes are those of the unloaded rest state: gravity, loads and fluids are not used");
   resolve_probes(s);
+  resolve_controlled(s);
   return s;
 }
 

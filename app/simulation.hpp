@@ -5,8 +5,10 @@
 #include "core/model/model.hpp"
 #include "core/model/model_body.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/solver/path_following.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +26,7 @@ struct SimulatedBody {
   Selectable selectable_nodes() const;
   /// Points of the surface, all on the boundary.
   Selectable selectable_surface() const;
-  bool vertices = false;                  ///< its nodes do not turn
+  bool vertices = false;  ///< its nodes do not turn
   const char* node_word() const { return vertices ? "node" : "frame"; }
   const std::vector<BodyGroup>* groups() const;  ///< null where the body has no mesh
 };
@@ -69,6 +71,7 @@ struct Simulation {
   std::vector<ResolvedProbe> probes;
   std::vector<TetheredMaterial> tethered;
   std::vector<FluidOfBody> fluids;
+  std::optional<ControlledPoint> controlled;  ///< of control = "displacement"
   State initial;
   std::vector<std::string> warnings;
   int gravity_load = -1;   ///< index of gravity in Model::loads
@@ -107,11 +110,12 @@ void add_pressure(Simulation& simulation, int body, const Load& load, int schedu
 void add_fluids(Simulation& simulation);           ///< surface_loads.cpp
 void check_support(const Simulation& simulation);  ///< support.cpp
 void resolve_probes(Simulation& simulation);       ///< probe_setup.cpp
+void resolve_controlled(Simulation& simulation);   ///< probe_setup.cpp
 struct FluidState {
   double volume = 0, pressure = 0;  ///< [m³]; at the level of its centre at rest [Pa]
 };
 FluidState fluid_state(const Simulation& simulation, int fluid, const State& state);
-/// Registers a schedule. @throws SceneError a sine in statics, which has no time
+/// Registers a schedule. @throws SceneError a sine in statics, which has no time; "smooth" where a path is followed
 int new_schedule(Simulation& simulation, const Schedule& schedule, const Place& place);
 int body_index(const Simulation& simulation, const std::string& name);
 /// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.

@@ -61,7 +61,7 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
   for (const TableReader& constraint : table.tables("constraints"))
     scene.constraints.push_back(read_constraint(constraint, bodies));
   for (const TableReader& load : table.tables("loads")) scene.loads.push_back(read_load(load, bodies));
-  scene.solver = read_solver(table);
+  scene.solver = read_solver(table, bodies);
   const std::optional<SolverKind> kind = read_solver_kind(table);
   for (const TableReader& probe : table.tables("probes")) scene.probes.push_back(read_probe(probe, bodies, kind));
   scene.output = read_output(table, path.stem().string(), kind);

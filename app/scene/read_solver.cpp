@@ -65,11 +65,49 @@ void read_time(const TableReader& table, Solver& solver) {
   if (solver.duration && solver.time_step > 0) solver.steps = steps_of(table, *solver.duration, solver.time_step);
 }
 
+/// A displacement to control, of the keys of path following.
+std::optional<ControlledDisplacement> read_controlled(const TableReader& solver,
+                                                      const std::vector<std::string>& bodies) {
+  const TableReader table = solver.table("controlled");
+  if (!table.usable()) return std::nullopt;
+  ControlledDisplacement controlled;
+  controlled.body = read_body_name(table, bodies);
+  controlled.at = table.vector("at").value_or(Vec3d{});
+  controlled.at_place = table.place("at");
+  controlled.direction = table.direction("direction").value_or(Vec3d{});
+  controlled.to = table.number("to");
+  if (controlled.to && *controlled.to == 0)
+    table.error("to", "0 is where the run starts; must be a length in m other than 0");
+  return controlled;
+}
+
+/// How a static path is followed, and what does not go with that.
+void read_control(const TableReader& table, const std::vector<std::string>& bodies, Solver& solver) {
+  const std::string control = table.text("control").value_or("load");
+  solver.max_steps = table.integer("max_steps").value_or(solver.max_steps);
+  if (control != "displacement")
+    table.refuse({"controlled"}, "is used only with control = \"displacement\"");
+  else
+    solver.controlled = read_controlled(table, bodies);
+  if (control == "load")
+    return table.refuse({"max_steps"}, "is used only with control = \"displacement\" or \"arc-length\"");
+  solver.control = control == "displacement" ? StaticControl::displacement : StaticControl::arc_length;
+  const std::string with = fmt::format("does not go with control = \"{}\"", control);
+  const TableReader linear = table.table("linear"), newton = table.table("newton");
+  if (linear.text("kind") == "cg")
+    linear.error("kind",
+                 fmt::format("\"cg\" {}, which factorises the stiffness; must be \"auto\" or \"cholesky\"", with));
+  if (newton.text("on_limit") == "continue")
+    newton.error("on_limit", fmt::format("\"continue\" {}; must be \"stop\"", with));
+  if (table.text("tangent") == "material")
+    table.error("tangent", fmt::format("\"material\" {}, which needs the geometric stiffness; must be \"full\"", with));
+}
+
 /// Keys that only some kinds use.
 void check_kind(const TableReader& table, const Solver& solver) {
   const std::string unused = fmt::format("is not used by kind = \"{}\"", table.text("kind").value_or("static"));
   if (!is_dynamic(solver.kind)) table.refuse({"time_step", "duration", "steps"}, unused);
-  if (solver.kind != SolverKind::statics) table.refuse({"load_steps", "control"}, unused);
+  if (solver.kind != SolverKind::statics) table.refuse({"load_steps", "control", "controlled", "max_steps"}, unused);
   if (solver.kind != SolverKind::modes) table.refuse({"count"}, unused);
   if (solver.kind == SolverKind::central_differences) table.refuse({"newton", "linear", "tangent"}, unused);
 }
@@ -95,7 +133,7 @@ std::optional<SolverKind> read_solver_kind(const TableReader& scene) {
   return SolverKind::statics;
 }
 
-Solver read_solver(const TableReader& scene) {
+Solver read_solver(const TableReader& scene, const std::vector<std::string>& bodies) {
   const TableReader table = scene.table("solver");
   Solver solver;
   solver.place = table.place();
@@ -106,6 +144,7 @@ Solver read_solver(const TableReader& scene) {
   if (is_dynamic(solver.kind)) read_time(table, solver);
   if (const Value* load_steps = table.value("load_steps"); load_steps && !load_steps->as_string())
     solver.load_steps = *table.integer("load_steps");
+  if (kind == SolverKind::statics) read_control(table, bodies, solver);
   solver.modes = table.integer("count").value_or(solver.modes);
   read_newton(table.table("newton"), solver);
   read_linear(table.table("linear"), solver);

@@ -75,7 +75,7 @@ std::vector<TableReader> read_choices(const TableReader& table, std::string_view
 Constraint read_constraint(const TableReader& table, const std::vector<std::string>& bodies);
 Load read_load(const TableReader& table, const std::vector<std::string>& bodies);
 World read_world(const TableReader& scene);
-Solver read_solver(const TableReader& scene);
+Solver read_solver(const TableReader& scene, const std::vector<std::string>& bodies);
 
 /// The kind of the solver; none where it is wrong.
 std::optional<SolverKind> read_solver_kind(const TableReader& scene);

@@ -278,6 +278,17 @@ enum class LinearKind { automatic, cg, cholesky };
 enum class PreconditionerKind { automatic, none, jacobi, block_jacobi, cholesky };
 enum class OnLimit { stop, proceed };
 
+enum class StaticControl { load, displacement, arc_length };
+
+/// The displacement that control = "displacement" prescribes.
+struct ControlledDisplacement {
+  std::string body;
+  Vec3d at{};  ///< rest position [m]
+  Place at_place;
+  Vec3d direction{};
+  std::optional<double> to;  ///< [m]
+};
+
 struct Solver {
   Place place;
   SolverKind kind = SolverKind::statics;
@@ -287,6 +298,9 @@ struct Solver {
   int steps = 0;                     ///< dynamic kinds: from `steps`, or duration / time_step rounded up
   std::optional<double> duration;    ///< [s], where it was given
   int load_steps = 0;                ///< 0: automatic
+  StaticControl control = StaticControl::load;
+  std::optional<ControlledDisplacement> controlled;
+  int max_steps = 500;  ///< of a path that is followed
   int modes = 10;
   int newton_max_iterations = 50;
   double newton_tolerance = 1e-8;

@@ -35,6 +35,23 @@ Shape linear_schema() {
        key("tolerance", number("1", inside(0, 1)), "Relative residual of conjugate gradients.").defaults("1e-6")});
 }
 
+std::vector<Choice> controls() {
+  return {{"load", "The load factor grows from 0 to 1."},
+          {"displacement",
+           "One displacement grows, and the load factor follows: through limit points, not through "
+           "snap-back."},
+          {"arc-length",
+           "The path is followed by its length, the load factor may fall: through limit points and "
+           "snap-back, to where it first is 1."}};
+}
+
+Shape controlled_schema() {
+  return table({key("body", text("the name of a body"), "The body.").needed(),
+                key("at", vector3("m"), "A material point by its rest position.").needed(),
+                key("direction", vector3("1"), "Its displacement along this direction is prescribed.").needed(),
+                key("to", number("m"), "Where the run ends; without it where the load factor first is 1.")});
+}
+
 std::vector<Choice> kinds() {
   return {{"static", "Equilibrium."},
           {"implicit-euler", "Dynamics, first order; damps motion."},
@@ -67,13 +84,18 @@ Key solver_schema() {
            key("duration", number("s", above(0)), "Of dynamics; or `steps`."),
            key("steps", integer(between(1, many)), "Of dynamics; or `duration`. Not with `time_step = \"auto\"`."),
            key("count", integer(between(1, 10000)), "Of `kind = \"modes\"`: how many.").defaults("10"),
-           key("load_steps", one_of({choice({{"auto", "As few as converge."}}), integer(between(1, many))}),
-               "Of `kind = \"static\"`.")
+           key("load_steps",
+               one_of({choice({{"auto", "As few as converge; of `control` other than `\"load\"` as 10."}}),
+                       integer(between(1, many))}),
+               "Of `kind = \"static\"`; of `control` other than `\"load\"` the first step is as long as one of these, "
+               "the others follow the path's need.")
                .defaults("\"auto\""),
-           key("control",
-               choice({{"load", "The load factor grows."}, {"displacement", "", false}, {"arc-length", "", false}}),
-               "Of `kind = \"static\"`.")
-               .defaults("\"load\""),
+           key("control", choice(controls()), "Of `kind = \"static\"`.").defaults("\"load\""),
+           key("controlled", controlled_schema(),
+               "Of `control = \"displacement\"`; without it the translation of a node that answers the loads most."),
+           key("max_steps", integer(between(1, many)),
+               "Of `control = \"displacement\"` and `\"arc-length\"`: the run gives up there.")
+               .defaults("500"),
            key("newton", newton_schema(), "The non-linear solver; not of `kind = \"explicit\"`."),
            key("linear", linear_schema(), "The linear solver; not of `kind = \"explicit\"`."),
            key("tangent", choice({{"full", "With the geometric stiffness."}, {"material", "Without it."}}),

@@ -30,12 +30,13 @@ struct BlockCholesky::Impl {
   // Reused by every solve.
   cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
-  Impl(const BlockMatrix& pattern, const DofFilter& f) : matrix(pattern, f), filter(f) {
+  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots) : matrix(pattern, f), filter(f) {
     hold_to_one_thread();
     cholmod_start(&common);
     common.print = 0;
     common.quick_return_if_not_posdef = 1;
-    common.final_ll = 1;  // LDLᵀ, its choice for small matrices, would accept negative pivots
+    common.final_ll = pivots == Pivots::positive;  // LDLᵀ, its choice for small matrices, accepts negative pivots
+    if (pivots == Pivots::any) common.supernodal = CHOLMOD_SIMPLICIAL;
     const auto n = static_cast<std::size_t>(matrix.size);
     sparse.nrow = sparse.ncol = n;
     sparse.nzmax = matrix.row.size();
@@ -64,8 +65,8 @@ struct BlockCholesky::Impl {
   Impl& operator=(const Impl&) = delete;
 };
 
-BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter)
-    : impl_(std::make_unique<Impl>(pattern, filter)) {}
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots)
+    : impl_(std::make_unique<Impl>(pattern, filter, pivots)) {}
 BlockCholesky::~BlockCholesky() = default;
 BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
 BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
@@ -79,6 +80,16 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const Blo
   cholmod_factorize(&m.sparse, m.factor, &m.common);
   if (m.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   return m.common.status == CHOLMOD_OK && m.factor->minor == m.factor->n;
+}
+
+int BlockCholesky::negative_pivots() const {
+  const cholmod_factor& L = *impl_->factor;
+  if (L.is_ll != 0) return 0;
+  const auto* begin = static_cast<const int*>(L.p);
+  const auto* value = static_cast<const double*>(L.x);  // D stands first in each column
+  int count = 0;
+  for (std::size_t j = 0; j < L.n; ++j) count += value[begin[j]] < 0 ? 1 : 0;
+  return count;
 }
 
 void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const {

@@ -11,10 +11,16 @@ struct BlockCholesky::Impl {
   FreeMatrix matrix;
   const DofFilter& filter;
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> llt;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> ldlt;
+  bool any_pivots;
   Eigen::VectorXd rhs;
 
-  Impl(const BlockMatrix& pattern, const DofFilter& f) : matrix(pattern, f), filter(f), rhs(matrix.size) {
-    llt.analyzePattern(view());
+  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots)
+      : matrix(pattern, f), filter(f), any_pivots(pivots == Pivots::any), rhs(matrix.size) {
+    if (any_pivots)
+      ldlt.analyzePattern(view());
+    else
+      llt.analyzePattern(view());
   }
   Sparse view() const {
     return {
@@ -23,8 +29,8 @@ struct BlockCholesky::Impl {
   }
 };
 
-BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter)
-    : impl_(std::make_unique<Impl>(pattern, filter)) {}
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots)
+    : impl_(std::make_unique<Impl>(pattern, filter, pivots)) {}
 BlockCholesky::~BlockCholesky() = default;
 BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
 BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
@@ -39,15 +45,27 @@ double BlockCholesky::factor_flops() const {
 bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
   Impl& m = *impl_;
   m.matrix.fill(matrix, m.filter, shift, shift_from);
+  if (m.any_pivots) {
+    m.ldlt.factorize(m.view());
+    return m.ldlt.info() == Eigen::Success;
+  }
   m.llt.factorize(m.view());
   return m.llt.info() == Eigen::Success;
+}
+
+int BlockCholesky::negative_pivots() const {
+  return impl_->any_pivots ? static_cast<int>((impl_->ldlt.vectorD().array() < 0).count()) : 0;
 }
 
 void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const {
   Impl& m = *impl_;
   for (std::size_t i = 0; i < b.size(); ++i)
     if (m.matrix.number[i] >= 0) m.rhs[m.matrix.number[i]] = b[i];
-  const Eigen::VectorXd solution = m.llt.solve(m.rhs);
+  Eigen::VectorXd solution;
+  if (m.any_pivots)
+    solution = m.ldlt.solve(m.rhs);
+  else
+    solution = m.llt.solve(m.rhs);
   for (std::size_t i = 0; i < b.size(); ++i) x[i] = m.matrix.number[i] >= 0 ? solution[m.matrix.number[i]] : 0.0;
 }
 

@@ -1,6 +1,7 @@
 #include "core/solver/drivers.hpp"
 
 #include "core/solver/clock.hpp"
+#include "core/solver/path_following.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +9,7 @@
 
 namespace fascia {
 
-namespace {
-
-/// Boundary rotations are spread over steps of at most this angle: their linear prediction still holds there [rad].
-constexpr double kRotationPerStep = 0.35;
-
-std::string sentence(const NewtonReport& r, const SolverSettings& settings) {
+std::string failure_sentence(const NewtonReport& r, const SolverSettings& settings) {
   std::ostringstream out;
   switch (r.status) {
     case NewtonStatus::converged:
@@ -39,6 +35,8 @@ std::string sentence(const NewtonReport& r, const SolverSettings& settings) {
   if (!r.trouble.empty()) out << "; " << r.trouble;
   return out.str();
 }
+
+namespace {
 
 void count(RunReport& run, const NewtonReport& newton) {
   run.newton_iterations += newton.iterations;
@@ -90,8 +88,13 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
       increment = 0.5 * (target - reached);
       if (increment >= kSmallest) continue;
       std::ostringstream message;
-      message << "load step " << run.steps + 1 << " (load factor " << target << "): " << sentence(report, settings)
-              << "; try more load_steps, a stiffer material or smaller loads, or implicit-euler with damping";
+      message << "load step " << run.steps + 1 << " (load factor " << target
+              << "): " << failure_sentence(report, settings);
+      if (near_limit_point(system, state, factors, reached))
+        message << "; the structure reaches a limit point or a bifurcation just there (its tangent stiffness becomes "
+                   "singular): use control = \"arc-length\" to follow it";
+      else
+        message << "; try more load_steps, a stiffer material or smaller loads, or implicit-euler with damping";
       run.message = message.str();
       run.status = failure_status(report);
       run.residual = report.last.finite() ? report.last.relative : 0.0;
@@ -163,7 +166,7 @@ RunReport run_implicit(MechanicalSystem& system, State& state, const FactorFunct
     if (!acceptable(report, settings)) {
       state = before;
       std::ostringstream message;
-      message << "step " << step << " (t = " << end << " s): " << sentence(report, settings)
+      message << "step " << step << " (t = " << end << " s): " << failure_sentence(report, settings)
               << "; try a smaller time_step, damping, or newton.on_limit = \"continue\"";
       run.message = message.str();
       run.status = failure_status(report);

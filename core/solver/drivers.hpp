@@ -29,10 +29,16 @@ struct RunReport {
   int steps = 0, newton_iterations = 0, linear_iterations = 0;
   double residual = 0, residual_floor = 0;  ///< largest of the steps, relative
   double time = 0;
-  int steps_at_limit = 0;  ///< accepted above the tolerance (proceed_on_limit)
-  std::string trouble;     ///< of the last step's last direction: its equilibrium may be unstable
-  std::string message;     ///< one sentence on what went wrong, where, and what to try
+  int steps_at_limit = 0;           ///< accepted above the tolerance (proceed_on_limit)
+  std::string trouble;              ///< of the last step's last direction: its equilibrium may be unstable
+  std::vector<std::string> events;  ///< limit points and bifurcations that a followed path passed, a sentence each
+  std::string message;              ///< one sentence on what went wrong, where, and what to try
 };
+
+/// Why a step did not converge.
+std::string failure_sentence(const NewtonReport& newton, const SolverSettings& settings);
+/// Boundary rotations are spread over steps of at most this angle: their linear prediction still holds there [rad].
+inline constexpr double kRotationPerStep = 0.35;
 
 struct StaticsSettings {
   int load_steps = 0;  ///< 0: as few as converge

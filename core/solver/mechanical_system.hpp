@@ -14,6 +14,14 @@
 
 namespace fascia {
 
+/// Both directions of path following, in world axes: K d_r = −r, K d_f = −∂r/∂λ. What is prescribed moves along.
+struct PathDirections {
+  bool usable = false;  ///< K is not singular to rounding
+  int unstable = 0;     ///< negative pivots of K: directions in which the equilibrium is unstable
+  std::vector<double> d_r, d_f;
+  double largest_rotation = 0;  ///< in d_f [rad]
+};
+
 /// The equilibrium of a model in a load or time step, as Newton's method sees it: internal energy, loads, and in
 /// dynamics the inertia of the step as a potential (incremental potential), in the form of time_scheme.hpp.
 ///
@@ -51,6 +59,14 @@ class MechanicalSystem {
   void restore();
   bool has_prescribed_increment() const;
   bool conservative() const { return conservative_; }
+
+  // What path following asks for (path_system.cpp).
+  /// At the present state, which was evaluated. @param ahead, behind  factors at two load factors `width` apart
+  PathDirections path_directions(std::span<const double> ahead, std::span<const double> behind, double width);
+  /// Makes weight d_r + rate d_f the direction that apply() takes; returns its largest rotation [rad].
+  double steer(const PathDirections& directions, double weight, double rate);
+  /// Displacements since the start of the step [m].
+  std::span<const Vec3d> step_displacement() const { return increment_.du; }
 
   /// Adds to the gradient what accelerated supports carry of their own mass, which a state at rest does not show.
   /// @param acceleration  of a node (of its origin and Q or A)
@@ -106,6 +122,7 @@ class MechanicalSystem {
   PoseMotion motion_of(std::size_t node) const;  ///< since the start of the step
   double rotation_in(int node, const double* vector) const;
   double largest_angle() const;
+  double largest_rotation_in(std::span<const double> vector) const;
   void add_node_blocks(Linearization& lin) const;
 
   const Model& model_;

@@ -34,6 +34,12 @@ class TangentSolver {
   TangentReport solve(const Linearization& at, std::span<const double> prescribed, std::span<const double> b,
                       std::span<double> x, const Relinearize& relinearize);
 
+  /// Factorises K as it is, indefinite or not, and counts the directions in which the equilibrium is unstable. None
+  /// where a pivot vanishes. (path_system.cpp)
+  std::optional<int> factorize_as_is(const Linearization& at);
+  /// Solves with that factor. False where rounding spoils the solution: K is all but singular.
+  bool solve_as_is(std::span<const double> prescribed, std::span<const double> b, std::span<double> x);
+
   /// Cholesky is used, and not CG.
   bool direct();
   BlockMatrix& matrix();
@@ -53,7 +59,9 @@ class TangentSolver {
   SolverSettings settings_;
   CpuVectors vectors_;
   std::optional<BlockMatrix> matrix_, material_matrix_;
-  std::optional<BlockCholesky> cholesky_;
+  std::optional<BlockCholesky> cholesky_, indefinite_;
+  BlockCholesky* as_is_ = nullptr;  ///< what factorize_as_is() left
+  int unstable_ = 0;                ///< negative pivots that it met last
   std::optional<bool> direct_;
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;

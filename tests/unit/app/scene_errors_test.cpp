@@ -113,8 +113,6 @@ TEST(SceneErrors, NotSupportedYet) {
             "a.toml:9:38: bodies.beam.frames.share: is not supported yet; remove it");
   EXPECT_EQ(errors_of_beam("[couplings.a]\nkind = \"weld\"\n"),
             "a.toml:10:1: couplings: is not supported yet; remove it");
-  EXPECT_EQ(errors_of_beam("[solver]\ncontrol = \"arc-length\"\n"),
-            "a.toml:11:11: solver.control: \"arc-length\" is not supported yet; must be \"load\"");
 }
 
 TEST(SceneErrors, ValuesThatExcludeOneAnother) {
