@@ -65,6 +65,10 @@ std::vector<BodyFace> faces_around_fluid(const SimulatedBody& b, const Place& pl
 }
 
 void add_fluid(Simulation& s, int body, const Fluid& fluid) {
+  if (fluid.bulk_modulus && s.scene.solver.kind == SolverKind::statics && s.scene.solver.control != StaticControl::load)
+    throw SceneError({{fluid.place,
+                       "has a bulk modulus, whose forces are not in proportion to the load factor that "
+                       "solver.control looks for; give it a pressure, or use control = \"load\""}});
   SurfaceLoad load = surface_of(*s.bodies[at(body)].body, faces_around_fluid(s.bodies[at(body)], fluid.place));
   load.schedule = new_schedule(s, fluid.schedule, fluid.place);
   load.pressure = fluid.pressure.value_or(0);
