@@ -100,7 +100,7 @@ SurfaceLoad surface_of(const ModelBody& body, const std::vector<BodyFace>& faces
     }
     add_face(load, vertices);
   }
-  load.closed = free_edges(faces).empty();
+  load.closed = load.has_potential = free_edges(faces).empty();
   measure_at_rest(load);
   return load;
 }
