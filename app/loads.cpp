@@ -105,7 +105,8 @@ std::vector<Share> line_shares(const SimulatedBody& owner, const Region& region)
   };
   if (shares.empty())
     fail(free.empty() ? "the region holds no edge of body \"{}\" with both its ends; enlarge it"
-                      : "the region holds no free edge of body \"{}\" with both its ends; enlarge it");
+                      : "the region holds no free edge of body \"{}\" with both its ends; a line_force loads "
+                        "free edges, inside use total_force, traction or pressure");
   if (free.empty() && !surface_shares(owner, region).empty())
     fail(
         "the region holds whole faces of body \"{}\", which is closed; must hold edges along a line only, for faces "

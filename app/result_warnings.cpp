@@ -43,7 +43,7 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     int inverted = 0, unresolved = 0;
     const bool rigid = s.model.kind(b.body->first_node()) == FrameKind::rigid;
     const Formulation formulation = s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())].formulation;
-    const bool linear = formulation == Formulation::linear;
+    const bool linear = formulation == Formulation::linear, shell = b.body->cells().type == CellType::triangle;
     for (std::size_t q = 0; q < b.body->points().size(); ++q) {
       const FieldValue f = field_at(b.body->attach_point(q), end);
       inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
@@ -58,14 +58,15 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     else if (inverted > 0)
       warnings.push_back(fmt::format(
           "body \"{}\" is turned inside out at {} of {} integration points: {} do not resist that; the "
-          "result is no physical state (law = \"neo-hookean\" would resist)",
+          "result is no physical state{}",
           b.name, inverted, b.body->points().size(),
-          formulation == Formulation::corotational ? "co-rotational elements" : "St Venant-Kirchhoff materials"));
+          formulation == Formulation::corotational ? "co-rotational elements" : "St Venant-Kirchhoff materials",
+          shell ? "" : " (law = \"neo-hookean\" would resist)"));
     if (unresolved > 0)
       warnings.push_back(
           fmt::format("body \"{}\": neighbouring frames are turned against each other by more than a right angle at {} "
-                      "of {} integration points: their blend does not resolve that; use more frames",
-                      b.name, unresolved, b.body->points().size()));
+                      "of {} integration points: their blend does not resolve that; use more {}",
+                      b.name, unresolved, b.body->points().size(), shell ? "triangles" : "frames"));
   }
   if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
     run.status = RunStatus::not_converged;

@@ -159,8 +159,13 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
     const bool own = std::any_of(fields.begin(), fields.end(), [&](const BodyField& f) { return f.name == name; });
     if (tensor_fields && !own && of_nodes.add_tensor_field(name, t.nodes)) of_cells.add_tensor_field(name, means);
   }
-  for (BodyField& f : fields)
+  const auto wanted = [&](const std::string& field) {
+    return std::find(names.begin(), names.end(), field == "to_outer_face" ? "director" : field) != names.end();
+  };
+  for (BodyField& f : fields) {
+    if (!wanted(f.name)) continue;
     (f.of_cells ? mesh.cell_fields : mesh.point_fields).push_back({f.name, f.components, std::move(f.values)});
+  }
   return mesh;
 }
 

@@ -339,7 +339,8 @@ int check_scene(const RunOptions& options) {
                s.scene.solver.time_step);
   for (const SimulatedBody& b : s.bodies)
     if (s.stable_step > 0 && b.body->fastest_cell() > 0)
-      fmt::print("body {}: element {} limits the time step\n", b.name, b.body->fastest_cell());
+      fmt::print("body {}: {} {} limits the time step\n", b.name,
+                 b.body->cells().type == CellType::triangle ? "triangle" : "element", b.body->fastest_cell());
   fmt::print("memory: about {:.3g} MB\n", model_memory(s) / 1e6);
   fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
              s.warnings.size() == 1 ? "" : "s");

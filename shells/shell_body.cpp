@@ -206,7 +206,7 @@ Attachment ShellBody::attach(const Vec3d& X) const {
   std::array<double, 3> L{1, 0, 0};
   for (std::size_t a = 0; a < 3; ++a)
     L[a] += linear.g[a][0] * dot(d, axes.column(0)) + linear.g[a][1] * dot(d, axes.column(1));
-  const double offset = dot(X - foot, axes.column(2));
+  const double half = 0.5 * thickness_[at(t)], offset = std::clamp(dot(X - foot, axes.column(2)), -half, half);
   return attachment(at(t), L, std::abs(offset) > 1e-9 * size_ ? offset : 0.0);
 }
 

@@ -27,7 +27,7 @@ class ShellBody final : public ModelBody {
   ShellBody(ShellBodySpec spec, Model& model, PointSetBuilder& points);
 
   std::string model_name() const override { return "shell"; }
-  /// A place off the middle surface moves with the director: X = Y + ζ n.
+  /// A place off the middle surface moves with the director: X = Y + ζ n, |ζ| at most half the thickness.
   Attachment attach(const Vec3d& X) const override;
   Attachment attach_point(std::size_t point) const override;
   Attachment attach_surface(std::size_t point) const override;
@@ -58,6 +58,7 @@ class ShellBody final : public ModelBody {
   Strained strained(std::size_t triangle, const std::array<double, 3>& L, const State& state) const;
   std::array<double, 3> membrane_stress(std::size_t triangle, const std::array<double, 3>& strain) const;
   Mat3d cauchy(std::size_t triangle, const Strained& s, double offset) const;
+  BodyField node_means(const BodyField& cells) const;
   PointTensors tensors_of(std::size_t triangle, const Strained& s, double offset) const;
   void number_nodes(Model& model);
   double tilt(std::size_t triangle) const;

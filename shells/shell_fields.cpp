@@ -119,42 +119,50 @@ Mat3d ShellBody::strain_at(const Attachment& place, const State& state) const {
   return tensors_at(place, 0, state).strain;
 }
 
+/// Of the corners of all triangles, weighted with area.
+BodyField ShellBody::node_means(const BodyField& cells) const {
+  const auto n = at(cells.components);
+  BodyField nodes{cells.name, false, cells.components, std::vector<double>(n * mesh_.nodes.size())};
+  std::vector<double> area(mesh_.nodes.size());
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+    for (const int node : mesh_.triangles[t]) {
+      area[at(node)] += area_[t];
+      for (std::size_t k = 0; k < n; ++k) nodes.values[n * at(node) + k] += area_[t] * cells.values[n * t + k];
+    }
+  for (std::size_t i = 0; i < nodes.values.size(); ++i) nodes.values[i] /= area[i / n];
+  return nodes;
+}
+
 std::vector<BodyField> ShellBody::own_fields(const State& state) const {
-  BodyField director{"director", false, 3, {}}, outward{"to_outer_face", false, 3, {}},
-      force{"membrane_force", true, 9, {}}, moment{"bending_moment", true, 9, {}},
-      outer_face{"stress_outer", true, 9, {}}, inner_face{"stress_inner", true, 9, {}},
-      thickness{"thickness", true, 1, {}}, worst{"von_mises", true, 1, {}}, worst_of_nodes{"von_mises", false, 1, {}};
+  BodyField thickness{"thickness", true, 1, thickness_}, force{"membrane_force", true, 9, {}},
+      moment{"bending_moment", true, 9, {}}, outer_face{"stress_outer", true, 9, {}},
+      inner_face{"stress_inner", true, 9, {}}, worst{"von_mises", true, 1, {}};
   std::vector<Vec3d> normal(mesh_.nodes.size());
-  std::vector<double> around(mesh_.nodes.size()), volume(mesh_.nodes.size());
-  worst_of_nodes.values.resize(mesh_.nodes.size());
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const Strained s = strained(t, kMiddle, state);
-    const double h = thickness_[t];
+    const double h = thickness_[t], stiffness = h * h * h / 12;
     const std::array<double, 3> S = membrane_stress(t, s.membrane), M = membrane_stress(t, s.curvature);
     append(force.values, in_plane(s.axes, h * S[0], h * S[1], h * S[2]));
-    const double stiffness = h * h * h / 12;
     append(moment.values, in_plane(s.axes, stiffness * M[0], stiffness * M[1], stiffness * M[2]));
     const Mat3d out = cauchy(t, s, 0.5 * h), in = cauchy(t, s, -0.5 * h);
     append(outer_face.values, out);
     append(inner_face.values, in);
     worst.values.push_back(std::max(von_mises(out), von_mises(in)));
-    thickness.values.push_back(h);
-    for (const int node : mesh_.triangles[t]) {
-      normal[at(node)] += triangle_axes_[t].column(2) * area_[t];
-      around[at(node)] += area_[t];
-      volume[at(node)] += area_[t] * h;
-      worst_of_nodes.values[at(node)] += area_[t] * worst.values.back();
-    }
+    for (const int node : mesh_.triangles[t]) normal[at(node)] += triangle_axes_[t].column(2) * area_[t];
   }
+  std::vector<BodyField> fields{thickness, force, moment, outer_face, inner_face, worst};
+  for (std::size_t k = 0, cells = fields.size(); k < cells; ++k) fields.push_back(node_means(fields[k]));
+  const std::vector<double> thickness_of_nodes = node_means(thickness).values;
+  BodyField director{"director", false, 3, {}}, outward{"to_outer_face", false, 3, {}};
   for (std::size_t i = 0; i < normal.size(); ++i) {
-    worst_of_nodes.values[i] /= around[i];
     const Vec3d n = squared_norm(normal[i]) > 0 ? normalized(normal[i]) : Vec3d{{0, 0, 1}};
-    const Vec3d d = n + state.D[at(first_node_) + i] * n;
-    const Vec3d half = d * (0.5 * volume[i] / around[i]);
+    const Vec3d d = n + state.D[at(first_node_) + i] * n, half = d * (0.5 * thickness_of_nodes[i]);
     director.values.insert(director.values.end(), d.v, d.v + 3);
     outward.values.insert(outward.values.end(), half.v, half.v + 3);
   }
-  return {director, outward, thickness, force, moment, outer_face, inner_face, worst, worst_of_nodes};
+  fields.push_back(std::move(director));
+  fields.push_back(std::move(outward));
+  return fields;
 }
 
 }  // namespace fascia

@@ -20,8 +20,8 @@ void check_turn(const TableReader& shape, const std::array<double, 2>& angle, bo
   constexpr double whole = 2 * std::numbers::pi;
   const double turn = angle[1] - angle[0];
   if (!(turn > 0) || !(turn <= whole * (1 + 1e-9)))
-    return shape.error("angle", fmt::format("goes from {:.6g} to {:.6g} rad; must be ascending, by a whole turn (\"360 "
-                                            "degree\") at most",
+    return shape.error("angle", fmt::format("goes from {:.6g} to {:.6g} rad; must be ascending, by a whole turn at "
+                                            "most, degrees with their unit (\"360 degree\")",
                                             angle[0], angle[1]));
   if (!closed && turn < whole && shape.boolean("closed").value_or(false))
     shape.error("closed", "a sector has two edges apart; must be false, or angle a whole turn");

@@ -49,9 +49,18 @@ Shape picture_schema() {
 }  // namespace
 
 std::vector<Choice> field_choices() {
-  return {{"displacement", "[m]"},       {"rotation", "Rotation vector [rad]."},
-          {"strain", "Green-Lagrange."}, {"stress", "Cauchy [Pa]."},
-          {"von_mises", "[Pa]"},         {"energy_density", "[J/m3]"}};
+  return {{"displacement", "[m]"},
+          {"rotation", "Rotation vector [rad]."},
+          {"strain", "Green-Lagrange."},
+          {"stress", "Cauchy [Pa]."},
+          {"von_mises", "[Pa]; of a shell the larger of its faces'."},
+          {"energy_density", "[J/m3]"},
+          {"director", "Of a shell; with `to_outer_face`, half the thickness along it [m]."},
+          {"thickness", "Of a shell, at rest [m]."},
+          {"membrane_force", "Of a shell, a tensor [N/m]."},
+          {"bending_moment", "Of a shell, a tensor [N]; positive where it stretches the outer face."},
+          {"stress_outer", "Of a shell, on the face that the normals point to [Pa]."},
+          {"stress_inner", "Of a shell, on the other face [Pa]."}};
 }
 
 Key probes_schema() {

@@ -209,25 +209,27 @@ class ShellTriangle {
   }
 
   /// B s, Bᵀ s of B = ½ (tr Λ I − Λ), the derivative of the sine vector.
-  Vec3<T> times_B(int a, const Vec3<T>& s) const { return (s * (T(3) - T(4) * angle_[a].z) - Lambda_[a] * s) * T(0.5); }
-  Vec3<T> transpose_times_B(int a, const Vec3<T>& s) const {
+  Vec3<T> sine_differential(int a, const Vec3<T>& s) const {
+    return (s * (T(3) - T(4) * angle_[a].z) - Lambda_[a] * s) * T(0.5);
+  }
+  Vec3<T> sine_moment(int a, const Vec3<T>& s) const {
     return (s * (T(3) - T(4) * angle_[a].z) - transpose(Lambda_[a]) * s) * T(0.5);
   }
   /// dθ = J ψ, J = f B + ½ f' a aᵀ, ψ: spin of Λ.
   Vec3<T> rotation_differential(int a, const Vec3<T>& spin) const {
-    return times_B(a, spin) * angle_[a].f + sine_[a] * (T(0.5) * angle_[a].df * dot(sine_[a], spin));
+    return sine_differential(a, spin) * angle_[a].f + sine_[a] * (T(0.5) * angle_[a].df * dot(sine_[a], spin));
   }
   Vec3<T> moment(int a, const Vec3<T>& s) const {
-    return transpose_times_B(a, s) * angle_[a].f + sine_[a] * (T(0.5) * angle_[a].df * dot(sine_[a], s));
+    return sine_moment(a, s) * angle_[a].f + sine_[a] * (T(0.5) * angle_[a].df * dot(sine_[a], s));
   }
   /// Derivative of Jᵀ s at fixed s.
   Vec3<T> moment_differential(int a, const Vec3<T>& s, const Vec3<T>& spin) const {
     const HalfAngle<T>& h = angle_[a];
     const Vec3<T>& sine = sine_[a];
     const T dz = T(0.5) * dot(sine, spin), along = dot(sine, s);
-    const Vec3<T> dsine = times_B(a, spin);
+    const Vec3<T> dsine = sine_differential(a, spin);
     const Vec3<T> dB_s = transpose(Lambda_[a]) * cross(spin, s) * T(0.5) - s * (T(2) * dz);
-    return dB_s * h.f + transpose_times_B(a, s) * (h.df * dz) + sine * (T(0.5) * h.ddf * dz * along) +
+    return dB_s * h.f + sine_moment(a, s) * (h.df * dz) + sine * (T(0.5) * h.ddf * dz * along) +
            (dsine * along + sine * dot(dsine, s)) * (T(0.5) * h.df);
   }
 

@@ -246,10 +246,11 @@ TEST(SceneErrors, ProbesAndOutput) {
             "a.toml:12:6: probes.p.at: is not used by quantity \"volume\"; remove it");
   EXPECT_EQ(errors_of_beam("[probes.p]\nquantity = \"frequency\"\n"),
             "a.toml:11:12: probes.p.quantity: \"frequency\" is known only of modes; needs solver.kind = \"modes\"");
-  EXPECT_EQ(errors_of_beam("[output]\nfields = [\"stres\"]\n"),
-            "a.toml:11:11: output.fields[0]: \"stres\" is no known value; must be \"displacement\", \"rotation\", "
-            "\"strain\", \"stress\", \"von_mises\" or "
-            "\"energy_density\" (did you mean \"stress\"?)");
+  EXPECT_EQ(
+      errors_of_beam("[output]\nfields = [\"stres\"]\n"),
+      "a.toml:11:11: output.fields[0]: \"stres\" is no known value; must be \"displacement\", \"rotation\", "
+      "\"strain\", \"stress\", \"von_mises\", \"energy_density\", \"director\", \"thickness\", \"membrane_force\", "
+      "\"bending_moment\", \"stress_outer\" or \"stress_inner\" (did you mean \"stress\"?)");
 }
 
 TEST(SceneErrors, AllInOneGoSortedByLine) {

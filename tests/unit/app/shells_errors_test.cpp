@@ -81,7 +81,7 @@ TEST(ShellErrors, Cells) {
 }
 
 TEST(ShellErrors, Turns) {
-  const char* turn = "; must be ascending, by a whole turn (\"360 degree\") at most";
+  const char* turn = "; must be ascending, by a whole turn at most, degrees with their unit (\"360 degree\")";
   EXPECT_EQ(errors_of_cylinder("cells = [1, 8], angle = [1, 1]"),
             std::string("a.toml:6:95: bodies.skin.domain.cylinder.angle: goes from 1 to 1 rad") + turn);
   EXPECT_EQ(errors_of_cylinder("cells = [1, 8], angle = [0, 7]"),
