@@ -243,6 +243,24 @@ TEST(ShellScenes, TheCapsuleOfALiver) {
   EXPECT_LT(run.number("sag"), 0.1);
 }
 
+/// The strip as two triangles whose far edge is led by `move`: the text of the warnings.
+std::string warnings_of(const std::string& move) {
+  const SceneRun run(
+      "shell_roll_up",
+      {"bodies.strip.domain.rectangle.cells=[1,1]", "loads=[]",
+       "constraints=[{body='strip',where={group='u0'},fix='all'},{body='strip',where={group='u1'},move={" + move +
+           "}}]"});
+  return run.summary()["warnings"].dump();
+}
+
+TEST(ShellScenes, TrianglesThatNoLongerFollowAreNamed) {
+  EXPECT_NE(warnings_of("translate=[-11.4,0,0]").find("the triangle at (8, 0.3333, 0) has 5 % of its area left"),
+            std::string::npos);
+  const std::string bent = warnings_of("rotate={axis=[0,1,0],angle='150 degree',center=[6,0,0]}");
+  EXPECT_NE(bent.find("the corners of 2 of 2 triangles are turned against each other"), std::string::npos) << bent;
+  EXPECT_EQ(warnings_of("rotate={axis=[0,1,0],angle='20 degree'}"), "[]");
+}
+
 // ------------------------------------------------------------------------------------------------------------ dynamics
 TEST(ShellScenes, FrequenciesOfAClampedPlate) {
   const double reference[] = {35.99, 73.41, 73.41, 108.27};
