@@ -107,8 +107,9 @@ std::vector<Share> line_shares(const SimulatedBody& owner, const Region& region)
     fail(free.empty() ? "the region holds no edge of body \"{}\" with both its ends; enlarge it"
                       : "the region holds no free edge of body \"{}\" with both its ends; enlarge it");
   if (free.empty() && !surface_shares(owner, region).empty())
-    fail("the region holds whole faces of body \"{}\", which is closed; must hold edges along a line only, for faces "
-         "use traction");
+    fail(
+        "the region holds whole faces of body \"{}\", which is closed; must hold edges along a line only, for faces "
+        "use traction");
   return shares;
 }
 

@@ -76,7 +76,7 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   if (run.status == RunStatus::converged && !run.trouble.empty())
     warnings.push_back("the end state may be an unstable equilibrium: " + run.trouble);
   warnings.insert(warnings.end(), run.events.begin(), run.events.end());
-  if (run.residual_floor > 1e-3 && !s.model.loads.empty())
+  if (run.residual_floor > 1e-3 && !(s.model.loads.empty() && s.model.surfaces.empty()))
     warnings.push_back(fmt::format(
         "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
   for (const SimulatedBody& b : s.bodies) {

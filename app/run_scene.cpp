@@ -327,6 +327,9 @@ int check_scene(const RunOptions& options) {
                b.body->selective() ? " (lambda at one point a cell)" : "", b.body->volume(), b.body->mass());
   for (const SimulatedBody& b : s.bodies)
     if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
+  for (const FluidOfBody& f : s.fluids)
+    fmt::print("body {}: its fluid fills {:.6g} m3 at rest\n", s.bodies[at(f.body)].name,
+               s.model.surfaces[at(f.surface)].rest_volume);
   const int free = s.model.dof_count() - s.model.constrained_dof_count();
   const std::string tethers = s.model.tethers.empty() ? "" : fmt::format("{} tethers, ", s.model.tethers.size());
   fmt::print("{} unknowns ({} prescribed), {}{} loads, {} probes\n", free, s.model.constrained_dof_count(), tethers,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 /// Pressure on the surfaces of bodies, and fluids in them.
@@ -23,6 +24,34 @@ std::vector<BodyFace> selected_faces(const SimulatedBody& owner, const Region& r
     return !std::all_of(face.begin(), face.end(), [&](int point) { return chosen[at(point)]; });
   });
   return faces;
+}
+
+/// A place that nothing moves: all its nodes are held, with their rotations where these would move it.
+bool is_held(const Simulation& s, const Attachment& place) {
+  constexpr double kNothing = 1e-9;
+  for (std::size_t k = 0; k < place.nodes.size(); ++k) {
+    const Influence& i = place.influences[k];
+    const bool turns =
+        norm(i.b) > kNothing * s.model.points.part_length[at(s.model.points.node_part[at(place.nodes[k])])];
+    if (std::abs(i.w) <= kNothing && !turns) continue;
+    const auto c = std::lower_bound(s.model.constraints.begin(), s.model.constraints.end(), place.nodes[k],
+                                    [](const FrameConstraint& held, int node) { return held.node < node; });
+    if (c == s.model.constraints.end() || c->node != place.nodes[k] || c->translations < 3) return false;
+    const bool affine = s.model.kind(c->node) == FrameKind::affine;
+    if (turns && !(affine ? c->whole : c->rotations == 3)) return false;
+    if (*std::max_element(c->translation_motion.begin(), c->translation_motion.end()) >= 0) return false;
+    if (turns && c->turning_motion() >= 0) return false;
+  }
+  return true;
+}
+
+bool free_edges_are_held(const Simulation& s, const ModelBody& body, const std::vector<BodyFace>& faces) {
+  const std::vector<Vec3d>& X = body.surface().points;
+  const auto edges = free_edges(faces);
+  return std::all_of(edges.begin(), edges.end(), [&](const std::array<int, 2>& e) {
+    return is_held(s, body.attach_surface(at(e[0]))) && is_held(s, body.attach_surface(at(e[1]))) &&
+           is_held(s, body.attach((X[at(e[0])] + X[at(e[1])]) * 0.5));
+  });
 }
 
 /// What the load does at rest, in directions that stay.
@@ -65,6 +94,10 @@ std::vector<BodyFace> faces_around_fluid(const SimulatedBody& b, const Place& pl
 }
 
 void add_fluid(Simulation& s, int body, const Fluid& fluid) {
+  if (fluid.bulk_modulus && s.scene.solver.kind == SolverKind::statics && s.scene.solver.control != StaticControl::load)
+    throw SceneError({{fluid.place,
+                       "has a bulk modulus, whose forces are not in proportion to the load factor that "
+                       "solver.control looks for; give it a pressure, or use control = \"load\""}});
   SurfaceLoad load = surface_of(*s.bodies[at(body)].body, faces_around_fluid(s.bodies[at(body)], fluid.place));
   load.schedule = new_schedule(s, fluid.schedule, fluid.place);
   load.pressure = fluid.pressure.value_or(0);
@@ -92,6 +125,7 @@ void add_pressure(Simulation& s, int body, const Load& load, int schedule) {
   SurfaceLoad surface = surface_of(*b.body, faces);
   surface.schedule = schedule;
   surface.pressure = -*load.pressure;
+  surface.has_potential = free_edges_are_held(s, *b.body, faces);
   if (load.pressure_follows)
     s.model.surfaces.push_back(std::move(surface));
   else

@@ -1,17 +1,19 @@
 #include "core/cpu/executor.hpp"
+#include "tests/support/shell_models.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
 #include <benchmark/benchmark.h>
 
 /// Passes over a strained block of tetrahedra or hexahedra, one thread: 8 × 11 × 12 or 18 × 18 × 18 cells, of six
-/// tetrahedra (6,336 and 34,992) or one hexahedron. Counters: the time of one element, and bytes a second where memory
-/// is what takes the time, to be held against a memory copy in the same run.
+/// tetrahedra (6,336 and 34,992) or one hexahedron; and over a bent plate of 5,000 shell triangles. Counters: the time
+/// of one element, of one degree of freedom, and bytes a second where memory is what takes the time, to be held against
+/// a memory copy in the same run.
 namespace fascia {
 namespace {
 
-enum Kind : std::int64_t { svk, neo_hookean, corotational, linear, averaged, tet10, hex8, hex20 };
-constexpr const char* kKindNames[] = {"svk",      "neo-hookean", "corotational", "linear",
-                                      "averaged", "tet10 svk",   "hex8 svk",     "hex20 svk"};
+enum Kind : std::int64_t { svk, neo_hookean, corotational, linear, averaged, tet10, hex8, hex20, shell };
+constexpr const char* kKindNames[] = {"svk",       "neo-hookean", "corotational", "linear", "averaged",
+                                      "tet10 svk", "hex8 svk",    "hex20 svk",    "shell"};
 
 test::ElementOptions options(std::int64_t kind, bool large) {
   test::ElementOptions o;
@@ -27,24 +29,31 @@ test::ElementOptions options(std::int64_t kind, bool large) {
   return o;
 }
 
+Model model_of(std::int64_t kind, bool large) {
+  if (kind != shell) return std::move(test::element_model(options(kind, large)).model);
+  const auto plate = [](double u, double v) { return Vec3d{{u, v, 0.2 * u * v}}; };
+  return std::move(test::shell_model(test::patch_mesh(plate, {50, 50}), {1e4, 0.3, 0.01}).model);
+}
+
 /// @param run  its arguments: a Kind, and 1 for the large block
 struct Case {
   explicit Case(benchmark::State& run)
-      : built(test::element_model(options(run.range(0), run.range(1) != 0))),
-        executor(built.model.points, pool),
-        state(test::random_state(built.model, 1e-3, 0)),
-        gradient(static_cast<std::size_t>(built.model.dof_count())),
-        direction(test::random_direction(built.model)) {
+      : model(model_of(run.range(0), run.range(1) != 0)),
+        executor(model.points, pool),
+        state(test::random_state(model, 1e-3, run.range(0) == shell ? 1e-2 : 0)),
+        gradient(static_cast<std::size_t>(model.dof_count())),
+        direction(test::random_direction(model)) {
     executor.gradient(state, {}, gradient);
     executor.linearize(state, {}, Tangent::full, tangent);
     using Counter = benchmark::Counter;
-    const int elements = built.model.points.blocks[0].count;
-    run.counters["element"] =
-        Counter(elements, static_cast<Counter::Flags>(Counter::kIsIterationInvariantRate | Counter::kInvert));  // [s]
+    const auto flags = static_cast<Counter::Flags>(Counter::kIsIterationInvariantRate | Counter::kInvert);
+    const int elements = run.range(0) == shell ? model.points.shells[0].count : model.points.blocks[0].count;
+    run.counters["element"] = Counter(elements, flags);       // [s]
+    run.counters["dof"] = Counter(model.dof_count(), flags);  // [s]
     run.SetLabel(kKindNames[run.range(0)] + (" " + std::to_string(elements)));
   }
 
-  test::ElementModel built;
+  Model model;
   ThreadPool pool{1};
   CpuExecutor executor;
   State state;
@@ -69,13 +78,13 @@ void matrix_free_product(benchmark::State& run) {
 
 void assembly(benchmark::State& run) {
   Case c(run);
-  BlockMatrix matrix(c.built.model.points);
+  BlockMatrix matrix(c.model.points);
   for (auto _ : run) c.executor.assemble(c.tangent, matrix);
 }
 
 void assembled_product(benchmark::State& run) {
   Case c(run);
-  BlockMatrix matrix(c.built.model.points);
+  BlockMatrix matrix(c.model.points);
   c.executor.assemble(c.tangent, matrix);
   for (auto _ : run) matrix.multiply(c.pool, c.direction, c.gradient);
   run.SetBytesProcessed(run.iterations() * static_cast<std::int64_t>(matrix.value_count() * sizeof(double)));
@@ -91,7 +100,7 @@ void memory_copy(benchmark::State& run) {
 }
 
 const std::vector<std::vector<std::int64_t>> kTetrahedra{{svk, neo_hookean, corotational, linear, averaged}, {0, 1}};
-const std::vector<std::vector<std::int64_t>> kOthers{{tet10, hex8, hex20}, {0}};
+const std::vector<std::vector<std::int64_t>> kOthers{{tet10, hex8, hex20, shell}, {0}};
 
 BENCHMARK(memory_copy);
 BENCHMARK(forces)->ArgsProduct(kTetrahedra)->ArgsProduct(kOthers)->Unit(benchmark::kMicrosecond);

@@ -1,6 +1,7 @@
 #include "fem/element_body.hpp"
 
 #include "core/geometry/bounds.hpp"
+#include "core/geometry/space_order.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "fem/quadrature.hpp"
@@ -26,25 +27,13 @@ double mean_edge(const ElementMesh& mesh) {
   return sum / static_cast<double>(edges.size() * mesh.size()) / order_of(mesh.shape);
 }
 
-/// Ten bits of each coordinate, interleaved: near places have near numbers.
-std::uint32_t morton(const Vec3d& x) {
-  std::uint32_t code = 0;
-  for (int bit = 9; bit >= 0; --bit)
-    for (int a = 0; a < 3; ++a) code = code * 2 + (static_cast<std::uint32_t>(x[a] * 1023) >> bit & 1U);
-  return code;
-}
-
 /// Elements of a law in an order in which neighbours are near each other.
 std::vector<std::size_t> ordered(const ElementMesh& mesh, const std::vector<std::size_t>& chosen) {
-  const Bounds bounds = bounds_of(mesh.nodes);
-  const double size = bounds.extent()[longest_axis(bounds)];
-  std::vector<std::pair<std::uint32_t, std::size_t>> keys;
-  keys.reserve(chosen.size());
-  for (const std::size_t e : chosen) keys.emplace_back(morton((element_middle(mesh, e) - bounds.low) * (1 / size)), e);
-  std::sort(keys.begin(), keys.end());
-  std::vector<std::size_t> order;
-  order.reserve(keys.size());
-  for (const auto& [key, e] : keys) order.push_back(e);
+  std::vector<Vec3d> middles;
+  middles.reserve(chosen.size());
+  for (const std::size_t e : chosen) middles.push_back(element_middle(mesh, e));
+  std::vector<std::size_t> order = order_in_space(middles);
+  for (std::size_t& i : order) i = chosen[i];
   return order;
 }
 

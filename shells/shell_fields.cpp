@@ -120,12 +120,12 @@ Mat3d ShellBody::strain_at(const Attachment& place, const State& state) const {
 }
 
 std::vector<BodyField> ShellBody::own_fields(const State& state) const {
-  BodyField director{"director", false, 3, {}}, force{"membrane_force", true, 9, {}},
-      moment{"bending_moment", true, 9, {}}, outer_face{"stress_outer", true, 9, {}},
-      inner_face{"stress_inner", true, 9, {}}, thickness{"thickness", true, 1, {}}, worst{"von_mises", true, 1, {}},
-      worst_of_nodes{"von_mises", false, 1, {}};
+  BodyField director{"director", false, 3, {}}, outward{"to_outer_face", false, 3, {}},
+      force{"membrane_force", true, 9, {}}, moment{"bending_moment", true, 9, {}},
+      outer_face{"stress_outer", true, 9, {}}, inner_face{"stress_inner", true, 9, {}},
+      thickness{"thickness", true, 1, {}}, worst{"von_mises", true, 1, {}}, worst_of_nodes{"von_mises", false, 1, {}};
   std::vector<Vec3d> normal(mesh_.nodes.size());
-  std::vector<double> around(mesh_.nodes.size());
+  std::vector<double> around(mesh_.nodes.size()), volume(mesh_.nodes.size());
   worst_of_nodes.values.resize(mesh_.nodes.size());
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const Strained s = strained(t, kMiddle, state);
@@ -142,6 +142,7 @@ std::vector<BodyField> ShellBody::own_fields(const State& state) const {
     for (const int node : mesh_.triangles[t]) {
       normal[at(node)] += triangle_axes_[t].column(2) * area_[t];
       around[at(node)] += area_[t];
+      volume[at(node)] += area_[t] * h;
       worst_of_nodes.values[at(node)] += area_[t] * worst.values.back();
     }
   }
@@ -149,9 +150,11 @@ std::vector<BodyField> ShellBody::own_fields(const State& state) const {
     worst_of_nodes.values[i] /= around[i];
     const Vec3d n = squared_norm(normal[i]) > 0 ? normalized(normal[i]) : Vec3d{{0, 0, 1}};
     const Vec3d d = n + state.D[at(first_node_) + i] * n;
+    const Vec3d half = d * (0.5 * volume[i] / around[i]);
     director.values.insert(director.values.end(), d.v, d.v + 3);
+    outward.values.insert(outward.values.end(), half.v, half.v + 3);
   }
-  return {director, thickness, force, moment, outer_face, inner_face, worst, worst_of_nodes};
+  return {director, outward, thickness, force, moment, outer_face, inner_face, worst, worst_of_nodes};
 }
 
 }  // namespace fascia

@@ -12,7 +12,7 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 constexpr double kAlpha = 1.5;  ///< of OPT's mean strain
 /// Where the surface is curved, inextensional bending turns the corners out of the triangle's plane by the tilt, and
 /// the deviations' stiffness, 12 β (tilt · size / thickness)² of the bending one, would lock
-/// (docs/decisions/shells.md).
+/// (docs/decisions/shell_formulation.md).
 constexpr double kCurvature = 100;
 constexpr double kLeastBeta = 0.01;  ///< of OPT's deviations: at ν = ½ rotations would be free
 constexpr double kShearCorrection = 5.0 / 6;

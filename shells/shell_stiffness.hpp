@@ -22,7 +22,8 @@ struct ShellSection {
 ///
 /// Membrane: the optimal triangle with drilling rotations, OPT (Felippa, Comput. Methods Appl. Mech. Eng. 192 (2003)
 /// 2125, section 5): mean strain of edges that bulge with the rotations (α = 3/2), and deviations from it that make
-/// the energy of bending in the plane right (β₀ = (1 − 4ν²)/2, at least 0.01).
+/// the energy of bending in the plane right (β₀ = (1 − 4ν²)/2, at least 0.01), reduced where the surface is curved:
+/// β = β₀ / (1 + 100 tilt A/t²), at least 0.01 β₀ (docs/decisions/shell_formulation.md).
 ///
 /// Bending: the discrete Kirchhoff-Mindlin triangle DKMT (Katili, Int. J. Numer. Methods Eng. 36 (1993) 1859): the
 /// normal turns quadratically along edges, as much as the shear of the edge in equilibrium with the bending moments

@@ -4,28 +4,29 @@ namespace fascia::app {
 namespace {
 
 std::vector<Choice> quantities() {
-  return {{"displacement", "At points [m]."},
-          {"position", "At points [m]."},
-          {"rotation", "At points: the rotation vector [rad]."},
-          {"velocity", "At points [m/s]."},
-          {"strain", "At points: Green-Lagrange, 3 x 3 by rows."},
-          {"stress", "At points: Cauchy, 3 x 3 by rows [Pa]."},
-          {"force", "Of the constraint or load on the nodes in `where` [N]."},
-          {"moment", "Likewise, about `about` [N m]."},
-          {"volume", "[m3]"},
-          {"mass", "[kg]"},
-          {"energy", "Elastic energy without stabilisation [J]."},
-          {"kinetic_energy", "[J]"},
-          {"total_energy",
-           "With stabilisation, kinetic energy and the potential of gravity, dead loads, fluids and pressure on closed "
-           "surfaces [J]."},
-          {"momentum", "[kg m/s]"},
-          {"angular_momentum", "About `about` [kg m2/s]."},
-          {"max_displacement", "Of the nodes [m]."},
-          {"mean_displacement", "Of the nodes [m]."},
-          {"frequency", "Of `solver.kind = \"modes\"` [1/s]."},
-          {"fluid_volume", "What the fluid of a body fills [m3]."},
-          {"fluid_pressure", "Of the fluid of a body, at the level of its centre at rest [Pa]."}};
+  return {
+      {"displacement", "At points [m]."},
+      {"position", "At points [m]."},
+      {"rotation", "At points: the rotation vector [rad]."},
+      {"velocity", "At points [m/s]."},
+      {"strain", "At points: Green-Lagrange, 3 x 3 by rows."},
+      {"stress", "At points: Cauchy, 3 x 3 by rows [Pa]."},
+      {"force", "Of the constraint or load on the nodes in `where` [N]."},
+      {"moment", "Likewise, about `about` [N m]."},
+      {"volume", "[m3]"},
+      {"mass", "[kg]"},
+      {"energy", "Elastic energy without stabilisation [J]."},
+      {"kinetic_energy", "[J]"},
+      {"total_energy",
+       "With stabilisation, kinetic energy and the potential of gravity, dead loads, fluids, and pressure on surfaces "
+       "that are closed or held at their free edges [J]."},
+      {"momentum", "[kg m/s]"},
+      {"angular_momentum", "About `about` [kg m2/s]."},
+      {"max_displacement", "Of the nodes [m]."},
+      {"mean_displacement", "Of the nodes [m]."},
+      {"frequency", "Of `solver.kind = \"modes\"` [1/s]."},
+      {"fluid_volume", "What the fluid of a body fills [m3]."},
+      {"fluid_pressure", "Of the fluid of a body, at the level of its centre at rest [Pa]."}};
 }
 
 Shape probe_schema() {

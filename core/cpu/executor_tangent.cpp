@@ -178,6 +178,7 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
+  const bool upper = matrix_out.fills_upper();
   std::array<double*, kMaxSlots> block;  // of (a, column slot)
   std::array<Mat3<Lanes>, kMaxSlots> A;  // Q B
   for (int batch = 0; batch < kBatches; ++batch) {
@@ -188,7 +189,9 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
       A[at(a)] = broadcast(lin.Q[at(nodes[at(a)])]) * kernels::matrix(set_.shape_of_slot(first_slot + a), 4, batch);
     for (int b = 0; b < n; ++b) {
       const int column_node = nodes[at(b)], columns = set_.dofs.size(column_node);
-      for (int a = b; a < n; ++a) block[at(a)] = matrix_out.block(matrix_out.find(nodes[at(a)], column_node));
+      for (int a = b; a < n; ++a)
+        block[at(a)] = matrix_out.block(upper ? matrix_out.find(column_node, nodes[at(a)])
+                                              : matrix_out.find(nodes[at(a)], column_node));
       for (int k = 0; k < columns; ++k) {
         const PointMotion<Lanes> unit =
             unit_motion<kBlend>(set_.dofs.kind(column_node), k, set_.shape_of_slot(first_slot + b), batch,
@@ -197,7 +200,8 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
         const Mat3<Lanes> dP = d.dP * m.volume, dY = d.dY * m.volume;
         for (int a = b; a < n; ++a)
           add_column<kBlend>(set_.dofs.kind(nodes[at(a)]), set_.shape_of_slot(first_slot + a), batch,
-                             lin.Q[at(nodes[at(a)])], A[at(a)], dP, dY, block[at(a)] + k, columns);
+                             lin.Q[at(nodes[at(a)])], A[at(a)], dP, dY,
+                             block[at(a)] + (upper ? k * set_.dofs.size(nodes[at(a)]) : k), upper ? 1 : columns);
       }
     }
   }

@@ -236,6 +236,9 @@ void ShellExecutor::compute_product(const At& state, std::span<const double> d) 
 void ShellExecutor::assemble_batch(const At& state, int batch, BlockMatrix& matrix) const {
   for (int half = 0; half < kBatches; ++half) {
     const BatchProducts products(block_, batch, half, state);
+    const auto place = [upper = matrix.fills_upper()](int i, int k) {
+      return upper ? kCornerDofs * k + i : kCornerDofs * i + k;
+    };
     Lanes K[kPairs][kCornerDofs * kCornerDofs];
     for (int b = 0; b < 3; ++b) {
       for (int k = 0; k < kCornerDofs; ++k) {
@@ -245,8 +248,8 @@ void ShellExecutor::assemble_batch(const At& state, int batch, BlockMatrix& matr
         for (int a = b; a < 3; ++a) {
           const Vec3<Lanes> force = products.axes * f.x[a], torque = products.axes * f.r[a];
           for (int i = 0; i < 3; ++i) {
-            K[pair_number(a, b)][kCornerDofs * i + k] = force[i];
-            K[pair_number(a, b)][kCornerDofs * (3 + i) + k] = torque[i];
+            K[pair_number(a, b)][place(i, k)] = force[i];
+            K[pair_number(a, b)][place(3 + i, k)] = torque[i];
           }
         }
       }
@@ -269,7 +272,8 @@ void ShellExecutor::find_pair_slots(const BlockMatrix& matrix) {
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b <= a; ++b) {
           const int* node = block_.nodes_of(batch) + lane;
-          const int index = matrix.find(node[a * kElementLanes], node[b * kElementLanes]);
+          const int i = node[a * kElementLanes], j = node[b * kElementLanes];
+          const int index = matrix.fills_upper() ? matrix.find(j, i) : matrix.find(i, j);
           pair_slot_[at(batch * kPairs + pair_number(a, b)) * kElementLanes + at(lane)] =
               static_cast<std::uint32_t>(matrix.block(index) - matrix.values());
         }

@@ -13,10 +13,16 @@ namespace {
 
 using FaceBlocks = std::array<std::array<Mat3d, kMostFaceNodes>, kMostFaceNodes>;
 
+/// The terms with p are antisymmetric matrices, and antisymmetric in i and j.
 void face_blocks(const SurfaceTangent& tangent, std::span<const int> face, FaceBlocks& K) {
   const std::size_t n = face.size();
-  for (std::size_t i = 0; i < n; ++i) std::fill_n(K[i].begin(), n, Mat3d{});
   const Vec3d& g = tangent.gradient;
+  const bool weighs = squared_norm(g) > 0;
+  std::array<std::array<Vec3d, kMostFaceNodes>, kMostFaceNodes> axis;  // of K_ij, j < i
+  for (std::size_t i = 0; i < n; ++i) {
+    std::fill_n(axis[i].begin(), n, Vec3d{});
+    std::fill_n(K[i].begin(), n, Mat3d{});
+  }
   for (const FaceRulePoint& q : face_rule(static_cast<int>(n))) {
     Vec3d x, xs, xt;
     for (std::size_t a = 0; a < n; ++a) {
@@ -26,14 +32,22 @@ void face_blocks(const SurfaceTangent& tangent, std::span<const int> face, FaceB
       xt += v * q.dt[a];
     }
     const double half = -0.5 * q.weight, p = half * (tangent.pressure + dot(g, x));
+    const Vec3d ps = xs * p, pt = xt * p;
+    for (std::size_t i = 1; i < n; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        axis[i][j] += ps * (q.N[i] * q.dt[j] - q.N[j] * q.dt[i]) - pt * (q.N[i] * q.ds[j] - q.N[j] * q.ds[i]);
+    if (!weighs) continue;
     const Vec3d normal = cross(xs, xt);
     const Mat3d slope = (outer(normal, g) + outer(g, normal)) * half;
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        K[i][j] +=
-            skew(xs * (p * (q.N[i] * q.dt[j] - q.N[j] * q.dt[i])) - xt * (p * (q.N[i] * q.ds[j] - q.N[j] * q.ds[i]))) +
-            slope * (q.N[i] * q.N[j]);
+      for (std::size_t j = 0; j < n; ++j) K[i][j] += slope * (q.N[i] * q.N[j]);
   }
+  for (std::size_t i = 1; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Mat3d turn = skew(axis[i][j]);
+      K[i][j] += turn;
+      K[j][i] -= turn;
+    }
 }
 
 /// How the degrees of freedom of a node move a vertex: column by column.
@@ -112,12 +126,14 @@ void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, Bloc
   FaceBlocks K;
   std::vector<int> nodes;                    // of a face
   std::vector<Columns> J;                    // (nodes × vertices of the face)
+  std::vector<char> moves;                   // likewise: J is not zero
   std::array<Columns, kMostFaceNodes> pull;  // Σ K_ij J_j of one node, by vertices
   for (int f = 0; f < load.face_count(); ++f) {
     const std::span<const int> face = load.face(f);
     const std::size_t n = face.size();
     nodes.clear();
     J.clear();
+    moves.clear();
     for (std::size_t i = 0; i < n; ++i)
       for (const SurfaceShare& share : load.shares_of(face[i])) {
         const auto known = std::find(nodes.begin(), nodes.end(), share.node);
@@ -125,8 +141,10 @@ void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, Bloc
         if (known == nodes.end()) {
           nodes.push_back(share.node);
           J.resize(J.size() + n);
+          moves.resize(J.size(), 0);
         }
         J[k * n + i] = columns_of(share, dofs.kind(share.node), Q[at(share.node)]);
+        moves[k * n + i] = 1;
       }
     face_blocks(tangent, face, K);
     for (std::size_t b = 0; b < nodes.size(); ++b) {
@@ -134,14 +152,17 @@ void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, Bloc
       for (std::size_t i = 0; i < n; ++i)
         for (int k = 0; k < m; ++k) {
           pull[i][at(k)] = {};
-          for (std::size_t j = 0; j < n; ++j) pull[i][at(k)] += K[i][j] * J[b * n + j][at(k)];
+          for (std::size_t j = 0; j < n; ++j)
+            if (moves[b * n + j] != 0) pull[i][at(k)] += K[i][j] * J[b * n + j][at(k)];
         }
       for (std::size_t a = 0; a < nodes.size(); ++a) {
         double* block = filled_block(matrix, nodes[a], column);
         if (block == nullptr) continue;
-        for (int l = 0; l < dofs.size(nodes[a]); ++l)
-          for (int k = 0; k < m; ++k)
-            for (std::size_t i = 0; i < n; ++i) block[m * l + k] += dot(J[a * n + i][at(l)], pull[i][at(k)]);
+        for (std::size_t i = 0; i < n; ++i) {
+          if (moves[a * n + i] == 0) continue;
+          for (int l = 0; l < dofs.size(nodes[a]); ++l)
+            for (int k = 0; k < m; ++k) block[m * l + k] += dot(J[a * n + i][at(l)], pull[i][at(k)]);
+        }
       }
     }
   }

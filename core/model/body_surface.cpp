@@ -49,6 +49,7 @@ std::vector<std::vector<BodyFace>> connected_faces(const std::vector<BodyFace>& 
   std::map<int, std::vector<BodyFace>> by_root;
   for (std::size_t f = 0; f < faces.size(); ++f) by_root[root(static_cast<int>(f))].push_back(faces[f]);
   std::vector<std::vector<BodyFace>> parts;
+  parts.reserve(by_root.size());
   for (auto& [first, members] : by_root) parts.push_back(std::move(members));
   return parts;
 }
@@ -99,7 +100,7 @@ SurfaceLoad surface_of(const ModelBody& body, const std::vector<BodyFace>& faces
     }
     add_face(load, vertices);
   }
-  load.closed = free_edges(faces).empty();
+  load.closed = load.has_potential = free_edges(faces).empty();
   measure_at_rest(load);
   return load;
 }

@@ -33,7 +33,7 @@ bool Model::loads_are_conservative() const {
                        [](const NodeLoad& n) { return squared_norm(n.torque) > 0; });
   };
   return followers.empty() && std::none_of(loads.begin(), loads.end(), has_torque) &&
-         std::all_of(surfaces.begin(), surfaces.end(), [](const SurfaceLoad& s) { return s.closed; });
+         std::all_of(surfaces.begin(), surfaces.end(), [](const SurfaceLoad& s) { return s.has_potential; });
 }
 
 State State::at_rest(const Model& model) {

@@ -106,7 +106,8 @@ struct Model {
   int constrained_dof_count() const;
   FrameKind kind(int node) const { return frame_kind[at(node)]; }
   bool has_frames() const;  ///< nodes that turn
-  /// Loads have a potential: no torque that keeps its direction in space, no follower, no pressure on an open surface.
+  /// Loads have a potential: no torque that keeps its direction in space, no follower, no pressure on a surface whose
+  /// free edges move.
   bool loads_are_conservative() const;
 };
 

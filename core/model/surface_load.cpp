@@ -128,7 +128,7 @@ void evaluate(const SurfaceLoad& load, const State& state, std::span<const doubl
   f.pressure = s * load.pressure;
   f.energy = f.volume = f.stiffness = f.rounding = 0;
   double uncertain = 0;  // of the pressure [Pa]
-  if (load.closed) {
+  if (load.has_potential) {
     constexpr double eps = std::numeric_limits<double>::epsilon();
     double sizes = 0;
     const double change = volume_change(load, f, sizes), wanted = s * (load.volume - load.rest_volume);

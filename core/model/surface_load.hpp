@@ -34,6 +34,7 @@ struct SurfaceLoad {
   std::vector<int> face_begin{0};  ///< (faces + 1)
   std::vector<int> face_vertex;    ///< by face, as face_rule() orders them
   bool closed = false;             ///< every edge joins two faces; needed by all but P
+  bool has_potential = false;      ///< closed, or all that moves its free edges is held
 
   int schedule = 0;
   double pressure = 0;                 ///< P [Pa]
@@ -64,7 +65,7 @@ struct SurfaceForces {
   std::vector<Vec3d> area;   ///< ∫ N n dA = dV/dx [m²]
   double volume = 0;         ///< of a closed surface [m³]
   double pressure = 0;       ///< at the datum [Pa]
-  double energy = 0;         ///< of a closed surface, up to a constant [J]
+  double energy = 0;         ///< where there is a potential, up to a constant [J]
   double rounding = 0;       ///< what rounding leaves in all forces together [N]
   double stiffness = 0;      ///< K / V* [Pa/m³]
 };

@@ -46,17 +46,19 @@ struct ElementsAround {
 
 BlockMatrix::BlockMatrix(const PointSet& set) : dofs_(set.dofs) {
   find_pattern(set);
-  for (int node = 0; node < rows(); ++node) all_vertices_ = all_vertices_ && dofs_.kind(node) == FrameKind::vertex;
+  uniform_ = rows() > 0 && dofs_.size(0) <= 6 ? dofs_.size(0) : 0;
+  for (int node = 0; node < rows(); ++node)
+    if (dofs_.size(node) != uniform_) uniform_ = 0;
   std::size_t next = 0;
   for (int row = 0; row < rows(); ++row) {
     for (const int column : columns(row)) {
       value_begin_.push_back(next);
-      if (!all_vertices_ || column >= row) next += at(dofs_.size(row)) * at(dofs_.size(column));
+      if (uniform_ == 0 || column >= row) next += at(dofs_.size(row)) * at(dofs_.size(column));
     }
   }
   value_begin_.push_back(next);
-  values_.assign(next + 1, 0.0);  // one more: blocks of nine are read ten at a time
-  if (all_vertices_)
+  values_.assign(next + 2, 0.0);  // two more: rows of three are read four at a time, rows of six eight
+  if (uniform_ > 0)
     size_chunks();
   else
     find_mirrors();
@@ -119,7 +121,7 @@ int BlockMatrix::find(int row, int column) const {
 void BlockMatrix::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
 void BlockMatrix::mirror_lower() {
-  if (all_vertices_) return;
+  if (uniform_ > 0) return;
   for (int row = 0; row < rows(); ++row) {
     for (int k = row_begin(row); k < diagonal(row); ++k) {
       const int n = dofs_.size(row), m = dofs_.size(column_[at(k)]);
@@ -162,7 +164,8 @@ void BlockMatrix::multiply_row(int row, std::span<const double> x, std::span<dou
 }
 
 void BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
-  if (all_vertices_) return multiply_upper(pool, x, y);
+  if (uniform_ == 3) return multiply_upper<3>(pool, x, y);
+  if (uniform_ == 6) return multiply_upper<6>(pool, x, y);
   pool.for_ranges(rows(), 64, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) multiply_row(row, x, y);
   });

@@ -10,8 +10,8 @@
 namespace fascia {
 
 /// Symmetric matrix of blocks, one for each pair of nodes that share a group or an element, as large as the nodes have
-/// degrees of freedom and stored by rows, columns ascending. The pattern is fixed. Where all nodes are vertices only
-/// the blocks on and above the diagonal are stored: half as much to read in a product.
+/// degrees of freedom and stored by rows, columns ascending. The pattern is fixed. Where all nodes are vertices, or all
+/// rigid frames, only the blocks on and above the diagonal are stored: half as much to read in a product.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
@@ -29,7 +29,7 @@ class BlockMatrix {
 
   void set_zero();
   /// Only blocks on and above the diagonal are stored; otherwise those on and below are filled, then mirrored.
-  bool fills_upper() const { return all_vertices_; }
+  bool fills_upper() const { return uniform_ > 0; }
   /// Copies the blocks below the diagonal, transposed, above it, where those are filled.
   void mirror_lower();
   /// y = K x
@@ -42,7 +42,9 @@ class BlockMatrix {
  private:
   void find_pattern(const PointSet& set);
   void multiply_row(int row, std::span<const double> x, std::span<double> y) const;
+  template <int N>
   void multiply_upper(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  template <int N>
   void multiply_chunk(int chunk) const;
   void size_chunks();
   void find_mirrors();
@@ -50,12 +52,13 @@ class BlockMatrix {
   DofLayout dofs_;
   std::vector<int> row_begin_{0}, column_, diagonal_;
   std::vector<int> mirror_;               ///< of each block below the diagonal, the one above it
-  bool all_vertices_ = true;              ///< every block is 3 × 3
+  int uniform_ = 0;                       ///< every block is 3 × 3, or 6 × 6; 0: neither
   std::vector<std::size_t> value_begin_;  ///< of each block, and of all
   AlignedVector<double> values_;
 
   /// Of products with the upper triangle: rows are taken in a few chunks, whose sums for rows behind them wait in a
-  /// buffer, so that the order of additions does not depend on threads. Vectors have four numbers a node there.
+  /// buffer, so that the order of additions does not depend on threads. Vectors have four or eight numbers a node
+  /// there.
   std::vector<int> chunk_begin_;             ///< (chunks + 1) rows
   std::vector<std::size_t> overhang_begin_;  ///< (chunks + 1) of each chunk's buffer, for rows from its end on
   mutable AlignedVector<double> wide_x_, wide_y_, overhang_;

@@ -5,50 +5,70 @@
 #include <algorithm>
 #include <cstring>
 
-/// Products with matrices of vertices, of which only the upper triangle is filled.
+/// Products with matrices of vertices only or of rigid frames only, of which the upper triangle is filled.
 namespace fascia {
 
 namespace {
 
-using Four = BatchRegister<4>::Type;
+/// Numbers of a node in the vectors here: a register's, of which the last ones stay zero or are not read.
+template <int N>
+constexpr int kWide = N == 3 ? 4 : 8;
 
-inline Four load_four(const double* p) {
-  Four r;
+template <int N>
+using Wide = typename BatchRegister<kWide<N>>::Type;
+
+template <int N>
+inline Wide<N> load(const double* p) {
+  Wide<N> r;
   std::memcpy(&r, p, sizeof r);
   return r;
 }
 
-inline void copy_three(const double* from, double* to) {
-  for (int i = 0; i < 3; ++i) to[i] = from[i];
+template <int N>
+inline void copy_node(const double* from, double* to) {
+  for (int i = 0; i < N; ++i) to[i] = from[i];
 }
 
-inline Four all(double s) { return Four{} + s; }
-
 /// Rows of a chunk: enough that its overhang is small beside its blocks.
-constexpr int kChunkRows = 8192;
+template <int N>
+constexpr int kChunkRows = N == 3 ? 8192 : 2048;
 
-/// What blocks of a row do: sum += A x_j, and y_j += Aᵀ x_i. Rows of a block are read four numbers at a time; the
-/// fourth, the next row's, meets the fourth of x, zero, or lands in the fourth of y, which nothing reads.
+/// What blocks of a row do: sum += A x_j, and y_j += Aᵀ x_i. Rows of a block are read a register at a time; what
+/// exceeds the row, the beginning of the next, meets zeros of x, or lands in numbers of y that nothing reads.
+template <int N>
 struct RowSums {
-  Four sum[2][3] = {};  ///< of even and odd blocks: one addition need not wait for another
-  Four x[3];
+  static constexpr int kParities = N == 3 ? 2 : 1;  ///< of even and odd blocks: one addition need not wait for another
+  Wide<N> sum[kParities][N] = {};
+  Wide<N> x[N];
 
-  explicit RowSums(const double* xi) : x{all(xi[0]), all(xi[1]), all(xi[2])} {}
+  explicit RowSums(const double* xi) {
+    for (int i = 0; i < N; ++i) x[i] = Wide<N>{} + xi[i];
+  }
   template <int Parity>
   void add(const double* b, const double* xj) {
-    const Four v = load_four(xj);
-    for (int i = 0; i < 3; ++i) sum[Parity][i] += load_four(b + 3 * i) * v;
+    const Wide<N> v = load<N>(xj);
+    for (int i = 0; i < N; ++i) sum[Parity % kParities][i] += load<N>(b + N * i) * v;
   }
   void add_transposed(const double* b, double* yj) const {
-    const Four y = (load_four(yj) + load_four(b) * x[0]) + (load_four(b + 3) * x[1] + load_four(b + 6) * x[2]);
+    Wide<N> y = load<N>(yj) + load<N>(b) * x[0];
+    for (int i = 1; i + 1 < N; i += 2) y += load<N>(b + N * i) * x[i] + load<N>(b + N * (i + 1)) * x[i + 1];
+    if constexpr (N % 2 == 0) y += load<N>(b + N * (N - 1)) * x[N - 1];
     std::memcpy(yj, &y, sizeof y);
+  }
+  double total(int i) const {
+    Wide<N> all = sum[0][i];
+    if constexpr (kParities == 2) all += sum[1][i];
+    double s = all[0];
+    for (int k = 1; k < N; ++k) s += all[k];
+    return s;
   }
 };
 
 }  // namespace
 
 void BlockMatrix::size_chunks() {
-  const int chunks = std::max(1, rows() / kChunkRows);
+  const int wide = uniform_ == 3 ? kWide<3> : kWide<6>;
+  const int chunks = std::max(1, rows() / (uniform_ == 3 ? kChunkRows<3> : kChunkRows<6>));
   overhang_begin_.push_back(0);
   for (int c = 0; c <= chunks; ++c)
     chunk_begin_.push_back(static_cast<int>(static_cast<std::int64_t>(rows()) * c / chunks));
@@ -56,16 +76,18 @@ void BlockMatrix::size_chunks() {
     const int end = chunk_begin_[at(c + 1)];
     int last = end - 1;
     for (int row = chunk_begin_[at(c)]; row < end; ++row) last = std::max(last, columns(row).back());
-    overhang_begin_.push_back(overhang_begin_.back() + 4 * at(last + 1 - end));
+    overhang_begin_.push_back(overhang_begin_.back() + at(wide * (last + 1 - end)));
   }
-  wide_x_.resize(4 * at(rows()));
-  wide_y_.resize(4 * at(rows()));
+  wide_x_.resize(at(wide) * at(rows()));
+  wide_y_.resize(at(wide) * at(rows()));
   overhang_.resize(overhang_begin_.back());
 }
 
+template <int N>
 void BlockMatrix::multiply_chunk(int chunk) const {
+  constexpr int W = kWide<N>, B = N * N;
   const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
-  std::fill(wide_y_.begin() + 4 * begin, wide_y_.begin() + 4 * end, 0.0);
+  std::fill(wide_y_.begin() + W * begin, wide_y_.begin() + W * end, 0.0);
   std::fill(overhang_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(chunk)]),
             overhang_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(chunk + 1)]), 0.0);
   const double* x = wide_x_.data();
@@ -75,42 +97,44 @@ void BlockMatrix::multiply_chunk(int chunk) const {
     const int first = diagonal(row), last = row_begin(row + 1);
     const int* column = column_.data();
     const double* b = block(first);
-    RowSums sums(x + 4 * row);
-    sums.add<0>(b, x + 4 * row);
-    b += 9;
+    RowSums<N> sums(x + W * row);
+    sums.template add<0>(b, x + W * row);
+    b += B;
     int k = first + 1;
-    for (; k + 1 < last && column[k + 1] < end; k += 2, b += 18) {
-      sums.add<1>(b, x + 4 * column[k]);
-      sums.add<0>(b + 9, x + 4 * column[k + 1]);
-      sums.add_transposed(b, y + 4 * column[k]);
-      sums.add_transposed(b + 9, y + 4 * column[k + 1]);
+    for (; k + 1 < last && column[k + 1] < end; k += 2, b += 2 * B) {
+      sums.template add<1>(b, x + W * column[k]);
+      sums.template add<0>(b + B, x + W * column[k + 1]);
+      sums.add_transposed(b, y + W * column[k]);
+      sums.add_transposed(b + B, y + W * column[k + 1]);
     }
-    for (; k < last; ++k, b += 9) {
-      sums.add<1>(b, x + 4 * column[k]);
-      sums.add_transposed(b, column[k] < end ? y + 4 * column[k] : beyond + 4 * (column[k] - end));
+    for (; k < last; ++k, b += B) {
+      sums.template add<1>(b, x + W * column[k]);
+      sums.add_transposed(b, column[k] < end ? y + W * column[k] : beyond + W * (column[k] - end));
     }
-    for (int i = 0; i < 3; ++i) {
-      const Four sum = sums.sum[0][i] + sums.sum[1][i];
-      y[4 * row + i] += (sum[0] + sum[1]) + sum[2];
-    }
+    for (int i = 0; i < N; ++i) y[W * row + i] += sums.total(i);
   }
 }
 
+template <int N>
 void BlockMatrix::multiply_upper(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  constexpr int W = kWide<N>;
   const int chunks = static_cast<int>(chunk_begin_.size()) - 1;
-  for (int row = 0; row < rows(); ++row) copy_three(x.data() + 3 * row, wide_x_.data() + 4 * row);
-  pool.for_chunks(chunks, [&](int chunk) { multiply_chunk(chunk); });
+  for (int row = 0; row < rows(); ++row) copy_node<N>(x.data() + N * row, wide_x_.data() + W * row);
+  pool.for_chunks(chunks, [&](int chunk) { multiply_chunk<N>(chunk); });
   pool.for_chunks(chunks, [&](int chunk) {
     const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
-    for (int row = begin; row < end; ++row) copy_three(wide_y_.data() + 4 * row, y.data() + 3 * row);
+    for (int row = begin; row < end; ++row) copy_node<N>(wide_y_.data() + W * row, y.data() + N * row);
     for (int earlier = 0; earlier < chunk; ++earlier) {
       const int start = chunk_begin_[at(earlier + 1)];
-      const int stop = start + static_cast<int>((overhang_begin_[at(earlier + 1)] - overhang_begin_[at(earlier)]) / 4);
+      const int stop = start + static_cast<int>((overhang_begin_[at(earlier + 1)] - overhang_begin_[at(earlier)]) / W);
       const double* values = overhang_.data() + overhang_begin_[at(earlier)];
       for (int row = std::max(begin, start); row < std::min(end, stop); ++row)
-        for (int i = 0; i < 3; ++i) y[at(3 * row + i)] += values[4 * (row - start) + i];
+        for (int i = 0; i < N; ++i) y[at(N * row + i)] += values[W * (row - start) + i];
     }
   });
 }
+
+template void BlockMatrix::multiply_upper<3>(ThreadPool&, std::span<const double>, std::span<double>) const;
+template void BlockMatrix::multiply_upper<6>(ThreadPool&, std::span<const double>, std::span<double>) const;
 
 }  // namespace fascia

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <sstream>
 
 namespace fascia {
@@ -13,8 +14,10 @@ namespace {
 
 constexpr double kSmallest = 1.0 / 1024, kLongest = 100;  ///< steps, in lengths of the first
 constexpr double kDesiredIterations = 5;
-constexpr int kMostIterations = 15;            ///< of a step; one that needs more is better taken in halves
-constexpr double kMostBent = 0.3;              ///< what the mean of the tangents at the ends of a step may miss of it
+constexpr int kMostIterations = 15;  ///< of a step; one that needs more is better taken in halves
+constexpr double kMostBent = 0.3;    ///< what the mean of the tangents at the ends of a step may miss of it
+constexpr double kPolished = 0.02;   ///< residual over the rounding floor
+constexpr int kMostPolishing = 2;
 constexpr double kSlopeWidth = 2e-4;           ///< load factors apart for the slopes of factors
 constexpr double kRotationPerIteration = 0.8;  ///< [rad]
 
@@ -132,31 +135,49 @@ class PathFollower {
     system_.set_factors(factors_(lambda_));
   }
 
+  void go_back_to(double lambda, Evaluation& evaluation) {
+    system_.restore();
+    lambda_ = lambda;
+    system_.set_factors(factors_(lambda));
+    evaluation = system_.evaluate();
+  }
+
   /// Newton's method on r = 0 and a constraint, which gives δλ.
   template <class Constraint, class Satisfied>
   NewtonReport correct(const Constraint& constraint, const Satisfied& satisfied) {
     NewtonReport report;
     const int limit = std::min(settings_.max_iterations, kMostIterations);
-    bool polished = false;
-    effort_ = 0;
+    std::optional<std::pair<double, double>> kept;  // relative residual and λ of the best converged state
+    int polishing = 0;
+    bool done = false;
     for (;; ++report.iterations) {
       report.last = system_.evaluate();
+      report.status = NewtonStatus::converged;
+      const bool good = report.last.finite() && report.last.converged() && satisfied() &&
+                        (kept || !system_.has_prescribed_increment());
+      if (good && (!kept || report.last.relative < kept->first)) {
+        // Where rounding is the limit, well below it: what is left hides how the path goes on.
+        done = report.last.relative <= std::max(settings_.tolerance, kPolished * report.last.relative_floor);
+        if (done) break;
+        if (!kept) effort_ = report.iterations;
+        kept = {report.last.relative, lambda_};
+        system_.save();
+      }
+      if (kept && ++polishing > kMostPolishing) break;
       report.status = NewtonStatus::not_finite;
       if (!report.last.finite()) break;
-      report.status = NewtonStatus::converged;
-      if (report.last.converged() && satisfied() && !system_.has_prescribed_increment()) {
-        // Where rounding is the limit, once more: what is left hides how the path goes on.
-        if (report.last.relative <= settings_.tolerance || polished) break;
-        polished = true;
-        effort_ = report.iterations;
-      }
       report.status = NewtonStatus::limit;
-      if (report.iterations >= limit) break;
+      if (!kept && report.iterations >= limit) break;
       const PathDirections d = directions();
       const double dlambda = d.usable ? constraint(d) : 0.0;
       report.status = NewtonStatus::linear_failure;
       if (!d.usable || !std::isfinite(dlambda)) break;
       move(d, 1, dlambda);
+    }
+    if (!kept) effort_ = report.iterations;
+    if (kept && !done) {
+      if (report.last.relative != kept->first) go_back_to(kept->second, report.last);
+      report.status = NewtonStatus::converged;
     }
     run_.newton_iterations += report.iterations;
     return report;
@@ -175,6 +196,7 @@ class PathFollower {
       NewtonReport report = attempt(length);
       if (report.status != NewtonStatus::converged) {
         failed = report;
+        calm_ = 3;
         continue;
       }
       PathDirections end = directions();
@@ -275,8 +297,9 @@ class PathFollower {
     report.trouble = run_.trouble = describe(end.unstable);
     tangent_ = std::move(end);
     rate_ = rate;
-    const double growth = std::sqrt(kDesiredIterations / std::max(1, effort_ > 0 ? effort_ : report.iterations));
-    length_ = std::min(kLongest * first_, p * std::clamp(growth, 0.5, 2.0));
+    const double growth = std::sqrt(kDesiredIterations / std::max(1, effort_));
+    length_ = std::min(kLongest * first_, p * std::clamp(growth, 0.5, calm_ > 0 ? 1.0 : 2.0));
+    calm_ = std::max(0, calm_ - 1);
     done_ = done;
     return report;
   }
@@ -327,7 +350,8 @@ class PathFollower {
   double lambda_ = 0;       ///< of the present state
   double first_ = 0;        ///< length of the first step
   double length_ = 0;       ///< of the next one
-  int effort_ = 0;          ///< iterations of the present step before the last one, where rounding is the limit
+  int calm_ = 0;            ///< steps that still do not grow, after one that failed
+  int effort_ = 0;          ///< iterations of the present step until the residual was allowed
   double growth_ = 1;       ///< sign of the controlled displacement
   bool done_ = false;
 };
@@ -337,28 +361,6 @@ class PathFollower {
 RunReport run_path(MechanicalSystem& system, State& state, const FactorFunction& factors,
                    const SolverSettings& settings, const PathSettings& path, const StepObserver& observe) {
   return PathFollower(system, state, factors, settings, path).run(observe);
-}
-
-bool near_limit_point(MechanicalSystem& system, const State& state, const FactorFunction& factors, double reached) {
-  constexpr double kSofter = 4;
-  if (!system.tangent().direct()) return false;
-  // How far a unit of the loads' growth moves the nodes.
-  const Translations dots(system.model());
-  const auto answer = [&](const State& from, double ahead, double behind, int& unstable) {
-    const std::vector<double> a = factors(ahead), b = factors(behind);
-    system.begin_step(from, 0);
-    system.set_factors(factors(from.time));
-    if (!system.evaluate().finite()) return 0.0;
-    const PathDirections d = system.path_directions(a, b, ahead - behind);
-    unstable = d.unstable;
-    double slope = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) slope += (a[k] - b[k]) * (a[k] - b[k]);
-    return d.usable && slope > 0 ? dots.norm(d.d_f) / std::sqrt(slope) : 0.0;
-  };
-  int unstable = 0, at_rest = 0;
-  const double now = answer(state, reached, reached - kSlopeWidth, unstable);
-  const double first = answer(State::at_rest(system.model()), kSlopeWidth, 0, at_rest);
-  return unstable > at_rest || (first > 0 && now > kSofter * first);
 }
 
 }  // namespace fascia

@@ -1,4 +1,5 @@
 // Plates of triangle shells: thin and thick, static, vibrating, and in free flight.
+#include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
 #include "tests/support/shell_models.hpp"
 
@@ -119,6 +120,51 @@ TEST(ShellPlates, FreeFlight) {
       EXPECT_LT(largest_gain, 1e-10 * before.kinetic_energy);
     else
       EXPECT_LT(angular, 1e-9);
+  }
+}
+
+/// A plate that a sudden load sets swinging, to and beyond its first turn: central differences against Newmark.
+TEST(ShellPlates, ExplicitAgreesWithImplicit) {
+  ShellModel b = square(12, 0.01, true);
+  add_area_load(b, {{0, 0, -5}});
+  const int centre = node_at(b.model, {{0.5, 0.5, 0}});
+  ThreadPool pool(1);
+  const SolverSettings settings;
+  MechanicalSystem system(b.model, pool, settings);
+  const double limit = stable_time_step(system, State::at_rest(b.model));
+  const double speed = std::sqrt(1e6 / 0.91 / 1000), size = 1.0 / 12;
+  std::printf("stable step %.3e s, %.2f of the time of a wave across an edge\n", limit, limit * speed / size);
+  EXPECT_GT(limit, 0.4 * size / speed);
+  const int steps = static_cast<int>(std::ceil(0.4 / (0.9 * limit)));
+  State fast = State::at_rest(b.model), slow = fast;
+  EXPECT_EQ(run_explicit(system, fast, kAlways, {0.4 / steps, steps}, {}).status, RunStatus::converged);
+  EXPECT_EQ(run_implicit(system, slow, kAlways, settings, {TimeScheme::newmark, 2e-3, 200}, {}).status,
+            RunStatus::converged);
+  const double u = fast.u[at(centre)][2], v = slow.u[at(centre)][2];
+  std::printf("centre after 0.4 s: explicit %.5f m, Newmark %.5f m (%.2f %%)\n", u, v, 100 * (u / v - 1));
+  EXPECT_NEAR(u / v, 1, 0.01);
+}
+
+/// The same roof in millimetres, metres and kilometres, soft and hard: bent by the same part of its size.
+TEST(ShellPlates, SizesAndStiffnessesDoNotMatter) {
+  double reference = 0;
+  for (const auto& [size, young] : {std::pair{1.0, 1e6}, {1e-3, 1e6}, {1e3, 1e6}, {1.0, 1.0}, {1.0, 1e12}}) {
+    const double length = size;
+    const auto map = [=](double u, double v) { return Vec3d{{length * u, length * v, 0.3 * length * u * (1 - u)}}; };
+    ShellModel b = shell_model(patch_mesh(map, {8, 8, Diagonals::alternating}), {young, 0.3, 0.01 * size, 1});
+    hold(
+        b.model, [=](const Vec3d& X) { return X[0] < 1e-9 * length; }, "xyzXYZ");
+    add_area_load(b, {{0, 0, -young * 1e-6}});
+    ThreadPool pool(1);
+    SolverSettings settings;
+    MechanicalSystem system(b.model, pool, settings);
+    State state = State::at_rest(b.model);
+    const RunReport run = run_statics(system, state, kRamp, settings, {1}, {});
+    ASSERT_EQ(run.status, RunStatus::converged) << run.message;
+    const double tip = state.u[at(node_at(b.model, {{length, 0, 0}}))][2] / size;
+    std::printf("size %g m, %g Pa: %.12f, %d iterations\n", size, young, tip, run.newton_iterations);
+    if (reference == 0) reference = tip;
+    EXPECT_NEAR(tip / reference, 1, 1e-7);  // Newton's tolerance 1e-8 of the load
   }
 }
 

@@ -239,6 +239,30 @@ TEST(OpenSurfaces, HaveNoEnergyAndAreNotConservative) {
   EXPECT_EQ(f.energy, 0);
 }
 
+/// Where the free edges stay, the force is the gradient of −p V.
+TEST(OpenSurfaces, HaveAnEnergyWhereTheirEdgesAreHeld) {
+  Loaded built = elements(ElementShape::hex8);
+  std::vector<BodyFace> faces = built.body->faces();
+  faces.pop_back();
+  add_load(built, Kind::pressure, faces);
+  SurfaceLoad& load = built.model.surfaces[0];
+  load.has_potential = true;
+  EXPECT_TRUE(built.model.loads_are_conservative());
+  std::vector<double> d = random_direction(built.model);
+  for (const auto& edge : free_edges(faces))
+    for (const int node : edge) std::fill_n(d.begin() + 3 * static_cast<std::ptrdiff_t>(node), 3, 0.0);
+  const State state = random_state(built.model, 0.06, 0);
+  const std::vector<double> factors{1, 1};
+  SurfaceForces f, plus, minus;
+  evaluate(load, state, factors, f);
+  const double h = 1e-6;
+  evaluate(load, moved(built.model, state, d, h), factors, plus);
+  evaluate(load, moved(built.model, state, d, -h), factors, minus);
+  std::vector<double> force(d.size());
+  gather_forces(load, f.force, state, built.model.points.dofs, force);
+  EXPECT_NEAR((minus.energy - plus.energy) / (2 * h), test::dot(force, d), 1e-8 * test::norm(force) * test::norm(d));
+}
+
 /// A pressure on the flat face of an element is shared as its shape functions say.
 TEST(OpenSurfaces, ShareAPressureByShapeFunctions) {
   ElementOptions o;
