@@ -11,6 +11,46 @@ namespace {
 /// Determinant of the mean of two rotations a right angle apart: below, a blend no longer follows them.
 constexpr double kResolved = 0.5;
 
+/// A triangle with less of its area collapses: strains of that size are no physical state of this law.
+constexpr double kCollapsed = 0.1;
+
+void add_shell_warnings(const SimulatedBody& b, const State& end, std::vector<std::string>& warnings) {
+  int unresolved = 0, against = 0;
+  double smallest = 1;
+  Vec3d where;
+  const std::vector<BodyPoint>& triangles = b.body->points();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Attachment a = b.body->attach_point(t);
+    const FieldValue f = field_at(a, end);
+    unresolved += determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
+    against += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
+    Vec3d X[3], x[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      X[k] = b.nodes[static_cast<std::size_t>(a.nodes[k] - b.body->first_node())];
+      x[k] = X[k] + end.u[static_cast<std::size_t>(a.nodes[k])];
+    }
+    const double left = norm(cross(x[1] - x[0], x[2] - x[0])) / norm(cross(X[1] - X[0], X[2] - X[0]));
+    if (left >= smallest) continue;
+    smallest = left;
+    where = triangles[t].X;
+  }
+  if (smallest < kCollapsed)
+    warnings.push_back(fmt::format(
+        "body \"{}\": the triangle at ({:.4g}, {:.4g}, {:.4g}) has {:.2g} % of its area left: it collapses, "
+        "which St Venant-Kirchhoff materials do not resist; mesh again there if it is a needle or cap",
+        b.name, where[0], where[1], where[2], 100 * smallest));
+  if (against > 0)
+    warnings.push_back(fmt::format(
+        "body \"{}\": {} of {} triangles face against the directors of their nodes: no physical state; mesh finer "
+        "there, without needles and caps",
+        b.name, against, triangles.size()));
+  if (unresolved > 0)
+    warnings.push_back(
+        fmt::format("body \"{}\": the corners of {} of {} triangles are turned against each other by more than a right "
+                    "angle: the mesh does not resolve so sharp a bend; use more cells",
+                    b.name, unresolved, triangles.size()));
+}
+
 }  // namespace
 
 SnapWatch::SnapWatch(const Simulation& s) : simulation_(s), factors_(s.factors(0)) {
@@ -40,10 +80,15 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     warnings.push_back(fmt::format(
         "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
   for (const SimulatedBody& b : s.bodies) {
+    const auto index = static_cast<std::size_t>(&b - s.bodies.data());
+    if (is_shell(s.scene.bodies[index])) {
+      add_shell_warnings(b, end, warnings);
+      continue;
+    }
     int inverted = 0, unresolved = 0;
     const bool rigid = s.model.kind(b.body->first_node()) == FrameKind::rigid;
-    const Formulation formulation = s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())].formulation;
-    const bool linear = formulation == Formulation::linear, shell = b.body->cells().type == CellType::triangle;
+    const Formulation formulation = s.scene.bodies[index].formulation;
+    const bool linear = formulation == Formulation::linear;
     for (std::size_t q = 0; q < b.body->points().size(); ++q) {
       const FieldValue f = field_at(b.body->attach_point(q), end);
       inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
@@ -58,15 +103,14 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     else if (inverted > 0)
       warnings.push_back(fmt::format(
           "body \"{}\" is turned inside out at {} of {} integration points: {} do not resist that; the "
-          "result is no physical state{}",
+          "result is no physical state (law = \"neo-hookean\" would resist)",
           b.name, inverted, b.body->points().size(),
-          formulation == Formulation::corotational ? "co-rotational elements" : "St Venant-Kirchhoff materials",
-          shell ? "" : " (law = \"neo-hookean\" would resist)"));
+          formulation == Formulation::corotational ? "co-rotational elements" : "St Venant-Kirchhoff materials"));
     if (unresolved > 0)
       warnings.push_back(
           fmt::format("body \"{}\": neighbouring frames are turned against each other by more than a right angle at {} "
-                      "of {} integration points: their blend does not resolve that; use more {}",
-                      b.name, unresolved, b.body->points().size(), shell ? "triangles" : "frames"));
+                      "of {} integration points: their blend does not resolve that; use more frames",
+                      b.name, unresolved, b.body->points().size()));
   }
   if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
     run.status = RunStatus::not_converged;
