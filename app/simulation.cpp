@@ -127,7 +127,9 @@ double model_memory(const Simulation& s) {
     const double of_point = is_solid(law) ? 216 : law == Law::sheet ? 18 : 1.5;
     pieces = std::max(pieces, std::min(4e6, of_point * static_cast<double>(b.body->points().size())));
   }
-  return 30e6 + points + results + matrix * (factor ? 4 : 1) + s.model.dof_count() * 200.0 + pieces * 160;
+  // Upper triangles of frames are half of what a factor fills.
+  const double fill = pattern.fills_upper() && s.model.has_frames() ? 8 : 4;
+  return 30e6 + points + results + matrix * (factor ? fill : 1) + s.model.dof_count() * 200.0 + pieces * 160;
 }
 
 std::vector<double> Simulation::factors(double time) const {

@@ -39,11 +39,19 @@ ShellBody::ShellBody(ShellBodySpec spec, Model& model, PointSetBuilder& points)
   }
   around_.resize(mesh_.nodes.size());
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-    for (const int node : mesh_.triangles[t]) around_[at(node)].push_back(static_cast<int>(t));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& nodes = mesh_.triangles[t];
+      around_[at(nodes[k])].push_back(static_cast<int>(angle_.size()));
+      const Vec3d &o = mesh_.nodes[at(nodes[k])], u = mesh_.nodes[at(nodes[(k + 1) % 3])] - o,
+                  v = mesh_.nodes[at(nodes[(k + 2) % 3])] - o;
+      angle_.push_back(std::atan2(norm(cross(u, v)), dot(u, v)));
+    }
   number_nodes(model);
   add_triangles(spec, points);
   add_mass(spec.density, model);
   describe();
+  around_ = {};
+  angle_ = {};
 }
 
 PlaneTriangle ShellBody::corners(std::size_t t) const {
@@ -85,26 +93,19 @@ void ShellBody::number_nodes(Model& model) {
 /// Mean square angle to the smooth surface's normals at the corners: the means over the triangles there, but not across
 /// creases.
 double ShellBody::tilt(std::size_t t) const {
+  constexpr std::size_t kMost = 64;  // of more triangles around a node, every so many
   const Vec3d own = triangle_axes_[t].column(2);
   double squares = 0;
   for (const int node : mesh_.triangles[t]) {
-    Vec3d sum;
-    for (const int other : around_[at(node)]) {
-      const Vec3d n = triangle_axes_[at(other)].column(2);
-      if (dot(n, own) > kCrease) sum += n * angle_at(at(other), node);
+    const std::vector<int>& corners = around_[at(node)];
+    Vec3d sum = own * 1e-6;
+    for (std::size_t k = 0; k < corners.size(); k += corners.size() / kMost + 1) {
+      const Vec3d n = triangle_axes_[at(corners[k] / 3)].column(2);
+      if (dot(n, own) > kCrease) sum += n * angle_[at(corners[k])];
     }
     squares += squared_norm(normalized(sum) - own) / 3;
   }
   return squares;
-}
-
-/// Angle of a triangle at one of its nodes [rad].
-double ShellBody::angle_at(std::size_t t, int node) const {
-  const auto& nodes = mesh_.triangles[t];
-  const auto k = static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
-  const Vec3d &o = mesh_.nodes[at(node)], u = mesh_.nodes[at(nodes[(k + 1) % 3])] - o,
-              v = mesh_.nodes[at(nodes[(k + 2) % 3])] - o;
-  return std::atan2(norm(cross(u, v)), dot(u, v));
 }
 
 void ShellBody::add_triangles(const ShellBodySpec& spec, PointSetBuilder& builder) {

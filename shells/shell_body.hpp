@@ -62,7 +62,6 @@ class ShellBody final : public ModelBody {
   PointTensors tensors_of(std::size_t triangle, const Strained& s, double offset) const;
   void number_nodes(Model& model);
   double tilt(std::size_t triangle) const;
-  double angle_at(std::size_t triangle, int node) const;
   void add_triangles(const ShellBodySpec& spec, PointSetBuilder& points);
   void add_mass(double density, Model& model);
   void describe();
@@ -72,7 +71,9 @@ class ShellBody final : public ModelBody {
   std::vector<PointMaterialSpec> material_;
   std::vector<Mat3d> triangle_axes_;  ///< columns: in the plane, then the normal
   std::vector<double> area_;
-  std::vector<std::vector<int>> around_;  ///< triangles of each node, while the body is built
+  /// Corners of triangles at each node (3 · triangle + corner), and the angles there, while the body is built.
+  std::vector<std::vector<int>> around_;
+  std::vector<double> angle_;
   TriangleTree tree_;
   std::string quality_;
   std::int64_t fastest_cell_ = 0;

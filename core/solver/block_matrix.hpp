@@ -60,7 +60,9 @@ class BlockMatrix {
   /// buffer, so that the order of additions does not depend on threads. Vectors have four or eight numbers a node
   /// there.
   std::vector<int> chunk_begin_;             ///< (chunks + 1) rows
-  std::vector<std::size_t> overhang_begin_;  ///< (chunks + 1) of each chunk's buffer, for rows from its end on
+  std::vector<std::size_t> overhang_begin_;  ///< (chunks + 1): what a chunk has for rows from its end on
+  std::vector<int> overhang_row_;            ///< these rows, ascending in each chunk
+  std::vector<int> overhang_slot_;           ///< of each block in such a column: its place in the chunk's part
   mutable AlignedVector<double> wide_x_, wide_y_, overhang_;
 };
 

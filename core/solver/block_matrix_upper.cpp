@@ -72,15 +72,24 @@ void BlockMatrix::size_chunks() {
   overhang_begin_.push_back(0);
   for (int c = 0; c <= chunks; ++c)
     chunk_begin_.push_back(static_cast<int>(static_cast<std::int64_t>(rows()) * c / chunks));
+  if (chunks > 1) overhang_slot_.resize(column_.size());
   for (int c = 0; c < chunks; ++c) {
-    const int end = chunk_begin_[at(c + 1)];
-    int last = end - 1;
-    for (int row = chunk_begin_[at(c)]; row < end; ++row) last = std::max(last, columns(row).back());
-    overhang_begin_.push_back(overhang_begin_.back() + at(wide * (last + 1 - end)));
+    const int begin = row_begin(chunk_begin_[at(c)]), end = chunk_begin_[at(c + 1)], last = row_begin(end);
+    std::vector<int> far;
+    for (int k = begin; k < last; ++k)
+      if (column_[at(k)] >= end) far.push_back(column_[at(k)]);
+    std::sort(far.begin(), far.end());
+    far.erase(std::unique(far.begin(), far.end()), far.end());
+    for (int k = begin; k < last; ++k)
+      if (column_[at(k)] >= end)
+        overhang_slot_[at(k)] =
+            static_cast<int>(std::lower_bound(far.begin(), far.end(), column_[at(k)]) - far.begin());
+    overhang_row_.insert(overhang_row_.end(), far.begin(), far.end());
+    overhang_begin_.push_back(overhang_row_.size());
   }
   wide_x_.resize(at(wide) * at(rows()));
   wide_y_.resize(at(wide) * at(rows()));
-  overhang_.resize(overhang_begin_.back());
+  overhang_.resize(at(wide) * overhang_row_.size());
 }
 
 template <int N>
@@ -88,11 +97,11 @@ void BlockMatrix::multiply_chunk(int chunk) const {
   constexpr int W = kWide<N>, B = N * N;
   const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
   std::fill(wide_y_.begin() + W * begin, wide_y_.begin() + W * end, 0.0);
-  std::fill(overhang_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(chunk)]),
-            overhang_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(chunk + 1)]), 0.0);
+  std::fill(overhang_.begin() + static_cast<std::ptrdiff_t>(W * overhang_begin_[at(chunk)]),
+            overhang_.begin() + static_cast<std::ptrdiff_t>(W * overhang_begin_[at(chunk + 1)]), 0.0);
   const double* x = wide_x_.data();
   double* y = wide_y_.data();
-  double* beyond = overhang_.data() + overhang_begin_[at(chunk)];
+  double* beyond = overhang_.data() + W * overhang_begin_[at(chunk)];
   for (int row = begin; row < end; ++row) {
     const int first = diagonal(row), last = row_begin(row + 1);
     const int* column = column_.data();
@@ -109,7 +118,7 @@ void BlockMatrix::multiply_chunk(int chunk) const {
     }
     for (; k < last; ++k, b += B) {
       sums.template add<1>(b, x + W * column[k]);
-      sums.add_transposed(b, column[k] < end ? y + W * column[k] : beyond + W * (column[k] - end));
+      sums.add_transposed(b, column[k] < end ? y + W * column[k] : beyond + W * overhang_slot_[at(k)]);
     }
     for (int i = 0; i < N; ++i) y[W * row + i] += sums.total(i);
   }
@@ -125,11 +134,12 @@ void BlockMatrix::multiply_upper(ThreadPool& pool, std::span<const double> x, st
     const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
     for (int row = begin; row < end; ++row) copy_node<N>(wide_y_.data() + W * row, y.data() + N * row);
     for (int earlier = 0; earlier < chunk; ++earlier) {
-      const int start = chunk_begin_[at(earlier + 1)];
-      const int stop = start + static_cast<int>((overhang_begin_[at(earlier + 1)] - overhang_begin_[at(earlier)]) / W);
-      const double* values = overhang_.data() + overhang_begin_[at(earlier)];
-      for (int row = std::max(begin, start); row < std::min(end, stop); ++row)
-        for (int i = 0; i < N; ++i) y[at(N * row + i)] += values[W * (row - start) + i];
+      const auto stop = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier + 1)]);
+      auto row = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier)]);
+      row = std::lower_bound(row, stop, begin);
+      const double* values = overhang_.data() + W * (row - overhang_row_.begin());
+      for (; row != stop && *row < end; ++row, values += W)
+        for (int i = 0; i < N; ++i) y[at(N * *row + i)] += values[i];
     }
   });
 }

@@ -73,7 +73,9 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
   state.time = 0;
   while (reached < 1) {
     const Clock::time_point start = Clock::now();
-    double target = reached + increment > 1 - 1e-9 ? 1.0 : reached + increment;
+    const double asked = (std::floor(reached / longest + 1e-9) + 1) * longest;  // steps that were cut return to it
+    double target = std::min(reached + increment, asked);
+    if (target > 1 - 1e-9) target = 1;
     system.begin_step(state, 0);
     system.set_factors(factors(target));
     if (const double turn = system.prescribed_rotation(); turn > kRotationPerStep && target - reached > kSmallest) {
@@ -90,9 +92,14 @@ RunReport run_statics(MechanicalSystem& system, State& state, const FactorFuncti
       std::ostringstream message;
       message << "load step " << run.steps + 1 << " (load factor " << target
               << "): " << failure_sentence(report, settings);
+      const std::vector<SurfaceLoad>& surfaces = system.model().surfaces;
+      const bool enclosed =
+          std::any_of(surfaces.begin(), surfaces.end(), [](const SurfaceLoad& s) { return s.bulk_modulus > 0; });
       if (near_limit_point(system, state, factors, reached))
         message << "; the structure reaches a limit point or a bifurcation just there (its tangent stiffness becomes "
-                   "singular): use control = \"arc-length\" to follow it";
+                   "singular): use "
+                << (enclosed ? "implicit-euler with damping, or a fluid of given pressure with control = \"arc-length\""
+                             : "control = \"arc-length\" to follow it");
       else
         message << "; try more load_steps, a stiffer material or smaller loads, or implicit-euler with damping";
       run.message = message.str();

@@ -45,7 +45,7 @@ struct StaticsSettings {
 };
 
 /// Equilibrium under loads and boundary motions that grow with the load factor from 0 to 1. A load step that does not
-/// converge is cut in half, down to 1/1024.
+/// converge is cut in half, down to 1/1024; shorter steps end on the multiples of 1/load_steps too.
 RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors,
                       const SolverSettings& settings, const StaticsSettings& statics, const StepObserver& observe);
 

@@ -43,12 +43,13 @@ class Problem {
   /// Σ diag K / Σ diag M over the displacements, without tethers: the scale of the largest eigenvalues [1/s²].
   double stiffness_to_mass() const { return stiffness_ / mass_sum_; }
 
-  /// A factor of K + s M; the smallest s that the factorisation accepts.
+  /// A factor of K + s M; the smallest s that the factorisation accepts. Thin walls bend with eigenvalues that are
+  /// 1e-12 of their membranes': s starts where rounding does.
   BlockCholesky factorize() {
     BlockCholesky factor(K_, filter_);
-    const double step = 1e-12 * stiffness_to_mass();
+    const double step = 1e-15 * stiffness_to_mass();
     double s = filter_.free_count() < static_cast<int>(filter_.size()) ? 0.0 : step;
-    for (int attempt = 0; attempt < 12; ++attempt) {
+    for (int attempt = 0; attempt < 15; ++attempt) {
       BlockMatrix shifted = K_;
       for (int i = 0; i < K_.rows() && s > 0; ++i)
         for (int k = 0; k < dofs().size(i) * dofs().size(i); ++k)
@@ -166,8 +167,8 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   const int free = problem.filter().free_count();
   if (free == 0) return {};
   const int wanted = std::min(count, free), block = std::min(free, std::max(2 * wanted, wanted + 8));
-  // Free motions have eigenvalue 0 up to the rounding of the largest.
-  const double rounding = 1e-13 * problem.stiffness_to_mass();
+  // Free motions have eigenvalue 0 up to the rounding of the largest, of which iterations see a part.
+  const double rounding = 1e-17 * problem.stiffness_to_mass();
   const BlockCholesky factor = problem.factorize();
 
   std::mt19937 random(1);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -93,6 +94,29 @@ TEST(ShellLarge, CantileverUnderEndShear) {
     for (const double y : {0.0, 1.0}) add_node_load(b.model, node_at(b.model, {{10, y, 0}}), {{0, 0, 2}});
     expect_within("3.1 end shear", n, deviations(b.model, table, {{tip, 0, -1}, {tip, 2}}, n == 32), 0.02, n == 32);
   }
+}
+
+/// A step that Newton cannot take at once is cut; the ones that were asked for are reached all the same.
+TEST(ShellLarge, CutLoadStepsReturnToThoseAskedFor) {
+  ShellModel b = strip(10, 16);
+  for (const double y : {0.0, 1.0}) add_node_load(b.model, node_at(b.model, {{10, y, 0}}), {{0, 0, 2}});
+  ThreadPool pool(1);
+  SolverSettings settings;
+  settings.max_iterations = 8;
+  MechanicalSystem system(b.model, pool, settings);
+  State state = State::at_rest(b.model);
+  std::vector<double> reached;
+  const RunReport report = run_statics(
+      system, state, [&](double t) { return std::vector<double>(zero_factors(b.model).size(), t); }, settings, {5},
+      [&](const StepInfo& step, const State&, MechanicalSystem&) {
+        reached.push_back(step.time);
+        return true;
+      });
+  EXPECT_EQ(report.status, RunStatus::converged) << report.message;
+  EXPECT_GT(report.steps, 5);
+  for (const double asked : {0.2, 0.4, 0.6, 0.8, 1.0})
+    EXPECT_TRUE(std::any_of(reached.begin(), reached.end(), [&](double t) { return std::abs(t - asked) < 1e-12; }))
+        << asked;
 }
 
 /// Closed form: a circle of radius L P_max / (2π P); in the plane, since the ring is unstable out of it.

@@ -86,6 +86,30 @@ TEST(ShellPlates, ClampedFrequencies) {
   }
 }
 
+/// Free plates: six modes that are none, then f / t that does not depend on the thickness, however thin.
+TEST(ShellPlates, FreeThinPlatesVibrate) {
+  for (const double t : {1e-2, 1e-4, 1e-6}) {
+    const ShellModel b = shell_model(patch_mesh(
+                                         [](double u, double v) {
+                                           return Vec3d{{u, v, 0}};
+                                         },
+                                         {24, 24, Diagonals::alternating}),
+                                     {1e6, 0.3, t, 1000});
+    ThreadPool pool(1);
+    const Modes modes = natural_modes(b.model, pool, 10);
+    std::printf("free plate, t = %g, f / t:", t);
+    for (const double f : modes.frequency) std::printf(" %.3f", f / t);
+    std::printf("\n");
+    EXPECT_TRUE(modes.converged);
+    // ω L² √(ρ t / D) = 13.468, 19.596, 24.271 (Leissa 1969, table 4.76).
+    const double unit = std::sqrt(1e6 / 12 / 0.91 / 1000) / (2 * std::numbers::pi);
+    EXPECT_LT(modes.frequency[5], 0.1 * modes.frequency[6]);
+    EXPECT_NEAR(modes.frequency[6] / t / unit, 13.468, 0.02 * 13.468);
+    EXPECT_NEAR(modes.frequency[7] / t / unit, 19.596, 0.02 * 19.596);
+    EXPECT_NEAR(modes.frequency[8] / t / unit, 24.271, 0.02 * 24.271);
+  }
+}
+
 /// A spinning, bent shell: linear momentum under implicit Euler, angular under the midpoint rule; implicit Euler gains
 /// no energy.
 TEST(ShellPlates, FreeFlight) {

@@ -1,5 +1,6 @@
 // Shells as bodies: rigid motions, free modes, numbering, masses, places, stresses.
 #include "core/cpu/executor.hpp"
+#include "core/solver/block_matrix.hpp"
 #include "core/solver/modes.hpp"
 #include "tests/support/shell_models.hpp"
 
@@ -133,6 +134,38 @@ TEST(ShellBody, NumberingDoesNotMatter) {
   EXPECT_NEAR(energy_of(two, moved_state, h), energy, 1e-13 * energy);
   for (std::size_t i = 0; i < place.size(); ++i)
     for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(g[6 * i + k], h[6 * at(place[i]) + k], 1e-12 * test::norm(g));
+}
+
+/// Products in chunks of rows: what a chunk has for rows behind it, many of them where a file numbers nodes at random.
+TEST(ShellBody, ProductsOfLargeMatricesDoNotDependOnNumbersOrThreads) {
+  ShellMesh mesh = patch_mesh(barrel, {70, 70});
+  std::vector<int> place(mesh.nodes.size());
+  std::iota(place.begin(), place.end(), 0);
+  std::mt19937 random(3);
+  std::shuffle(place.begin(), place.end(), random);
+  ShellMesh other = mesh;
+  for (std::size_t i = 0; i < place.size(); ++i) other.nodes[at(place[i])] = mesh.nodes[i];
+  for (auto& t : other.triangles)
+    for (int& node : t) node = place[at(node)];
+  for (const ShellMesh& numbered : {mesh, other}) {
+    const ShellModel built = shell_model(numbered, kMatter);
+    ThreadPool one(1), two(2);
+    CpuExecutor executor(built.model.points, one);
+    const auto n = at(built.model.dof_count());
+    const std::vector<double> d = random_direction(built.model);
+    std::vector<double> free(n), assembled(n), threaded(n);
+    executor.gradient(State::at_rest(built.model), {}, free);
+    Linearization lin;
+    executor.linearize(State::at_rest(built.model), {}, Tangent::full, lin);
+    executor.multiply(lin, d, free);
+    BlockMatrix matrix(built.model.points);
+    EXPECT_TRUE(matrix.fills_upper());
+    executor.assemble(lin, matrix);
+    matrix.multiply(one, d, assembled);
+    matrix.multiply(two, d, threaded);
+    EXPECT_EQ(assembled, threaded);
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(assembled[i], free[i], 1e-12 * test::norm(free));
+  }
 }
 
 TEST(ShellBody, MassAndInertia) {
