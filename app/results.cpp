@@ -2,6 +2,7 @@
 
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/physics/von_mises.hpp"
 #include "core/solver/clock.hpp"
 
 #include <fmt/format.h>
@@ -19,12 +20,6 @@ struct PointValue {
   Vec3d rest{}, u{}, rotation{};
   Mat3d axes = Mat3d::identity();
 };
-
-double von_mises(const Mat3d& s) {
-  const double a = s(0, 0) - s(1, 1), b = s(1, 1) - s(2, 2), c = s(2, 2) - s(0, 0);
-  const double shear = s(0, 1) * s(0, 1) + s(1, 2) * s(1, 2) + s(0, 2) * s(0, 2);
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
-}
 
 /// Of the integration points, and their averages at the nodes (weighted with w v): the averages are smooth, which the
 /// field's own gradient is not across the faces of cells.

@@ -1,4 +1,5 @@
 #include "core/math/index.hpp"
+#include "core/physics/von_mises.hpp"
 #include "shells/shell_body.hpp"
 
 #include <cmath>
@@ -29,12 +30,6 @@ std::array<double, 3> pushed(const std::array<double, 3>& U, const std::array<do
 void append(std::vector<double>& out, const Mat3d& m) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) out.push_back(m(i, j));
-}
-
-double von_mises(const Mat3d& s) {
-  const double a = s(0, 0) - s(1, 1), b = s(1, 1) - s(2, 2), c = s(2, 2) - s(0, 0);
-  const double shear = s(0, 1) * s(0, 1) + s(1, 2) * s(1, 2) + s(0, 2) * s(0, 2);
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
 std::array<double, 3> at_height(const std::array<double, 3>& membrane, const std::array<double, 3>& curvature,
