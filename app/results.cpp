@@ -146,7 +146,7 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
   const std::vector<PointTensors> means =
       tensor_fields ? cell_means(body, std::move(t.points)) : std::vector<PointTensors>{};
   FieldWriter of_cells(mesh.cell_fields, means.size());
-  std::vector<BodyField> fields = body.own_fields(state);
+  std::vector<BodyField> fields = tensor_fields ? body.own_fields(state) : std::vector<BodyField>{};
   for (const std::string& name : names) {
     if (name == "displacement") of_nodes.add(name, [&](std::size_t i) { return state.u[first + i]; });
     if (name == "rotation" && !b.vertices)

@@ -1,4 +1,5 @@
 #include "core/math/index.hpp"
+#include "core/physics/shell_triangle.hpp"
 #include "core/physics/von_mises.hpp"
 #include "shells/shell_body.hpp"
 

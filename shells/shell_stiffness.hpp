@@ -1,7 +1,6 @@
 #pragma once
 
-#include "core/math/vec3.hpp"
-#include "core/physics/shell_triangle.hpp"
+#include "core/physics/shell_constants.hpp"
 
 #include <array>
 

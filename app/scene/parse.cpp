@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -64,7 +65,9 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
   scene.solver = read_solver(table, bodies);
   const std::optional<SolverKind> kind = read_solver_kind(table);
   for (const TableReader& probe : table.tables("probes")) scene.probes.push_back(read_probe(probe, bodies, kind));
-  scene.output = read_output(table, path.stem().string(), kind);
+  const bool shells =
+      scene.bodies.size() < bodies.size() || std::any_of(scene.bodies.begin(), scene.bodies.end(), is_shell);
+  scene.output = read_output(table, path.stem().string(), kind, shells);
   return scene;
 }
 

@@ -79,23 +79,34 @@ void read_points(const TableReader& table, Probe& probe) {
     for (const Value& point : items) probe.at.push_back(to_vector(point));
 }
 
-std::vector<std::string> read_fields(const TableReader& output) {
+/// A field that no body of the scene would have is no wish to pass over in silence.
+void check_shell_field(const TableReader& table, const char* key, const std::string& field, bool shells) {
+  for (const Choice& own : shell_field_choices())
+    if (!shells && own.value == field)
+      table.error(key, fmt::format("\"{}\" is a field of shells, and no body is one; remove it", field));
+}
+
+std::vector<std::string> read_fields(const TableReader& output, bool shells) {
   std::vector<std::string> fields;
   if (const Value* list = output.value("fields")) {
     for (const Value& item : *list->as_array())
       if (std::find(fields.begin(), fields.end(), *item.as_string()) == fields.end())
         fields.push_back(*item.as_string());
+    for (const std::string& field : fields) check_shell_field(output, "fields", field, shells);
   } else {
     for (const Choice& field : field_choices()) fields.push_back(field.value);
+    for (const Choice& field : shell_field_choices())
+      if (shells) fields.push_back(field.value);
   }
   return fields;
 }
 
-Picture read_picture(const TableReader& table) {
+Picture read_picture(const TableReader& table, bool shells) {
   Picture picture;
   picture.view = table.direction("view").value_or(picture.view);
   if (const auto size = table.integers("size")) picture.size = {(*size)[0], (*size)[1]};
   picture.field = table.text("field").value_or(picture.field);
+  check_shell_field(table, "field", picture.field, shells);
   return picture;
 }
 
@@ -119,7 +130,8 @@ Probe read_probe(const TableReader& table, const std::vector<std::string>& bodie
   return probe;
 }
 
-Output read_output(const TableReader& scene, const std::string& scene_name, std::optional<SolverKind> kind) {
+Output read_output(const TableReader& scene, const std::string& scene_name, std::optional<SolverKind> kind,
+                   bool shells) {
   const TableReader table = scene.table("output");
   Output output;
   output.place = table.place();
@@ -128,8 +140,8 @@ Output read_output(const TableReader& scene, const std::string& scene_name, std:
   if (kind && !is_dynamic(*kind)) table.refuse({"every"}, "counts simulated time, which only dynamic kinds have");
   output.every = table.number("every").value_or(0);
   output.every_steps = table.integer("every_steps").value_or(0);
-  output.fields = read_fields(table);
-  if (table.value("picture")) output.picture = read_picture(table.table("picture"));
+  output.fields = read_fields(table, shells);
+  if (table.value("picture")) output.picture = read_picture(table.table("picture"), shells);
   return output;
 }
 

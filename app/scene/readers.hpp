@@ -84,7 +84,9 @@ std::optional<SolverKind> read_solver_kind(const TableReader& scene);
 Probe read_probe(const TableReader& table, const std::vector<std::string>& bodies, std::optional<SolverKind> kind);
 
 /// @param scene_name  names the default directory
-Output read_output(const TableReader& scene, const std::string& scene_name, std::optional<SolverKind> kind);
+/// @param shells  there are shells, or bodies that could not be read
+Output read_output(const TableReader& scene, const std::string& scene_name, std::optional<SolverKind> kind,
+                   bool shells);
 
 /// The body that a table's key `body` names; empty where it names none, which is reported.
 std::string read_body_name(const TableReader& table, const std::vector<std::string>& bodies);

@@ -116,6 +116,7 @@ Shape weights_schema();
 Key over_key();
 Key profile_key();
 std::vector<Choice> field_choices();
+std::vector<Choice> shell_field_choices();  ///< that only shells have
 
 /// What a value of this shape is, for messages: `a length in m`, `"auto" or a whole number`.
 std::string in_words(const Shape& shape);

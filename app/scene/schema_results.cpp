@@ -39,11 +39,17 @@ Shape probe_schema() {
        key("about", vector3("m"), "Point that moments and angular momenta refer to.").defaults("[0, 0, 0]")});
 }
 
+std::vector<Choice> all_field_choices() {
+  std::vector<Choice> all = field_choices();
+  for (const Choice& field : shell_field_choices()) all.push_back(field);
+  return all;
+}
+
 Shape picture_schema() {
   return table(
       {key("view", vector3("1"), "Direction from the body to the eye.").defaults("[1, 1, 1]"),
        key("size", array(integer(between(1, 16384)), 2, 2), "Width and height in pixels.").defaults("[1200, 800]"),
-       key("field", choice(field_choices()), "Field that gives the colours.").defaults("\"von_mises\"")});
+       key("field", choice(all_field_choices()), "Field that gives the colours.").defaults("\"von_mises\"")});
 }
 
 }  // namespace
@@ -54,8 +60,11 @@ std::vector<Choice> field_choices() {
           {"strain", "Green-Lagrange."},
           {"stress", "Cauchy [Pa]."},
           {"von_mises", "[Pa]; of a shell the larger of its faces'."},
-          {"energy_density", "[J/m3]"},
-          {"director", "Of a shell; with `to_outer_face`, half the thickness along it [m]."},
+          {"energy_density", "[J/m3]"}};
+}
+
+std::vector<Choice> shell_field_choices() {
+  return {{"director", "Of a shell; with `to_outer_face`, half the thickness along it [m]."},
           {"thickness", "Of a shell, at rest [m]."},
           {"membrane_force", "Of a shell, a tensor [N/m]."},
           {"bending_moment", "Of a shell, a tensor [N]; positive where it stretches the outer face."},
@@ -77,7 +86,7 @@ Key output_schema() {
                  "Simulated time between saved states; not for `solver.kind = \"static\"`.")
                  .defaults("25 frames a simulated second; static: only the end"),
              key("every_steps", integer(between(1, 1e9)), "Steps between saved states."),
-             key("fields", array(choice(field_choices())), "Fields in the files.").defaults("all"),
+             key("fields", array(choice(all_field_choices())), "Fields in the files.").defaults("all"),
              key("format", choice({{"vtu", "VTK XML, with a .pvd."}}), "File format.").defaults("\"vtu\""),
              key("picture", picture_schema(), "A PNG of the end state.").defaults("none")},
             {{{"every", "every_steps"}, false}}),

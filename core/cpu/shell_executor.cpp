@@ -2,6 +2,7 @@
 
 #include "core/cpu/group_kernels.hpp"
 #include "core/model/errors.hpp"
+#include "core/physics/shell_triangle.hpp"
 #include "core/solver/block_matrix.hpp"
 
 #include <algorithm>

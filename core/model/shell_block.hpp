@@ -3,7 +3,7 @@
 #include "core/math/mat3.hpp"
 #include "core/model/aligned.hpp"
 #include "core/model/element_block.hpp"
-#include "core/physics/shell_triangle.hpp"
+#include "core/physics/shell_constants.hpp"
 
 #include <array>
 #include <span>

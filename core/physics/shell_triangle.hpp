@@ -2,6 +2,7 @@
 
 #include "core/math/mat3.hpp"
 #include "core/physics/half_angle.hpp"
+#include "core/physics/shell_constants.hpp"
 
 /// A triangle of a shell on three frames: 12 strains and their energy, a quadratic form.
 ///
@@ -13,16 +14,6 @@
 /// with D from thickness, material and rest shape (shells/shell_stiffness.hpp). All vectors here are in element axes,
 /// at rest or at present; displacements enter as increments, so that small strains keep their digits.
 namespace fascia {
-
-/// Entries of a symmetric 6 × 6 matrix on and below the diagonal, by rows.
-inline constexpr int kPacked6 = 21;
-
-template <class T>
-struct ShellConstants {
-  T g[3][2]{};             ///< gradients of the linear functions at rest [1/m]
-  T membrane[kPacked6]{};  ///< of (E₁₁, E₂₂, 2E₁₂, θ_1z, θ_2z, θ_3z) [J]
-  T bending[kPacked6]{};   ///< of (θ_1x, θ_1y, θ_2x, ...) [J]
-};
 
 /// The 12 strains, or what is conjugate to them.
 template <class T>

@@ -104,7 +104,7 @@ TEST(Scene, DefaultsAreThoseOfTheManual) {
   EXPECT_EQ(scene.solver.linear_tolerance, 1e-6);
   EXPECT_EQ(scene.solver.backend, "auto");
   EXPECT_EQ(scene.output.directory, "results/beam");
-  EXPECT_EQ(scene.output.fields.size(), 12u);
+  EXPECT_EQ(scene.output.fields.size(), 6u);
   EXPECT_FALSE(scene.output.picture);
 }
 

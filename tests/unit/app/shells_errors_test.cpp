@@ -105,6 +105,13 @@ TEST(ShellErrors, Annulus) {
             "a.toml:6:72: bodies.skin.domain.annulus.inner: 0 is out of range; must be above 0");
 }
 
+TEST(ShellErrors, OthersHaveNoFieldsOfShells) {
+  EXPECT_EQ(test::errors_of_beam("[output]\nfields = [\"stress\", \"director\"]\n"),
+            "a.toml:11:10: output.fields: \"director\" is a field of shells, and no body is one; remove it");
+  EXPECT_EQ(test::errors_of_beam("[output]\npicture = { field = \"thickness\" }\n"),
+            "a.toml:11:21: output.picture.field: \"thickness\" is a field of shells, and no body is one; remove it");
+}
+
 TEST(ShellErrors, OthersTakeNoKeysOfSurfaces) {
   const std::string skin =
       "cylinder = { from = [0, 0, 0], to = [1, 0, 0], radius = 1, diagonal = \"left\", closed = true, caps = true }";
