@@ -1,10 +1,12 @@
 #pragma once
 
+#include "app/scene/region.hpp"
 #include "core/math/vec3.hpp"
 
 #include <array>
 #include <filesystem>
 #include <numbers>
+#include <string>
 #include <variant>
 
 /// What a body fills, as the user wrote it, in SI units.
@@ -47,8 +49,16 @@ struct LineDomain {
 struct BlockDomain {
   std::array<Vec3d, 8> corners{};
 };
+/// What fills the space between two bodies.
+enum class BetweenKind { volume, sheet, strands };
+/// The space between parts of the surfaces of two bodies.
+struct BetweenDomain {
+  std::array<std::string, 2> bodies;
+  Region where;  ///< the parts
+  BetweenKind as = BetweenKind::volume;
+};
 using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain, RectangleDomain, LineDomain,
-                            BlockDomain, AnnulusDomain>;
+                            BlockDomain, AnnulusDomain, BetweenDomain>;
 
 /// x → R(axis, angle) (scale x) + translate
 struct Transform {

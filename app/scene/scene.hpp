@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/scene/domain.hpp"
+#include "app/scene/region.hpp"
 #include "core/math/mat3.hpp"
 
 #include <array>
@@ -14,57 +15,6 @@
 /// The scene as the user wrote it, checked key by key, in SI units. The parser makes it; the builder turns it into a
 /// model.
 namespace fascia::app {
-
-/// Where in a scene file (or on the command line) something was said.
-struct Place {
-  std::string file;  ///< as the user named it; "--set" for an override
-  int line = 0, column = 0;
-  std::string key;  ///< full path, for example constraints[0].where.box.min
-};
-
-// ------------------------------------------------------------------------------------------------ regions
-struct Region;
-struct AllRegion {};
-struct BoundaryRegion {};
-struct BoxRegion {
-  Vec3d min, max;
-};
-struct SphereRegion {
-  Vec3d center;
-  double radius = 0;
-};
-struct CylinderRegion {
-  Vec3d from, to;
-  double radius = 0;
-};
-struct HalfspaceRegion {
-  Vec3d point, normal;
-};
-struct NearestRegion {
-  Vec3d point;
-};
-struct GroupRegion {
-  std::string name;
-};
-struct IdsRegion {
-  std::vector<int> ids;
-};
-struct AllOfRegion {
-  std::vector<Region> parts;
-};
-struct AnyOfRegion {
-  std::vector<Region> parts;
-};
-struct NotRegion {
-  std::shared_ptr<const Region> part;
-};
-
-struct Region {
-  Place place;
-  std::variant<AllRegion, BoundaryRegion, BoxRegion, SphereRegion, CylinderRegion, HalfspaceRegion, NearestRegion,
-               GroupRegion, IdsRegion, AllOfRegion, AnyOfRegion, NotRegion>
-      shape;
-};
 
 // ------------------------------------------------------------------------------------------------ time
 struct LinearProfile {};
@@ -156,7 +106,22 @@ enum class WeightKind { automatic, trilinear, linear, mls, shepard, wendland, cu
 enum class Blend { automatic, half, full };
 enum class Integration { automatic, full, selective };
 
-enum class BodyModel { meshless, tetrahedra, hexahedra, shell };
+enum class BodyModel {
+  meshless,
+  tetrahedra,
+  hexahedra,
+  shell,
+  rigid,
+  surface  ///< without matter: it rides on another body
+};
+
+/// Nodes of another body that are frames of this one too.
+struct SharedNodes {
+  Place place, body_place;
+  std::string body;
+  Region where;
+  bool rotations = true;  ///< vertices get a rotation
+};
 
 /// Strain of finite elements. large_strain: the material's law; corotational: linear in a frame that turns with the
 /// element; linear: small displacements.
@@ -191,8 +156,9 @@ struct Body {
   std::optional<double> radius;  ///< line domains [m]
   Place radius_place;
   Frames frames;
-  Place frames_place;   ///< of the key that says where they are
-  bool affine = false;  ///< frames of 12 DOFs, otherwise of 6
+  Place frames_place;                              ///< of the key that says where they are
+  bool affine = false;                             ///< frames of 12 DOFs, otherwise of 6
+  std::optional<std::vector<SharedNodes>> shares;  ///< none: not said
   Points points;
   Place points_place;
   std::optional<int> through;  ///< points through a sheet's thickness; 1: the 2014 paper's rule
@@ -205,6 +171,8 @@ struct Body {
   Integration integration = Integration::automatic;
   InitialMotion initial;
   std::optional<Fluid> fluid;
+  std::optional<Mat3d> inertia;  ///< of a rigid body about its mass centre, in world axes [kg m²]
+  Place inertia_place;
 
   // Finite elements.
   std::optional<MeshCells> cells;  ///< of generated domains
@@ -225,6 +193,8 @@ inline bool is_mesh_model(const Body& body) {
 }
 /// Triangles with thickness: the nodes are frames.
 inline bool is_shell(const Body& body) { return body.model == BodyModel::shell; }
+/// Carries a surface without being made of a material.
+inline bool is_carrier(const Body& body) { return body.model == BodyModel::rigid || body.model == BodyModel::surface; }
 
 // ------------------------------------------------------------------------------------------------ constraints, loads
 struct Motion {
@@ -257,6 +227,22 @@ struct Load {
   std::optional<Vec3d> line_force;  ///< on the selected edges [N/m]
   bool follower = false;
   Schedule schedule;
+};
+
+// ------------------------------------------------------------------------------------------------ couplings
+enum class CouplingKind { weld, embed, spring };
+
+struct Coupling {
+  Place place;
+  std::string name;
+  CouplingKind kind = CouplingKind::weld;
+  std::string body;
+  Region where;
+  std::string to;  ///< of welds and embeddings
+  Place to_place;
+  Vec3d point{};                   ///< of springs [m]
+  double stiffness = 0;            ///< of all selected nodes together [N/m]
+  std::optional<Vec3d> direction;  ///< unit
 };
 
 struct World {
@@ -372,6 +358,7 @@ struct Scene {
   std::vector<Body> bodies;  ///< in the order of the file
   std::vector<Constraint> constraints;
   std::vector<Load> loads;
+  std::vector<Coupling> couplings;  ///< in the order of the file
   Solver solver;
   std::vector<Probe> probes;  ///< in the order of the file
   Output output;

@@ -80,13 +80,16 @@ struct BodyCells {
   std::vector<int> nodes;
 };
 
-/// A body in a model. Its nodes are a contiguous range, its groups of points and blocks of elements too.
+/// A body in a model. Its own nodes are a contiguous range, its groups of points and blocks of elements too; nodes of
+/// other bodies may move it as well.
 class ModelBody {
  public:
   virtual ~ModelBody() = default;
 
   int first_node() const { return first_node_; }
   int node_count() const { return node_count_; }
+  /// Nodes of other bodies that are frames of this one too, ascending.
+  const std::vector<int>& shared_nodes() const { return shared_; }
   const std::vector<BodyPoint>& points() const { return points_; }
   /// Rest axes of thin points: columns, tangents first.
   const std::vector<Mat3d>& axes() const { return axes_; }
@@ -150,6 +153,7 @@ class ModelBody {
 
   double volume_ = 0, mass_ = 0, size_ = 0;
   int first_node_ = 0, node_count_ = 0;
+  std::vector<int> shared_;
   std::vector<BodyPoint> points_;
   std::vector<Mat3d> axes_;
   TriangleMesh surface_;

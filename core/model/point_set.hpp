@@ -2,9 +2,11 @@
 
 #include "core/math/mat3.hpp"
 #include "core/model/aligned.hpp"
+#include "core/model/dependent_node.hpp"
 #include "core/model/dof_layout.hpp"
 #include "core/model/element_block.hpp"
 #include "core/model/shell_block.hpp"
+#include "core/model/spring.hpp"
 #include "core/physics/point_rule.hpp"
 
 #include <span>
@@ -64,6 +66,8 @@ struct PointSet {
 
   std::vector<ElementBlock> blocks;  ///< finite elements
   std::vector<ShellBlock> shells;
+  std::vector<Spring> springs;
+  std::vector<DependentNode> dependents;  ///< each behind those of its hosts that depend on others
 
   int node_count() const { return dofs.node_count(); }
   int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
@@ -105,13 +109,27 @@ class PointSetBuilder {
 
   int shell_count() const { return static_cast<int>(set_.shells.size()); }
 
+  void add_spring(const Spring& spring) { set_.springs.push_back(spring); }
+
+  /// @pre no circle of nodes that depend on one another; a node depends at most once
+  void add_dependent(DependentNode node) { set_.dependents.push_back(std::move(node)); }
+
+  /// Nodes that hang together though no point or element joins them, or a frame without any.
+  /// @param length  converts torques to forces where residuals are judged [m]
+  void join(std::vector<int> nodes, double length) { joints_.push_back({std::move(nodes), length}); }
+
   PointSet finish(std::vector<FrameKind> frames) &&;
 
  private:
   void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
   void add_rule(std::span<const PointSample> points, double length, PointRule rule);
+  struct Joint {
+    std::vector<int> nodes;
+    double length;
+  };
   PointSet set_;
   std::vector<double> group_length_;  ///< spacing of the frames [m]
+  std::vector<Joint> joints_;
 };
 
 }  // namespace fascia
