@@ -1,9 +1,12 @@
 #include "app/bodies.hpp"
 
+#include "app/carried_surface.hpp"
 #include "app/domains.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/shell_meshes.hpp"
+#include "coupling/rigid_body.hpp"
+#include "coupling/surface_body.hpp"
 #include "io/point_table.hpp"
 #include "meshless/grid_body.hpp"
 #include "shells/shell_body.hpp"
@@ -57,9 +60,9 @@ void fill_matter(const Body& body, double volume, BodyMatter& matter) {
   matter.material = material_of(body);
 }
 
-std::unique_ptr<ModelBody> build_grid(const Body& body, const MatterParts& parts, Model& model,
-                                      PointSetBuilder& points) {
+std::unique_ptr<ModelBody> build_grid(const Body& body, const MatterParts& parts, BodyBuild& build) {
   GridSpec spec;
+  spec.shared = build.shared;
   spec.domain = *parts.solid;
   const std::vector<int>& count = std::get<GridFrames>(body.frames).count;
   std::copy(count.begin(), count.end(), spec.grid.begin());
@@ -74,7 +77,7 @@ std::unique_ptr<ModelBody> build_grid(const Body& body, const MatterParts& parts
   spec.rotation = parts.rotation;
   spec.translation = parts.translation;
   fill_matter(body, spec.domain.volume, spec);
-  return std::make_unique<GridBody>(spec, model, points);
+  return std::make_unique<GridBody>(spec, build.model, build.points);
 }
 
 /// Positions that a user gives are rest positions; samplers work before the placement.
@@ -126,8 +129,9 @@ void warn_of_thin_choices(const Body& body, const ModelBody& built, std::vector<
         "of the spacing");
 }
 
-void describe_thin_grid(const Body& body, const MatterParts& parts, CloudSpec& spec) {
+void describe_thin_grid(const Body& body, const MatterParts& parts, const BodyBuild& build, CloudSpec& spec) {
   ThinGridSpec thin;
+  thin.shared = build.shared;
   thin.parts = parts;
   thin.grid.count = std::get<GridFrames>(body.frames).count;
   const double scale = body.transform.scale;
@@ -148,18 +152,29 @@ void describe_thin_grid(const Body& body, const MatterParts& parts, CloudSpec& s
   grid_cloud(thin, spec);
 }
 
-std::unique_ptr<ModelBody> build_shell(const Body& body, Model& model, PointSetBuilder& points,
-                                       std::vector<std::string>& messages) {
+std::unique_ptr<ModelBody> build_shell(const Body& body, BodyBuild& build) {
   ShellBodySpec spec;
   spec.mesh = shell_mesh_of(body);
   spec.thickness = shell_thickness(body, spec.mesh);
-  messages = thickness_warnings(spec.mesh, spec.thickness);
+  build.messages = thickness_warnings(spec.mesh, spec.thickness);
   for (const MaterialUse* use : shell_materials(body, spec.mesh))
     spec.material.push_back(point_material(use->material));
   double volume = 0;
   for (std::size_t t = 0; t < spec.thickness.size(); ++t) volume += spec.thickness[t] * area(spec.mesh, t);
   spec.density = body.density ? *body.density : *body.mass / volume;
-  return std::make_unique<ShellBody>(std::move(spec), model, points);
+  return std::make_unique<ShellBody>(std::move(spec), build.model, build.points);
+}
+
+std::unique_ptr<ModelBody> build_rigid(const Body& body, BodyBuild& build) {
+  CarriedSurface carried = carried_surface(body);
+  build.messages = std::move(carried.messages);
+  const bool closed = carried.closed;
+  if (body.density && !closed)
+    throw SceneError({{body.domain_place,
+                       "the surface is open and encloses no volume; give the body a mass in place "
+                       "of a density"}});
+  return std::make_unique<RigidBody>(
+      RigidBodySpec{std::move(carried.mesh), closed, body.mass, body.density, body.inertia}, build.model, build.points);
 }
 
 /// Nodes and triangles of a generated surface.
@@ -176,37 +191,43 @@ SampleEstimate estimated_triangles(const Body& body) {
 
 }  // namespace
 
-std::unique_ptr<ModelBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
-                                      std::vector<std::string>& messages) {
-  if (is_mesh_model(body)) return build_element_body(body, model, points);
-  if (is_shell(body)) return build_shell(body, model, points, messages);
-  const MatterParts parts = make_domain(body, messages);
+std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build) {
+  if (is_mesh_model(body)) return build_element_body(body, build.model, build.points);
+  if (is_shell(body)) return build_shell(body, build);
+  if (body.model == BodyModel::rigid) return build_rigid(body, build);
+  if (body.model == BodyModel::surface) {
+    CarriedSurface carried = carried_surface(body);
+    build.messages = std::move(carried.messages);
+    return std::make_unique<SurfaceBody>(std::move(carried.mesh), build.model);
+  }
+  const MatterParts parts = build.between ? *build.between : make_domain(body, build.messages);
   const bool grid = std::holds_alternative<GridFrames>(body.frames);
   std::unique_ptr<ModelBody> built;
   if (grid && parts.dimension() == 3) {
-    built = build_grid(body, parts, model, points);
+    built = build_grid(body, parts, build);
   } else {
     CloudSpec spec;
     spec.through = body.through.value_or(0);
     if (grid) {
-      describe_thin_grid(body, parts, spec);
+      describe_thin_grid(body, parts, build, spec);
     } else {
       ScatterSpec scatter{parts,
                           frame_choice(body, parts),
                           sample_choice(body.points, parts),
                           scattered_kind(body.weights),
                           body.neighbours,
-                          body.support};
-      scatter_cloud(scatter, spec, messages);
+                          body.support,
+                          build.shared};
+      scatter_cloud(scatter, spec, build.messages);
     }
     double volume = 0;
     for (const CloudPoint& p : spec.points) volume += p.volume;
     fill_matter(body, volume, spec);
-    built = std::make_unique<CloudBody>(spec, model, points);
-    warn_of_thin_choices(body, *built, messages);
+    built = std::make_unique<CloudBody>(spec, build.model, build.points);
+    warn_of_thin_choices(body, *built, build.messages);
   }
   if (body.blend == Blend::full && body.drilling.value_or(1) > 0)
-    messages.push_back("blend = \"full\" with a drilling stiffness locks; add drilling = 0 to weights");
+    build.messages.push_back("blend = \"full\" with a drilling stiffness locks; add drilling = 0 to weights");
   check_material_regions(body, *built);
   return built;
 }

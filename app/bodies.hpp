@@ -2,17 +2,28 @@
 
 #include "app/scene/scene.hpp"
 #include "core/model/model_body.hpp"
+#include "meshless/cloud_build.hpp"
+#include "meshless/shared_frame.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace fascia::app {
 
+/// What a body is built into, and what other bodies give to it.
+struct BodyBuild {
+  Model& model;
+  PointSetBuilder& points;
+  std::vector<SharedFrame> shared;
+  std::optional<MatterParts> between;  ///< of a domain between two bodies
+  std::vector<std::string> messages;
+};
+
 /// Adds a body's frames to the model and its points to the builder. The body refers to the scene's.
 /// @throws SceneError, InputError, FileError
-std::unique_ptr<ModelBody> build_body(const Body& body, Model& model, PointSetBuilder& points,
-                                      std::vector<std::string>& messages);
+std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build);
 
 /// The same for finite elements.
 std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, PointSetBuilder& points);

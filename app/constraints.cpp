@@ -79,11 +79,30 @@ void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<i
                   c.place.key));
 }
 
+/// A node that another body shares: what holds that body's material there, and what holds the node itself, must agree.
+struct SharedHold {
+  const Constraint* constraint = nullptr;
+  int node = 0, motion = -1;
+};
+
+void check_shared(const Simulation& s, const std::vector<SharedHold>& shared, const std::map<int, Held>& held) {
+  for (const SharedHold& hold : shared) {
+    const auto found = held.find(hold.node);
+    if (found == held.end()) continue;
+    Directions known = found->second.translation;
+    for (int k = 0; k < 3; ++k)
+      if (hold.constraint->fixed[at(k)])
+        add_direction(s, known, hold.constraint->axes.row(k), hold.motion, false, s.model.rest_position[at(hold.node)],
+                      *hold.constraint);
+  }
+}
+
 }  // namespace
 
 void add_constraints(Simulation& s, PointSetBuilder& points) {
   std::map<int, Held> held;
   TiedPlaces places;
+  std::vector<SharedHold> shared;
   for (const Constraint& c : s.scene.constraints) {
     const int motion = add_motion(s, c);
     const int body = body_index(s, c.body);
@@ -98,15 +117,20 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
     const bool whole = std::all_of(c.fixed.begin(), c.fixed.end(), [](bool f) { return f; });
     for (const int node : enough ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
       const Vec3d& X = s.model.rest_position[at(node)];
-      if (!interpolates && thin) break;  // tethers hold all of it
+      if (!interpolates && std::binary_search(s.bodies[at(body)].body->shared_nodes().begin(),
+                                              s.bodies[at(body)].body->shared_nodes().end(), node))
+        shared.push_back({&c, node, motion});
+      if (!interpolates && thin) continue;  // tethers hold all of it
       held[node].whole = held[node].whole || whole;
       for (int k = 0; k < 3; ++k) {
         if (c.fixed[at(k)] && interpolates)
           add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
-        if (c.fixed[at(3 + k)] && !vertices) add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
+        if (c.fixed[at(3 + k)] && !vertices && s.model.kind(node) != FrameKind::vertex)
+          add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
       }
     }
   }
+  check_shared(s, shared, held);
   for (const Constraint& c : s.scene.constraints) warn_of_free_rotations(s, c, held);
   for (const auto& [node, h] : held) {
     FrameConstraint c;

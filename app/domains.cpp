@@ -200,6 +200,24 @@ double thickness_at(const Body& body, const Vec3d& X) {
                      fmt::format("no thickness at ({}, {}, {}); let the last entry have no where", X[0], X[1], X[2])}});
 }
 
+MatterParts solid_parts(TriangleMesh closed, double volume) {
+  MatterParts parts;
+  parts.solid = make_solid({std::move(closed), volume, {}}, 1);
+  return parts;
+}
+
+MatterParts sheet_parts(const Body& body, TriangleMesh surface) {
+  MatterParts parts;
+  parts.sheets.push_back(make_sheet(std::move(surface), body, parts));
+  return parts;
+}
+
+MatterParts strand_parts(double radius, std::vector<Vec3d> points, std::vector<std::array<int, 2>> segments) {
+  MatterParts parts;
+  parts.lines.push_back({std::move(points), std::move(segments), radius});
+  return parts;
+}
+
 MatterParts make_domain(const Body& body, std::vector<std::string>& messages) {
   MatterParts parts;
   const double scale = body.transform.scale;

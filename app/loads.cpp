@@ -173,7 +173,8 @@ void spread_torque(std::vector<Share>& shares, const Vec3d& torque) {
 }
 
 /// J^T of forces and torques at material points, summed by frame; or followers, one a point.
-void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, int schedule) {
+/// @param vertices  the body's nodes do not turn, whatever rotation some have from other bodies
+void add_shares(Simulation& s, const std::vector<Share>& shares, bool vertices, bool follower, int schedule) {
   std::map<int, NodeLoad> by_node;
   for (const Share& share : shares) {
     const Attachment& a = share.attachment;
@@ -182,12 +183,12 @@ void add_shares(Simulation& s, const std::vector<Share>& shares, bool follower, 
       const Influence& i = a.influences[k];
       f.w.push_back(i.w);
       f.b.push_back(i.b);
-      if (s.model.kind(a.nodes[k]) == FrameKind::vertex) f.g.push_back(i.g);
+      if (vertices) f.g.push_back(i.g);
       NodeLoad& n = by_node[a.nodes[k]];
       n.node = a.nodes[k];
       n.force += f.force * i.w;
       n.couple += outer(f.force, i.b);
-      if (s.model.kind(n.node) == FrameKind::rigid) {
+      if (!vertices && s.model.kind(n.node) == FrameKind::rigid) {
         n.torque += f.torque * i.w;
       } else {  // of affine frames and vertices through the spin of the field: that of one A alone is held by
                 // stabilisation only
@@ -231,7 +232,7 @@ void add_loads(Simulation& s) {
       if (load.total_force)
         for (Share& share : shares) share.force = *load.total_force * share.part;
       if (load.total_torque) spread_torque(shares, *load.total_torque);
-      add_shares(s, shares, load.follower, schedule);
+      add_shares(s, shares, b.vertices, load.follower, schedule);
     }
     if (load.traction) {
       std::vector<Share> shares = surface_shares(b, *load.where);
@@ -240,19 +241,19 @@ void add_loads(Simulation& s) {
                                                           "corners; enlarge it",
                                                           b.name)}});
       for (Share& share : shares) share.force = *load.traction * share.part;
-      add_shares(s, shares, false, schedule);
+      add_shares(s, shares, b.vertices, false, schedule);
     }
     if (load.pressure) add_pressure(s, body, load, schedule);
     if (load.line_force) {
       std::vector<Share> shares = line_shares(b, *load.where);
       for (Share& share : shares) share.force = *load.line_force * share.part;
-      add_shares(s, shares, load.follower, schedule);
+      add_shares(s, shares, b.vertices, load.follower, schedule);
     }
     if (load.force_per_node) add_node_forces(s, body, load, schedule);
     if (load.at) {
       const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
       add_shares(s, {{X, b.body->attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
-                 load.follower, schedule);
+                 b.vertices, load.follower, schedule);
     }
   }
   add_fluids(s);

@@ -54,10 +54,10 @@ void push(std::vector<double>& out, const Mat3d& m) {
   for (int i = 0; i < 3; ++i) push(out, m.row(i));
 }
 
-void push_point_value(std::vector<double>& out, Quantity q, const ModelBody& body, const ProbePoint& p,
+void push_point_value(std::vector<double>& out, Quantity q, const SimulatedBody& owner, const ProbePoint& p,
                       const State& state) {
+  const ModelBody& body = *owner.body;
   const FieldValue f = field_at(p.field, state);
-  const bool turns = body.cells().nodes.empty() || body.cells().type == CellType::triangle;
   switch (q) {
     case Quantity::displacement:
       push(out, f.u);
@@ -66,7 +66,7 @@ void push_point_value(std::vector<double>& out, Quantity q, const ModelBody& bod
       push(out, p.X + f.u);
       break;
     case Quantity::rotation:
-      push(out, rotation_vector(polar_increment(turns ? f.D : f.H)));
+      push(out, rotation_vector(polar_increment(owner.vertices ? f.H : f.D)));
       break;
     case Quantity::velocity: {
       Vec3d v;
@@ -222,7 +222,7 @@ std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe
   const Quantity q = probe.probe->quantity;
   const State& state = *snap.state;
   if (!probe.points.empty()) {
-    for (const ProbePoint& p : probe.points) push_point_value(out, q, *s.bodies[at(probe.body)].body, p, state);
+    for (const ProbePoint& p : probe.points) push_point_value(out, q, s.bodies[at(probe.body)], p, state);
     return out;
   }
   switch (q) {
@@ -237,8 +237,10 @@ std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe
       out.push_back(deformed_volume(s, probe, state));
       break;
     case Quantity::mass: {
-      double mass = 0;
-      for (const int i : probe.nodes) mass += s.model.inertia[at(i)].mass;
+      double mass = 0;  // of nodes, or of whole bodies: nodes that bodies share carry the mass of both
+      for (const int i : probe.nodes) mass += probe.probe->where ? s.model.inertia[at(i)].mass : 0.0;
+      for (std::size_t b = 0; b < s.bodies.size() && !probe.probe->where; ++b)
+        if (probe.body < 0 || static_cast<std::size_t>(probe.body) == b) mass += s.bodies[b].body->mass();
       out.push_back(mass);
       break;
     }

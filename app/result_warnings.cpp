@@ -26,7 +26,7 @@ void add_shell_warnings(const SimulatedBody& b, const State& end, std::vector<st
     against += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
     Vec3d X[3], x[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      X[k] = b.nodes[static_cast<std::size_t>(a.nodes[k] - b.body->first_node())];
+      X[k] = b.nodes[b.index_of(a.nodes[k])];
       x[k] = X[k] + end.u[static_cast<std::size_t>(a.nodes[k])];
     }
     const double left = norm(cross(x[1] - x[0], x[2] - x[0])) / norm(cross(X[1] - X[0], X[2] - X[0]));
@@ -86,7 +86,7 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
       continue;
     }
     int inverted = 0, unresolved = 0;
-    const bool rigid = s.model.kind(b.body->first_node()) == FrameKind::rigid;
+    const bool rigid = !b.vertices && !s.scene.bodies[index].affine;
     const Formulation formulation = s.scene.bodies[index].formulation;
     const bool linear = formulation == Formulation::linear;
     for (std::size_t q = 0; q < b.body->points().size(); ++q) {

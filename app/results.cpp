@@ -33,21 +33,22 @@ void add_share(PointTensors& sum, const PointTensors& t, double share) {
   sum.energy_density += t.energy_density * share;
 }
 
-BodyTensors tensors(const ModelBody& body, const State& state) {
-  BodyTensors t{body.tensors(state), std::vector<PointTensors>(at(body.node_count()))};
+BodyTensors tensors(const SimulatedBody& b, const State& state) {
+  const ModelBody& body = *b.body;
+  BodyTensors t{body.tensors(state), std::vector<PointTensors>(b.nodes.size())};
   std::vector<double> weight(t.nodes.size());
   for (std::size_t q = 0; q < body.points().size(); ++q) {
     const Attachment a = body.attach_point(q);
     for (std::size_t k = 0; k < a.nodes.size(); ++k) {
       const double share = body.points()[q].volume * std::max(a.influences[k].w, 1e-3);
-      const std::size_t node = at(a.nodes[k] - body.first_node());
+      const std::size_t node = b.index_of(a.nodes[k]);
       weight[node] += share;
       add_share(t.nodes[node], t.points[q], share);
     }
   }
   for (std::size_t i = 0; i < t.nodes.size(); ++i) {
     PointTensors mean;
-    add_share(mean, t.nodes[i], 1 / weight[i]);
+    if (weight[i] > 0) add_share(mean, t.nodes[i], 1 / weight[i]);
     t.nodes[i] = mean;
   }
   return t;
@@ -142,7 +143,7 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
   of_nodes.add("rest_position", [&](std::size_t i) { return b.nodes[i]; });
   const bool tensor_fields = std::any_of(
       names.begin(), names.end(), [](const std::string& name) { return name != "displacement" && name != "rotation"; });
-  BodyTensors t = tensor_fields ? tensors(body, state) : BodyTensors{};
+  BodyTensors t = tensor_fields ? tensors(b, state) : BodyTensors{};
   const std::vector<PointTensors> means =
       tensor_fields ? cell_means(body, std::move(t.points)) : std::vector<PointTensors>{};
   FieldWriter of_cells(mesh.cell_fields, means.size());
@@ -168,7 +169,7 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
 io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) const {
   if (b.groups() != nullptr) return visual_mesh(b, state);
   const ModelBody& body = *b.body;
-  const BodyTensors t = tensors(body, state);
+  const BodyTensors t = tensors(b, state);
   const std::vector<Attachment>& surface = surface_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
   std::vector<PointValue> values;
   std::vector<PointTensors> tensors_of_values;
@@ -181,16 +182,16 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
   for (std::size_t i = 0; i < surface.size(); ++i) {
     PointTensors mean;
     for (std::size_t k = 0; k < surface[i].nodes.size(); ++k)
-      add_share(mean, t.nodes[at(surface[i].nodes[k] - body.first_node())], surface[i].influences[k].w);
+      add_share(mean, t.nodes[b.index_of(surface[i].nodes[k])], surface[i].influences[k].w);
     add_field_value(body.surface().points[i], surface[i], mean);
   }
-  for (int i = 0; i < body.node_count(); ++i) {
-    const auto node = at(body.first_node() + i);
+  for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+    const std::size_t node = at(b.node_ids[i]);
     const Mat3d turn =
         simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node] : polar_increment(state.D[node]);
-    values.push_back({b.nodes[at(i)], state.u[node], rotation_vector(turn),
+    values.push_back({b.nodes[i], state.u[node], rotation_vector(turn),
                       (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node]});
-    tensors_of_values.push_back(t.nodes[at(i)]);
+    tensors_of_values.push_back(t.nodes[i]);
   }
   for (std::size_t q = 0; q < body.points().size(); ++q)
     add_field_value(body.points()[q].X, body.attach_point(q), t.points[q]);

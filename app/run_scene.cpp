@@ -1,5 +1,6 @@
 #include "app/run_scene.hpp"
 
+#include "app/coupling_report.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
 #include "app/result_warnings.hpp"
@@ -121,6 +122,7 @@ struct Outcome {
   std::vector<nlohmann::json> probes;
   double stabilization = 0;
   std::vector<FluidState> fluids;
+  nlohmann::ordered_json couplings;
 };
 
 Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, const RunOptions& options) {
@@ -197,6 +199,7 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     }
   }
   add_result_warnings(s, state, out.run, out.warnings);
+  out.couplings = coupling_report(s, system, state);
   for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
   if (!snaps.warning().empty()) out.warnings.push_back(snaps.warning());
   out.times.output = output_seconds;
@@ -298,7 +301,7 @@ int run_scene(const RunOptions& options) {
     s.warnings.push_back(w);
   }
   const nlohmann::ordered_json j =
-      summary(s, out.run, out.times, pool.size(), out.probes, out.stabilization, out.fluids);
+      summary(s, out.run, out.times, pool.size(), out.probes, out.stabilization, out.fluids, out.couplings);
   io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
   directory.commit();
   if (options.json)
@@ -314,7 +317,8 @@ int run_scene(const RunOptions& options) {
 std::string describe(const SimulatedBody& b) {
   const BodyCells& cells = b.body->cells();
   if (cells.nodes.empty()) return b.body->model_name();
-  if (cells.type == CellType::triangle) return fmt::format("shell of {} triangles", cells.nodes.size() / 3);
+  if (cells.type == CellType::triangle)
+    return fmt::format("{} of {} triangles", b.body->model_name(), cells.nodes.size() / 3);
   return fmt::format("{} {}{}", cells.nodes.size() / static_cast<std::size_t>(cells.nodes_per_cell),
                      cells.nodes_per_cell > node_count(cells.type) ? "quadratic " : "", b.body->model_name());
 }
@@ -330,10 +334,12 @@ int check_scene(const RunOptions& options) {
   for (const FluidOfBody& f : s.fluids)
     fmt::print("body {}: its fluid fills {:.6g} m3 at rest\n", s.bodies[at(f.body)].name,
                s.model.surfaces[at(f.surface)].rest_volume);
-  const int free = s.model.dof_count() - s.model.constrained_dof_count();
+  fmt::print("{}", coupling_layout(s));
+  const int free = s.model.free_dof_count(), followers = s.model.dependent_dof_count();
   const std::string tethers = s.model.tethers.empty() ? "" : fmt::format("{} tethers, ", s.model.tethers.size());
-  fmt::print("{} unknowns ({} prescribed), {}{} loads, {} probes\n", free, s.model.constrained_dof_count(), tethers,
-             s.scene.loads.size(), s.probes.size());
+  fmt::print("{} unknowns ({} prescribed{}), {}{} loads, {} probes\n", free, s.model.constrained_dof_count(),
+             followers > 0 ? fmt::format(", {} that follow others", followers) : "", tethers, s.scene.loads.size(),
+             s.probes.size());
   if (s.stable_step > 0)
     fmt::print("stable time step {:.4g} s, {} steps of {:.4g} s\n", s.stable_step, s.scene.solver.steps,
                s.scene.solver.time_step);

@@ -1,6 +1,7 @@
 #include "app/simulation.hpp"
 
 #include "app/bodies.hpp"
+#include "app/neighbours.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/schedule.hpp"
@@ -73,18 +74,23 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
   }
 }
 
-void add_body(Simulation& s, const Body& body, PointSetBuilder& points) {
+SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
   try {
-    std::vector<std::string> messages;
-    std::unique_ptr<ModelBody> built = build_body(body, s.model, points, messages);
-    messages.insert(messages.end(), built->messages().begin(), built->messages().end());
-    for (const std::string& m : messages) s.warnings.push_back("bodies." + body.name + ": " + m);
-    std::vector<Vec3d> nodes(s.model.rest_position.begin() + built->first_node(), s.model.rest_position.end());
-    std::vector<char> boundary = built->nodes_on_boundary();
-    std::vector<char> surface(built->surface().points.size(), 1);
-    const bool vertices = s.model.kind(built->first_node()) == FrameKind::vertex;
-    s.bodies.push_back(
-        {body.name, std::move(built), std::move(nodes), std::move(boundary), std::move(surface), vertices});
+    BodyBuild build{s.model, points, {}, {}, {}};
+    gather_neighbours(s, body, build);
+    SimulatedBody b;
+    b.name = body.name;
+    b.body = build_body(body, build);
+    give_rotations(s.model, build.shared, *b.body);
+    build.messages.insert(build.messages.end(), b.body->messages().begin(), b.body->messages().end());
+    for (const std::string& m : build.messages) s.warnings.push_back("bodies." + body.name + ": " + m);
+    for (int i = 0; i < b.body->node_count(); ++i) b.node_ids.push_back(b.body->first_node() + i);
+    b.node_ids.insert(b.node_ids.end(), b.body->shared_nodes().begin(), b.body->shared_nodes().end());
+    for (const int node : b.node_ids) b.nodes.push_back(s.model.rest_position[at(node)]);
+    b.node_on_boundary = b.body->nodes_on_boundary();
+    b.surface_on_boundary.assign(b.body->surface().points.size(), 1);
+    b.vertices = is_mesh_model(body) || body.model == BodyModel::surface;
+    return b;
   } catch (const InputError& e) {
     const Place& place = e.blame == Blame::frames    ? body.frames_place
                          : e.blame == Blame::points  ? body.points_place
@@ -160,6 +166,14 @@ const std::vector<BodyGroup>* SimulatedBody::groups() const {
   return body->cells().nodes.empty() ? nullptr : &body->groups();
 }
 
+std::size_t SimulatedBody::index_of(int node) const {
+  const int own = node - body->first_node();
+  if (own >= 0 && own < body->node_count()) return at(own);
+  const std::vector<int>& shared = body->shared_nodes();
+  return at(body->node_count()) +
+         static_cast<std::size_t>(std::lower_bound(shared.begin(), shared.end(), node) - shared.begin());
+}
+
 Selectable SimulatedBody::selectable_nodes() const { return {nodes, node_on_boundary, groups()}; }
 
 Selectable SimulatedBody::selectable_surface() const { return {body->surface().points, surface_on_boundary, groups()}; }
@@ -169,7 +183,10 @@ std::vector<int> find_nodes(const Simulation& s, int body, const Region& region)
   const std::vector<bool> chosen = select(region, b.selectable_nodes());
   std::vector<int> nodes;
   for (std::size_t i = 0; i < chosen.size(); ++i)
-    if (chosen[i]) nodes.push_back(b.body->first_node() + static_cast<int>(i));
+    if (chosen[i]) nodes.push_back(b.node_ids[i]);
+  if (!nodes.empty() || s.scene.bodies[at(body)].model != BodyModel::rigid) return nodes;
+  const std::vector<bool> surface = select(region, b.selectable_surface());
+  if (std::find(surface.begin(), surface.end(), true) != surface.end()) nodes.push_back(b.node_ids[0]);
   return nodes;
 }
 
@@ -192,18 +209,20 @@ Simulation build_simulation(Scene scene) {
   Simulation s;
   s.scene = std::move(scene);
   PointSetBuilder points;
-  s.bodies.reserve(s.scene.bodies.size());
-  for (const Body& body : s.scene.bodies) {
+  s.bodies.resize(s.scene.bodies.size());
+  for (const std::size_t index : build_order(s.scene)) {
     const int group = points.group_count(), block = points.block_count(), shell = points.shell_count();
-    add_body(s, body, points);
-    s.bodies.back().body->first_group = group;
-    s.bodies.back().body->group_count = points.group_count() - group;
-    s.bodies.back().body->first_block = block;
-    s.bodies.back().body->block_count = points.block_count() - block;
-    s.bodies.back().body->first_shell = shell;
-    s.bodies.back().body->shell_count = points.shell_count() - shell;
+    s.bodies[index] = built_body(s, s.scene.bodies[index], points);
+    ModelBody& body = *s.bodies[index].body;
+    body.first_group = group;
+    body.group_count = points.group_count() - group;
+    body.first_block = block;
+    body.block_count = points.block_count() - block;
+    body.first_shell = shell;
+    body.shell_count = points.shell_count() - shell;
   }
   add_constraints(s, points);
+  add_couplings(s, points);
   s.model.points = std::move(points).finish(s.model.frame_kind);
   if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
   s.initial = State::at_rest(s.model);

@@ -18,7 +18,8 @@ namespace fascia::app {
 struct SimulatedBody {
   std::string name;
   std::unique_ptr<ModelBody> body;
-  std::vector<Vec3d> nodes;  ///< rest positions [m]
+  std::vector<int> node_ids;  ///< of the model: its own, then those that it shares
+  std::vector<Vec3d> nodes;   ///< their rest positions [m]
   std::vector<char> node_on_boundary;
   std::vector<char> surface_on_boundary;  ///< ones, for each point of the surface
 
@@ -26,6 +27,8 @@ struct SimulatedBody {
   Selectable selectable_nodes() const;
   /// Points of the surface, all on the boundary.
   Selectable selectable_surface() const;
+  /// Index into `nodes` of one of its nodes.
+  std::size_t index_of(int node) const;
   bool vertices = false;  ///< its nodes do not turn
   const char* node_word() const { return vertices ? "node" : "frame"; }
   const std::vector<BodyGroup>* groups() const;  ///< null where the body has no mesh
@@ -57,6 +60,12 @@ struct ResolvedProbe {
   Vec3d about{};              ///< of moments and angular momentum
 };
 
+/// A weld, embedding or spring of the scene in the model.
+struct BuiltCoupling {
+  std::vector<int> nodes;    ///< of the model, that it couples
+  std::vector<int> springs;  ///< of the point set
+};
+
 /// What fills a body.
 struct FluidOfBody {
   int body = 0, surface = 0;  ///< the latter of the model
@@ -71,6 +80,7 @@ struct Simulation {
   std::vector<ResolvedProbe> probes;
   std::vector<TetheredMaterial> tethered;
   std::vector<FluidOfBody> fluids;
+  std::vector<BuiltCoupling> couplings;       ///< of Scene::couplings
   std::optional<ControlledPoint> controlled;  ///< of control = "displacement"
   State initial;
   std::vector<std::string> warnings;
@@ -104,13 +114,18 @@ Simulation build_simulation(Scene scene);
 // Parts of build_simulation, in files of their own.
 void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< constraints.cpp
 void add_loads(Simulation& simulation);                                 ///< loads.cpp
+/// Welds, embeddings and springs; couplings.cpp.
+/// @throws SceneError  a node that depends on two others, is held, or closes a circle; a point outside its host
+void add_couplings(Simulation& simulation, PointSetBuilder& points);
 /// Pressure on faces, dead or following; surface_loads.cpp.
 /// @throws SceneError  no face selected
 void add_pressure(Simulation& simulation, int body, const Load& load, int schedule);
-void add_fluids(Simulation& simulation);           ///< surface_loads.cpp
-void check_support(const Simulation& simulation);  ///< support.cpp
-void resolve_probes(Simulation& simulation);       ///< probe_setup.cpp
-void resolve_controlled(Simulation& simulation);   ///< probe_setup.cpp
+void add_fluids(Simulation& simulation);  ///< surface_loads.cpp
+/// Of a static solve: every body is held, by supports or through couplings; support.cpp.
+/// @throws SceneError  what is free, with the motion
+void check_support(const Simulation& simulation);
+void resolve_probes(Simulation& simulation);      ///< probe_setup.cpp
+void resolve_controlled(Simulation& simulation);  ///< probe_setup.cpp
 struct FluidState {
   double volume = 0, pressure = 0;  ///< [m³]; at the level of its centre at rest [Pa]
 };
@@ -121,7 +136,8 @@ int body_index(const Simulation& simulation, const std::string& name);
 /// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.
 /// @throws SceneError further away
 Vec3d place_on_body(Simulation& simulation, int body, const Vec3d& X, const Place& place);
-/// Model nodes of a body that a region selects; none or more.
+/// Model nodes of a body that a region selects; none or more. A rigid body's frame is selected with any point of its
+/// surface.
 std::vector<int> find_nodes(const Simulation& simulation, int body, const Region& region);
 /// The same. @throws SceneError where it selects none
 std::vector<int> select_nodes(const Simulation& simulation, int body, const Region& region);

@@ -41,7 +41,7 @@ double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
 nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
                                const std::vector<nlohmann::json>& probe_values, double stabilization_energy,
-                               const std::vector<FluidState>& fluids) {
+                               const std::vector<FluidState>& fluids, const nlohmann::ordered_json& couplings) {
   nlohmann::ordered_json j;
   j["fascia"] = FASCIA_VERSION;
   j["scene"] = s.scene.path.filename().string();
@@ -56,6 +56,7 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
     j["bodies"][b.name] = {
         {"model", b.body->model_name()},
         {b.vertices ? "nodes" : "frames", b.body->node_count()},
+        {"shared", b.body->shared_nodes().size()},
         {"points", b.body->points().size()},
         {"cells", b.body->cells().nodes.size() / static_cast<std::size_t>(b.body->cells().nodes_per_cell)},
         {"volume", b.body->volume()},
@@ -64,8 +65,8 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   for (std::size_t f = 0; f < fluids.size(); ++f)
     j["bodies"][s.bodies[static_cast<std::size_t>(s.fluids[f].body)].name]["fluid"] = {
         {"volume", finite(fluids[f].volume)}, {"pressure", finite(fluids[f].pressure)}};
-  j["couplings"] = nlohmann::ordered_json::object();
-  j["dofs"] = s.model.dof_count() - s.model.constrained_dof_count();
+  j["couplings"] = couplings.is_null() ? nlohmann::ordered_json::object() : couplings;
+  j["dofs"] = s.model.free_dof_count();
   j["steps"] = run.steps;
   j["simulated_time"] = is_dynamic(s.scene.solver.kind) ? run.time : 0.0;
   j["newton_iterations"] = run.newton_iterations;

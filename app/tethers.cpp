@@ -54,7 +54,7 @@ std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, doubl
 int nearest_frame(const SimulatedBody& b, const Vec3d& x) {
   const auto nearer = [&](const Vec3d& p, const Vec3d& q) { return squared_norm(p - x) < squared_norm(q - x); };
   const auto found = std::min_element(b.nodes.begin(), b.nodes.end(), nearer);
-  return b.body->first_node() + static_cast<int>(found - b.nodes.begin());
+  return b.node_ids[static_cast<std::size_t>(found - b.nodes.begin())];
 }
 
 /// A tether as a point: the first column of its H is the displacement of the material (core/physics/point_physics.hpp).

@@ -1,0 +1,192 @@
+#include "app/coupling_report.hpp"
+
+#include "app/mechanisms.hpp"
+#include "core/math/index.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+namespace fascia::app {
+
+namespace {
+
+/// A force and its moment about the origin.
+struct Wrench {
+  Vec3d force{}, moment{};
+
+  void add(const Vec3d& x, const Vec3d& f, const Vec3d& torque) {
+    force += f;
+    moment += cross(x, f) + torque;
+  }
+};
+
+nlohmann::json json_of(const Vec3d& v) {
+  const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
+  return {finite(v[0]), finite(v[1]), finite(v[2])};
+}
+
+nlohmann::ordered_json entry(const Wrench& w, double gap, double energy) {
+  return {{"force", json_of(w.force)}, {"moment", json_of(w.moment)}, {"gap", gap}, {"energy", energy}};
+}
+
+Vec3d place_of(const Simulation& s, const State& state, int node) {
+  return s.model.rest_position[at(node)] + state.u[at(node)];
+}
+
+/// The body whose own node it is.
+std::size_t owner_of(const Simulation& s, int node) {
+  return static_cast<std::size_t>(std::find_if(s.bodies.begin(), s.bodies.end(),
+                                               [&](const SimulatedBody& b) {
+                                                 return node >= b.body->first_node() &&
+                                                        node < b.body->first_node() + b.body->node_count();
+                                               }) -
+                                  s.bodies.begin());
+}
+
+/// What a body's points do on a node that it shares.
+Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const MechanicalSystem& system, const State& state,
+               int node) {
+  const NodeForce f = system.executor().group_force(tissue.body->first_group, tissue.body->group_count, node);
+  Wrench w;
+  const Mat3d Q = Mat3d::identity() + state.D[at(node)];
+  const bool turns = s.model.kind(node) != FrameKind::vertex;
+  w.add(place_of(s, state, node), f.force * -1.0, turns ? axl(Q * transpose(f.N)) * -1.0 : Vec3d{});
+  return w;
+}
+
+/// Largest distance between a body's field and the nodes that it shares [m]; of a rigid body's surface there is none.
+double gap_at(const Simulation& s, const SimulatedBody& tissue, const State& state, int node) {
+  if (s.scene.bodies[owner_of(s, node)].model == BodyModel::rigid) return 0;
+  return norm(field_at(tissue.body->attach(s.model.rest_position[at(node)]), state).u - state.u[at(node)]);
+}
+
+nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b, const MechanicalSystem& system,
+                                     const State& state) {
+  double energy = 0, gap = 0;
+  for (int g = b.body->first_group; g < b.body->first_group + b.body->group_count; ++g)
+    energy += system.executor().group_elastic()[at(g)];
+  std::map<std::size_t, std::pair<Wrench, int>> partners;
+  std::map<std::size_t, double> gaps;
+  for (const int node : b.body->shared_nodes()) {
+    const std::size_t owner = owner_of(s, node);
+    const Wrench w = pull_on(s, b, system, state, node);
+    auto& [sum, count] = partners[owner];
+    sum.force += w.force;
+    sum.moment += w.moment;
+    ++count;
+    gaps[owner] = std::max(gaps[owner], gap_at(s, b, state, node));
+    gap = std::max(gap, gaps[owner]);
+  }
+  nlohmann::ordered_json on = nlohmann::ordered_json::object();
+  for (const auto& [owner, pull] : partners)
+    on[s.bodies[owner].name] = {{"force", json_of(pull.first.force)},
+                                {"moment", json_of(pull.first.moment)},
+                                {"gap", gaps[owner]},
+                                {"nodes", pull.second}};
+  nlohmann::ordered_json j = entry(partners.begin()->second.first, gap, energy);
+  j["on"] = std::move(on);
+  return j;
+}
+
+/// Distance between a body's surface and its host's field, at points of the faces that follow it [m].
+double gap_of(const Simulation& s, const Coupling& c, const BuiltCoupling& built, const State& state) {
+  const SimulatedBody& b = s.bodies[at(body_index(s, c.body))];
+  const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
+  double gap = 0;
+  for (const FacePoint& p : b.body->face_points()) {
+    const bool follows = std::all_of(p.attachment.nodes.begin(), p.attachment.nodes.end(), [&](int node) {
+      return std::binary_search(built.nodes.begin(), built.nodes.end(), node);
+    });
+    if (!follows || host.body->distance(p.X) > 1e-3 * host.body->size()) continue;
+    gap = std::max(gap, norm(field_at(p.attachment, state).u - field_at(host.body->attach(p.X), state).u));
+  }
+  return gap;
+}
+
+nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, const BuiltCoupling& built,
+                                       const MechanicalSystem& system, const State& state) {
+  Wrench sum;
+  if (c.kind == CouplingKind::spring) {
+    double energy = 0;
+    for (const int index : built.springs) {
+      const Spring& spring = s.model.points.springs[at(index)];
+      sum.add(place_of(s, state, spring.node), spring_force(spring, state.u[at(spring.node)]), {});
+      energy += spring_energy(spring, state.u[at(spring.node)]);
+    }
+    return entry(sum, 0, energy);
+  }
+  const std::vector<DependentNode>& dependents = s.model.points.dependents;
+  for (std::size_t k = 0; k < dependents.size(); ++k) {
+    if (!std::binary_search(built.nodes.begin(), built.nodes.end(), dependents[k].node)) continue;
+    const DependentForce& f = system.dependent_forces()[k];
+    sum.add(place_of(s, state, dependents[k].node), f.force, f.torque);
+  }
+  return entry(sum, gap_of(s, c, built, state), 0);
+}
+
+std::string counted(std::size_t count, const char* word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
+
+void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& out) {
+  std::map<std::size_t, std::size_t> shared;
+  for (const int node : b.body->shared_nodes()) ++shared[owner_of(s, node)];
+  std::string list;
+  for (const auto& [owner, count] : shared)
+    list += fmt::format("{}{} of \"{}\"", list.empty() ? "" : ", ", counted(count, s.bodies[owner].node_word()),
+                        s.bodies[owner].name);
+  fmt::format_to(std::back_inserter(out), "body {}: shares {}\n", b.name, list);
+}
+
+}  // namespace
+
+nlohmann::ordered_json coupling_report(const Simulation& s, const MechanicalSystem& system, const State& state) {
+  nlohmann::ordered_json j = nlohmann::ordered_json::object();
+  for (const SimulatedBody& b : s.bodies)
+    if (!b.body->shared_nodes().empty()) j[b.name] = report_tissue(s, b, system, state);
+  for (std::size_t k = 0; k < s.couplings.size(); ++k)
+    j[s.scene.couplings[k].name] = report_coupling(s, s.scene.couplings[k], s.couplings[k], system, state);
+  return j;
+}
+
+std::string coupling_layout(const Simulation& s) {
+  std::string out;
+  for (const SimulatedBody& b : s.bodies)
+    if (!b.body->shared_nodes().empty()) describe_tissue(s, b, out);
+  for (std::size_t k = 0; k < s.couplings.size(); ++k) {
+    const Coupling& c = s.scene.couplings[k];
+    const SimulatedBody& b = s.bodies[at(body_index(s, c.body))];
+    const std::string nodes = counted(s.couplings[k].nodes.size(), b.node_word());
+    if (c.kind == CouplingKind::spring)
+      fmt::format_to(std::back_inserter(out), "coupling {}: {} of \"{}\" on springs of {:.4g} N/m in all\n", c.name,
+                     nodes, b.name, c.stiffness);
+    else
+      fmt::format_to(std::back_inserter(out), "coupling {}: {} of \"{}\" {} \"{}\"\n", c.name, nodes, b.name,
+                     c.kind == CouplingKind::weld ? "welded to frames of" : "embedded in", c.to);
+  }
+  if (s.bodies.size() < 2 && s.couplings.empty()) return out;
+  const Mechanisms m = find_mechanisms(s);
+  for (std::size_t p = 0; p < m.pieces.size(); ++p) {
+    const Piece& piece = m.pieces[p];
+    const std::string& name = s.bodies[at(piece.body)].name;
+    const std::string what = piece.whole ? name
+                                         : fmt::format("{} around ({:.4g}, {:.4g}, {:.4g})", name, piece.center[0],
+                                                       piece.center[1], piece.center[2]);
+    fmt::format_to(std::back_inserter(out), "body {}: alone {}\n", what,
+                   m.own_motions[p].empty() ? "held" : "free in " + m.own_motions[p]);
+  }
+  for (const Assembly& a : m.assemblies) {
+    if (!a.free.empty() && a.pieces.size() > 1)
+      fmt::format_to(std::back_inserter(out), "all coupled to {}: free in {}\n",
+                     s.bodies[at(m.pieces[at(a.pieces[0])].body)].name, fmt::join(a.free, ", "));
+    for (const std::string& motion : a.loose) fmt::format_to(std::back_inserter(out), "mechanism: {}\n", motion);
+  }
+  return out;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,151 @@
+#include "app/regions.hpp"
+#include "app/scene/errors.hpp"
+#include "app/simulation.hpp"
+#include "core/geometry/bounds.hpp"
+#include "core/math/index.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+/// Welds, embeddings and springs of the scene.
+namespace fascia::app {
+
+namespace {
+
+std::string text(const Vec3d& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]); }
+
+/// Collects the nodes that depend on others, each with the coupling that made it.
+class DependentNodes {
+ public:
+  explicit DependentNodes(const Simulation& s) : s_(s) {
+    for (const FrameConstraint& c : s.model.constraints) held_[c.node] = &c;
+  }
+
+  void add(const Coupling& coupling, DependentNode d) {
+    const Vec3d& X = s_.model.rest_position[at(d.node)];
+    if (const auto known = by_node_.find(d.node); known != by_node_.end())
+      throw SceneError({{coupling.place, fmt::format("the node at {} follows couplings.{} already; let each node "
+                                                     "follow one body",
+                                                     text(X), known->second.coupling->name)}});
+    if (const auto held = held_.find(d.node); held != held_.end() && (held->second->translations > 0 || d.turns))
+      throw SceneError(
+          {{coupling.place, fmt::format("the node at {} of body \"{}\" is held by a constraint, and cannot "
+                                        "follow \"{}\" too; leave it out of one of the regions",
+                                        text(X), coupling.body, coupling.to)}});
+    by_node_[d.node] = {&coupling, std::move(d)};
+  }
+
+  /// @throws SceneError  nodes that follow one another in a circle
+  void check_circles() const {
+    std::map<int, int> state;  // 1: on the way, 2: done
+    for (const auto& [node, made] : by_node_) follow(node, state);
+  }
+
+  void give_to(PointSetBuilder& points) {
+    for (auto& [node, made] : by_node_) points.add_dependent(std::move(made.node));
+  }
+
+ private:
+  struct Made {
+    const Coupling* coupling = nullptr;
+    DependentNode node;
+  };
+
+  void follow(int node, std::map<int, int>& state) const {
+    const auto made = by_node_.find(node);
+    if (made == by_node_.end() || state[node] == 2) return;
+    const Coupling& c = *made->second.coupling;
+    if (state[node] == 1)
+      throw SceneError({{c.place, fmt::format("closes a circle: body \"{}\" follows \"{}\", which follows \"{}\" in "
+                                              "turn, at {}; leave one of the couplings out",
+                                              c.body, c.to, c.body, text(s_.model.rest_position[at(node)]))}});
+    state[node] = 1;
+    for (const int host : made->second.node.hosts) follow(host, state);
+    state[node] = 2;
+  }
+
+  const Simulation& s_;
+  std::map<int, const FrameConstraint*> held_;
+  std::map<int, Made> by_node_;
+};
+
+DependentNode welded(const Simulation& s, const Coupling& c, int node, const SimulatedBody& host) {
+  const Vec3d& X = s.model.rest_position[at(node)];
+  int nearest = -1;
+  double least = 0;
+  for (std::size_t i = 0; i < host.nodes.size(); ++i) {
+    if (s.model.kind(host.node_ids[i]) == FrameKind::vertex) continue;
+    const double distance = squared_norm(host.nodes[i] - X);
+    if (nearest >= 0 && distance >= least) continue;
+    nearest = host.node_ids[i];
+    least = distance;
+  }
+  if (nearest < 0)
+    throw SceneError({{c.to_place, fmt::format("body \"{}\" has no frames, only nodes without rotation; use kind = "
+                                               "\"embed\"",
+                                               host.name)}});
+  const FrameKind kind = s.model.kind(node), host_kind = s.model.kind(nearest);
+  if (kind == FrameKind::affine || (kind == FrameKind::rigid && host_kind == FrameKind::affine))
+    throw SceneError({{c.place, "welds affine frames; use kind = \"embed\", or frames of kind \"rigid\""}});
+  return {node, {nearest}, {1.0}, {X - s.model.rest_position[at(nearest)]}, kind == FrameKind::rigid};
+}
+
+DependentNode embedded(const Simulation& s, const Coupling& c, int node, const SimulatedBody& host) {
+  constexpr double kOnBody = 1e-3, kNothing = 1e-14;
+  const Vec3d& X = s.model.rest_position[at(node)];
+  const double distance = host.body->distance(X);
+  if (distance > kOnBody * host.body->size())
+    throw SceneError({{c.place, fmt::format("the node at {} of body \"{}\" lies {:.4g} m outside body \"{}\", which "
+                                            "should carry it; choose where so that all its nodes lie in that body",
+                                            text(X), c.body, distance, host.name)}});
+  const Attachment a = host.body->attach(X);
+  DependentNode d;
+  d.node = node;
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    const Influence& i = a.influences[k];
+    if (std::abs(i.w) <= kNothing && norm(i.b) <= kNothing * host.body->size()) continue;
+    if (a.nodes[k] == node)
+      throw SceneError({{c.place, fmt::format("the node at {} belongs to body \"{}\" and to \"{}\"; leave it out of "
+                                              "where",
+                                              text(X), c.body, host.name)}});
+    d.hosts.push_back(a.nodes[k]);
+    d.w.push_back(i.w);
+    d.b.push_back(s.model.kind(a.nodes[k]) == FrameKind::vertex ? Vec3d{} : i.b);
+  }
+  return d;
+}
+
+void add_springs(Simulation& s, const Coupling& c, const std::vector<int>& nodes, PointSetBuilder& points,
+                 BuiltCoupling& built) {
+  for (const int node : nodes) {
+    built.springs.push_back(points.spring_count());
+    points.add_spring({node, c.stiffness / static_cast<double>(nodes.size()), s.model.rest_position[at(node)], c.point,
+                       c.direction.value_or(Vec3d{})});
+  }
+}
+
+}  // namespace
+
+void add_couplings(Simulation& s, PointSetBuilder& points) {
+  DependentNodes dependents(s);
+  for (const Coupling& c : s.scene.couplings) {
+    const int body = body_index(s, c.body);
+    BuiltCoupling& built = s.couplings.emplace_back();
+    built.nodes = select_nodes(s, body, c.where);
+    if (c.kind == CouplingKind::spring) {
+      add_springs(s, c, built.nodes, points, built);
+      continue;
+    }
+    const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
+    for (const int node : built.nodes)
+      dependents.add(c, c.kind == CouplingKind::weld ? welded(s, c, node, host) : embedded(s, c, node, host));
+  }
+  dependents.check_circles();
+  dependents.give_to(points);
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "app/simulation.hpp"
+
+#include <string>
+#include <vector>
+
+/// What may move without deforming: connected pieces of bodies taken as rigid, tied to one another by couplings and to
+/// the ground by supports.
+namespace fascia::app {
+
+/// A connected part of a body.
+struct Piece {
+  int body = 0;
+  std::vector<int> nodes;  ///< of the model, ascending
+  Vec3d center{};
+  bool whole = false;  ///< all of the body
+};
+
+/// Pieces that hang together, and what of them is free.
+struct Assembly {
+  std::vector<int> pieces;         ///< of Mechanisms::pieces
+  std::vector<std::string> free;   ///< motions of all pieces as one body that no support resists
+  std::vector<std::string> loose;  ///< further ones, each with the body that moves most in it
+};
+
+struct Mechanisms {
+  std::vector<Piece> pieces;
+  std::vector<Assembly> assemblies;
+  std::vector<std::string> own_motions;  ///< of each piece, its supports and springs alone: what is free; empty: held
+};
+
+Mechanisms find_mechanisms(const Simulation& simulation);
+
+}  // namespace fascia::app

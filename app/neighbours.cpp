@@ -1,0 +1,166 @@
+#include "app/neighbours.hpp"
+
+#include "app/domains.hpp"
+#include "app/regions.hpp"
+#include "app/scene/errors.hpp"
+#include "core/geometry/bounds.hpp"
+#include "core/geometry/triangle_tree.hpp"
+#include "core/math/index.hpp"
+#include "core/model/body_surface.hpp"
+#include "coupling/gap.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace fascia::app {
+
+namespace {
+
+std::vector<std::string> givers_of(const Body& body) {
+  std::vector<std::string> names;
+  if (const auto* between = std::get_if<BetweenDomain>(&body.domain))
+    names.insert(names.end(), between->bodies.begin(), between->bodies.end());
+  for (const SharedNodes& share : body.shares.value_or(std::vector<SharedNodes>{})) names.push_back(share.body);
+  return names;
+}
+
+/// Vertices of a rigid body's surface act as frames that move with its one frame.
+void share_rigid(const SimulatedBody& giver, const Model& model, const std::vector<bool>& chosen, BodyBuild& build) {
+  const int node = giver.body->first_node();
+  const std::vector<Vec3d>& points = giver.body->surface().points;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (chosen[i]) build.shared.push_back({node, points[i], points[i] - model.rest_position[at(node)], true});
+}
+
+/// @param within  further condition on the position
+std::size_t share_nodes(const Simulation& s, const SharedNodes& share, const std::function<bool(const Vec3d&)>& within,
+                        BodyBuild& build) {
+  const std::size_t before = build.shared.size();
+  const int index = body_index(s, share.body);
+  const SimulatedBody& giver = s.bodies[at(index)];
+  if (s.scene.bodies[at(index)].model == BodyModel::rigid) {
+    std::vector<bool> chosen = select(share.where, giver.selectable_surface());
+    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] && within(giver.body->surface().points[i]);
+    share_rigid(giver, s.model, chosen, build);
+    return build.shared.size() - before;
+  }
+  const std::vector<bool> chosen = select(share.where, giver.selectable_nodes());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!chosen[i] || !within(giver.nodes[i])) continue;
+    const int node = giver.node_ids[i];
+    const auto same = std::find_if(build.shared.begin(), build.shared.end(),
+                                   [&](const SharedFrame& f) { return f.node == node && squared_norm(f.arm) == 0; });
+    const bool turns = share.rotations || s.model.kind(node) != FrameKind::vertex;
+    if (same == build.shared.end())
+      build.shared.push_back({node, giver.nodes[i], {}, turns});
+    else
+      same->turns = same->turns || turns;
+  }
+  return build.shared.size() - before;
+}
+
+void add_shares(const Simulation& s, const Body& body, BodyBuild& build) {
+  for (const SharedNodes& share : *body.shares) {
+    const SimulatedBody& giver = s.bodies[at(body_index(s, share.body))];
+    if (giver.nodes.empty() || share_nodes(
+                                   s, share, [](const Vec3d&) { return true; }, build) > 0)
+      continue;
+    Bounds bounds = bounds_of(giver.nodes);
+    bounds.include(bounds_of(giver.body->surface().points));
+    throw SceneError(
+        {{share.where.place.key.empty() ? share.place : share.where.place,
+          fmt::format("the region selects no {} of body \"{}\", which lies between ({:.6g}, {:.6g}, {:.6g}) and "
+                      "({:.6g}, {:.6g}, {:.6g})",
+                      giver.node_word(), giver.name, bounds.low[0], bounds.low[1], bounds.low[2], bounds.high[0],
+                      bounds.high[1], bounds.high[2])}});
+  }
+}
+
+/// The faces of a body's surface whose points are all selected.
+GapSide side_of(const Simulation& s, const std::string& name, const Region& where) {
+  const SimulatedBody& b = s.bodies[at(body_index(s, name))];
+  GapSide side{
+      name, {}, b.body->surface(), !b.body->surface().triangles.empty() && free_edges(b.body->faces()).empty()};
+  side.faces.points = b.body->surface().points;
+  const std::vector<bool> chosen = select(where, b.selectable_surface());
+  for (const auto& t : b.body->surface().triangles)
+    if (std::all_of(t.begin(), t.end(), [&](int point) { return chosen[at(point)]; }))
+      side.faces.triangles.push_back(t);
+  return side;
+}
+
+/// Nodes of both sides that lie on the selected faces, where the scene does not name the shared ones.
+void share_sides(const Simulation& s, const BetweenDomain& between, const std::array<GapSide, 2>& sides,
+                 BodyBuild& build) {
+  constexpr double kOnFace = 1e-3;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const SimulatedBody& giver = s.bodies[at(body_index(s, between.bodies[k]))];
+    const TriangleTree faces(sides[k].faces);
+    const double tolerance = kOnFace * giver.body->size();
+    SharedNodes share;
+    share.body = between.bodies[k];
+    share.where = {between.where.place, AllRegion{}};
+    share_nodes(
+        s, share, [&](const Vec3d& X) { return faces.distance(X) <= tolerance; }, build);
+  }
+}
+
+MatterParts fill_gap(const Body& body, const BetweenDomain& between, const std::array<GapSide, 2>& sides,
+                     BodyBuild& build) {
+  switch (between.as) {
+    case BetweenKind::volume: {
+      GapVolume gap = gap_volume(sides[0], sides[1]);
+      build.messages.push_back(fmt::format("fills {:.4g} m3 between \"{}\" and \"{}\", {:.3g} to {:.3g} m apart{}",
+                                           gap.volume, sides[0].body, sides[1].body, gap.smallest, gap.largest,
+                                           gap.touching > 0 ? fmt::format("; they touch over {:.2g} % of the faces of "
+                                                                          "\"{}\", where there is none",
+                                                                          100 * gap.touching, sides[0].body)
+                                                            : ""));
+      return solid_parts(std::move(gap.surface), gap.volume);
+    }
+    case BetweenKind::sheet:
+      return sheet_parts(body, gap_sheet(sides[0], sides[1], 0));
+    case BetweenKind::strands: {
+      GapStrands strands = gap_strands(sides[0], sides[1], 4 * *body.radius);
+      return strand_parts(*body.radius, std::move(strands.points), std::move(strands.segments));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::size_t> build_order(const Scene& scene) {
+  std::vector<std::size_t> order;
+  std::vector<char> seen(scene.bodies.size(), 0);
+  const std::function<void(std::size_t)> visit = [&](std::size_t index) {
+    if (seen[index]++ != 0) return;
+    for (const std::string& name : givers_of(scene.bodies[index]))
+      for (std::size_t other = 0; other < scene.bodies.size(); ++other)
+        if (scene.bodies[other].name == name) visit(other);
+    order.push_back(index);
+  };
+  for (std::size_t index = 0; index < scene.bodies.size(); ++index) visit(index);
+  return order;
+}
+
+void gather_neighbours(Simulation& s, const Body& body, BodyBuild& build) {
+  if (const auto* between = std::get_if<BetweenDomain>(&body.domain)) {
+    const std::array<GapSide, 2> sides{side_of(s, between->bodies[0], between->where),
+                                       side_of(s, between->bodies[1], between->where)};
+    build.between = fill_gap(body, *between, sides, build);
+    if (!body.shares) share_sides(s, *between, sides, build);
+  }
+  if (body.shares) add_shares(s, body, build);
+}
+
+void give_rotations(Model& model, const std::vector<SharedFrame>& shared, const ModelBody& body) {
+  const std::vector<int>& kept = body.shared_nodes();
+  for (const SharedFrame& f : shared)
+    if (f.turns && model.kind(f.node) == FrameKind::vertex && std::binary_search(kept.begin(), kept.end(), f.node))
+      model.frame_kind[at(f.node)] = FrameKind::rigid;
+}
+
+}  // namespace fascia::app
