@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/scene/scene.hpp"
+#include "app/simulation.hpp"
 #include "core/model/model_body.hpp"
 #include "meshless/cloud_build.hpp"
 #include "meshless/shared_frame.hpp"
@@ -18,6 +18,7 @@ struct BodyBuild {
   PointSetBuilder& points;
   std::vector<SharedFrame> shared;
   std::optional<MatterParts> between;  ///< of a domain between two bodies
+  std::vector<Interface> interfaces;
   std::vector<std::string> messages;
 };
 

@@ -11,6 +11,7 @@
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/block_matrix.hpp"
+#include "meshless/neighbours.hpp"
 
 #include <fmt/format.h>
 
@@ -76,7 +77,7 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
 
 SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
   try {
-    BodyBuild build{s.model, points, {}, {}, {}};
+    BodyBuild build{s.model, points, {}, {}, {}, {}};
     gather_neighbours(s, body, build);
     SimulatedBody b;
     b.name = body.name;
@@ -89,6 +90,7 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     for (const int node : b.node_ids) b.nodes.push_back(s.model.rest_position[at(node)]);
     b.node_on_boundary = b.body->nodes_on_boundary();
     b.surface_on_boundary.assign(b.body->surface().points.size(), 1);
+    b.interfaces = std::move(build.interfaces);
     b.vertices = is_mesh_model(body) || body.model == BodyModel::surface;
     return b;
   } catch (const InputError& e) {
@@ -177,6 +179,14 @@ std::size_t SimulatedBody::index_of(int node) const {
 Selectable SimulatedBody::selectable_nodes() const { return {nodes, node_on_boundary, groups()}; }
 
 Selectable SimulatedBody::selectable_surface() const { return {body->surface().points, surface_on_boundary, groups()}; }
+
+double mean_spacing(const SimulatedBody& b) {
+  if (b.nodes.size() < 2) return b.body->size();
+  const FrameSearch search(b.nodes);
+  double sum = 0;
+  for (const Vec3d& x : b.nodes) sum += norm(b.nodes[at(search.nearest(x, 2)[1])] - x);
+  return sum / static_cast<double>(b.nodes.size());
+}
 
 std::vector<int> find_nodes(const Simulation& s, int body, const Region& region) {
   const SimulatedBody& b = s.bodies[at(body)];

@@ -14,6 +14,12 @@
 
 namespace fascia::app {
 
+/// Faces of another body that a tissue is attached to.
+struct Interface {
+  int body = 0;
+  TriangleMesh faces;
+};
+
 /// A body of the scene in the model.
 struct SimulatedBody {
   std::string name;
@@ -22,6 +28,7 @@ struct SimulatedBody {
   std::vector<Vec3d> nodes;   ///< their rest positions [m]
   std::vector<char> node_on_boundary;
   std::vector<char> surface_on_boundary;  ///< ones, for each point of the surface
+  std::vector<Interface> interfaces;      ///< its own frames on these follow the other body
 
   /// The nodes, for regions.
   Selectable selectable_nodes() const;
@@ -136,6 +143,8 @@ int body_index(const Simulation& simulation, const std::string& name);
 /// A rest position as a point of a body: within 1e-3 of its size it counts as on it, with a message.
 /// @throws SceneError further away
 Vec3d place_on_body(Simulation& simulation, int body, const Vec3d& X, const Place& place);
+/// Mean distance of a body's nodes to their nearest one [m].
+double mean_spacing(const SimulatedBody& body);
 /// Model nodes of a body that a region selects; none or more. A rigid body's frame is selected with any point of its
 /// surface.
 std::vector<int> find_nodes(const Simulation& simulation, int body, const Region& region);

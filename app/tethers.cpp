@@ -2,7 +2,6 @@
 #include "app/regions.hpp"
 #include "app/simulation.hpp"
 #include "core/math/index.hpp"
-#include "meshless/neighbours.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +16,6 @@ namespace {
 constexpr double kPenalty = 1e4;
 /// Places nearer than this to another one add nothing [spacings].
 constexpr double kApart = 0.3;
-
-double mean_spacing(const SimulatedBody& b) {
-  if (b.nodes.size() < 2) return b.body->size();
-  const FrameSearch search(b.nodes);
-  double sum = 0;
-  for (const Vec3d& x : b.nodes) sum += norm(b.nodes[at(search.nearest(x, 2)[1])] - x);
-  return sum / static_cast<double>(b.nodes.size());
-}
 
 /// Frames, vertices of the surface and integration points in the region, thinned out.
 std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, double spacing) {
