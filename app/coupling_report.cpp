@@ -72,6 +72,13 @@ nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b
     energy += system.executor().group_elastic()[at(g)];
   std::map<std::size_t, std::pair<Wrench, int>> partners;
   std::map<std::size_t, double> gaps;
+  const std::vector<DependentNode>& dependents = s.model.points.dependents;
+  for (std::size_t k = 0; k < dependents.size(); ++k) {
+    const int node = dependents[k].node, own = node - b.body->first_node();
+    if (own < 0 || own >= b.body->node_count()) continue;
+    const DependentForce& f = system.dependent_forces()[k];
+    partners[owner_of(s, dependents[k].hosts[0])].first.add(place_of(s, state, node), f.force * -1.0, f.torque * -1.0);
+  }
   for (const int node : b.body->shared_nodes()) {
     const std::size_t owner = owner_of(s, node);
     const Wrench w = pull_on(s, b, system, state, node);
@@ -88,7 +95,7 @@ nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b
                                 {"moment", json_of(pull.first.moment)},
                                 {"gap", gaps[owner]},
                                 {"nodes", pull.second}};
-  nlohmann::ordered_json j = entry(partners.begin()->second.first, gap, energy);
+  nlohmann::ordered_json j = entry(partners.empty() ? Wrench{} : partners.begin()->second.first, gap, energy);
   j["on"] = std::move(on);
   return j;
 }
@@ -134,13 +141,19 @@ std::string counted(std::size_t count, const char* word) {
 }
 
 void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& out) {
-  std::map<std::size_t, std::size_t> shared;
+  std::map<std::size_t, std::size_t> shared, following;
   for (const int node : b.body->shared_nodes()) ++shared[owner_of(s, node)];
+  for (const DependentNode& d : s.model.points.dependents)
+    if (d.node >= b.body->first_node() && d.node < b.body->first_node() + b.body->node_count())
+      ++following[owner_of(s, d.hosts[0])];
   std::string list;
   for (const auto& [owner, count] : shared)
     list += fmt::format("{}{} of \"{}\"", list.empty() ? "" : ", ", counted(count, s.bodies[owner].node_word()),
                         s.bodies[owner].name);
-  fmt::format_to(std::back_inserter(out), "body {}: shares {}\n", b.name, list);
+  for (const auto& [owner, count] : following)
+    list += fmt::format("{}{} on the surface of \"{}\"", list.empty() ? "" : "; ", counted(count, "own frame"),
+                        s.bodies[owner].name);
+  fmt::format_to(std::back_inserter(out), "body {}: {}{}\n", b.name, shared.empty() ? "" : "shares ", list);
 }
 
 }  // namespace
@@ -148,7 +161,7 @@ void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& o
 nlohmann::ordered_json coupling_report(const Simulation& s, const MechanicalSystem& system, const State& state) {
   nlohmann::ordered_json j = nlohmann::ordered_json::object();
   for (const SimulatedBody& b : s.bodies)
-    if (!b.body->shared_nodes().empty()) j[b.name] = report_tissue(s, b, system, state);
+    if (!b.interfaces.empty()) j[b.name] = report_tissue(s, b, system, state);
   for (std::size_t k = 0; k < s.couplings.size(); ++k)
     j[s.scene.couplings[k].name] = report_coupling(s, s.scene.couplings[k], s.couplings[k], system, state);
   return j;
@@ -157,7 +170,7 @@ nlohmann::ordered_json coupling_report(const Simulation& s, const MechanicalSyst
 std::string coupling_layout(const Simulation& s) {
   std::string out;
   for (const SimulatedBody& b : s.bodies)
-    if (!b.body->shared_nodes().empty()) describe_tissue(s, b, out);
+    if (!b.interfaces.empty()) describe_tissue(s, b, out);
   for (std::size_t k = 0; k < s.couplings.size(); ++k) {
     const Coupling& c = s.scene.couplings[k];
     const SimulatedBody& b = s.bodies[at(body_index(s, c.body))];

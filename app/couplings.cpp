@@ -1,7 +1,7 @@
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/simulation.hpp"
-#include "core/geometry/bounds.hpp"
+#include "core/geometry/triangle_tree.hpp"
 #include "core/math/index.hpp"
 
 #include <fmt/format.h>
@@ -25,9 +25,20 @@ class DependentNodes {
     for (const FrameConstraint& c : s.model.constraints) held_[c.node] = &c;
   }
 
+  bool is_free(int node) const {
+    const auto held = held_.find(node);
+    return !by_node_.contains(node) && (held == held_.end() || held->second->translations == 0);
+  }
+
+  /// A tissue's own frame on the surface of another body.
+  void add_follower(DependentNode d) {
+    const int node = d.node;
+    by_node_[node] = {nullptr, std::move(d)};
+  }
+
   void add(const Coupling& coupling, DependentNode d) {
     const Vec3d& X = s_.model.rest_position[at(d.node)];
-    if (const auto known = by_node_.find(d.node); known != by_node_.end())
+    if (const auto known = by_node_.find(d.node); known != by_node_.end() && known->second.coupling != nullptr)
       throw SceneError({{coupling.place, fmt::format("the node at {} follows couplings.{} already; let each node "
                                                      "follow one body",
                                                      text(X), known->second.coupling->name)}});
@@ -42,7 +53,7 @@ class DependentNodes {
   /// @throws SceneError  nodes that follow one another in a circle
   void check_circles() const {
     std::map<int, int> state;  // 1: on the way, 2: done
-    for (const auto& [node, made] : by_node_) follow(node, state);
+    for (const auto& [node, made] : by_node_) follow(node, nullptr, state);
   }
 
   void give_to(PointSetBuilder& points) {
@@ -55,16 +66,18 @@ class DependentNodes {
     DependentNode node;
   };
 
-  void follow(int node, std::map<int, int>& state) const {
+  /// @param last  the coupling that led here, null where a tissue's frames did
+  void follow(int node, const Coupling* last, std::map<int, int>& state) const {
     const auto made = by_node_.find(node);
     if (made == by_node_.end() || state[node] == 2) return;
-    const Coupling& c = *made->second.coupling;
-    if (state[node] == 1)
-      throw SceneError({{c.place, fmt::format("closes a circle: body \"{}\" follows \"{}\", which follows \"{}\" in "
-                                              "turn, at {}; leave one of the couplings out",
-                                              c.body, c.to, c.body, text(s_.model.rest_position[at(node)]))}});
+    const Coupling* c = made->second.coupling != nullptr ? made->second.coupling : last;
+    if (state[node] == 1 && c != nullptr)
+      throw SceneError(
+          {{c->place, fmt::format("closes a circle: body \"{}\" follows \"{}\", which follows \"{}\" in turn, "
+                                  "at {}; leave one of the couplings out",
+                                  c->body, c->to, c->body, text(s_.model.rest_position[at(node)]))}});
     state[node] = 1;
-    for (const int host : made->second.node.hosts) follow(host, state);
+    for (const int host : made->second.node.hosts) follow(host, c, state);
     state[node] = 2;
   }
 
@@ -94,29 +107,60 @@ DependentNode welded(const Simulation& s, const Coupling& c, int node, const Sim
   return {node, {nearest}, {1.0}, {X - s.model.rest_position[at(nearest)]}, kind == FrameKind::rigid};
 }
 
+/// The node in the field of a body, without what does not move it.
+DependentNode follower(const Simulation& s, int node, const SimulatedBody& host) {
+  constexpr double kNothing = 1e-14;
+  const Attachment a = host.body->attach(s.model.rest_position[at(node)]);
+  DependentNode d;
+  d.node = node;
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    const Influence& i = a.influences[k];
+    if (std::abs(i.w) <= kNothing && norm(i.b) <= kNothing * host.body->size()) continue;
+    d.hosts.push_back(a.nodes[k]);
+    d.w.push_back(i.w);
+    d.b.push_back(s.model.kind(a.nodes[k]) == FrameKind::vertex ? Vec3d{} : i.b);
+  }
+  return d;
+}
+
 DependentNode embedded(const Simulation& s, const Coupling& c, int node, const SimulatedBody& host) {
-  constexpr double kOnBody = 1e-3, kNothing = 1e-14;
+  constexpr double kOnBody = 1e-3;
   const Vec3d& X = s.model.rest_position[at(node)];
   const double distance = host.body->distance(X);
   if (distance > kOnBody * host.body->size())
     throw SceneError({{c.place, fmt::format("the node at {} of body \"{}\" lies {:.4g} m outside body \"{}\", which "
                                             "should carry it; choose where so that all its nodes lie in that body",
                                             text(X), c.body, distance, host.name)}});
-  const Attachment a = host.body->attach(X);
-  DependentNode d;
-  d.node = node;
-  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
-    const Influence& i = a.influences[k];
-    if (std::abs(i.w) <= kNothing && norm(i.b) <= kNothing * host.body->size()) continue;
-    if (a.nodes[k] == node)
-      throw SceneError({{c.place, fmt::format("the node at {} belongs to body \"{}\" and to \"{}\"; leave it out of "
-                                              "where",
-                                              text(X), c.body, host.name)}});
-    d.hosts.push_back(a.nodes[k]);
-    d.w.push_back(i.w);
-    d.b.push_back(s.model.kind(a.nodes[k]) == FrameKind::vertex ? Vec3d{} : i.b);
-  }
+  DependentNode d = follower(s, node, host);
+  if (std::find(d.hosts.begin(), d.hosts.end(), node) != d.hosts.end())
+    throw SceneError(
+        {{c.place, fmt::format("the node at {} belongs to body \"{}\" and to \"{}\"; leave it out of where", text(X),
+                               c.body, host.name)}});
   return d;
+}
+
+/// A tissue's own frames on the faces of another body, between the nodes that it shares there, follow that body.
+void attach_interfaces(Simulation& s, const SimulatedBody& tissue, DependentNodes& dependents) {
+  constexpr double kOnFace = 0.05;  // spacings
+  const double tolerance = tissue.interfaces.empty() ? 0 : kOnFace * mean_spacing(tissue);
+  for (const Interface& face : tissue.interfaces) {
+    if (face.faces.triangles.empty()) continue;
+    const SimulatedBody& host = s.bodies[at(face.body)];
+    const bool rigid = s.scene.bodies[at(face.body)].model == BodyModel::rigid;
+    const TriangleTree faces(face.faces);
+    std::size_t count = 0;
+    for (int i = 0; i < tissue.body->node_count(); ++i) {
+      const int node = tissue.node_ids[at(i)];
+      if (!dependents.is_free(node) || faces.distance(tissue.nodes[at(i)]) > tolerance) continue;
+      DependentNode d = follower(s, node, host);
+      d.turns = rigid && s.model.kind(node) == FrameKind::rigid;
+      dependents.add_follower(std::move(d));
+      ++count;
+    }
+    if (count > 0)
+      s.warnings.push_back(
+          fmt::format("bodies.{}: {} of its own frames lie on \"{}\" and follow it", tissue.name, count, host.name));
+  }
 }
 
 void add_springs(Simulation& s, const Coupling& c, const std::vector<int>& nodes, PointSetBuilder& points,
@@ -144,6 +188,7 @@ void add_couplings(Simulation& s, PointSetBuilder& points) {
     for (const int node : built.nodes)
       dependents.add(c, c.kind == CouplingKind::weld ? welded(s, c, node, host) : embedded(s, c, node, host));
   }
+  for (const SimulatedBody& b : s.bodies) attach_interfaces(s, b, dependents);
   dependents.check_circles();
   dependents.give_to(points);
 }

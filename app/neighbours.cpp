@@ -61,23 +61,6 @@ std::size_t share_nodes(const Simulation& s, const SharedNodes& share, const std
   return build.shared.size() - before;
 }
 
-void add_shares(const Simulation& s, const Body& body, BodyBuild& build) {
-  for (const SharedNodes& share : *body.shares) {
-    const SimulatedBody& giver = s.bodies[at(body_index(s, share.body))];
-    if (giver.nodes.empty() || share_nodes(
-                                   s, share, [](const Vec3d&) { return true; }, build) > 0)
-      continue;
-    Bounds bounds = bounds_of(giver.nodes);
-    bounds.include(bounds_of(giver.body->surface().points));
-    throw SceneError(
-        {{share.where.place.key.empty() ? share.place : share.where.place,
-          fmt::format("the region selects no {} of body \"{}\", which lies between ({:.6g}, {:.6g}, {:.6g}) and "
-                      "({:.6g}, {:.6g}, {:.6g})",
-                      giver.node_word(), giver.name, bounds.low[0], bounds.low[1], bounds.low[2], bounds.high[0],
-                      bounds.high[1], bounds.high[2])}});
-  }
-}
-
 /// The faces of a body's surface whose points are all selected.
 GapSide side_of(const Simulation& s, const std::string& name, const Region& where) {
   const SimulatedBody& b = s.bodies[at(body_index(s, name))];
@@ -89,6 +72,24 @@ GapSide side_of(const Simulation& s, const std::string& name, const Region& wher
     if (std::all_of(t.begin(), t.end(), [&](int point) { return chosen[at(point)]; }))
       side.faces.triangles.push_back(t);
   return side;
+}
+
+void add_shares(const Simulation& s, const Body& body, BodyBuild& build) {
+  for (const SharedNodes& share : *body.shares) {
+    const int index = body_index(s, share.body);
+    const SimulatedBody& giver = s.bodies[at(index)];
+    build.interfaces.push_back({index, side_of(s, share.body, share.where).faces});
+    const auto anywhere = [](const Vec3d&) { return true; };
+    if (share_nodes(s, share, anywhere, build) > 0) continue;
+    Bounds bounds = bounds_of(giver.nodes);
+    bounds.include(bounds_of(giver.body->surface().points));
+    throw SceneError(
+        {{share.where.place.key.empty() ? share.place : share.where.place,
+          fmt::format("the region selects no {} of body \"{}\", which lies between ({:.6g}, {:.6g}, {:.6g}) and "
+                      "({:.6g}, {:.6g}, {:.6g})",
+                      giver.node_word(), giver.name, bounds.low[0], bounds.low[1], bounds.low[2], bounds.high[0],
+                      bounds.high[1], bounds.high[2])}});
+  }
 }
 
 /// Nodes of both sides that lie on the selected faces, where the scene does not name the shared ones.
@@ -151,7 +152,8 @@ void gather_neighbours(Simulation& s, const Body& body, BodyBuild& build) {
     const std::array<GapSide, 2> sides{side_of(s, between->bodies[0], between->where),
                                        side_of(s, between->bodies[1], between->where)};
     build.between = fill_gap(body, *between, sides, build);
-    if (!body.shares) share_sides(s, *between, sides, build);
+    for (const GapSide& side : sides) build.interfaces.push_back({body_index(s, side.body), side.faces});
+    if (!body.shares && between->as == BetweenKind::volume) share_sides(s, *between, sides, build);
   }
   if (body.shares) add_shares(s, body, build);
 }
