@@ -138,7 +138,7 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
       double* g = gradient.data() + set_.dofs.begin(node);
       Vec3d force;
       for (const ElementExecutor& block : elements_) force += block.sum_at(node);
-      if (set_.group_count() == 0 && shells_.empty()) {
+      if (set_.group_count() == 0 && shells_.empty() && set_.dofs.kind(node) == FrameKind::vertex) {
         for (int k = 0; k < 3; ++k) g[k] = force[k];
         continue;
       }
@@ -176,6 +176,7 @@ void CpuExecutor::sum_terms(const State& state, const StrainHistory& history, bo
         {state.u, state.D.values(), strain_of_block(history.E, elements_.size() + b), history.inverse_step}, all,
         part_motion_);
   sum_forces(state, all, gradient);
+  add_spring_forces(state, gradient);
 }
 
 void CpuExecutor::forces(const State& state, const StrainHistory& history, std::span<double> gradient) {
@@ -205,6 +206,7 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
     energy.viscous += shell.viscous();
     shell.add_rounding(part_rounding_);
   }
+  energy.elastic += note_springs(state);
   for (double& r : part_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
   return energy;
 }
@@ -265,6 +267,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);
   }
+  linearize_springs(state, out);
   if (!elements_.empty() || !shells_.empty()) {
     out.u = state.u;
     out.E = history.E;

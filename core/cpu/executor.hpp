@@ -15,7 +15,7 @@ namespace fascia {
 
 /// Sums over all points [J].
 struct InternalEnergy {
-  double elastic = 0, stabilization = 0, viscous = 0;  ///< tethers count as stabilisation
+  double elastic = 0, stabilization = 0, viscous = 0;  ///< springs count as elastic, tethers as stabilisation
   double total() const { return elastic + stabilization + viscous; }
 };
 
@@ -72,8 +72,9 @@ class CpuExecutor {
   /// Keeps the strains of a state.
   void store_strain(const State& state, StrainHistory& history);
 
-  /// Elastic energy of a block of elements at the last call of gradient() [J].
+  /// Elastic energy of a block of elements, a spring or a shell at the last call of gradient() [J].
   double block_elastic(int block) const { return elements_[static_cast<std::size_t>(block)].elastic(); }
+  double spring_energy(int spring) const { return spring_energy_[static_cast<std::size_t>(spring)]; }
   double shell_elastic(int shell) const { return shells_[static_cast<std::size_t>(shell)].elastic(); }
   /// Elastic and stabilisation energy of each group at the last call of gradient() [J].
   std::span<const double> group_elastic() const { return group_elastic_; }
@@ -82,6 +83,8 @@ class CpuExecutor {
   /// Σ |force|² of a connected part's tethers at the last call of gradient() [N²]; and the force on one of them [N].
   double squared_tether_force(int part) const { return part_tether_[static_cast<std::size_t>(part)]; }
   Vec3d tether_force(const Tether& tether, const State& state) const;
+  /// Of a spring on its node [N].
+  static Vec3d spring_force(const Spring& spring, const State& state);
 
   /// What rounding alone leaves in the gradient of a connected part, as a norm with torques divided by the part's
   /// length, at the last call of gradient() [N]. It grows with the largest motion that the part ever went through here.
@@ -102,6 +105,9 @@ class CpuExecutor {
   template <PointKind Kind>
   void linearize_group(const State& state, const StrainHistory& history, int group, Linearization& out) const;
   void note_motion(const State& state);
+  void add_spring_forces(const State& state, std::span<double> gradient) const;
+  double note_springs(const State& state);
+  void linearize_springs(const State& state, Linearization& out) const;
   template <PointKind Kind>
   void multiply_group(const Linearization& at, int group);
   template <PointKind Kind>
@@ -118,6 +124,7 @@ class CpuExecutor {
   std::vector<Vec3d> element_direction_;
   AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
   std::vector<double> group_elastic_, group_stabilization_, group_viscous_, group_rounding_, group_tether_;
+  std::vector<double> spring_energy_;
   std::vector<double> part_motion_, part_rounding_, part_tether_;
   AlignedVector<double> targets_;
   std::vector<Mat3d> node_L_;         ///< L of the last gradient, of rigid frames

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/math/mat3.hpp"
+#include "core/model/dof_layout.hpp"
 
 #include <vector>
 
@@ -19,5 +20,10 @@ struct DependentNode {
   std::vector<Vec3d> b;    ///< [m]
   bool turns = false;      ///< one host, a rigid frame, whose rotation it has
 };
+
+/// Degrees of freedom that follow the hosts; they are the node's first.
+inline int dependent_dofs(const DependentNode& dependent, const DofLayout& dofs) {
+  return dependent.turns ? dofs.size(dependent.node) : 3;
+}
 
 }  // namespace fascia

@@ -23,6 +23,12 @@ int Model::constrained_dof_count() const {
   return count;
 }
 
+int Model::dependent_dof_count() const {
+  int count = 0;
+  for (const DependentNode& d : points.dependents) count += dependent_dofs(d, points.dofs);
+  return count;
+}
+
 bool Model::has_frames() const {
   return std::any_of(frame_kind.begin(), frame_kind.end(), [](FrameKind kind) { return kind != FrameKind::vertex; });
 }

@@ -104,12 +104,19 @@ struct Model {
   int node_count() const { return static_cast<int>(rest_position.size()); }
   int dof_count() const { return points.dofs.total(); }
   int constrained_dof_count() const;
+  int dependent_dof_count() const;
   FrameKind kind(int node) const { return frame_kind[at(node)]; }
   bool has_frames() const;  ///< nodes that turn
   /// Loads have a potential: no torque that keeps its direction in space, no follower, no pressure on a surface whose
   /// free edges move.
   bool loads_are_conservative() const;
 };
+
+/// Moves the inertia and the mass damping of dependent nodes to their hosts, by weight and about the hosts' origins, so
+/// that no rigid motion of the whole changes its momentum and energy. A frame with a rotation of its own keeps S about
+/// itself.
+/// @throws InputError  where a host's mass would not stay positive
+void move_inertia_to_hosts(Model& model);
 
 /// Where everything is, and how fast. Rotations as D = Q − I, with Q = R R_restᵀ; of an affine frame, D = A − I.
 struct State {

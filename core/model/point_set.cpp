@@ -1,8 +1,10 @@
 #include "core/model/point_set.hpp"
 
+#include "core/math/index.hpp"
 #include "core/model/coloring.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -90,8 +92,38 @@ void transpose_incidence(PointSet& set) {
   }
 }
 
+/// Puts each dependent node behind those of its hosts that depend on others.
+void sort_dependents(PointSet& set) {
+  if (set.dependents.empty()) return;
+  std::vector<int> index(at(set.node_count()), -1);
+  for (std::size_t k = 0; k < set.dependents.size(); ++k) index[at(set.dependents[k].node)] = static_cast<int>(k);
+  std::vector<int> sorted, waiting;
+  std::vector<std::size_t> next(set.dependents.size(), 0);  // host to look at
+  std::vector<char> placed(set.dependents.size(), 0);
+  for (std::size_t first = 0; first < set.dependents.size(); ++first) {
+    waiting.assign(1, static_cast<int>(first));
+    while (!waiting.empty()) {
+      const std::size_t k = at(waiting.back());
+      const std::vector<int>& hosts = set.dependents[k].hosts;
+      if (placed[k] != 0) {
+        waiting.pop_back();
+      } else if (next[k] < hosts.size()) {
+        const int host = index[at(hosts[next[k]++])];
+        if (host >= 0) waiting.push_back(host);
+      } else {
+        placed[k] = 1;
+        sorted.push_back(static_cast<int>(k));
+      }
+    }
+  }
+  std::vector<DependentNode> dependents;
+  dependents.reserve(sorted.size());
+  for (const int k : sorted) dependents.push_back(std::move(set.dependents[at(k)]));
+  set.dependents = std::move(dependents);
+}
+
 /// Numbers the connected parts in the order of their first nodes.
-void find_parts(PointSet& set, const std::vector<double>& group_length) {
+void find_parts(PointSet& set, const std::vector<double>& group_length, const std::vector<Joint>& joints) {
   const auto n = static_cast<std::size_t>(set.node_count());
   std::vector<int> parent(n);
   std::iota(parent.begin(), parent.end(), 0);
@@ -117,6 +149,11 @@ void find_parts(PointSet& set, const std::vector<double>& group_length) {
   for (const ElementBlock& block : set.blocks) block.for_each_element(join);
   for (const ShellBlock& shell : set.shells)
     for (int e = 0; e < shell.count; ++e) join(shell.element(e));
+  for (const DependentNode& dependent : set.dependents) {
+    join(dependent.hosts);
+    join(std::array{dependent.node, dependent.hosts[0]});
+  }
+  for (const Joint& joint : joints) join(joint.nodes);
   std::vector<double> nodes, volume;
   set.node_part.resize(n);
   for (int i = 0; i < set.node_count(); ++i) {
@@ -150,7 +187,16 @@ void find_parts(PointSet& set, const std::vector<double>& group_length) {
     block.for_each_element([&](std::span<const int> element) { weigh(element[0], block.length); });
   for (const ShellBlock& shell : set.shells)
     for (int e = 0; e < shell.count; ++e) weigh(shell.element(e)[0], shell.length);
-  for (std::size_t p = 0; p < nodes.size(); ++p) set.part_length.push_back(volume[p] > 0 ? length[p] / volume[p] : 1.0);
+  std::vector<double> of_joints(nodes.size(), 0.0);
+  for (const Joint& joint : joints) {
+    if (joint.nodes.empty()) continue;
+    double& largest = of_joints[at(set.node_part[at(joint.nodes[0])])];
+    largest = std::max(largest, joint.length);
+  }
+  for (std::size_t p = 0; p < nodes.size(); ++p) {
+    const double without_matter = of_joints[p] > 0 ? of_joints[p] : 1.0;
+    set.part_length.push_back(volume[p] > 0 ? length[p] / volume[p] : without_matter);
+  }
 }
 
 }  // namespace
@@ -158,7 +204,8 @@ void find_parts(PointSet& set, const std::vector<double>& group_length) {
 PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   set_.dofs = DofLayout(std::move(frames));
   transpose_incidence(set_);
-  find_parts(set_, group_length_);
+  sort_dependents(set_);
+  find_parts(set_, group_length_, joints_);
   Coloring colors = color_items(set_.group_count(), set_.node_count(), [&](int group) { return set_.nodes(group); });
   set_.color_begin = std::move(colors.begin);
   set_.color_group = std::move(colors.item);

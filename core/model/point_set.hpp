@@ -90,7 +90,13 @@ struct PointSet {
 /// Rows of PointSet::material.
 enum MaterialRow { kVolume, kLambda, kMu, kStabilization, kStiffnessDamping, kGradientNorm };
 
-/// Collects groups and closes the set: transposed incidence and colours.
+/// Nodes that hang together though no point or element joins them, or a frame without any.
+struct Joint {
+  std::vector<int> nodes;
+  double length = 0;  ///< converts torques to forces where residuals are judged and nothing else has a length [m]
+};
+
+/// Collects groups and closes the set: order of dependent nodes, transposed incidence, connected parts and colours.
 class PointSetBuilder {
  public:
   /// Adds points that share `nodes` and their rule; they are cut into groups of eight. Each point's F at rest must be
@@ -114,8 +120,6 @@ class PointSetBuilder {
   /// @pre no circle of nodes that depend on one another; a node depends at most once
   void add_dependent(DependentNode node) { set_.dependents.push_back(std::move(node)); }
 
-  /// Nodes that hang together though no point or element joins them, or a frame without any.
-  /// @param length  converts torques to forces where residuals are judged [m]
   void join(std::vector<int> nodes, double length) { joints_.push_back({std::move(nodes), length}); }
 
   PointSet finish(std::vector<FrameKind> frames) &&;
@@ -123,10 +127,6 @@ class PointSetBuilder {
  private:
   void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
   void add_rule(std::span<const PointSample> points, double length, PointRule rule);
-  struct Joint {
-    std::vector<int> nodes;
-    double length;
-  };
   PointSet set_;
   std::vector<double> group_length_;  ///< spacing of the frames [m]
   std::vector<Joint> joints_;

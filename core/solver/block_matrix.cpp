@@ -3,6 +3,8 @@
 #include "core/math/index.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace fascia {
 
@@ -46,7 +48,8 @@ struct ElementsAround {
 
 BlockMatrix::BlockMatrix(const PointSet& set) : dofs_(set.dofs) {
   find_pattern(set);
-  uniform_ = rows() > 0 && dofs_.size(0) <= 6 ? dofs_.size(0) : 0;
+  if (!set.dependents.empty()) add_blocks_of_hosts(set);
+  uniform_ = rows() > 0 && dofs_.size(0) <= 6 && set.dependents.empty() ? dofs_.size(0) : 0;
   for (int node = 0; node < rows(); ++node)
     if (dofs_.size(node) != uniform_) uniform_ = 0;
   std::size_t next = 0;
@@ -106,6 +109,65 @@ void BlockMatrix::find_pattern(const PointSet& set) {
     row_begin_.push_back(static_cast<int>(column_.size()));
     diagonal_.push_back(find(row, row));
   }
+}
+
+namespace {
+
+/// Blocks beside a pattern, by rows; each row is cleared of repetitions when it has doubled.
+class MoreBlocks {
+ public:
+  explicit MoreBlocks(int rows) : columns_(at(rows)), known_(at(rows), 0) {}
+  void add(int a, int b) {
+    add_column(a, b);
+    if (a != b) add_column(b, a);
+  }
+  const std::vector<int>& sorted(int row) {
+    std::vector<int>& columns = columns_[at(row)];
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    known_[at(row)] = columns.size();
+    return columns;
+  }
+
+ private:
+  void add_column(int row, int column) {
+    columns_[at(row)].push_back(column);
+    if (columns_[at(row)].size() > 2 * known_[at(row)] + 64) sorted(row);
+  }
+  std::vector<std::vector<int>> columns_;
+  std::vector<std::size_t> known_;
+};
+
+}  // namespace
+
+/// As elimination does: hosts have blocks with each other and with all with which their dependent node has any. Those
+/// that are gone by then, because all of them depends, bring none.
+void BlockMatrix::add_blocks_of_hosts(const PointSet& set) {
+  MoreBlocks more(rows());
+  std::vector<char> gone(at(rows()), 0);
+  std::vector<int> near;
+  for (auto d = set.dependents.rbegin(); d != set.dependents.rend(); ++d) {
+    gone[at(d->node)] = dependent_dofs(*d, dofs_) == dofs_.size(d->node) ? 1 : 0;
+    const std::span<const int> known = columns(d->node);
+    near.assign(known.begin(), known.end());
+    const std::vector<int>& added = more.sorted(d->node);
+    near.insert(near.end(), added.begin(), added.end());
+    near.insert(near.end(), d->hosts.begin(), d->hosts.end());
+    for (const int node : near) {
+      if (gone[at(node)] != 0) continue;
+      for (const int host : d->hosts) more.add(host, node);
+    }
+  }
+  std::vector<int> columns_of_all, begin{0};
+  for (int row = 0; row < rows(); ++row) {
+    const std::span<const int> known = columns(row);
+    const std::vector<int>& added = more.sorted(row);
+    std::set_union(known.begin(), known.end(), added.begin(), added.end(), std::back_inserter(columns_of_all));
+    begin.push_back(static_cast<int>(columns_of_all.size()));
+  }
+  column_ = std::move(columns_of_all);
+  row_begin_ = std::move(begin);
+  for (int row = 0; row < rows(); ++row) diagonal_[at(row)] = find(row, row);
 }
 
 std::span<const int> BlockMatrix::columns(int row) const {

@@ -11,7 +11,8 @@ namespace fascia {
 
 /// Symmetric matrix of blocks, one for each pair of nodes that share a group or an element, as large as the nodes have
 /// degrees of freedom and stored by rows, columns ascending. The pattern is fixed. Where all nodes are vertices, or all
-/// rigid frames, only the blocks on and above the diagonal are stored: half as much to read in a product.
+/// rigid frames, only the blocks on and above the diagonal are stored: half as much to read in a product. Where nodes
+/// depend on others, all are stored, and the hosts have the blocks that their dependent nodes bring them.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
@@ -41,6 +42,7 @@ class BlockMatrix {
 
  private:
   void find_pattern(const PointSet& set);
+  void add_blocks_of_hosts(const PointSet& set);
   void multiply_row(int row, std::span<const double> x, std::span<double> y) const;
   template <int N>
   void multiply_upper(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;

@@ -3,6 +3,7 @@
 #include "core/math/index.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace fascia {
 
@@ -35,6 +36,11 @@ DofFilter::DofFilter(const Model& model)
     for (int q = 0; q < 3; ++q)
       for (int i = 0; i < 3; ++i)
         if (c.whole || (i != q && 3 - i - q < c.rotations)) fixed_[at(first + 3 + 3 * q + i)] = true;
+  }
+  for (const DependentNode& d : model.points.dependents) {
+    assert(held_[at(d.node)] == 0);
+    held_[at(d.node)] = 1;
+    for (int k = 0; k < dependent_dofs(d, dofs_); ++k) fixed_[at(dofs_.begin(d.node) + k)] = true;
   }
   for (std::size_t i = 0; i < fixed_.size(); ++i)
     if (fixed_[i]) fixed_list_.push_back(i);

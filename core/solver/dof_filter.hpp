@@ -8,14 +8,14 @@
 namespace fascia {
 
 /// Coordinates in which prescribed degrees of freedom are single numbers: each constrained frame's increments are
-/// turned into its constraint's axes (an affine frame's A into R A Rᵀ).
+/// turned into its constraint's axes (an affine frame's A into R A Rᵀ). What follows from other nodes is fixed too.
 class DofFilter {
  public:
   explicit DofFilter(const Model& model);
 
   bool turns() const { return !turns_.empty(); }  ///< constraint axes are not those of the world
   bool is_fixed(std::size_t dof) const { return fixed_[dof]; }
-  bool holds(int node) const { return held_[static_cast<std::size_t>(node)] != 0; }  ///< any of its degrees
+  bool holds(int node) const { return held_[static_cast<std::size_t>(node)] != 0; }  ///< any of its degrees is fixed
   int free_count() const { return free_count_; }
   std::size_t size() const { return fixed_.size(); }
 

@@ -35,7 +35,7 @@ ExplicitStepper::Velocity ExplicitStepper::kicked(int node, const double* f) con
       break;
     case FrameKind::rigid: {
       const Vec3d arm = center_[i] + state_.D[i] * center_[i];
-      next.v = old.v * keep + force * (kick / model_.inertia[i].mass);
+      if (const double mass = model_.inertia[i].mass; mass > 0) next.v = old.v * keep + force * (kick / mass);
       next.spin = old.spin * keep + (Vec3d{{f[3], f[4], f[5]}} - cross(arm, force)) * kick;
       break;
     }

@@ -22,6 +22,7 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       executor_(system.executor()),
       filter_(system.filter()),
       surfaces_(system.model()),
+      dependents_(system.model().points),
       state_(state),
       dt_(dt),
       factors_(factors.begin(), factors.end()) {
@@ -38,24 +39,36 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
   for (std::size_t k = 0; k < model_.constraints.size(); ++k)
     constraint_[at(model_.constraints[k].node)] = static_cast<int>(k);
   gradient_.resize(at(model_.dof_count()));
-  if (!model_.followers.empty() || !model_.surfaces.empty()) follower_.resize(gradient_.size());
+  const std::vector<DependentNode>& dependents = model_.points.dependents;
+  if (!model_.followers.empty() || !model_.surfaces.empty() || !dependents.empty()) follower_.resize(gradient_.size());
+  if (!dependents.empty()) follows_.assign(n, 0);
+  for (const DependentNode& d : dependents)
+    follows_[at(d.node)] = dependent_dofs(d, model_.points.dofs) == model_.points.dofs.size(d.node) ? 1 : 0;
   increments_.resize(gradient_.size());
   last_increments_.resize(gradient_.size());
   chunk_sums_.resize((n + kNodeGrain - 1) / kNodeGrain);
   for (std::size_t i = 0; i < n; ++i) {
+    if (!follows_.empty() && follows_[i] != 0) continue;
     const FrameInertia& inertia = model_.inertia[i];
-    if (!model_.mass_damping.empty() && inertia.mass > 0)
-      damping_[i] = 0.5 * dt * model_.mass_damping[i].mass / inertia.mass;
+    const bool massive = inertia.mass > 0;  // else its place depends on others, and it turns by itself
+    if (!model_.mass_damping.empty()) {
+      const FrameInertia& damping = model_.mass_damping[i];
+      const double turning = trace(inertia.second);
+      if (massive)
+        damping_[i] = 0.5 * dt * damping.mass / inertia.mass;
+      else if (turning > 0)
+        damping_[i] = 0.5 * dt * trace(damping.second) / turning;
+    }
     const double still = 1e-10 * model_.points.part_length[at(model_.points.node_part[i])] / dt;
     rounding_energy_ += inertia.mass * still * still;
     if (constraint_[i] >= 0) continue;
     if (model_.frame_kind[i] == FrameKind::rigid) {
       turning_[i] = SpinInertia(inertia);
-      center_[i] = inertia.first * (1 / inertia.mass);
+      if (massive) center_[i] = inertia.first * (1 / inertia.mass);
     }
     if (model_.frame_kind[i] != FrameKind::affine) continue;
     std::array<double, 16> mass{}, inverse{};
-    mass[0] = inertia.mass;
+    mass[0] = massive ? inertia.mass : 1.0;
     for (int p = 0; p < 3; ++p) {
       mass[at(1 + p)] = mass[at(4 + 4 * p)] = inertia.first[p];
       for (int q = 0; q < 3; ++q) mass[at(5 + 4 * p + q)] = inertia.second(p, q);
@@ -69,14 +82,19 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
     affine_[i] = static_cast<int>(inverse_mass_.size());
     inverse_mass_.push_back(inverse);
   }
+  place_dependents(model_.points, state_);
+  place_dependent_rates(model_.points, state_);
   place_loads();
   start_velocities();
 }
 
-/// Dead loads by node.
+/// Dead loads by node, and those on dependent nodes.
 void ExplicitStepper::place_loads() {
+  std::vector<char> depends(at(model_.node_count()), 0);
+  for (const DependentNode& d : model_.points.dependents) depends[at(d.node)] = 1;
   for (const DeadLoad& load : model_.loads)
-    for (const NodeLoad& n : load.nodes) loads_.push_back({load.schedule, n});
+    for (const NodeLoad& n : load.nodes)
+      (depends[at(n.node)] != 0 ? dependent_loads_ : loads_).push_back({load.schedule, n});
   std::stable_sort(loads_.begin(), loads_.end(),
                    [](const PlacedLoad& a, const PlacedLoad& b) { return a.load.node < b.load.node; });
   load_begin_.assign(at(model_.node_count() + 1), 0);
@@ -101,6 +119,7 @@ void ExplicitStepper::start_velocities() {
   for (int i = 0; i < model_.node_count(); ++i) {
     const PoseMotion given{state_.v[at(i)], state_.Q_dot[at(i)]};
     start_energy_ += 0.5 * inertia_product(model_.inertia[at(i)], given.u, given.Q);
+    if (!follows_.empty() && follows_[at(i)] != 0) continue;
     const Velocity now = velocity_of(i, given);
     velocity_[at(i)] = now;
     double load[kMostDofs], force[kMostDofs];
@@ -126,6 +145,18 @@ void ExplicitStepper::update_forces() {
                                     follower_.data() + model_.points.dofs.begin(node));
                    });
   surfaces_.add_forces(state_, factors_, follower_);
+  if (!dependents_.empty()) transfer_to_hosts();
+}
+
+void ExplicitStepper::transfer_to_hosts() {
+  for (const PlacedLoad& p : dependent_loads_) {
+    const double s = factors_[at(p.schedule)];
+    add_node_force(model_.kind(p.load.node), state_.D[at(p.load.node)], p.load.force * s, p.load.couple * s,
+                   p.load.torque * s, follower_.data() + model_.points.dofs.begin(p.load.node));
+  }
+  dependents_.turn(state_.D);
+  dependents_.transfer(gradient_);
+  dependents_.transfer(follower_);
 }
 
 /// What loads do on a node, and all that acts on it.
@@ -208,6 +239,7 @@ void ExplicitStepper::advance(std::span<const double> factors) {
   executor_.pool().for_ranges(model_.node_count(), kNodeGrain, [&](int begin, int end) {
     Sums sums;
     for (int node = begin; node < end; ++node) {
+      if (!follows_.empty() && follows_[at(node)] != 0) continue;
       if (step_free_vertex(node, sums)) continue;
       double load[kMostDofs], force[kMostDofs];
       node_force(node, load, force);
@@ -225,6 +257,7 @@ void ExplicitStepper::advance(std::span<const double> factors) {
     }
     chunk_sums_[at(begin / kNodeGrain)] = sums;
   });
+  place_dependents(model_.points, state_);
   work_ += tether_work(factors);
   kinetic_ = 0;
   for (const Sums& sums : chunk_sums_) {
@@ -278,6 +311,7 @@ ExplicitStepper::Velocity ExplicitStepper::velocity_of(int node, const PoseMotio
 void ExplicitStepper::report_velocities(std::span<const double> factors) {
   if (!model_.constraints.empty()) prescribed_increments(model_, filter_, state_, state_.turned, factors, increments_);
   for (int node = 0; node < model_.node_count(); ++node) {
+    if (!follows_.empty() && follows_[at(node)] != 0) continue;
     double load[kMostDofs], force[kMostDofs];
     node_force(node, load, force);
     const Velocity &old = velocity_[at(node)], next = kicked(node, force);
@@ -289,6 +323,7 @@ void ExplicitStepper::report_velocities(std::span<const double> factors) {
     state_.v[at(node)] = v.u;
     state_.Q_dot[at(node)] = v.Q;
   }
+  place_dependent_rates(model_.points, state_);
 }
 
 bool ExplicitStepper::is_sound() const {

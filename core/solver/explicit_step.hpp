@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/solver/dependents.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "core/solver/node_inertia.hpp"
 #include "core/solver/small_factor.hpp"
@@ -51,6 +52,7 @@ class ExplicitStepper {
 
   void place_loads();
   void update_forces();
+  void transfer_to_hosts();
   void start_velocities();
   void node_force(int node, double* load, double* force) const;
   Velocity kicked(int node, const double* force) const;
@@ -67,6 +69,7 @@ class ExplicitStepper {
   CpuExecutor& executor_;
   const DofFilter& filter_;
   SurfaceLoads surfaces_;
+  DependentNodes dependents_;
   State& state_;
   double dt_;
 
@@ -78,8 +81,10 @@ class ExplicitStepper {
   std::vector<std::array<double, 16>> inverse_mass_;  ///< of free affine frames: (origin, axes)²
   std::vector<int> affine_;                           ///< index into it
   std::vector<int> load_begin_;                       ///< by node
-  std::vector<PlacedLoad> loads_;
-  std::vector<double> factors_, gradient_, follower_;  ///< the last: of followers and surface loads
+  std::vector<PlacedLoad> loads_, dependent_loads_;
+  std::vector<char> follows_;                          ///< nodes all of which depends on others; empty: none
+  /// The last: of followers, of surface loads, and what comes from dependent nodes.
+  std::vector<double> factors_, gradient_, follower_;
   std::vector<double> increments_, last_increments_;   ///< prescribed, in constraint axes
   std::vector<double> old_targets_;
   std::vector<Vec3d> old_forces_;  ///< of tethers

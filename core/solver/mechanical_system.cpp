@@ -19,6 +19,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       filter_(model),
       executor_(model.points, pool),
       tangent_(model, executor_, filter_, settings),
+      dependents_(model.points),
       conservative_(model.loads_are_conservative()),
       surfaces_(model),
       state_(State::at_rest(model)) {
@@ -28,6 +29,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
   inertia_.resize(n);
   direction_.resize(n);
   work_.resize(n);
+  dependent_forces_.resize(6 * model.points.dependents.size());
   factors_ = reached_factors_ = zero_factors(model);
 }
 
@@ -59,6 +61,22 @@ void MechanicalSystem::rebuild_state() {
     state_.u[i] = start_.u[i] + increment_.du[i];
     state_.D[i] = rigid(i) ? compose_increments(increment_.Ds[i], start_.D[i]) : increment_.Ds[i] + start_.D[i];
   }
+  if (!dependents_.empty()) place_dependents_of_step();
+}
+
+/// In the present state, and their increments by those of their hosts, which keep the digits of small steps.
+void MechanicalSystem::place_dependents_of_step() {
+  for (const DependentNode& d : model_.points.dependents) {
+    Vec3d du;
+    for (std::size_t k = 0; k < d.hosts.size(); ++k) {
+      const PoseMotion host = motion_of(at(d.hosts[k]));
+      du += host.u * d.w[k] + host.Q * d.b[k];
+    }
+    increment_.du[at(d.node)] = du;
+    if (d.turns) increment_.Ds[at(d.node)] = increment_.Ds[at(d.hosts[0])];
+  }
+  place_dependents(model_.points, state_);
+  dependents_.turn(state_.D);
 }
 
 /// Energy of the step where it starts. The strain energy of vertices is what the step before left.
@@ -160,8 +178,10 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
           add_rotation_block(
               lin.node_blocks.data() + dofs.block_begin(n.node),
               rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) * -factors_[at(load.schedule)]);
+    dependents_.add_turning(dependent_forces_, lin.node_blocks);
   }
   surfaces_.linearize(state_, factors_, lin);
+  for (RankOne& term : lin.low_rank) dependents_.transfer(term.g);
   if (form_.h <= 0) return;
   const double scale = 1 / (form_.h * form_.h), damping_scale = 1 / form_.h;
   for (int i = 0; i < model_.node_count(); ++i) {
@@ -243,6 +263,7 @@ Evaluation MechanicalSystem::evaluate() {
   add_loads();
   add_inertia();
   for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] += inertia_[i] - load_[i];
+  dependents_.transfer(gradient_, dependent_forces_);
   Evaluation e;
   e.energy = internal_.total() + load_energy_ + inertia_energy_;
   add_squares(load_, part_squares_.load, part_squares_.held_load);
@@ -257,7 +278,9 @@ Evaluation MechanicalSystem::evaluate() {
         std::sqrt(std::max({part_squares_.load[p] + part_squares_.held_load[p], part_squares_.inertia[p],
                             part_squares_.reaction[p], executor_.squared_tether_force(part)}));
     // 4: sums of a few terms of the estimated size in each entry.
-    const double floor = 4 * std::hypot(executor_.rounding(part), inertia_rounding_[p], surfaces_.rounding(part));
+    const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
+    const double floor =
+        4 * leverage * std::hypot(executor_.rounding(part), inertia_rounding_[p], surfaces_.rounding(part));
     const double allowed = std::max(settings_.tolerance * reference, floor);
     const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
     if (excess < e.excess && p > 0) continue;
@@ -298,6 +321,7 @@ DirectionReport MechanicalSystem::direction() {
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
   filter_.to_global(direction_);
+  dependents_.expand(direction_);
   surfaces_.aim(lin_, direction_);
   for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
   for (int node = 0; node < model_.node_count(); ++node)

@@ -3,6 +3,7 @@
 #include "core/cpu/executor.hpp"
 #include "core/model/model.hpp"
 #include "core/physics/inertia.hpp"
+#include "core/solver/dependents.hpp"
 #include "core/solver/newton.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "core/solver/tangent_solver.hpp"
@@ -87,7 +88,11 @@ class MechanicalSystem {
 
   const State& state() const { return state_; }
   /// Gradient of the internal energy, loads and inertia: what supports add to hold the model (by degrees of freedom).
+  /// What acts on dependent nodes is on their hosts.
   std::span<const double> gradient() const { return gradient_; }
+  /// Of each dependent node, in the order of PointSet::dependents: the force with which its hosts hold it, and where it
+  /// turns their torque about it (dependents × 6) [N], [N m]. Gradient before it went to the hosts.
+  std::span<const double> dependent_forces() const { return dependent_forces_; }
   InternalEnergy internal_energy() const { return internal_; }
   double load_energy() const { return load_energy_; }  ///< potential of dead loads and closed surfaces [J]
   const CpuExecutor& executor() const { return executor_; }
@@ -107,6 +112,7 @@ class MechanicalSystem {
   };
   double energy_at_start();
   void rebuild_state();
+  void place_dependents_of_step();
   void add_loads();
   void add_inertia();
   void add_vertex_inertia(int node);
@@ -130,6 +136,7 @@ class MechanicalSystem {
   DofFilter filter_;
   CpuExecutor executor_;
   TangentSolver tangent_;
+  DependentNodes dependents_;  ///< at the present state
   bool conservative_;
   SurfaceLoads surfaces_;
 
@@ -141,7 +148,7 @@ class MechanicalSystem {
   std::vector<double> reached_factors_;  ///< at the end of the last step
   Increment increment_, saved_;
 
-  std::vector<double> gradient_, load_, inertia_, direction_;
+  std::vector<double> gradient_, load_, inertia_, direction_, dependent_forces_;
   mutable std::vector<double> work_;
   std::vector<double> inertia_rounding_;  ///< by part [N]
   struct PartSquares {

@@ -5,6 +5,7 @@
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/cholesky.hpp"
+#include "core/solver/dependents.hpp"
 #include "core/solver/dof_filter.hpp"
 
 #include <Eigen/Dense>
@@ -23,7 +24,8 @@ using Dense = Eigen::MatrixXd;
 /// K and M in constraint axes, on all degrees of freedom; prescribed ones stay zero.
 class Problem {
  public:
-  Problem(const Model& model, ThreadPool& pool) : pool_(pool), filter_(model), K_(model.points) {
+  Problem(const Model& model, ThreadPool& pool)
+      : pool_(pool), filter_(model), dependents_(model.points), K_(model.points) {
     CpuExecutor executor(model.points, pool);
     const State rest = State::at_rest(model);
     std::vector<double> gradient(static_cast<std::size_t>(model.dof_count()));
@@ -31,14 +33,17 @@ class Problem {
     Linearization lin;
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, K_);
+    dependents_.condense(K_);
     sum_stiffness(model.points);
     mass_.assign(dofs().block_total(), 0.0);
     for (int i = 0; i < model.node_count(); ++i)
       add_inertia_block(model.kind(i), model.inertia[at(i)], Mat3d::identity(), mass_.data() + dofs().block_begin(i));
     for (const FrameInertia& inertia : model.inertia) mass_sum_ += inertia.mass;
+    free_ = filter_.free_count() + model.dependent_dof_count() == model.dof_count();
   }
 
   const DofFilter& filter() const { return filter_; }
+  const DependentNodes& dependents() const { return dependents_; }
 
   /// Σ diag K / Σ diag M over the displacements, without tethers: the scale of the largest eigenvalues [1/s²].
   double stiffness_to_mass() const { return stiffness_ / mass_sum_; }
@@ -48,7 +53,7 @@ class Problem {
   BlockCholesky factorize() {
     BlockCholesky factor(K_, filter_);
     const double step = 1e-15 * stiffness_to_mass();
-    double s = filter_.free_count() < static_cast<int>(filter_.size()) ? 0.0 : step;
+    double s = free_ ? step : 0.0;
     for (int attempt = 0; attempt < 15; ++attempt) {
       BlockMatrix shifted = K_;
       for (int i = 0; i < K_.rows() && s > 0; ++i)
@@ -89,8 +94,9 @@ class Problem {
 
   const DofLayout& dofs() const { return K_.dofs(); }
 
-  /// Σ v (λ + 2μ) |g|² over points and nodes.
+  /// Σ v (λ + 2μ) |g|² over points and nodes, and Σ k over springs.
   void sum_stiffness(const PointSet& set) {
+    for (const Spring& spring : set.springs) stiffness_ += spring.stiffness;
     for (const ShellBlock& shell : set.shells) {
       for (int e = 0; e < shell.count; ++e) {
         const double* rows = shell.constants_of(e / kElementLanes) + e % kElementLanes;
@@ -130,9 +136,11 @@ class Problem {
 
   ThreadPool& pool_;
   DofFilter filter_;
+  DependentNodes dependents_;  ///< at rest
   BlockMatrix K_;
   std::vector<double> mass_;  ///< blocks of the frames
   double stiffness_ = 0, mass_sum_ = 0;
+  bool free_ = true;  ///< nothing is held
 };
 
 }  // namespace
@@ -154,6 +162,7 @@ double stabilization_part(const Model& model, CpuExecutor& executor, const std::
     state.D[at(i)] = dofs.kind(i) == FrameKind::rigid ? rotation_increment(Vec3d{{d[3], d[4], d[5]}} * small)
                                                       : frame_variation(dofs.kind(i), d + 3, {}) * small;
   }
+  place_dependents(model.points, state);
   std::vector<double> unused(shape.size());
   const InternalEnergy energy = executor.gradient(state, {}, unused);
   return energy.total() > 0 ? energy.stabilization / energy.total() : 0.0;
@@ -203,6 +212,7 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     modes.frequency.push_back(std::sqrt(std::max(0.0, values[k])) / (2 * std::numbers::pi));
     std::vector<double> shape(X.col(k).data(), X.col(k).data() + n);
     problem.filter().to_global(shape);
+    problem.dependents().expand(shape);
     double largest = 0;
     const DofLayout& dofs = model.points.dofs;
     for (int node = 0; node < dofs.node_count(); ++node)

@@ -8,14 +8,15 @@
 
 namespace fascia {
 
-/// Rotational inertia of a rigid frame, I = tr(J) 1 − J: about its mass centre, J = S − c cᵀ / m, or its origin, J = S.
+/// Rotational inertia of a rigid frame, I = tr(J) 1 − J: about its mass centre, J = S − c cᵀ / m, or its origin, J = S
+/// (also where it has no mass of its own, because its place depends on others).
 struct SpinInertia {
   Mat3d rest{}, inverse_rest{};  ///< at rest [kg m²], [1/(kg m²)]
   bool regular = false;          ///< has an inverse
 
   SpinInertia() = default;
   explicit SpinInertia(const FrameInertia& i)
-      : SpinInertia(i.mass > 0 ? i.second - outer(i.first, i.first) * (1 / i.mass) : Mat3d{}) {}
+      : SpinInertia(i.mass > 0 ? i.second - outer(i.first, i.first) * (1 / i.mass) : i.second) {}
   explicit SpinInertia(const Mat3d& J) {
     rest = Mat3d::diagonal(trace(J)) - J;
     const double size = trace(rest);

@@ -9,7 +9,7 @@ namespace fascia {
 
 std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
   if (filter_.free_count() == 0) return 0;
-  executor_.assemble(lin, matrix());
+  assemble(lin, matrix());
   // Cholesky, which is several times faster, while it lasts.
   as_is_ = unstable_ > 0 ? nullptr : &factor();
   if (as_is_ != nullptr && as_is_->factorize(matrix())) return 0;
@@ -88,6 +88,7 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
     }
     place_tethers(model_, factors_, executor_.targets());
   }
+  dependents_.transfer(rhs);
   filter_.to_local(rhs);
   prescribed_increments(model_, filter_, state_, increment_.turned, ahead, prescribed);
   prescribed_increments(model_, filter_, state_, increment_.turned, behind, other);
@@ -95,6 +96,8 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   out.usable = tangent_.solve_as_is(prescribed, rhs, out.d_f) && out.usable;
   filter_.to_global(out.d_r);
   filter_.to_global(out.d_f);
+  dependents_.expand(out.d_r);
+  dependents_.expand(out.d_f);
   out.largest_rotation = largest_rotation_in(out.d_f);
   return out;
 }

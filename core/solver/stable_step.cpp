@@ -1,4 +1,5 @@
 #include "core/model/errors.hpp"
+#include "core/solver/dependents.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/node_inertia.hpp"
 #include "core/solver/small_factor.hpp"
@@ -58,6 +59,7 @@ class HighestFrequency {
       : executor_(system.executor()),
         filter_(system.filter()),
         dofs_(system.model().points.dofs),
+        dependents_(system.model().points),
         state_(state),
         fluids_(fluids_of(system.model(), state)) {
     const Model& model = system.model();
@@ -74,6 +76,8 @@ class HighestFrequency {
       }
     }
     executor_.store_strain(state, history_);
+    dependents_.turn(state.D);
+    dependent_forces_.resize(6 * model.points.dependents.size());
   }
 
   /// ω² [1/s²]. @param inverse_step  of the viscous stress [1/s]
@@ -86,6 +90,8 @@ class HighestFrequency {
     executor_.gradient(state_, history_, w);
     executor_.linearize(state_, history_, Tangent::full, lin_);
     lin_.low_rank = fluids_;
+    dependents_.transfer(w, dependent_forces_);
+    dependents_.add_turning(dependent_forces_, lin_.node_blocks);
     std::mt19937 random(1);
     for (double& x : y) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
     filter_.clear_fixed(y);
@@ -137,7 +143,9 @@ class HighestFrequency {
   void multiply(const std::vector<double>& v, std::vector<double>& w) {
     global_ = v;
     filter_.to_global(global_);
+    dependents_.expand(global_);
     executor_.multiply(lin_, global_, w);
+    dependents_.transfer(w);
     filter_.to_local(w);
     filter_.clear_fixed(w);
   }
@@ -145,11 +153,12 @@ class HighestFrequency {
   CpuExecutor& executor_;
   const DofFilter& filter_;
   const DofLayout& dofs_;
+  DependentNodes dependents_;
   const State& state_;
   std::vector<RankOne> fluids_;
   StrainHistory history_;
   Linearization lin_;
-  std::vector<double> inverse_mass_, global_;
+  std::vector<double> inverse_mass_, global_, dependent_forces_;
 };
 
 }  // namespace

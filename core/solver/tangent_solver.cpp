@@ -39,7 +39,12 @@ double apply_block(const double* B, const double* x, double* y) {
 
 TangentSolver::TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter,
                              const SolverSettings& settings)
-    : model_(model), executor_(executor), filter_(filter), settings_(settings), vectors_(executor.pool()) {}
+    : model_(model),
+      executor_(executor),
+      filter_(filter),
+      settings_(settings),
+      vectors_(executor.pool()),
+      dependents_(model.points) {}
 
 BlockMatrix& TangentSolver::matrix() {
   if (!matrix_) matrix_.emplace(model_.points);
@@ -73,6 +78,13 @@ bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
   return true;
 }
 
+void TangentSolver::assemble(const Linearization& lin, BlockMatrix& out) {
+  executor_.assemble(lin, out);
+  if (dependents_.empty()) return;
+  dependents_.turn(lin.Q);
+  dependents_.condense(out);
+}
+
 void TangentSolver::apply_matrix(std::span<const double> local, std::span<double> out) {
   if (!filter_.turns()) {
     matrix().multiply(executor_.pool(), local, out);
@@ -94,7 +106,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
                                    std::span<const double> b, std::span<double> x, const Relinearize& relinearize) {
   const std::size_t n = b.size();
   work_.resize(n);
-  executor_.assemble(lin, matrix());
+  assemble(lin, matrix());
   low_rank_.set(lin.low_rank, filter_);
   rhs_.assign(b.begin(), b.end());
   if (!prescribed.empty()) {
@@ -112,7 +124,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   } else {
     report = solve_cg(rhs_, x);
     if (!report.trouble.empty() && !model_.tethers.empty()) {
-      executor_.assemble(relinearize(TamerTangent::without_tethers), matrix());
+      assemble(relinearize(TamerTangent::without_tethers), matrix());
       report = solve_cg(rhs_, x);
     }
     if (cg_is_too_slow(report)) {
@@ -134,12 +146,12 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
 bool TangentSolver::factorize(const Relinearize& relinearize, TangentReport& report) {
   if (factor().factorize(matrix())) return true;
   if (!model_.tethers.empty()) {
-    executor_.assemble(relinearize(TamerTangent::without_tethers), matrix());
+    assemble(relinearize(TamerTangent::without_tethers), matrix());
     if (factor().factorize(matrix())) return true;
   }
   report.trouble = "the tangent was not positive definite (buckling, or parts that nothing holds); it was shifted";
   if (!material_matrix_) material_matrix_.emplace(model_.points);
-  executor_.assemble(relinearize(TamerTangent::material), *material_matrix_);
+  assemble(relinearize(TamerTangent::material), *material_matrix_);
   for (shift_ = std::max(1e-3, 0.1 * shift_); shift_ < 1e3; shift_ *= 4)
     if (factor().factorize(matrix(), shift_, &*material_matrix_)) return true;
   report.usable = false;

@@ -2,6 +2,7 @@
 
 #include "core/cpu/executor.hpp"
 #include "core/solver/cholesky.hpp"
+#include "core/solver/dependents.hpp"
 #include "core/solver/dof_filter.hpp"
 #include "core/solver/low_rank.hpp"
 #include "core/solver/settings.hpp"
@@ -25,7 +26,7 @@ enum class TamerTangent { without_tethers, material };
 using Relinearize = std::function<const Linearization&(TamerTangent)>;
 
 /// Solves K x = b on the free degrees of freedom, directly or by CG, and finds a descent direction where K is not
-/// positive definite. Vectors are in constraint axes.
+/// positive definite. Vectors are in constraint axes; of dependent nodes their entries are zero.
 class TangentSolver {
  public:
   TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter, const SolverSettings& settings);
@@ -46,6 +47,7 @@ class TangentSolver {
   BlockCholesky& factor();
 
  private:
+  void assemble(const Linearization& at, BlockMatrix& matrix);
   bool cg_is_too_slow(const TangentReport& report);
   bool factorize(const Relinearize& relinearize, TangentReport& report);
   TangentReport solve_cg(std::span<const double> b, std::span<double> x);
@@ -58,6 +60,7 @@ class TangentSolver {
   const DofFilter& filter_;
   SolverSettings settings_;
   CpuVectors vectors_;
+  DependentNodes dependents_;
   std::optional<BlockMatrix> matrix_, material_matrix_;
   std::optional<BlockCholesky> cholesky_, indefinite_;
   BlockCholesky* as_is_ = nullptr;  ///< what factorize_as_is() left

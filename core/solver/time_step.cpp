@@ -15,6 +15,8 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   const std::size_t n = start.u.size();
   start_ = start;
   start_.turned.resize(model_.constraints.size());  // a state made before the constraints has none
+  place_dependents(model_.points, start_);
+  place_dependent_rates(model_.points, start_);
   increment_.du.assign(n, Vec3d{});
   increment_.Ds = start_.D;
   increment_.Ds.set_zero();
@@ -90,6 +92,7 @@ State MechanicalSystem::moved_by_velocity(double time) const {
     moved.D[i] = rigid(i) ? compose_increments(rotation_increment(spin * time), start_.D[i])
                           : start_.D[i] + start_.Q_dot[i] * time;
   }
+  place_dependents(model_.points, moved);
   return moved;
 }
 
@@ -146,8 +149,11 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
     end.Q_dot[i] = W * Q;
     a.Q = (skew(spin_of(a.Q, Q)) + W * W) * Q;
   }
-  if (form_.h <= 0 || form_.scheme == TimeScheme::implicit_euler) return end;
-  if (form_.scheme != TimeScheme::bdf2) follow_boundaries(end, before, memory);
+  const bool remembers = form_.h > 0 && form_.scheme != TimeScheme::implicit_euler;
+  if (remembers && form_.scheme != TimeScheme::bdf2) follow_boundaries(end, before, memory);
+  place_dependents(model_.points, end);
+  place_dependent_rates(model_.points, end);
+  if (!remembers) return end;
   memory.step = form_.step;
   memory.velocity.resize(n);
   for (std::size_t i = 0; i < n; ++i) memory.velocity[i] = {start_.v[i], start_.Q_dot[i]};
@@ -266,6 +272,7 @@ void MechanicalSystem::start_acceleration(const State& start, double dt, StepMem
     }
     add(force, i, -f.force, f.moment * -1.0, {});
   }
+  dependents_.transfer(force);
   filter_.to_local(force);
   filter_.clear_fixed(force);
   const DofLayout& dofs = model_.points.dofs;
