@@ -13,7 +13,13 @@
 namespace fascia {
 
 CloudBody::CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& points)
-    : field_(spec.field), locate_(spec.locate), half_blend_(spec.half_blend), interpolates_(spec.grid) {
+    : field_(spec.field),
+      locate_(spec.locate),
+      half_blend_(spec.half_blend),
+      interpolates_(spec.grid),
+      share_(spec.shared),
+      still_(still_nodes(spec.shared)) {
+  shared_ = distinct_nodes(spec.shared);
   surface_ = spec.surface;
   segments_ = spec.segments;
   for (const CloudPoint& p : spec.points) volume_ += p.volume;
@@ -28,8 +34,9 @@ CloudBody::CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& point
   }
   split_points(spec);
   number_frames(spec, model);
-  check_points(spec);
-  add_points(spec, weights, points);
+  check_still_nodes(weights);
+  check_points(spec, model);
+  add_points(spec, weights, model, points);
   add_inertia(spec, model);
   describe(spec, weights);
 }
@@ -70,15 +77,50 @@ void CloudBody::number_frames(const CloudSpec& spec, Model& model) {
     frame_position_.push_back(f.x);
     on_boundary_.push_back(f.on_boundary ? 1 : 0);
   }
+  for (const SharedFrame& s : share_) frame_position_.push_back(s.x);
+  on_boundary_.insert(on_boundary_.end(), shared_.size(), 1);
 }
 
-/// A point resists six strains: with fewer of these than degrees of freedom, frames would be loose.
-void CloudBody::check_points(const CloudSpec& spec) const {
-  const std::size_t dofs = at(node_count_) * (spec.affine ? 12 : 6);
+bool CloudBody::follows_still(const ScatteredWeights& weights) const {
+  return !still_.empty() && std::any_of(weights.frame.begin(), weights.frame.end(), [&](int frame) {
+    return frame >= node_count_ && !share_[at(frame - node_count_)].turns;
+  });
+}
+
+/// Displacements alone must give F exactly where vertices without rotation take part.
+void CloudBody::check_still_nodes(const std::vector<ScatteredWeights>& weights) const {
+  constexpr double kRounding = 1e-9;
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    if (!follows_still(weights[p])) continue;
+    if (places_[p].dimension < 3)
+      throw InputError("a sheet or line turns with its frames, but the matter at " + text(places_[p].X) +
+                           " follows vertices without rotation; share them with rotations = true",
+                       Blame::frames);
+    if (norm(weights[p].consistent - Mat3d::identity()) > kRounding)
+      throw InputError("the weights at " + text(places_[p].X) +
+                           " do not reproduce linear fields, which vertices without rotation need; share them with "
+                           "rotations = true, or use kind = \"mls\" and more frames or a larger weights.radius",
+                       Blame::weights);
+  }
+}
+
+/// A point resists six strains: with fewer of these than degrees of freedom, frames would be loose. Of a shared node,
+/// what its own body does not hold counts: the rotation of a vertex.
+void CloudBody::check_points(const CloudSpec& spec, const Model& model) const {
+  std::size_t dofs = at(node_count_) * (spec.affine ? 12 : 6);
+  int turned = 0;
+  for (const int node : shared_) {
+    const bool turns = !std::binary_search(still_.begin(), still_.end(), node);
+    const bool held = at(node) < model.inertia.size() && trace(model.inertia[at(node)].second) > 0;
+    if (turns && !held) ++turned;
+  }
+  dofs += at(3 * turned);
   if (6 * points_.size() >= dofs) return;
   const bool thin = !is_solid(points_[0].law);
   throw InputError(std::to_string(points_.size()) + " integration points cannot hold " + std::to_string(node_count_) +
-                       (spec.affine ? " affine" : "") + " frames; use at least " + std::to_string(dofs / 6) +
+                       (spec.affine ? " affine" : "") + " frames" +
+                       (turned > 0 ? " and the rotations of " + std::to_string(turned) + " shared vertices" : "") +
+                       "; use at least " + std::to_string((dofs + 5) / 6) +
                        (thin ? ", those through the matter included" : "") + ", and several times as many for accuracy",
                    Blame::points);
 }
@@ -86,12 +128,17 @@ void CloudBody::check_points(const CloudSpec& spec) const {
 Attachment CloudBody::attach_place(const ScatteredPlace& place, const ScatteredWeights& weights,
                                    const Vec3d& offset) const {
   const Mat3d halved = half_blend_ ? weights.consistent : Mat3d{};
+  const bool still = follows_still(weights);
   Attachment a;
   for (std::size_t k = 0; k < weights.frame.size(); ++k) {
-    a.nodes.push_back(first_node_ + weights.frame[k]);
-    const Vec3d d = place.X - frame_position_[at(weights.frame[k])];
-    a.influences.push_back(blended(weights.w[k], weights.gradient[k], halved, d, offset));
+    const int frame = weights.frame[k];
+    a.nodes.push_back(node_of(frame));
+    const Vec3d d = place.X - frame_position_[at(frame)];
+    const Influence own = still ? Influence{weights.w[k], weights.gradient[k], {}, {}}
+                                : blended(weights.w[k], weights.gradient[k], halved, d, offset);
+    a.influences.push_back(frame < node_count_ ? own : on_node(own, share_[at(frame - node_count_)].arm));
   }
+  if (!share_.empty()) merge_nodes(a);
   return a;
 }
 
@@ -116,10 +163,11 @@ void CloudBody::add_inertia(const CloudSpec& spec, Model& model) {
     if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
     const ScatteredWeights& w = share[point_places_[q].place];
     for (std::size_t k = 0; k < w.frame.size(); ++k) {
-      const std::size_t node = at(first_node_ + w.frame[k]);
-      const double m = spec.density * points_[q].volume * w.w[k];
-      const Vec3d d = points_[q].X - model.rest_position[node];
-      const FrameInertia part{m, d * m, outer(d, d) * m};
+      const std::size_t node = at(node_of(w.frame[k]));
+      const bool turns = w.frame[k] < node_count_ || share_[at(w.frame[k] - node_count_)].turns;
+      const FrameInertia part =
+          inertia_at(spec.density * points_[q].volume * w.w[k], points_[q].X - model.rest_position[node], turns);
+      const double m = part.mass;
       model.inertia[node] += part;
       if (mass_damping > 0)
         model.mass_damping[node] += {m * mass_damping, part.first * mass_damping, part.second * mass_damping};
@@ -153,8 +201,9 @@ void CloudBody::warn_of_locking(const CloudSpec& spec) {
 
 void CloudBody::describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights) {
   warn_of_locking(spec);
+  if (spec.grid && !share_.empty()) messages_.push_back(replaced_by_shares(share_.size()));
   if (spec.grid) return;
-  std::size_t least = spec.frames.size(), most = 0, lowered = 0, first_lowered = 0;
+  std::size_t least = frame_position_.size(), most = 0, lowered = 0, first_lowered = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
     least = std::min(least, weights[p].frame.size());
     most = std::max(most, weights[p].frame.size());

@@ -2,6 +2,7 @@
 
 #include "meshless/body.hpp"
 #include "meshless/frame_field.hpp"
+#include "meshless/influences.hpp"
 
 namespace fascia {
 
@@ -22,7 +23,8 @@ struct Location {
 
 /// A body of frames that lie anywhere in matter of any dimension. All in world coordinates, at rest.
 struct CloudSpec : BodyMatter {
-  std::vector<CloudFrame> frames;
+  std::vector<CloudFrame> frames;   ///< its own
+  std::vector<SharedFrame> shared;  ///< of other bodies; in the fields behind its own
   std::vector<CloudPoint> points;
   FrameField field;    ///< weights
   FrameField share;    ///< weights that are never negative, for the inertia
@@ -37,7 +39,8 @@ struct CloudSpec : BodyMatter {
 class CloudBody final : public ModelBody {
  public:
   /// Appends frames to the model and points to the builder.
-  /// @throws InputError  a point that too many frames reach, points that are too few
+  /// @throws InputError  a point that too many frames reach, points that are too few, shared vertices without rotation
+  ///                     where weights do not reproduce linear fields
   CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& points);
 
   bool interpolates() const override { return interpolates_; }
@@ -52,13 +55,17 @@ class CloudBody final : public ModelBody {
   struct PointPlace {
     std::size_t place = 0;  ///< index into places_
     Vec3d offset{};
+    bool stabilized = true;  ///< false: too few of its frames turn
   };
 
   Attachment attach_place(const ScatteredPlace& place, const ScatteredWeights& weights, const Vec3d& offset) const;
   void split_points(const CloudSpec& spec);
   void number_frames(const CloudSpec& spec, Model& model);
-  void check_points(const CloudSpec& spec) const;
-  void add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights, PointSetBuilder& points);
+  void check_still_nodes(const std::vector<ScatteredWeights>& weights) const;
+  void check_points(const CloudSpec& spec, const Model& model) const;
+  void take_turning_weights(const CloudSpec& spec, const Model& model, std::vector<Attachment>& attachments);
+  void add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights, const Model& model,
+                  PointSetBuilder& points);
   void add_group(const CloudSpec& spec, const std::vector<std::size_t>& members,
                  const std::vector<Attachment>& attachments, PointSetBuilder& points) const;
   void split_group(const CloudSpec& spec, std::vector<std::size_t> members, const std::vector<Attachment>& attachments,
@@ -68,12 +75,17 @@ class CloudBody final : public ModelBody {
   void add_inertia(const CloudSpec& spec, Model& model);
   void describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights);
   void warn_of_locking(const CloudSpec& spec);
-  Vec3d frame_position(int node) const { return frame_position_[static_cast<std::size_t>(node - first_node_)]; }
+  int node_of(int frame) const {
+    return frame < node_count_ ? first_node_ + frame : share_[static_cast<std::size_t>(frame - node_count_)].node;
+  }
+  bool follows_still(const ScatteredWeights& weights) const;
 
   FrameField field_;
   std::function<Location(const Vec3d&)> locate_;
   bool half_blend_, interpolates_;
-  std::vector<Vec3d> frame_position_;
+  std::vector<Vec3d> frame_position_;  ///< own, then shared
+  std::vector<SharedFrame> share_;
+  std::vector<int> still_;  ///< model nodes that keep no rotation, ascending
   std::vector<char> on_boundary_;
   std::vector<ScatteredPlace> places_;
   std::vector<PointPlace> point_places_;  ///< of each integration point

@@ -3,6 +3,7 @@
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "meshless/cloud_parts.hpp"
+#include "meshless/cloud_shared.hpp"
 #include "meshless/gauss.hpp"
 
 #include <algorithm>
@@ -37,7 +38,10 @@ auto blaming(Blame blame, const Step& step) {
 }
 
 /// @param fallback  spacing where the choice has none
-Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool frames, double fallback, int seed) {
+/// @param occupied  places that keep frames off, in the axes of the parts
+Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool frames, double fallback, int seed,
+                   std::span<const Vec3d> occupied = {}) {
+  const int others = static_cast<int>(occupied.size());
   Samples s;
   s.spacing = fallback;
   const auto* counted = std::get_if<CountedChoice>(&choice);
@@ -46,19 +50,20 @@ Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool fr
     s.spacing = spaced->spacing;
     seed = spaced->seed;
   } else if (counted) {
-    s.spacing = rough_spacing(parts, counted->count);
+    s.spacing = rough_spacing(parts, counted->count + others);
     seed = counted->seed;
   } else if (listed) {
-    s.spacing = rough_spacing(parts, static_cast<int>(listed->position.size()));
+    s.spacing = rough_spacing(parts, static_cast<int>(listed->position.size()) + others);
   }
   s.matter = matter_for(parts, s.spacing);
-  if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames);
-  s.places = listed ? places_at(s.matter, listed->position) : poisson_disk(s.matter, s.spacing, seed, frames);
+  if (counted && counted->count == 0 && others > 0) return s;
+  if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames, occupied);
+  s.places = listed ? places_at(s.matter, listed->position) : poisson_disk(s.matter, s.spacing, seed, frames, occupied);
   return s;
 }
 
-std::vector<CloudFrame> frames_of(const ScatterSpec& choice, const std::vector<SamplePlace>& places) {
-  const auto* listed = std::get_if<ListedChoice>(&choice.frames);
+std::vector<CloudFrame> frames_of(const ScatterSpec& choice, const ListedChoice* listed,
+                                  const std::vector<SamplePlace>& places) {
   std::vector<CloudFrame> frames;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const SamplePlace& p = places[i];
@@ -80,9 +85,10 @@ void check_frames(const ScatterSpec& choice, const std::vector<CloudFrame>& fram
                      Blame::frames);
   }
   const int needed = choice.parts.dimension() + 1;
-  if (choice.weights == ScatteredKind::mls && static_cast<int>(frames.size()) < needed)
-    throw InputError(std::to_string(frames.size()) +
-                         " frames cannot carry linear fields in this domain; use at least " + std::to_string(needed),
+  const std::size_t count = frames.size() + choice.shared.size();
+  if (choice.weights == ScatteredKind::mls && static_cast<int>(count) < needed)
+    throw InputError(std::to_string(count) + " frames cannot carry linear fields in this domain; use at least " +
+                         std::to_string(needed),
                      Blame::frames);
   if (choice.neighbours && *choice.neighbours < needed)
     throw InputError("a point that follows " + std::to_string(*choice.neighbours) +
@@ -162,45 +168,24 @@ std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& 
   return points;
 }
 
-std::vector<double> spacing_around(const std::vector<CloudFrame>& frames) {
+std::vector<double> spacing_around(const std::vector<CloudFrame>& frames, std::size_t own) {
   std::vector<Vec3d> positions;
   std::vector<int> dimension;
   for (const CloudFrame& f : frames) {
     positions.push_back(f.x);
     dimension.push_back(f.dimension);
   }
-  return local_spacing(positions, dimension);
+  return local_spacing(positions, dimension, own);
 }
 
-/// Frames that move no point would be free: they are left out.
-void drop_idle_frames(const ScatterSpec& choice, CloudSpec& spec, Reach& reach, std::vector<std::string>& messages) {
-  std::size_t dropped = 0;
-  for (bool all_used = false; !all_used;) {
-    const FrameField field = scattered_field(choice.weights, spec.frames, reach);
-    std::vector<char> used(spec.frames.size(), 0);
-    for (const CloudPoint& p : spec.points) {
-      const ScatteredWeights w = field(p.place);
-      if (w.frame.empty()) {
-        throw InputError("the matter at " + text(p.place.X) +
-                             " is out of reach of every frame; use more frames or a larger weights.radius",
-                         Blame::weights);
-      }
-      for (const int f : w.frame) used[at(f)] = 1;
-    }
-    all_used = std::find(used.begin(), used.end(), 0) == used.end();
-    if (all_used) break;
-    CloudSpec kept;
-    Reach kept_reach{{}, reach.neighbours};
-    for (std::size_t f = 0; f < used.size(); ++f) {
-      if (used[f] == 0) continue;
-      kept.frames.push_back(spec.frames[f]);
-      kept_reach.support.push_back(reach.support[f]);
-    }
-    dropped += spec.frames.size() - kept.frames.size();
-    spec.frames = std::move(kept.frames);
-    reach = std::move(kept_reach);
-  }
-  if (dropped > 0) messages.push_back(std::to_string(dropped) + " frames that reach no point were dropped");
+/// Of a body's own frames among all; of the shared ones where it has none itself.
+double mean_spacing(const ScatterSpec& choice, std::vector<CloudFrame> frames) {
+  const std::size_t own = frames.size();
+  for (const SharedFrame& s : choice.shared)
+    frames.push_back({s.x, Mat3d::identity(), choice.parts.dimension(), {}, true});
+  std::vector<double> spacing = spacing_around(frames, choice.shared.empty() ? 0 : own);
+  if (own > 0) spacing.resize(own);
+  return mean(spacing);
 }
 
 /// A user's points must lie in the matter, to a thousandth of its size.
@@ -217,22 +202,35 @@ void check_inside(const CloudSpec& spec, double size) {
 }  // namespace
 
 void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages) {
-  const Samples frames = blaming(Blame::frames, [&] { return samples_of(choice.parts, choice.frames, true, 0, 1); });
-  spec.frames = frames_of(choice, frames.places);
-  check_frames(choice, spec.frames, size_of(choice.parts));
-  const std::vector<double> spacing = spacing_around(spec.frames);
-  Reach reach = reach_of(choice, spacing);
-  spec.spacing = std::max(mean(spacing), 1e-9 * size_of(choice.parts));
+  const double size = size_of(choice.parts);
+  const std::vector<Vec3d> occupied = positions_in_parts(choice.parts, choice.shared);
   const bool listed = std::holds_alternative<ListedChoice>(choice.frames);
-  spec.points = points_of(choice.parts, choice.points, kPointSpacing * (listed ? spec.spacing : frames.spacing));
+  SampleChoice left;
+  if (listed && !occupied.empty())
+    left = unoccupied(std::get<ListedChoice>(choice.frames), occupied, kCoincident * size, messages);
+  const SampleChoice& own = std::holds_alternative<ListedChoice>(left) ? left : choice.frames;
+  const Samples frames = blaming(Blame::frames, [&] { return samples_of(choice.parts, own, true, 0, 1, occupied); });
+  CloudFrames set;
+  set.frames = frames_of(choice, std::get_if<ListedChoice>(&own), frames.places);
+  set.own = set.frames.size();
+  check_frames(choice, set.frames, size);
+  spec.spacing = std::max(mean_spacing(choice, set.frames), 1e-9 * size);
+  spec.points =
+      points_of(choice.parts, choice.points, kPointSpacing * (listed || set.own == 0 ? spec.spacing : frames.spacing));
   if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points", Blame::points);
   finish_cloud(choice.parts, spec);
-  if (std::holds_alternative<ListedChoice>(choice.points)) check_inside(spec, size_of(choice.parts));
+  if (std::holds_alternative<ListedChoice>(choice.points)) check_inside(spec, size);
   check_curvature(spec.points, messages);
-  drop_idle_frames(choice, spec, reach, messages);
-  spec.field = scattered_field(choice.weights, spec.frames, reach);
-  spec.share =
-      choice.weights == ScatteredKind::mls ? scattered_field(ScatteredKind::wendland, spec.frames, reach) : spec.field;
+  add_shared(choice.shared, spec.points, set);
+  set.reach = reach_of(choice, spacing_around(set.frames, choice.shared.empty() ? 0 : set.own));
+  widen_supports(choice.weights, spec.points, set);
+  drop_idle_frames(choice.weights, spec.points, set, messages);
+  spec.field = scattered_field(choice.weights, set.frames, set.reach);
+  spec.share = choice.weights == ScatteredKind::mls ? scattered_field(ScatteredKind::wendland, set.frames, set.reach)
+                                                    : spec.field;
+  spec.shared = std::move(set.shared);
+  set.frames.resize(set.own);
+  spec.frames = std::move(set.frames);
 }
 
 namespace {
@@ -299,6 +297,7 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   spec.grid = true;
   const double measure = directions == 2 ? norm(cross(grid.edge[0], grid.edge[1])) : norm(grid.edge[0]);
   spec.spacing = std::pow(measure / cells, 1.0 / static_cast<double>(directions));
+  share_grid_frames(choice.shared, size_of(parts), spec);
   finish_cloud(parts, spec);
 }
 

@@ -45,7 +45,8 @@ struct ScatterSpec {
   SampleChoice points;  ///< none: 0.4 of the frames' spacing
   ScatteredKind weights = ScatteredKind::mls;
   std::optional<int> neighbours;
-  std::optional<double> support;  ///< [m]
+  std::optional<double> support;      ///< [m]
+  std::vector<SharedFrame> shared{};  ///< of other bodies, in the placed body's axes; own frames stand around them
 };
 
 /// Fills all of a spec that follows from the domain and the choice of frames, points and weights.
@@ -58,8 +59,10 @@ struct ThinGridSpec {
   std::vector<int> per_cell;  ///< Gauss points of a cell along each direction; empty: 2, and 3 where there is one cell
   SampleChoice points;        ///< instead of per_cell
   std::function<double(const Vec3d&)> extent;  ///< thickness or radius by rest position [m]
+  std::vector<SharedFrame> shared;             ///< of other bodies, placed: each where the grid has a frame
 };
 
+/// @throws InputError  a shared frame where the grid has none
 void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec);
 
 }  // namespace fascia

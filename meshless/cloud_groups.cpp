@@ -24,7 +24,7 @@ std::set<int> all_nodes(const std::vector<std::size_t>& members, const std::vect
 
 /// Points with the same frames make groups of their own; the others are cut into groups by halving their box, since
 /// points near one another share most frames.
-void CloudBody::add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights,
+void CloudBody::add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights, const Model& model,
                            PointSetBuilder& builder) {
   std::vector<Attachment> attachments;
   std::map<std::pair<Law, std::vector<int>>, std::vector<std::size_t>> same;
@@ -33,6 +33,7 @@ void CloudBody::add_points(const CloudSpec& spec, const std::vector<ScatteredWei
     attachments.push_back(attach_place(places_[p.place], weights[p.place], p.offset));
     same[{points_[q].law, attachments.back().nodes}].push_back(q);
   }
+  if (!still_.empty()) take_turning_weights(spec, model, attachments);
   std::map<Law, std::vector<std::size_t>> rest;
   for (const auto& [key, members] : same) {
     if (2 * members.size() >= kFull)
@@ -42,6 +43,20 @@ void CloudBody::add_points(const CloudSpec& spec, const std::vector<ScatteredWei
   }
   for (const auto& [law, members] : rest) split_group(spec, members, attachments, builder);
   if (spec.affine) add_middle_ties(spec, weights, builder);
+}
+
+/// Weights of the points' blended rotations, among nodes that turn.
+void CloudBody::take_turning_weights(const CloudSpec& spec, const Model& model, std::vector<Attachment>& attachments) {
+  std::vector<char> held(at(model.node_count()));
+  for (std::size_t q = 0; q < attachments.size(); ++q) {
+    Attachment& a = attachments[q];
+    const bool still = std::any_of(a.nodes.begin(), a.nodes.end(),
+                                   [&](int node) { return std::binary_search(still_.begin(), still_.end(), node); });
+    point_places_[q].stabilized = blend_turning(a.nodes, still_, a.influences);
+    if (still && !(point_places_[q].stabilized && spec.stabilization > 0)) continue;
+    for (const int node : a.nodes) held[at(node)] = 1;
+  }
+  check_held(*this, model, still_, held);
 }
 
 /// Affine frames of thin matter are tied to F on its middle, where neither bending nor torsion turns it against them.
@@ -87,7 +102,7 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
     const BodyPoint& p = points_[q];
     const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
-    const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine);
+    const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine) || !point_places_[q].stabilized;
     const double stabilization = none ? 0.0 : spec.stabilization * p.mu;
     PointSample s{p.X,
                   p.volume,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace fascia {
 
@@ -141,6 +142,23 @@ FrameField thin_grid_field(const ThinGrid& grid) {
       r.gradient.push_back(gradient);
     }
     return r;
+  };
+}
+
+FrameField renumbered_field(FrameField field, std::vector<int> number) {
+  return [field = std::move(field), number = std::move(number)](const ScatteredPlace& place) {
+    ScatteredWeights r = field(place);
+    std::vector<std::size_t> order(r.frame.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t i, std::size_t j) { return number[at(r.frame[i])] < number[at(r.frame[j])]; });
+    ScatteredWeights sorted{{}, {}, {}, r.consistent, r.lowered};
+    for (const std::size_t k : order) {
+      sorted.frame.push_back(number[at(r.frame[k])]);
+      sorted.w.push_back(r.w[k]);
+      sorted.gradient.push_back(r.gradient[k]);
+    }
+    return sorted;
   };
 }
 

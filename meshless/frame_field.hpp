@@ -47,4 +47,7 @@ struct ThinGrid {
 /// Bilinear or linear weights on a thin grid. Frame numbers run along the first direction first.
 FrameField thin_grid_field(const ThinGrid& grid);
 
+/// The same weights with other numbers of the frames. @param number  by the old one, distinct
+FrameField renumbered_field(FrameField field, std::vector<int> number);
+
 }  // namespace fascia

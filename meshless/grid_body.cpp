@@ -38,7 +38,7 @@ GridBody::GridBody(const GridSpec& spec, Model& model, PointSetBuilder& points)
   for (const Sample& s : samples) full_count = std::max(full_count, ++cells_[at(s.cell)].point_count);
   find_owners(samples, full_count);
   number_frames(spec, samples, model);
-  add_points(spec, samples, points);
+  add_points(spec, samples, model, points);
   add_inertia(spec, samples, model);
 }
 
@@ -73,7 +73,8 @@ std::vector<char> GridBody::nodes_on_boundary() const {
       ++active_cells[at(grid_node(cells_[c].index, corner))];
   std::vector<char> boundary;
   for (std::size_t node = 0; node < active_cells.size(); ++node)
-    if (frame_of_grid_node_[node] >= 0) boundary.push_back(active_cells[node] < 8 ? 1 : 0);
+    if (frame_of_grid_node_[node] >= first_node_) boundary.push_back(active_cells[node] < 8 ? 1 : 0);
+  boundary.insert(boundary.end(), shared_.size(), 1);
   return boundary;
 }
 
@@ -92,19 +93,27 @@ Attachment GridBody::attach_local(const Vec3d& x, int cell, const std::array<int
   const Cell& owner = cells_[at(r.cell)];
   const Vec3d xi = cell_coordinates(x, owner);
   const auto fill = [&](const auto& weights) {
+    const bool still = !still_.empty() && std::any_of(weights.corner.begin(), weights.corner.end(), [&](int corner) {
+      const SharedFrame* share = share_at(grid_node(owner.index, corner));
+      return share != nullptr && !share->turns;
+    });
     for (std::size_t k = 0; k < weights.w.size(); ++k) {
       const int node = grid_node(owner.index, weights.corner[k]);
       const Vec3d d = rotation_ * (x - grid_position(node));
       Vec3d gradient = weights.gradient[k];
       for (int a = 0; a < 3; ++a) gradient[a] /= spacing_[a];
+      const Vec3d g = rotation_ * gradient;
+      const Influence own = still ? Influence{weights.w[k], g, {}, {}} : blended(weights.w[k], g, halved_, d);
+      const SharedFrame* share = share_at(node);
       r.nodes.push_back(frame_of_grid_node_[at(node)]);
-      r.influences.push_back(blended(weights.w[k], rotation_ * gradient, halved_, d));
+      r.influences.push_back(share == nullptr ? own : on_node(own, share->arm));
     }
   };
   if (weights_ == GridWeightKind::trilinear)
     fill(TrilinearWeights::at(xi));
   else
     fill(tetrahedron != nullptr ? LinearWeights::in_tetrahedron(*tetrahedron, xi) : LinearWeights::at(xi));
+  if (!share_.empty()) merge_nodes(r);
   return r;
 }
 

@@ -2,6 +2,7 @@
 
 #include "meshless/body.hpp"
 #include "meshless/domain.hpp"
+#include "meshless/influences.hpp"
 
 #include <optional>
 
@@ -19,12 +20,14 @@ struct GridSpec : BodyMatter {
   IntegrationKind integration = IntegrationKind::automatic;
   Mat3d rotation = Mat3d::identity();  ///< rigid placement: X = rotation x + translation
   Vec3d translation{};
+  std::vector<SharedFrame> shared;  ///< of other bodies: each stands for the frame of the grid at its place
 };
 
 class GridBody final : public ModelBody {
  public:
   /// Samples the domain, appends frames to the model and points to the builder.
-  /// @throws InputError  a domain in which no point falls, or volumes that cannot be formed
+  /// @throws InputError  a domain in which no point falls, volumes that cannot be formed, or a shared frame where the
+  ///                     grid has none
   GridBody(const GridSpec& spec, Model& model, PointSetBuilder& points);
 
   bool selective() const override { return selective_; }
@@ -53,7 +56,7 @@ class GridBody final : public ModelBody {
     std::array<int, 3> tetrahedron{};  ///< linear weights: order of axes
   };
   struct CellShare {
-    std::vector<int> frame;
+    std::vector<int> grid_node;
     std::vector<double> w;
   };
 
@@ -61,7 +64,9 @@ class GridBody final : public ModelBody {
   void find_owners(const std::vector<Sample>& samples, int full_count);
   int nearest_owner(int cell) const;
   void number_frames(const GridSpec& spec, const std::vector<Sample>& samples, Model& model);
-  void add_points(const GridSpec& spec, const std::vector<Sample>& samples, PointSetBuilder& points);
+  void place_shared(const GridSpec& spec);
+  void add_points(const GridSpec& spec, const std::vector<Sample>& samples, const Model& model,
+                  PointSetBuilder& points);
   CellShare cell_share(const Sample& s) const;
   std::vector<double> frame_support(const std::vector<Sample>& samples) const;
   void add_inertia(const GridSpec& spec, const std::vector<Sample>& samples, Model& model);
@@ -71,6 +76,11 @@ class GridBody final : public ModelBody {
   Vec3d to_world(const Vec3d& x) const { return rotation_ * x + translation_; }
   int cell_at(const Vec3d& x) const;
   int grid_node(const std::array<int, 3>& cell, int corner) const;
+  /// What stands for a frame of the grid; null: a frame of the body's own.
+  const SharedFrame* share_at(int grid_node) const {
+    const int k = share_of_grid_node_.empty() ? -1 : share_of_grid_node_[static_cast<std::size_t>(grid_node)];
+    return k < 0 ? nullptr : &share_[static_cast<std::size_t>(k)];
+  }
   Vec3d grid_position(int node) const;
 
   std::array<int, 3> grid_;
@@ -82,7 +92,10 @@ class GridBody final : public ModelBody {
   bool selective_ = false;
   std::vector<Cell> cells_;
   std::vector<PointCell> point_cells_;
-  std::vector<int> frame_of_grid_node_;  ///< −1: dropped
+  std::vector<int> frame_of_grid_node_;  ///< node of the model, −1: dropped
+  std::vector<SharedFrame> share_;
+  std::vector<int> share_of_grid_node_;  ///< index into these, −1: none; empty where nothing is shared
+  std::vector<int> still_;               ///< model nodes that keep no rotation, ascending
   std::function<double(const Vec3d&)> distance_;
 };
 

@@ -20,7 +20,8 @@ Law law_of(const PointMaterialSpec& m) { return m.neo_hookean ? Law::neo_hookean
 
 }  // namespace
 
-void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& samples, PointSetBuilder& builder) {
+void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& samples, const Model& model,
+                          PointSetBuilder& builder) {
   const double length = std::cbrt(spacing_[0] * spacing_[1] * spacing_[2]);
   std::vector<PointMaterialSpec> materials;
   bool nearly_incompressible = false;
@@ -43,6 +44,17 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
   if (selective_ && spec.integration == IntegrationKind::automatic)
     messages_.push_back("Poisson ratio above 0.45: lambda is integrated at one point a cell (selective integration)");
 
+  std::vector<char> held(still_.empty() ? 0 : at(model.node_count()));
+  // Weights of a point's blended rotation, among nodes that turn; 0: no stabilisation.
+  const auto stabilization_of = [&](const PointMaterialSpec& m, Attachment& a) {
+    if (still_.empty()) return spec.stabilization * m.mu;
+    const bool still = std::any_of(a.nodes.begin(), a.nodes.end(),
+                                   [&](int node) { return std::binary_search(still_.begin(), still_.end(), node); });
+    const double gamma = blend_turning(a.nodes, still_, a.influences) ? spec.stabilization * m.mu : 0.0;
+    for (std::size_t k = 0; k < a.nodes.size() && (!still || gamma > 0); ++k) held[at(a.nodes[k])] = 1;
+    return gamma;
+  };
+
   // Points that share their frames, in the order of the cells (and tetrahedra).
   std::map<std::tuple<int, std::array<int, 3>, Law>, std::vector<std::size_t>> groups;
   for (std::size_t q = 0; q < samples.size(); ++q)
@@ -56,13 +68,14 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       Attachment a = attach_local(s.x, s.cell, weights_ == GridWeightKind::linear ? &s.tetrahedron : nullptr);
       const PointMaterialSpec& m = materials[q];
       const Vec3d X = to_world(s.x);
+      const double stabilization = stabilization_of(m, a);
       points_.push_back({X, s.volume, m.lambda, m.mu, X, law_of(m)});
       point_cells_.push_back({a.cell, s.tetrahedron});
       points.push_back({X,
                         s.volume,
                         selective_ ? 0.0 : m.lambda,
                         m.mu,
-                        spec.stabilization * m.mu,
+                        stabilization,
                         m.stiffness_damping,
                         std::move(a.influences),
                         {}});
@@ -83,6 +96,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
         nodes, points, length,
         {std::get<Law>(key), spec.affine ? Stabilization::affine : Stabilization::drilling, spec.affine});
   }
+  if (!still_.empty()) check_held(*this, model, still_, held);
 }
 
 /// Any partition of unity gives a rigid motion its exact kinetic energy, since each frame takes the full lever. It is
@@ -98,12 +112,12 @@ void GridBody::add_inertia(const GridSpec& spec, const std::vector<Sample>& samp
     const double mass_damping = spec.material(X).mass_damping;
     if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
     double sum = 0;
-    for (std::size_t k = 0; k < share.frame.size(); ++k) sum += share.w[k] * support[at(share.frame[k] - first_node_)];
-    for (std::size_t k = 0; k < share.frame.size(); ++k) {
-      const auto frame = at(share.frame[k]);
-      const double m = spec.density * s.volume * share.w[k] * support[frame - at(first_node_)] / sum;
-      const Vec3d d = X - model.rest_position[frame];
-      const FrameInertia part{m, d * m, outer(d, d) * m};
+    for (std::size_t k = 0; k < share.w.size(); ++k) sum += share.w[k] * support[at(share.grid_node[k])];
+    for (std::size_t k = 0; k < share.w.size(); ++k) {
+      const SharedFrame* other = share_at(share.grid_node[k]);
+      const auto frame = at(frame_of_grid_node_[at(share.grid_node[k])]);
+      const double m = spec.density * s.volume * share.w[k] * support[at(share.grid_node[k])] / sum;
+      const FrameInertia part = inertia_at(m, X - model.rest_position[frame], other == nullptr || other->turns);
       model.inertia[frame] += part;
       if (mass_damping > 0)
         model.mass_damping[frame] += {m * mass_damping, part.first * mass_damping, part.second * mass_damping};
@@ -120,7 +134,7 @@ GridBody::CellShare GridBody::cell_share(const Sample& s) const {
   CellShare share;
   const auto fill = [&](const auto& weights) {
     for (std::size_t k = 0; k < weights.w.size(); ++k) {
-      share.frame.push_back(frame_of_grid_node_[at(grid_node(owner.index, weights.corner[k]))]);
+      share.grid_node.push_back(grid_node(owner.index, weights.corner[k]));
       share.w.push_back(weights.w[k]);
     }
   };
@@ -132,12 +146,12 @@ GridBody::CellShare GridBody::cell_share(const Sample& s) const {
 }
 
 /// Part of a frame's weight function, over the cells around it that have points, that the matter fills: 1 in a box.
+/// By nodes of the grid.
 std::vector<double> GridBody::frame_support(const std::vector<Sample>& samples) const {
-  std::vector<double> filled(at(node_count_)), full(at(node_count_));
+  std::vector<double> filled(frame_of_grid_node_.size()), full(frame_of_grid_node_.size(), 0.0);
   for (const Sample& s : samples) {
     const CellShare share = cell_share(s);
-    for (std::size_t k = 0; k < share.frame.size(); ++k)
-      filled[at(share.frame[k] - first_node_)] += s.volume * share.w[k];
+    for (std::size_t k = 0; k < share.w.size(); ++k) filled[at(share.grid_node[k])] += s.volume * share.w[k];
   }
   const double cell_volume = spacing_[0] * spacing_[1] * spacing_[2];
   for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -146,10 +160,11 @@ std::vector<double> GridBody::frame_support(const std::vector<Sample>& samples) 
       // Linear weights: six tetrahedra meet at both ends of the main diagonal, two at the other corners.
       const double part =
           weights_ == GridWeightKind::trilinear ? 1.0 / 8 : (corner == 0 || corner == 7 ? 1.0 / 4 : 1.0 / 12);
-      full[at(frame_of_grid_node_[at(grid_node(cells_[c].index, corner))] - first_node_)] += part * cell_volume;
+      full[at(grid_node(cells_[c].index, corner))] += part * cell_volume;
     }
   }
-  for (std::size_t i = 0; i < filled.size(); ++i) filled[i] = std::min(1.0, filled[i] / full[i]);
+  for (std::size_t i = 0; i < filled.size(); ++i)
+    if (full[i] > 0) filled[i] = std::min(1.0, filled[i] / full[i]);
   return filled;
 }
 

@@ -150,10 +150,15 @@ void GridBody::number_frames(const GridSpec& spec, const std::vector<Sample>& sa
     for (int corner = 0; corner < 8; ++corner)
       frame_of_grid_node_[at(grid_node(cells_[at(cells_[at(s.cell)].owner)].index, corner))] = 0;
   first_node_ = model.node_count();
+  if (!spec.shared.empty()) place_shared(spec);
   int dropped = 0;
   for (int node = 0; node < static_cast<int>(frame_of_grid_node_.size()); ++node) {
     if (frame_of_grid_node_[at(node)] < 0) {
       ++dropped;
+      continue;
+    }
+    if (const SharedFrame* share = share_at(node)) {
+      frame_of_grid_node_[at(node)] = share->node;
       continue;
     }
     frame_of_grid_node_[at(node)] = model.node_count();
@@ -163,6 +168,33 @@ void GridBody::number_frames(const GridSpec& spec, const std::vector<Sample>& sa
   }
   node_count_ = model.node_count() - first_node_;
   if (dropped > 0) messages_.push_back(std::to_string(dropped) + " frames without points were dropped");
+}
+
+/// Which frames of the grid others stand for. Those at a frame without points move nothing.
+void GridBody::place_shared(const GridSpec& spec) {
+  share_of_grid_node_.assign(frame_of_grid_node_.size(), -1);
+  std::size_t left_out = 0;
+  for (const SharedFrame& s : spec.shared) {
+    const Vec3d x = to_local(s.x);
+    std::array<int, 3> index;
+    for (int a = 0; a < 3; ++a)
+      index[at(a)] = static_cast<int>(std::clamp(std::round((x[a] - min_[a]) / spacing_[a]), 0.0, grid_[at(a)] - 1.0));
+    const int node = index[0] + grid_[0] * (index[1] + grid_[1] * index[2]);
+    const double distance = norm(grid_position(node) - x);
+    if (distance > kCoincident * size_) refuse_off_grid(s.x, distance);
+    if (frame_of_grid_node_[at(node)] < 0) {
+      ++left_out;
+      continue;
+    }
+    refuse_second_share(share_at(node), s);
+    if (share_at(node) != nullptr) continue;
+    share_of_grid_node_[at(node)] = static_cast<int>(share_.size());
+    share_.push_back(s);
+  }
+  shared_ = distinct_nodes(share_);
+  still_ = still_nodes(share_);
+  if (!share_.empty()) messages_.push_back(replaced_by_shares(share_.size()));
+  if (left_out > 0) messages_.push_back(unreached_shares(left_out));
 }
 
 }  // namespace fascia

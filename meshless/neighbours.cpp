@@ -111,7 +111,19 @@ std::vector<int> FrameSearch::within(const Vec3d& x, double radius) const {
   return tree_->find(x, Within(radius * radius));
 }
 
-std::vector<double> local_spacing(std::span<const Vec3d> positions, std::span<const int> dimension) {
+namespace {
+
+void clamp_to_median(std::span<double> spacing) {
+  if (spacing.empty()) return;
+  std::vector<double> sorted(spacing.begin(), spacing.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  for (double& s : spacing) s = std::clamp(s, 0.5 * *middle, 2 * *middle);
+}
+
+}  // namespace
+
+std::vector<double> local_spacing(std::span<const Vec3d> positions, std::span<const int> dimension, std::size_t first) {
   assert(dimension.size() == positions.size());
   std::vector<double> spacing(positions.size(), 0.0);
   if (positions.size() < 2) return spacing;
@@ -125,10 +137,8 @@ std::vector<double> local_spacing(std::span<const Vec3d> positions, std::span<co
     }
     spacing[i] /= count;
   }
-  std::vector<double> sorted = spacing;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  for (double& s : spacing) s = std::clamp(s, 0.5 * *middle, 2 * *middle);
+  clamp_to_median(std::span(spacing).first(first));
+  clamp_to_median(std::span(spacing).subspan(first));
   return spacing;
 }
 

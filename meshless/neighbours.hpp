@@ -34,7 +34,9 @@ class FrameSearch {
 /// between half and twice the median of all. One frame alone has none: 0.
 ///
 /// @param dimension  of the matter at each frame: 1, 2 or 3
-std::vector<double> local_spacing(std::span<const Vec3d> positions, std::span<const int> dimension);
+/// @param first      frames that have a median of their own, apart from the others; 0: all have one
+std::vector<double> local_spacing(std::span<const Vec3d> positions, std::span<const int> dimension,
+                                  std::size_t first = 0);
 
 /// Pairs i < j not farther apart than the tolerance [m], ascending.
 std::vector<std::pair<int, int>> coincident(std::span<const Vec3d> positions, double tolerance);

@@ -31,17 +31,20 @@ double boundless_spacing(const Matter& matter, int count) {
 
 }  // namespace
 
-std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features) {
+std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features,
+                                      std::span<const Vec3d> occupied) {
   check_spacing(matter, spacing);
-  return with_features ? FrameSampler(matter, seed).places(spacing, true) : point_places(matter, spacing, seed);
+  return with_features ? FrameSampler(matter, seed, occupied).places(spacing, true)
+                       : point_places(matter, spacing, seed);
 }
 
-double spacing_for_count(const Matter& matter, int count, int seed, bool with_features) {
+double spacing_for_count(const Matter& matter, int count, int seed, bool with_features,
+                         std::span<const Vec3d> occupied) {
   if (count < 1) throw InputError("the number of samples is not positive; at least 1 is needed");
   check_spacing(matter, 1);
   double best = boundless_spacing(matter, count), best_error = INFINITY;
   std::optional<FrameSampler> frames;
-  if (with_features) frames.emplace(matter, seed);
+  if (with_features) frames.emplace(matter, seed, occupied);
   const auto excess = [&](double s) {
     const double n = frames ? static_cast<double>(frames->places(s, false).size()) : expected_points(matter, s);
     if (std::abs(n - count) < best_error) {

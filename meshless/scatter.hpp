@@ -26,14 +26,17 @@ struct SamplePlace {
 /// lower features keep others off, whatever the matter's dimension; so two parts that touch share them.
 /// Without (integration points): matter only, each point near the middle of its share; lines in equal intervals.
 ///
-/// @param spacing  mean distance [m], well above the pieces' size
+/// @param spacing   mean distance [m], well above the pieces' size
+/// @param occupied  places that keep frames off as samples of lower features do [m]
 /// @throws InputError  a spacing that is not positive, or matter without pieces
-std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features);
+std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features,
+                                      std::span<const Vec3d> occupied = {});
 
 /// The spacing at which poisson_disk places about `count` samples.
 ///
 /// @throws InputError  a count that is not positive
-double spacing_for_count(const Matter& matter, int count, int seed, bool with_features);
+double spacing_for_count(const Matter& matter, int count, int seed, bool with_features,
+                         std::span<const Vec3d> occupied = {});
 
 /// Positions that a user gave, with the dimension and axes of the matter nearest to each.
 std::vector<SamplePlace> places_at(const Matter& matter, std::span<const Vec3d> positions);

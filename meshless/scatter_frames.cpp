@@ -12,11 +12,20 @@ constexpr double kFace = 0.82;
 constexpr double kLower = 0.77;  // between samples of different features
 constexpr double kEdge = 0.4;    // between corners, and edges that come near one another
 constexpr int kRounds = 3;       // of relaxation
+constexpr int kOccupied = -1;    // a feature below all others
 
 /// Frames placed so far.
 class FrameSet {
  public:
-  FrameSet(const Matter& matter, double spacing) : matter_(matter), spacing_(spacing), grid_(spacing) {}
+  FrameSet(const Matter& matter, double spacing, std::span<const Vec3d> occupied)
+      : matter_(matter), spacing_(spacing), grid_(spacing), occupied_(occupied.size()) {
+    for (const Vec3d& x : occupied) {
+      SamplePlace place;
+      place.x = x;
+      place.feature = kOccupied;
+      add(place);
+    }
+  }
 
   void add_corners() {
     for (const MatterPiece& p : matter_.pieces)
@@ -62,7 +71,10 @@ class FrameSet {
     }
   }
 
-  std::vector<SamplePlace> take() { return std::move(samples_); }
+  std::vector<SamplePlace> take() {
+    samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(occupied_));
+    return std::move(samples_);
+  }
 
  private:
   bool crowded(const Vec3d& x) const {
@@ -76,12 +88,14 @@ class FrameSet {
   const Matter& matter_;
   double spacing_;
   PointGrid grid_;
+  std::size_t occupied_;  ///< first samples, which are places of others
   std::vector<SamplePlace> samples_;
 };
 
 }  // namespace
 
-FrameSampler::FrameSampler(const Matter& matter, int seed) : matter_(matter) {
+FrameSampler::FrameSampler(const Matter& matter, int seed, std::span<const Vec3d> occupied)
+    : matter_(matter), occupied_(occupied) {
   std::mt19937 random(static_cast<std::uint32_t>(seed));
   for (const int feature : {2, 3}) {
     std::vector<int>& pieces = pieces_[at(feature - 2)];
@@ -91,7 +105,7 @@ FrameSampler::FrameSampler(const Matter& matter, int seed) : matter_(matter) {
 }
 
 std::vector<SamplePlace> FrameSampler::places(double spacing, bool relaxed) const {
-  FrameSet frames(matter_, spacing);
+  FrameSet frames(matter_, spacing, occupied_);
   frames.add_corners();
   frames.add_chains();
   frames.add_darts(darts_[0], kFace);

@@ -99,12 +99,14 @@ class OwnerSearch {
 /// Frames of a body at any spacing, from the same darts.
 class FrameSampler {
  public:
-  FrameSampler(const Matter& matter, int seed);
+  /// @param occupied  as of poisson_disk()
+  FrameSampler(const Matter& matter, int seed, std::span<const Vec3d> occupied);
   /// @param relaxed  evens the distances out; the number stays
   std::vector<SamplePlace> places(double spacing, bool relaxed) const;
 
  private:
   const Matter& matter_;
+  std::span<const Vec3d> occupied_;
   std::array<std::vector<int>, 2> pieces_;  ///< of faces, insides
   std::array<std::vector<Dart>, 2> darts_;
 };

@@ -2,6 +2,7 @@
 #include "core/model/errors.hpp"
 #include "core/solver/block_matrix.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace fascia {
@@ -76,6 +77,14 @@ void add_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, bool transposed, 
   for (int lane = 0; lane < kBatchWidth; ++lane) values[slot[lane] + 8] += entry[8].v[lane];
 }
 
+/// The same where rows of blocks are `stride` apart, since some of their nodes turn too.
+void add_wide_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, const std::uint8_t* stride, bool transposed,
+                   double* values) {
+  for (int lane = 0; lane < kBatchWidth; ++lane)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) values[slot[lane] + stride[lane] * r + c] += (transposed ? K(c, r) : K(r, c)).v[lane];
+}
+
 }  // namespace
 
 /// K has room for the pairs of the largest element only where it must: a linear tetrahedron's stay in registers' reach.
@@ -97,9 +106,17 @@ template <ElementLaw L, int N>
         if (!by_columns) add_blocks(tangent, block_, batch, half, state.tangent == Tangent::full, K);
       }
       if (by_columns) add_columns(tangent, block_, batch, half, K);
-      const std::uint32_t* slot = pair_slot_.data() + at(batch) * at(pairs) * kElementLanes + half * kBatchWidth;
-      for (int pair = 0; pair < pairs; ++pair)
-        add_pair(K[pair], slot + pair * kElementLanes, matrix.fills_upper(), matrix.values());
+      const std::size_t first_pair = at(batch) * at(pairs) * kElementLanes + half * kBatchWidth;
+      const std::uint32_t* slot = pair_slot_.data() + first_pair;
+      for (int pair = 0; pair < pairs; ++pair) {
+        const std::uint8_t* stride =
+            pair_stride_.empty() ? nullptr : pair_stride_.data() + first_pair + pair * kElementLanes;
+        if (stride == nullptr ||
+            std::all_of(stride, stride + kBatchWidth, [](std::uint8_t length) { return length == 3; }))
+          add_pair(K[pair], slot + pair * kElementLanes, matrix.fills_upper(), matrix.values());
+        else
+          add_wide_pair(K[pair], slot + pair * kElementLanes, stride, matrix.fills_upper(), matrix.values());
+      }
     }
   }
 }
@@ -109,6 +126,8 @@ void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
   if (matrix.value_count() > std::numeric_limits<std::uint32_t>::max())
     throw InputError("the matrix has more than 4e9 entries; use fewer elements");
   pair_slot_.resize(at(block_.batch_count()) * at(pairs) * kElementLanes);
+  const auto turns = [&](int node) { return matrix.dofs().kind(node) != FrameKind::vertex; };
+  if (std::any_of(block_.patch_node.begin(), block_.patch_node.end(), turns)) pair_stride_.resize(pair_slot_.size());
   for (int patch = 0; patch < block_.patch_count(); ++patch) {
     const auto nodes = block_.nodes_of_patch(patch);
     for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
@@ -118,8 +137,10 @@ void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
             const int i = nodes[block_.local_of(batch)[a * kElementLanes + lane]];
             const int j = nodes[block_.local_of(batch)[b * kElementLanes + lane]];
             const int index = matrix.fills_upper() ? matrix.find(j, i) : matrix.find(i, j);
-            pair_slot_[(at(batch) * at(pairs) + at(pair_count(a) + b)) * kElementLanes + at(lane)] =
-                static_cast<std::uint32_t>(matrix.block(index) - matrix.values());
+            const std::size_t place = (at(batch) * at(pairs) + at(pair_count(a) + b)) * kElementLanes + at(lane);
+            pair_slot_[place] = static_cast<std::uint32_t>(matrix.block(index) - matrix.values());
+            if (!pair_stride_.empty())
+              pair_stride_[place] = static_cast<std::uint8_t>(matrix.dofs().size(matrix.fills_upper() ? i : j));
           }
         }
       }

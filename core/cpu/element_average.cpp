@@ -135,9 +135,10 @@ void ElementExecutor::assemble_average(const At& state, BlockMatrix& matrix) {
       for (const auto& [j, gj] : around[a]) {
         if (matrix.fills_upper() ? j < i : j > i) continue;
         double* block = matrix.block(matrix.find(i, j));
+        const int stride = matrix.dofs().size(j);
         const Mat3d part = outer(gi, gj) * (node_lambda_[a] / node_volume_[a]);
         for (int r = 0; r < 3; ++r)
-          for (int c = 0; c < 3; ++c) block[3 * r + c] += part(r, c);
+          for (int c = 0; c < 3; ++c) block[stride * r + c] += part(r, c);
       }
     }
   }

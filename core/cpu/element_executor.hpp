@@ -85,7 +85,8 @@ class ElementExecutor {
   std::vector<Vec3d> slot_u_, slot_d_, slot_sum_;
   std::vector<PatchSums> patch_sums_;
   double elastic_ = 0, viscous_ = 0;
-  std::vector<std::uint32_t> pair_slot_;  ///< (batches × pairs × 8): place of a block's values
+  std::vector<std::uint32_t> pair_slot_;   ///< (batches × pairs × 8): place of a block's values
+  std::vector<std::uint8_t> pair_stride_;  ///< likewise: length of its rows; empty where all nodes are vertices
 
   std::vector<double> node_volume_, node_lambda_;   ///< of averaging: Σ V/4 [m³], mean λ [Pa]
   std::vector<double> slot_theta_;                  ///< Σ V θ/4 by patch

@@ -22,7 +22,8 @@ struct ElementMaterialSpec {
   double penalty = 0;            ///< κ of the volume penalty [Pa]
 };
 
-/// Elements of one kind as a builder describes them. All nodes are vertices.
+/// Elements of one kind as a builder describes them. Elements see the
+/// displacements of their nodes alone.
 struct ElementBlockSpec {
   ElementLaw law = ElementLaw::st_venant_kirchhoff;
   bool averaged = false;                      ///< the volumetric strain is averaged about nodes (one-point elements)

@@ -135,7 +135,7 @@ class ModelBody {
   virtual Mat3d strain_at(const Attachment& place, const State& state) const;
   /// What only this kind of body shows in results.
   virtual std::vector<BodyField> own_fields(const State& /*state*/) const { return {}; }
-  /// Nodes on the outside: 1 (one entry a node of the body).
+  /// Nodes on the outside: 1 (one entry a node of the body, then one for each of shared_nodes(), always 1).
   virtual std::vector<char> nodes_on_boundary() const = 0;
   /// Distance from X to the body [m]; 0 inside.
   virtual double distance(const Vec3d& X) const = 0;

@@ -90,7 +90,7 @@ class DerivativeTest : public testing::TestWithParam<Case> {
     const std::vector<double> d = random_direction(built_.model), g = gradient(state_);
     std::vector<double> Kd = product(linearization(Tangent::full), d);
     for (int node = 0; node < built_.model.node_count(); ++node) {
-      if (built_.model.kind(node) == FrameKind::affine) continue;
+      if (built_.model.kind(node) != FrameKind::rigid) continue;
       const auto i = static_cast<std::size_t>(built_.model.points.dofs.begin(node));
       const Vec3d torque{{g[i + 3], g[i + 4], g[i + 5]}}, dr{{d[i + 3], d[i + 4], d[i + 5]}};
       const Vec3d correction = cross(torque, dr) * 0.5;
