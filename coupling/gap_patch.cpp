@@ -102,6 +102,7 @@ bool plane(const CheckedSides& sides) {
 
 /// Cuts the edges that are too long to follow the second side. Returns whether there were any.
 bool refine(GapPatch& patch, const CheckedSides& sides, bool curved, double longest) {
+  constexpr double most_sag = 0.002;  // of an edge's foot [part of the gap]
   Cuts cuts;
   for_each_edge(edges_of(patch), [&](std::span<const Edge> same) {
     const int a = same[0].low, b = same[0].high;
@@ -111,7 +112,8 @@ bool refine(GapPatch& patch, const CheckedSides& sides, bool curved, double long
     Vec3d foot;
     const double gap = sides.to_second.distance(X, &foot);
     const Vec3d straight = (patch.feet[at(a)] + patch.feet[at(b)]) * 0.5;
-    if (length <= 0.5 * gap || (!curved && norm(foot - straight) < 1e-3 * length)) return;
+    const bool short_edge = !curved || length <= 0.5 * gap;
+    if (short_edge && norm(foot - straight) <= std::max(most_sag * gap, sides.touching)) return;
     cuts[{a, b}] = static_cast<int>(patch.points.size());
     patch.points.push_back(X);
     patch.feet.push_back(foot);

@@ -14,8 +14,8 @@ struct GapPatch {
   double gap(int point) const { return norm(feet[at(point)] - points[at(point)]); }
 };
 
-/// Cut finer than the first side where the second is curved: until edges are about as long as the second's, or half as
-/// long as the gap is wide.
+/// Cut finer than the first side where the second is curved: until edges are about as long as the second's, or no
+/// longer than half the gap and their feet straight.
 GapPatch gap_patch(const CheckedSides& sides);
 
 /// Leaves out the triangles whose corners all touch. Returns their part of the area.

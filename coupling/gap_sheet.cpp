@@ -39,75 +39,118 @@ Vec3d length_axis(const TriangleMesh& faces, const std::string& body) {
   return axis[main] < 0 ? -axis : axis;
 }
 
-/// Area, and area times its middle, of what of a convex polygon lies where dot(x, axis) ≥ from.
-std::vector<Vec3d> clipped(const std::vector<Vec3d>& polygon, const Vec3d& axis, double from) {
-  std::vector<Vec3d> inside;
+/// A corner of a polygon, and how far along the strip it is.
+struct Place {
+  Vec3d X;
+  double s = 0;
+};
+
+/// What of a convex polygon lies where sign · s ≥ sign · from.
+std::vector<Place> clipped(const std::vector<Place>& polygon, double from, double sign) {
+  std::vector<Place> inside;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec3d &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-    const double at_a = dot(a, axis) - from, at_b = dot(b, axis) - from;
+    const Place &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double at_a = sign * (a.s - from), at_b = sign * (b.s - from);
     if (at_a >= 0) inside.push_back(a);
-    if ((at_a >= 0) != (at_b >= 0)) inside.push_back(a + (b - a) * (at_a / (at_a - at_b)));
+    if ((at_a >= 0) != (at_b >= 0)) inside.push_back({a.X + (b.X - a.X) * (at_a / (at_a - at_b)), from});
   }
   return inside;
 }
 
-/// A strip along its axis.
+/// How far along a line the nearest of its points is, its ends made longer [m].
+double place_along(const std::vector<Vec3d>& line, const Vec3d& X) {
+  double nearest = Bounds::infinite, place = 0, before = 0;
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+    const Vec3d edge = line[k + 1] - line[k];
+    const double length = norm(edge);
+    if (!(length > 0)) continue;
+    double t = dot(X - line[k], edge) / (length * length);
+    if (k > 0) t = std::max(t, 0.0);
+    if (k + 2 < line.size()) t = std::min(t, 1.0);
+    const double distance = norm(line[k] + edge * t - X);
+    if (distance < nearest) {
+      nearest = distance;
+      place = before + t * length;
+    }
+    before += length;
+  }
+  return place;
+}
+
+/// A strip, and how far along it each of its points is: first along its axis, then along the middle line that follows.
 class Strip {
  public:
-  Strip(const TriangleMesh& faces, const std::string& body)
-      : faces_(faces), tree_(faces), axis_(length_axis(faces, body)) {
-    origin_ = properties_of_area(faces).center;
-    for (const Vec3d& X : faces.points) {
-      low_ = std::min(low_, place(X));
-      high_ = std::max(high_, place(X));
+  Strip(const TriangleMesh& faces, const std::string& body) : faces_(faces), tree_(faces) {
+    const MassProperties area = properties_of_area(faces);
+    origin_ = area.center;
+    const Vec3d axis = length_axis(faces, body);
+    measure([&](const Vec3d& X) { return dot(X, axis); });
+    area_ = area.measure;
+    for (int pass = 0; pass < 3; ++pass) {
+      std::vector<Vec3d> line = middle_line(16);
+      for (Vec3d& X : line) X -= origin_;
+      measure([&](const Vec3d& X) { return place_along(line, X); });
     }
   }
 
   double length() const { return high_ - low_; }
 
-  /// Its middle line in so many equal steps along the axis, on the faces.
+  /// Its middle line in so many equal steps, on the faces.
   std::vector<Vec3d> middle_line(int steps) const {
-    std::vector<Vec3d> line;
-    for (int k = 0; k <= steps; ++k) {
-      const double s = low_ + length() * k / steps;
-      Vec3d X = slab_middle(s, 1e-3 * length() / steps);
-      X += axis_ * (s - place(X));
-      Vec3d foot;
-      tree_.distance(X, &foot);
-      line.push_back(foot);
-    }
+    std::vector<Vec3d> line(at(steps) + 1);
+    for (int k = 0; k <= steps; ++k) tree_.distance(origin_ + middle(low_ + length() * k / steps), &line[at(k)]);
     return line;
   }
 
  private:
-  double place(const Vec3d& X) const { return dot(X - origin_, axis_); }
+  template <class PlaceOf>
+  void measure(const PlaceOf& place_of) {
+    place_.clear();
+    for (const Vec3d& X : faces_.points) place_.push_back(place_of(X - origin_));
+    const auto [low, high] = std::minmax_element(place_.begin(), place_.end());
+    low_ = *low;
+    high_ = *high;
+  }
 
-  /// Middle of the strip's area in a slab around a place, which is widened where the strip has a gap.
+  /// Middle of the strip across its length, from the whole strip's. Near the ends, which may be pointed or slanting, it
+  /// goes on as it comes.
+  Vec3d middle(double s) const {
+    const double end = std::min(0.5 * area_ / length(), 0.25 * length());
+    const double inner = std::clamp(s, low_ + end, high_ - end), beyond = s - inner;
+    if (beyond == 0) return slab_middle(s, 1e-3 * end);
+    const double back = beyond < 0 ? end : -end;
+    const Vec3d X = slab_middle(inner, 1e-3 * end);
+    return X + (slab_middle(inner + back, 1e-3 * end) - X) * (beyond / back);
+  }
+
+  /// Middle of the strip's area in a slab, which is widened where the strip has a gap.
   Vec3d slab_middle(double s, double width) const {
     for (;; width *= 2) {
-      const double from = std::clamp(s - 0.5 * width, low_, std::max(low_, high_ - width)), to = from + width;
+      const double from = s - 0.5 * width;
       double area = 0;
       Vec3d moment;
       for (const auto& t : faces_.triangles) {
-        std::vector<Vec3d> part;
-        for (const int node : t) part.push_back(faces_.points[at(node)] - origin_);
-        const auto [least, most] = std::minmax({dot(part[0], axis_), dot(part[1], axis_), dot(part[2], axis_)});
-        if (most < from || least > to) continue;
-        part = clipped(clipped(part, axis_, from), -axis_, -to);
+        std::vector<Place> part;
+        for (const int node : t) part.push_back({faces_.points[at(node)] - origin_, place_[at(node)]});
+        const auto [least, most] = std::minmax({part[0].s, part[1].s, part[2].s});
+        if (most < from || least > from + width) continue;
+        part = clipped(clipped(part, from, 1), from + width, -1);
         for (std::size_t k = 2; k < part.size(); ++k) {
-          const double piece = norm(cross(part[k - 1] - part[0], part[k] - part[0]));
+          const double piece = norm(cross(part[k - 1].X - part[0].X, part[k].X - part[0].X));
           area += piece;
-          moment += (part[0] + part[k - 1] + part[k]) * (piece / 3);
+          moment += (part[0].X + part[k - 1].X + part[k].X) * (piece / 3);
         }
       }
-      if (area > 0 || !(width < length())) return origin_ + (area > 0 ? moment * (1 / area) : Vec3d{});
+      if (area > 0) return moment * (1 / area);
+      if (width > 4 * length()) return {};
     }
   }
 
   const TriangleMesh& faces_;
   TriangleTree tree_;
-  Vec3d axis_, origin_{};
-  double low_ = Bounds::infinite, high_ = -Bounds::infinite;
+  Vec3d origin_{};
+  std::vector<double> place_;  ///< of each point [m]
+  double low_ = 0, high_ = 0, area_ = 0;
 };
 
 double squared_distance(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
