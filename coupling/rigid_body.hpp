@@ -16,8 +16,8 @@ struct RigidBodySpec {
   bool closed = false;            ///< the surface encloses a volume
   std::optional<double> mass;     ///< [kg]
   std::optional<double> density;  ///< [kg/m³]; of closed surfaces
-  std::optional<Mat3d>
-      inertia;  ///< about the mass centre, in world axes [kg m²]; default: of the volume or the surface
+  /// About the mass centre, in world axes [kg m²]; default: of the volume or the surface.
+  std::optional<Mat3d> inertia;
 };
 
 /// Volume, mass centre and second moment of what a surface encloses, or of the surface itself.
@@ -33,12 +33,17 @@ MassProperties properties_of_area(const TriangleMesh& surface);
 class RigidBody final : public ModelBody {
  public:
   /// Appends the frame to the model.
-  /// @throws InputError  a density of an open surface, a volume that is not positive, an inertia that no mass has
+  /// @throws InputError  a density of an open surface, a volume or mass that is not positive, an inertia that no mass
+  ///                     has
   RigidBody(RigidBodySpec spec, Model& model, PointSetBuilder& points);
 
   std::string model_name() const override { return "rigid"; }
   Attachment attach(const Vec3d& X) const override;
-  Attachment attach_point(std::size_t point) const override;
+  Attachment attach_point(std::size_t /*point*/) const override { return attach(center_); }
+  PointTensors tensors_at(const Attachment& /*place*/, std::size_t /*nearest*/, const State& /*state*/) const override {
+    return {};
+  }
+  Mat3d strain_at(const Attachment& /*place*/, const State& /*state*/) const override { return {}; }
   std::vector<char> nodes_on_boundary() const override { return {1}; }
   double distance(const Vec3d& X) const override;
   std::string quality() const override;

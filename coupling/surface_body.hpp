@@ -13,9 +13,13 @@ class SurfaceBody final : public ModelBody {
 
   std::string model_name() const override { return "surface"; }
   Attachment attach(const Vec3d& X) const override;
-  Attachment attach_point(std::size_t point) const override;
+  Attachment attach_point(std::size_t point) const override { return attach_surface(point); }
   Attachment attach_surface(std::size_t point) const override;
-  std::vector<char> nodes_on_boundary() const override;
+  PointTensors tensors_at(const Attachment& /*place*/, std::size_t /*nearest*/, const State& /*state*/) const override {
+    return {};
+  }
+  Mat3d strain_at(const Attachment& /*place*/, const State& /*state*/) const override { return {}; }
+  std::vector<char> nodes_on_boundary() const override;  ///< the rim
   double distance(const Vec3d& X) const override;
 
  private:

@@ -140,6 +140,7 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
       for (const ElementExecutor& block : elements_) force += block.sum_at(node);
       if (set_.group_count() == 0 && shells_.empty() && set_.dofs.kind(node) == FrameKind::vertex) {
         for (int k = 0; k < 3; ++k) g[k] = force[k];
+        std::fill(g + 3, g + set_.dofs.size(node), 0.0);
         continue;
       }
       Vec3d torque;
