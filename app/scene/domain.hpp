@@ -56,6 +56,7 @@ struct BetweenDomain {
   std::array<std::string, 2> bodies;
   Region where;  ///< the parts
   BetweenKind as = BetweenKind::volume;
+  std::array<Place, 2> places{};  ///< of the two names
 };
 using Domain = std::variant<BoxDomain, CylinderDomain, EllipsoidDomain, FileDomain, RectangleDomain, LineDomain,
                             BlockDomain, AnnulusDomain, BetweenDomain>;

@@ -55,16 +55,24 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
   scene.world = read_world(table);
   const Materials materials = read_materials(table);
   std::vector<std::string> bodies;
-  for (const TableReader& body : table.tables("bodies")) {
-    bodies.push_back(body.name());
-    if (body.usable()) scene.bodies.push_back(read_body(body, materials, path.parent_path()));
-  }
-  for (const TableReader& constraint : table.tables("constraints"))
+  for (const TableReader& body : table.tables("bodies")) bodies.push_back(body.name());
+  for (const TableReader& body : table.tables("bodies"))
+    if (body.usable()) scene.bodies.push_back(read_body(body, materials, bodies, path.parent_path()));
+  for (const TableReader& constraint : table.tables("constraints")) {
     scene.constraints.push_back(read_constraint(constraint, bodies));
+    check_model(constraint, scene.constraints.back(), scene.bodies);
+  }
   for (const TableReader& load : table.tables("loads")) scene.loads.push_back(read_load(load, bodies));
+  for (const TableReader& coupling : table.tables("couplings"))
+    scene.couplings.push_back(read_coupling(coupling, bodies));
+  check_circles(scene.bodies, table.diagnostics());
+  check_surfaces(scene, bodies, table.diagnostics());
   scene.solver = read_solver(table, bodies);
   const std::optional<SolverKind> kind = read_solver_kind(table);
-  for (const TableReader& probe : table.tables("probes")) scene.probes.push_back(read_probe(probe, bodies, kind));
+  for (const TableReader& probe : table.tables("probes")) {
+    scene.probes.push_back(read_probe(probe, bodies, kind));
+    check_model(probe, scene.probes.back(), scene.bodies);
+  }
   const bool shells =
       scene.bodies.size() < bodies.size() || std::any_of(scene.bodies.begin(), scene.bodies.end(), is_shell);
   scene.output = read_output(table, path.stem().string(), kind, shells);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace fascia::app {
 namespace {
@@ -117,6 +118,15 @@ std::string read_body_name(const TableReader& table, const std::vector<std::stri
   if (std::find(bodies.begin(), bodies.end(), *name) == bodies.end())
     table.error("body", unknown_name("body", *name, bodies));
   return *name;
+}
+
+void check_other_body(const std::string& name, const Place& place, const std::string& own,
+                      const std::vector<std::string>& bodies, Diagnostics& diagnostics) {
+  if (name == own) return diagnostics.add(place, "is the body itself; must be another one");
+  std::vector<std::string> others;
+  std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(others), [&](const auto& b) { return b != own; });
+  if (std::find(others.begin(), others.end(), name) == others.end())
+    diagnostics.add(place, unknown_name("body", name, others));
 }
 
 Constraint read_constraint(const TableReader& table, const std::vector<std::string>& bodies) {

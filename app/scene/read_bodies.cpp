@@ -94,7 +94,8 @@ void read_young(const TableReader& table, Material& material) {
 std::optional<BodyModel> read_model(const TableReader& body) {
   const auto word = body.text("model");
   if (!word) return std::nullopt;
-  for (const BodyModel model : {BodyModel::tetrahedra, BodyModel::hexahedra, BodyModel::shell})
+  for (const BodyModel model :
+       {BodyModel::tetrahedra, BodyModel::hexahedra, BodyModel::shell, BodyModel::rigid, BodyModel::surface})
     if (*word == app::word(model)) return model;
   return BodyModel::meshless;
 }
@@ -110,12 +111,34 @@ void check_thin_laws(const TableReader& table, const Body& body) {
                               "\"st-venant-kirchhoff\"");
 }
 
-void read_meshless(const TableReader& table, const std::filesystem::path& folder, Body& body) {
+void read_meshless(const TableReader& table, const std::vector<std::string>& bodies,
+                   const std::filesystem::path& folder, Body& body) {
   refuse_element_keys(table);
   if (!table.has("frames")) table.error("frames", "is missing; must be " + in_words(frames_schema()));
   read_section(table, body);
-  read_discretisation(table, folder, body);
+  read_discretisation(table, bodies, folder, body);
   check_thin_laws(table, body);
+}
+
+/// What a body is made of.
+void check_matter(const TableReader& table, const Body& body) {
+  if (!is_carrier(body)) {
+    table.refuse({"inertia"}, unused_by(body.model));
+    if (!table.has("material")) table.error("material", "is missing; must be " + in_words(body_material_schema()));
+  }
+  const bool weighs = body.model != BodyModel::surface;
+  const bool of_inertia = body.model == BodyModel::rigid && table.has("inertia");  // asks for a mass by itself
+  if (weighs && !of_inertia && !table.has("mass") && !table.has("density"))
+    table.error("mass or density is missing; give exactly one");
+}
+
+/// The keys of the body's model.
+void read_model_keys(const TableReader& table, const std::vector<std::string>& bodies,
+                     const std::filesystem::path& folder, Body& body) {
+  if (is_carrier(body)) return read_carrier(table, body);
+  if (is_shell(body)) return read_shell(table, body);
+  if (is_mesh_model(body)) return read_elements(table, body);
+  read_meshless(table, bodies, folder, body);
 }
 
 }  // namespace
@@ -161,12 +184,13 @@ std::vector<TableReader> read_choices(const TableReader& table, std::string_view
   return choices;
 }
 
-Body read_body(const TableReader& table, const Materials& materials, const std::filesystem::path& folder) {
+Body read_body(const TableReader& table, const Materials& materials, const std::vector<std::string>& bodies,
+               const std::filesystem::path& folder) {
   Body body;
   body.place = table.place();
   body.name = table.name();
   body.domain_place = table.place("domain");
-  body.domain = read_domain(table.table("domain"), folder);
+  body.domain = read_domain(table, bodies, folder);
   body.transform = read_transform(table.table("transform"));
   body.materials = read_material_uses(table, materials);
   body.mass = table.number("mass");
@@ -175,9 +199,10 @@ Body read_body(const TableReader& table, const Materials& materials, const std::
   body.frames_place = body.points_place = body.weights_place = body.place;
   body.cells_place = body.domain_place;
   body.model = model.value_or(BodyModel::meshless);
-  if (model == BodyModel::meshless) read_meshless(table, folder, body);
-  if (model && is_mesh_model(body)) read_elements(table, body);
-  if (model && is_shell(body)) read_shell(table, body);
+  if (model) {
+    read_model_keys(table, bodies, folder, body);
+    check_matter(table, body);
+  }
   body.initial = read_initial(table.table("initial"));
   if (table.has("fluid")) body.fluid = read_fluid(table.table("fluid"));
   return body;

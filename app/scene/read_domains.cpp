@@ -103,13 +103,45 @@ FileDomain read_file(const TableReader& domain, const std::filesystem::path& fol
   return {folder / name};
 }
 
+BetweenDomain read_between(const TableReader& body, const std::vector<std::string>& known) {
+  const TableReader domain = body.table("domain");
+  BetweenDomain between;
+  const Array& names = *domain.value("between")->as_array();
+  for (std::size_t i = 0; i < 2; ++i) {
+    between.bodies[i] = *names[i].as_string();
+    between.places[i] = domain.diagnostics().place(names[i].position, join(domain.path_of("between"), i));
+    check_other_body(between.bodies[i], between.places[i], body.name(), known, domain.diagnostics());
+  }
+  if (between.bodies[0] == between.bodies[1] && between.bodies[0] != body.name())
+    domain.diagnostics().add(between.places[1], "is the same body again; must be another one");
+  between.where = read_region(domain, "where");
+  const auto as = domain.text("as");
+  if (as == "sheet") between.as = BetweenKind::sheet;
+  if (as == "strands") between.as = BetweenKind::strands;
+  body.refuse({"transform"}, "is not used by the space between two bodies, which is where they are");
+  return between;
+}
+
 void require(const TableReader& table, const char* key, const char* message) {
   if (!table.has(key)) table.error(key, message);
 }
 
+/// The section of what lies between two bodies.
+void check_between_section(const TableReader& body, Extent extent) {
+  if (extent != Extent::surface) body.refuse({"thickness"}, "is used only with as = \"sheet\"");
+  if (extent != Extent::line) body.refuse({"radius"}, "is used only with as = \"strands\"");
+  if (extent == Extent::surface)
+    require(body, "thickness", "is missing for as = \"sheet\"; must be a length in m above 0, or a list by region");
+  if (extent == Extent::line) require(body, "radius", "is missing for as = \"strands\"; must be a length in m above 0");
+}
+
 }  // namespace
 
-Domain read_domain(const TableReader& domain, const std::filesystem::path& folder) {
+Domain read_domain(const TableReader& body, const std::vector<std::string>& bodies,
+                   const std::filesystem::path& folder) {
+  const TableReader domain = body.table("domain");
+  if (domain.value("between")) return read_between(body, bodies);
+  if (!domain.has("between")) domain.refuse({"where", "as"}, "is used only with between");
   if (domain.value("file")) return read_file(domain, folder);
   if (domain.value("block")) return read_block(domain.table("block"));
   if (domain.value("cylinder")) return read_cylinder(domain.table("cylinder"));
@@ -137,6 +169,11 @@ std::vector<ThicknessUse> read_thickness(const TableReader& body) {
 
 std::optional<Extent> read_extent(const TableReader& body) {
   const TableReader domain = body.table("domain");
+  if (domain.value("between")) {
+    const std::string as = domain.text("as").value_or(domain.has("as") ? "" : "volume");
+    if (as.empty()) return std::nullopt;
+    return as == "sheet" ? Extent::surface : as == "strands" ? Extent::line : Extent::solid;
+  }
   if (domain.has("rectangle")) return Extent::surface;
   if (domain.has("line")) return Extent::line;
   if (domain.has("file")) return body.has("thickness") || body.has("radius") ? Extent::thin_mesh : Extent::solid;
@@ -151,6 +188,7 @@ void read_section(const TableReader& table, Body& body) {
   body.thickness = read_thickness(table);
   body.radius = table.number("radius");
   const std::optional<Extent> extent = read_extent(table);
+  if (extent && table.table("domain").has("between")) return check_between_section(table, *extent);
   if (extent == Extent::solid) table.refuse({"thickness", "radius"}, "is not used by a solid");
   if (extent == Extent::surface) {
     require(table, "thickness", "is missing for a rectangle; must be a length in m above 0, or a list by region");

@@ -51,6 +51,8 @@ void read_mesh(const TableReader& domain, Body& body) {
       domain.error(thin, fmt::format("is no solid, which model = \"{}\" needs; must be box, block, cylinder, "
                                      "ellipsoid, sphere or file",
                                      word(body.model)));
+  if (domain.has("between"))
+    domain.error("between", "is for meshless bodies; must be box, block, cylinder, ellipsoid, sphere or file");
   if (const char* kind = generated_kind(domain)) read_cells(domain.table(kind), kind, body);
 }
 
@@ -91,6 +93,10 @@ const char* word(BodyModel model) {
       return "hexahedra";
     case BodyModel::shell:
       return "shell";
+    case BodyModel::rigid:
+      return "rigid";
+    case BodyModel::surface:
+      return "surface";
   }
   return "";
 }
@@ -125,10 +131,11 @@ void refuse_element_keys(const TableReader& table) {
   table.refuse({"formulation", "order", "incompressibility", "locking"}, unused);
   const TableReader domain = table.table("domain");
   if (domain.has("block"))
-    return domain.error("block",
-                        "is for mesh models; must be box, cylinder, ellipsoid, sphere, file, rectangle or line");
+    return domain.error(
+        "block", "is for other models; must be box, cylinder, ellipsoid, sphere, file, rectangle, line or between");
   if (domain.has("annulus"))
-    return domain.error("annulus", "is for shells; must be box, cylinder, ellipsoid, sphere, file, rectangle or line");
+    return domain.error(
+        "annulus", "is for other models; must be box, cylinder, ellipsoid, sphere, file, rectangle, line or between");
   if (const char* kind = generated_kind(domain)) domain.table(kind).refuse({"cells", "split"}, unused);
   domain.table("rectangle").refuse({"cells"}, unused);
   refuse_shell_keys(table);

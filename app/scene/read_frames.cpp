@@ -36,7 +36,12 @@ std::optional<std::vector<int>> read_per_direction(const TableReader& table, std
   return std::nullopt;
 }
 
-GridFrames read_grid(const TableReader& frames, std::optional<Extent> extent) {
+/// @param between  the domain is the space between two bodies
+GridFrames read_grid(const TableReader& frames, std::optional<Extent> extent, bool between) {
+  if (between) {
+    frames.error("grid", "cannot fill the space between two bodies; use poisson_disk or count");
+    return {};
+  }
   if (extent == Extent::thin_mesh) {
     frames.error("grid",
                  "cannot fill sheets and lines of a mesh (thickness or radius is given); use poisson_disk or count");
@@ -81,17 +86,32 @@ Place place_of_first(const TableReader& table, std::initializer_list<const char*
   return table.exists() ? table.place() : otherwise;
 }
 
-void read_frames(const TableReader& frames, const std::filesystem::path& folder, std::optional<Extent> extent,
-                 Body& body) {
+std::vector<SharedNodes> read_shares(const TableReader& frames, const std::vector<std::string>& bodies,
+                                     const std::string& own) {
+  std::vector<SharedNodes> shares;
+  for (const TableReader& share : frames.tables("share")) {
+    const std::string body = share.text("body").value_or("");
+    if (share.value("body")) check_other_body(body, share.place("body"), own, bodies, share.diagnostics());
+    shares.push_back({share.place(), share.place("body"), body, read_region(share, "where"),
+                      share.boolean("rotations").value_or(true)});
+  }
+  return shares;
+}
+
+/// @param bodies  names of all bodies
+/// @param between  the domain is the space between two bodies
+void read_frames(const TableReader& frames, const std::vector<std::string>& bodies, const std::filesystem::path& folder,
+                 std::optional<Extent> extent, bool between, Body& body) {
   body.frames_place = place_of_first(frames, {"grid", "poisson_disk", "count", "positions", "file"}, body.place);
   body.affine = frames.text("kind") == "affine";
   if (!frames.has("positions")) frames.refuse({"rotations"}, "is used only with positions");
   Frames otherwise = GridFrames{};
   if (frames.has("grid"))
-    otherwise = read_grid(frames, extent);
+    otherwise = read_grid(frames, extent, between);
   else if (frames.has("positions"))
     otherwise = read_list(frames);
   body.frames = read_scattered<Frames>(frames, folder, 1, std::move(otherwise));
+  if (frames.has("share")) body.shares = read_shares(frames, bodies, body.name);
 }
 
 void check_points(const TableReader& points, std::optional<Extent> extent, std::optional<Layout> layout) {
@@ -191,12 +211,15 @@ void read_weights(const TableReader& weights, std::optional<Extent> extent, std:
 
 }  // namespace
 
-void read_discretisation(const TableReader& table, const std::filesystem::path& folder, Body& body) {
+void read_discretisation(const TableReader& table, const std::vector<std::string>& bodies,
+                         const std::filesystem::path& folder, Body& body) {
   const TableReader frames = table.table("frames");
+  const bool between = table.table("domain").value("between") != nullptr;
   const std::optional<Extent> extent = read_extent(table);
   std::optional<Layout> layout = layout_of(frames);
-  read_frames(frames, folder, extent, body);
-  if (extent == Extent::thin_mesh && layout == Layout::grid) layout.reset();  // reported; what goes with it is open
+  read_frames(frames, bodies, folder, extent, between, body);
+  const bool takes_grid = extent != Extent::thin_mesh && !between;
+  if (!takes_grid && layout == Layout::grid) layout.reset();  // reported; what goes with it is open
   read_weights(table.table("weights"), extent, layout, body);
   const bool sheets = extent == Extent::surface || (extent == Extent::thin_mesh && table.has("thickness"));
   read_points(table.table("points"), folder, extent, layout, sheets, body);

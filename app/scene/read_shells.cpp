@@ -37,12 +37,15 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
   if (!shape.has("cells")) {
     const Shape domain = domain_schema();
     const Shape& item = domain.find(kind)->shape.find("cells")->shape.items.front();
-    shape.error("cells", "is missing for model = \"shell\"; must be " + in_words(array(item, numbers, numbers)));
+    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}", word(body.model),
+                                     in_words(array(item, numbers, numbers))));
   }
   const auto count = shape.integers("cells");
   if (!count) return;
   if (count->size() != numbers)
-    return shape.error("cells", "has two numbers, as of a solid; must be one for model = \"shell\", the cells around");
+    return shape.error("cells", fmt::format("has two numbers, as of a solid; must be one for model = \"{}\", the cells "
+                                            "around",
+                                            word(body.model)));
   if (round) check_around(shape, 0);
   const double cells = round ? 0.25 * (*count)[0] * (*count)[0] : 1.0 * (*count)[0] * (*count)[1];
   if (cells > most) shape.error("cells", fmt::format("asks for about {:.3g} cells; must be at most {}", cells, most));
@@ -62,6 +65,10 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
 
 }  // namespace
 
+void read_skin(const TableReader& domain, Body& body) {
+  if (const char* kind = generated_surface(domain)) read_cells(domain.table(kind), kind, body);
+}
+
 void read_shell(const TableReader& table, Body& body) {
   table.refuse({"frames", "points", "weights", "radius", "formulation", "order", "incompressibility", "locking"},
                unused_by(body.model));
@@ -71,7 +78,9 @@ void read_shell(const TableReader& table, Body& body) {
       domain.error(other,
                    "is no surface, which model = \"shell\" needs; must be rectangle, annulus, cylinder, "
                    "ellipsoid, sphere or file");
-  if (const char* kind = generated_surface(domain)) read_cells(domain.table(kind), kind, body);
+  if (domain.has("between"))
+    domain.error("between", "is for meshless bodies; must be rectangle, annulus, cylinder, ellipsoid, sphere or file");
+  read_skin(domain, body);
   body.thickness_place = table.place("thickness");
   body.thickness = read_thickness(table);
   if (!table.has("thickness"))
@@ -86,7 +95,7 @@ void read_shell(const TableReader& table, Body& body) {
 void refuse_shell_keys(const TableReader& table) {
   const TableReader domain = table.table("domain");
   domain.table("cylinder").refuse({"diagonal", "angle", "closed", "caps"}, "is not used by a solid");
-  domain.table("rectangle").refuse({"diagonal"}, "is only for shells");
+  domain.table("rectangle").refuse({"diagonal"}, "is not used by frames");
 }
 
 }  // namespace fascia::app

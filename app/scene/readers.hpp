@@ -23,9 +23,13 @@ Material read_material(const TableReader& table);
 using Materials = std::map<std::string, Material>;
 Materials read_materials(const TableReader& scene);
 
+/// @param bodies  names of all bodies
 /// @param folder  to which paths in the scene are relative
-Body read_body(const TableReader& table, const Materials& materials, const std::filesystem::path& folder);
-Domain read_domain(const TableReader& table, const std::filesystem::path& folder);
+Body read_body(const TableReader& table, const Materials& materials, const std::vector<std::string>& bodies,
+               const std::filesystem::path& folder);
+/// The key `domain` of a body.
+Domain read_domain(const TableReader& body, const std::vector<std::string>& bodies,
+                   const std::filesystem::path& folder);
 
 /// What a domain fills.
 enum class Extent {
@@ -44,8 +48,10 @@ std::vector<ThicknessUse> read_thickness(const TableReader& body);
 void read_section(const TableReader& table, Body& body);
 
 /// The keys `frames`, `weights` and `points` of a body.
+/// @param bodies  names of all bodies
 /// @param folder  to which paths in the scene are relative
-void read_discretisation(const TableReader& table, const std::filesystem::path& folder, Body& body);
+void read_discretisation(const TableReader& table, const std::vector<std::string>& bodies,
+                         const std::filesystem::path& folder, Body& body);
 
 /// What only tetrahedra and hexahedra take: the cells of their domain, the formulation and remedies.
 /// @param body  its model and materials are known
@@ -58,6 +64,13 @@ void refuse_element_keys(const TableReader& table);
 void read_shell(const TableReader& table, Body& body);
 /// Reports the keys of read_shell that the domain of another model has.
 void refuse_shell_keys(const TableReader& table);
+/// The triangles of a generated surface or skin: of a rectangle, annulus, cylinder, ellipsoid or sphere.
+/// @param body  its model and domain are known
+void read_skin(const TableReader& domain, Body& body);
+
+/// What rigid bodies and surfaces take: the triangles of their domain, the inertia. Reports what they do not take.
+/// @param body  its model and domain are known
+void read_carrier(const TableReader& table, Body& body);
 
 /// As the key `model` says it.
 const char* word(BodyModel model);
@@ -90,5 +103,20 @@ Output read_output(const TableReader& scene, const std::string& scene_name, std:
 
 /// The body that a table's key `body` names; empty where it names none, which is reported.
 std::string read_body_name(const TableReader& table, const std::vector<std::string>& bodies);
+/// Reports a name that is not that of another body than `own`.
+void check_other_body(const std::string& name, const Place& place, const std::string& own,
+                      const std::vector<std::string>& bodies, Diagnostics& diagnostics);
+
+Coupling read_coupling(const TableReader& table, const std::vector<std::string>& bodies);
+
+/// Reports bodies that need one another, by the nodes that they share and the space between bodies that they fill.
+void check_circles(const std::vector<Body>& bodies, Diagnostics& diagnostics);
+/// Reports surfaces that no coupling carries.
+/// @param names  of all bodies; couplings of others, which are reported elsewhere, may carry any surface
+void check_surfaces(const Scene& scene, const std::vector<std::string>& names, Diagnostics& diagnostics);
+/// Reports a constraint of a body that has nothing to hold.
+void check_model(const TableReader& table, const Constraint& constraint, const std::vector<Body>& bodies);
+/// Reports a probe of something that its body does not have.
+void check_model(const TableReader& table, const Probe& probe, const std::vector<Body>& bodies);
 
 }  // namespace fascia::app

@@ -108,6 +108,7 @@ Key output_schema();
 
 // Parts that several sections share.
 const Shape& material_schema();
+Shape body_material_schema();
 const Shape& profile_schema();
 Shape domain_schema();
 Shape frames_schema();

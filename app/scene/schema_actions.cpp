@@ -69,6 +69,23 @@ Shape load_schema() {
       {{{"where", "at"}}});
 }
 
+Shape coupling_schema() {
+  return table(
+      {key("kind",
+           choice({{"weld", "The nodes are fixed in the nearest frames of another body."},
+                   {"embed", "The nodes are embedded in the field of another body."},
+                   {"spring", "Springs run from the nodes to a point of space."}}),
+           "What holds the nodes.")
+           .needed(),
+       key("body", text("the name of a body"), "The body whose nodes are held.").needed(),
+       key("where", region(), "Its nodes.").needed(),
+       key("to", text("the name of a body"), "The other body; for `weld` and `embed`, which need it."),
+       key("point", vector3("m"), "Where the springs end; for `spring`, which needs it."),
+       key("stiffness", number("N/m", above(0)), "Of all the nodes' springs together; for `spring`, which needs it."),
+       key("direction", vector3("1"), "The springs resist displacements along this direction alone; for `spring`.")
+           .defaults("they resist a change of their length")});
+}
+
 }  // namespace
 
 Key constraints_schema() {
@@ -77,8 +94,9 @@ Key constraints_schema() {
 Key loads_schema() { return key("loads", array(load_schema()), "Forces and torques, one `[[loads]]` each."); }
 
 Key couplings_schema() {
-  const Shape coupling = table({key("kind", choice({{"weld", ""}, {"embed", ""}, {"spring", ""}}), "Kind.")});
-  return key("couplings", named_tables(coupling, true), "Welds, embeddings and springs between bodies.").not_yet();
+  return key("couplings", named_tables(coupling_schema(), true),
+             "Welds and embeddings of bodies in others, and springs. Names: letters, digits, _ and -, not those of "
+             "bodies.");
 }
 
 }  // namespace fascia::app

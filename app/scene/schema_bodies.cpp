@@ -7,14 +7,6 @@ Shape region() { return reference("region", region_schema); }
 
 Shape material() { return reference("material", material_schema); }
 
-Shape body_material() {
-  const Shape part =
-      table({key("where", region(), "Points or cells that take this material.").defaults("\"all\""),
-             key("use", one_of({text("the name of a material"), material()}), "Name of a material, or an inline table.")
-                 .needed()});
-  return one_of({text("the name of a material"), material(), array(part, 1)});
-}
-
 Shape thickness() {
   const Shape part = table({key("where", region(), "Points or triangles that take this thickness.").defaults("\"all\""),
                             key("value", number("m", above(0)), "The thickness.").needed()});
@@ -53,7 +45,10 @@ Shape model_schema() {
                  {"tetrahedra", "Finite elements; 3 degrees of freedom a node."},
                  {"hexahedra", "Finite elements; 3 degrees of freedom a node."},
                  {"shell", "Triangles with thickness; 6 degrees of freedom a node."},
-                 {"rigid", "One frame that carries a surface.", false}});
+                 {"rigid", "One frame, of 6 degrees of freedom, that carries a surface: bone, instrument."},
+                 {"surface",
+                  "A surface without matter that rides on other bodies through couplings: for display, probes and "
+                  "loads."}});
 }
 
 /// Keys of tetrahedra and hexahedra alone.
@@ -79,12 +74,13 @@ std::vector<Key> element_keys() {
 Shape body_schema() {
   std::vector<Key> keys{
       key("model", model_schema(), "How the body is discretised.").needed(),
-      key("domain", domain_schema(), "The space, surface or line that the body fills.").needed(),
-      key("mass", number("kg", above(0)), "Mass of the whole body."),
-      key("density", number("kg/m3", above(0)), "Mass of a volume."),
-      key("material", body_material(),
-          "Name, inline table, or a list of which the first that selects a point or a cell's centre counts.")
-          .needed(),
+      key("domain", domain_schema(), "The space, surface or line that the body fills or carries.").needed(),
+      key("mass", number("kg", above(0)),
+          "Mass of the whole body. All but `model = \"surface\"` need it or `density`."),
+      key("density", number("kg/m3", above(0)), "Mass of a volume; of a rigid body what its closed surface encloses."),
+      key("material", body_material_schema(),
+          "Name, inline table, or a list of which the first that selects a point or a cell's centre counts. Needed by "
+          "all but `model = \"rigid\"` and `\"surface\"`."),
       key("frames", frames_schema(), "The frames of a meshless body, which needs them."),
       key("points", points_schema(), "The integration points of a meshless body."),
       key("weights", weights_schema(), "The weight functions of a meshless body."),
@@ -94,14 +90,25 @@ Shape body_schema() {
           "Thickness of a shell, which needs it, or of a meshless sheet: of a rectangle, or of a file's triangles that "
           "bound no solid. A value, or a list of which the first that selects a point or a triangle's centre counts."),
       key("radius", number("m", above(0)), "Radius of a meshless line, or of a file's lines."),
-      key("inertia", array(vector3("kg m2"), 3, 3), "Inertia of a rigid body.").not_yet(),
+      key("inertia", array(vector3("kg m2"), 3, 3),
+          "Inertia of a rigid body about its mass centre, by rows, along the global axes after `transform`; beside "
+          "`mass`.")
+          .defaults("of the mass spread evenly over the volume, or over an open surface"),
       key("fluid", fluid_schema(), "What fills a closed body: its cavities, or all that its surface encloses.")};
   const std::vector<Key> elements = element_keys();
   keys.insert(keys.end(), elements.begin(), elements.end());
-  return table(std::move(keys), {{{"mass", "density"}}}, "model");
+  return table(std::move(keys), {{{"mass", "density"}, false}}, "model");
 }
 
 }  // namespace
+
+Shape body_material_schema() {
+  const Shape part =
+      table({key("where", region(), "Points or cells that take this material.").defaults("\"all\""),
+             key("use", one_of({text("the name of a material"), material()}), "Name of a material, or an inline table.")
+                 .needed()});
+  return one_of({text("the name of a material"), material(), array(part, 1)});
+}
 
 const Shape& material_schema() {
   static const Shape material = table(

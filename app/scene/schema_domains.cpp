@@ -3,21 +3,25 @@
 namespace fascia::app {
 namespace {
 
+/// Cells of a solid, of which rigid bodies and surfaces take the skin.
 Key cells(std::size_t count, const std::string& meaning) {
   return key("cells", array(integer(between(1, 10000)), count, count),
-             meaning + " Needed by `model = \"tetrahedra\"` and `\"hexahedra\"`, refused by others.");
+             meaning + " Needed by `model = \"tetrahedra\"` and `\"hexahedra\"`, refused by `\"meshless\"`.")
+      .defaults("1 each for `\"rigid\"` and `\"surface\"`");
 }
 
 Key surface_cells(const std::string& meaning) {
   return key("cells", array(integer(between(1, 10000)), 2, 2),
-             meaning + " Needed by `model = \"shell\"`, refused by others.");
+             meaning + " Needed by `model = \"shell\"`, `\"rigid\"` and `\"surface\"`, refused by others.");
 }
 
 /// Cells of a domain that is a solid or its skin.
 Key solid_or_skin_cells(std::size_t least, const std::string& meaning) {
   return key("cells", array(integer(between(1, 10000)), least, 2),
-             meaning + " Needed by `model = \"tetrahedra\"`, `\"hexahedra\"` and `\"shell\"`, refused by others.");
+             meaning + " Needed by all models but `\"meshless\"`, which refuses them.");
 }
+
+std::string skin_models() { return "`model = \"shell\"`, `\"rigid\"` and `\"surface\"`."; }
 
 Key diagonal() {
   return key("diagonal",
@@ -25,7 +29,8 @@ Key diagonal() {
                      {"left", "From the lower right corner to the upper left."},
                      {"alternating", "Both in turn, as on a chessboard."}}),
              "What cuts a cell into two triangles, seen with its first direction to the right, its second up and the "
-             "normal to the viewer. Only for `model = \"shell\"`.")
+             "normal to the viewer. Only for " +
+                 skin_models())
       .defaults("\"right\"");
 }
 
@@ -33,13 +38,14 @@ Key angle(const char* about) {
   return key("angle", array(number("rad"), 2, 2),
              std::string("Where a sector begins and ends, ascending, about ") + about +
                  "; 0 is along the coordinate axis that follows the one nearest to it: x about z, y about x, z about "
-                 "y. Only for `model = \"shell\"`.")
+                 "y. Only for " +
+                 skin_models())
       .defaults("a whole turn");
 }
 
 Key closed() {
   return key("closed", boolean(),
-             "Whether the two edges of a whole turn are one; `false`: a slit. Only for `model = \"shell\"`.")
+             "Whether the two edges of a whole turn are one; `false`: a slit. Only for " + skin_models())
       .defaults("true for a whole turn");
 }
 
@@ -69,7 +75,7 @@ Shape cylinder() {
                 key("radius", number("m", above(0)), "Radius.").needed(),
                 solid_or_skin_cells(2, "Cells along the axis and around it; around a solid a multiple of 4."),
                 diagonal(), angle("the axis from `from` to `to`"), closed(),
-                key("caps", boolean(), "Flat disks that close both ends of the skin. Only for `model = \"shell\"`.")
+                key("caps", boolean(), "Flat disks that close both ends of the skin. Only for " + skin_models())
                     .defaults("true for a closed skin")});
 }
 
@@ -112,23 +118,34 @@ Shape line() {
 
 Shape domain_schema() {
   return table(
-      {key("box", box(), "An axis-aligned box."),
-       key("block", block(), "A tapered block between eight corners; for tetrahedra and hexahedra."),
-       key("cylinder", cylinder(), "A solid cylinder; for shells its skin."),
-       key("ellipsoid", ellipsoid(), "A solid ellipsoid; for shells its skin."),
-       key("sphere", sphere(), "A solid ball; for shells its skin."),
+      {key("box", box(), "An axis-aligned box; for rigid bodies and surfaces its skin."),
+       key("block", block(),
+           "A tapered block between eight corners; for tetrahedra and hexahedra, and its skin for rigid bodies and "
+           "surfaces."),
+       key("cylinder", cylinder(), "A solid cylinder; for shells, rigid bodies and surfaces its skin."),
+       key("ellipsoid", ellipsoid(), "A solid ellipsoid; for shells, rigid bodies and surfaces its skin."),
+       key("sphere", sphere(), "A solid ball; for shells, rigid bodies and surfaces its skin."),
        key("file", text("a path"),
            "A mesh: Gmsh 2.2 or 4.1, VTK legacy, VTU, STL, OBJ or PLY. Closed surfaces and volume cells are solids; "
            "with "
-           "`thickness`, triangles that bound no solid are sheets; with `radius`, its lines are lines. A shell takes "
-           "the triangles, or the boundary of volume cells where there are none. The path is relative to the scene "
-           "file."),
-       key("rectangle", rectangle(), "A flat sheet between two edges; the body needs `thickness`."),
-       key("annulus", annulus(), "A flat ring or a sector of it; for shells."),
+           "`thickness`, triangles that bound no solid are sheets; with `radius`, its lines are lines. A shell, a "
+           "rigid body or a surface takes the triangles, or the boundary of volume cells where there are none. The "
+           "path "
+           "is relative to the scene file."),
+       key("rectangle", rectangle(), "A flat sheet between two edges; a meshless body or a shell needs `thickness`."),
+       key("annulus", annulus(), "A flat ring or a sector of it; for shells, rigid bodies and surfaces."),
        key("line", line(), "A straight line; the body needs `radius`."),
-       key("between", array(text(), 2, 2), "The space between the surfaces of two bodies.").not_yet(),
-       key("where", reference("region", region_schema), "Parts of the surfaces of `between`.").not_yet(),
-       key("as", choice({{"volume", ""}, {"sheet", ""}, {"strands", ""}}), "What `between` becomes.").not_yet()},
+       key("between", array(text("the name of a body"), 2, 2),
+           "Two bodies: the space between their surfaces, for a meshless body of scattered frames. It is where the "
+           "bodies are, so the body has no `transform`."),
+       key("where", reference("region", region_schema), "The parts of both surfaces that `between` connects.")
+           .defaults("\"all\""),
+       key("as",
+           choice({{"volume", "All of the space."},
+                   {"sheet", "A membrane from the middle of one part to that of the other; needs `thickness`."},
+                   {"strands", "Straight strands from one part to the nearest points of the other; need `radius`."}}),
+           "What fills the space of `between`.")
+           .defaults("\"volume\"")},
       {{{"box", "block", "cylinder", "ellipsoid", "sphere", "file", "rectangle", "annulus", "line", "between"}}});
 }
 

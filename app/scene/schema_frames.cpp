@@ -13,8 +13,12 @@ Key seed_key(const char* otherwise) {
 
 Shape share_schema() {
   const Shape region = reference("region", region_schema);
-  return array(table({key("body", text("the name of a body"), "The other body."), key("where", region, "Its nodes."),
-                      key("rotations", boolean(), "Give vertices a rotation.")}));
+  return array(
+      table({key("body", text("the name of a body"), "The other body.").needed(),
+             key("where", region, "Its nodes; of a rigid body the vertices of its surface.").defaults("\"all\""),
+             key("rotations", boolean(),
+                 "Whether shared vertices, which have no rotation of their own, get one that only this body drives.")
+                 .defaults("true")}));
 }
 
 std::vector<Choice> weight_choices() {
@@ -45,7 +49,9 @@ Shape frames_schema() {
        key("kind", choice({{"rigid", "6 degrees of freedom a frame."}, {"affine", "12 degrees of freedom a frame."}}),
            "Kind of frame.")
            .defaults("\"rigid\""),
-       key("share", share_schema(), "Nodes of other bodies that are frames of this one too.").not_yet()},
+       key("share", share_schema(),
+           "Nodes of other bodies that are frames of this one too, which couples them; beside any of the keys above.")
+           .defaults("none")},
       {{{"grid", "poisson_disk", "count", "positions", "file"}}});
 }
 

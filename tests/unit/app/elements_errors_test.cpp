@@ -60,8 +60,8 @@ TEST(ElementErrors, MeshlessBodiesTakeNoKeysOfElements) {
       errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
                           "block = { corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, "
                           "1], [1, 1, 1], [0, 1, 1]], cells = [1, 1, 1] }")),
-      "a.toml:6:20: bodies.beam.domain.block: is for mesh models; must be box, cylinder, ellipsoid, sphere, file, "
-      "rectangle or line");
+      "a.toml:6:20: bodies.beam.domain.block: is for other models; must be box, cylinder, ellipsoid, sphere, file, "
+      "rectangle, line or between");
 }
 
 TEST(ElementErrors, Values) {
@@ -86,7 +86,7 @@ TEST(ElementErrors, Values) {
             "a.toml:9:1: bodies.block.lokcing: is no known key; did you mean \"locking\"?");
   EXPECT_EQ(errors_of(mesh_body("tetrahedron", meshed_box)),
             "a.toml:5:9: bodies.block.model: \"tetrahedron\" is no known value; must be \"meshless\", \"tetrahedra\", "
-            "\"hexahedra\" or \"shell\" (did you mean \"tetrahedra\"?)");
+            "\"hexahedra\", \"shell\", \"rigid\" or \"surface\" (did you mean \"tetrahedra\"?)");
 }
 
 TEST(ElementErrors, RemediesBelongToTetrahedra) {
@@ -167,7 +167,7 @@ TEST(ElementErrors, CellsAreNeeded) {
             "a.toml:6:73: bodies.block.domain.ellipsoid.cells: asks for about 1.3e+07 cells; must be at most 10000000");
   EXPECT_EQ(errors_of_domain("file = \"a.msh\", cells = [1, 1, 1]"),
             "a.toml:6:28: bodies.block.domain.cells: is no known key; known here: box, block, cylinder, ellipsoid, "
-            "sphere, file, rectangle, annulus, line");
+            "sphere, file, rectangle, annulus, line, between, where, as");
 }
 
 TEST(ElementErrors, CellsAround) {

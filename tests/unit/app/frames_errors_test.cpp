@@ -75,9 +75,9 @@ TEST(ThinBodyErrors, ValuesOfThickness) {
 
 TEST(ThinBodyErrors, AWrongDomainIsTheOnlyError) {
   EXPECT_EQ(
-      errors_of_domain("between = [\"a\", \"b\"]"),
-      "a.toml:6:22: bodies.skin.domain.between: is not supported yet; must be box, block, cylinder, ellipsoid, sphere, "
-      "file, rectangle, annulus or line");
+      errors_of_domain("between = [\"a\"]"),
+      "a.toml:6:22: bodies.skin.domain.between: a list of 1 is of the wrong length; must be a list of 2, each the name "
+      "of a body");
 }
 
 TEST(FrameErrors, GridsHaveANumberForEachDirection) {

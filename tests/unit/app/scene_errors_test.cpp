@@ -92,7 +92,7 @@ TEST(SceneErrors, WrongTypes) {
             "a.toml:9:23: bodies.beam.frames.grid[1]: 2.0 is of the wrong type; must be a whole number from 2 to 1000");
   EXPECT_EQ(errors_of(beam_with("\"meshless\"", "2020-01-01")),
             "a.toml:5:9: bodies.beam.model: a date is of the wrong type; must be \"meshless\", \"tetrahedra\", "
-            "\"hexahedra\" or \"shell\"");
+            "\"hexahedra\", \"shell\", \"rigid\" or \"surface\"");
   EXPECT_EQ(
       errors_of_beam("[world]\ngravity = 9.81\n"),
       "a.toml:11:11: world.gravity: 9.81 is of the wrong type; must be a list of 3, each an acceleration in m/s2");
@@ -102,17 +102,8 @@ TEST(SceneErrors, WrongTypes) {
 }
 
 TEST(SceneErrors, NotSupportedYet) {
-  EXPECT_EQ(errors_of(beam_with("\"meshless\"", "\"rigid\"")),
-            "a.toml:5:9: bodies.beam.model: \"rigid\" is not supported yet; must be \"meshless\", \"tetrahedra\", "
-            "\"hexahedra\" or \"shell\"");
-  EXPECT_EQ(errors_of_beam("inertia = []\n"), "a.toml:10:11: bodies.beam.inertia: is not supported yet; remove it");
-  EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }", "between = [\"a\", \"b\"]")),
-            "a.toml:6:22: bodies.beam.domain.between: is not supported yet; must be box, block, cylinder, ellipsoid, "
-            "sphere, file, rectangle, annulus or line");
-  EXPECT_EQ(errors_of(beam_with("[5, 2, 2] }", "[5, 2, 2], share = [] }")),
-            "a.toml:9:38: bodies.beam.frames.share: is not supported yet; remove it");
-  EXPECT_EQ(errors_of_beam("[couplings.a]\nkind = \"weld\"\n"),
-            "a.toml:10:1: couplings: is not supported yet; remove it");
+  EXPECT_EQ(errors_of_beam("[solver]\nkind = \"static\"\nprecision = \"single\"\n"),
+            "a.toml:12:13: solver.precision: \"single\" is not supported yet; must be \"double\"");
 }
 
 TEST(SceneErrors, ValuesThatExcludeOneAnother) {
