@@ -23,6 +23,16 @@ struct Wrench {
     force += f;
     moment += cross(x, f) + torque;
   }
+  Wrench& operator+=(const Wrench& o) {
+    force += o.force;
+    moment += o.moment;
+    return *this;
+  }
+  Wrench& operator-=(const Wrench& o) {
+    force -= o.force;
+    moment -= o.moment;
+    return *this;
+  }
 };
 
 nlohmann::json json_of(const Vec3d& v) {
@@ -30,12 +40,20 @@ nlohmann::json json_of(const Vec3d& v) {
   return {finite(v[0]), finite(v[1]), finite(v[2])};
 }
 
-nlohmann::ordered_json entry(const Wrench& w, double gap, double energy) {
-  return {{"force", json_of(w.force)}, {"moment", json_of(w.moment)}, {"gap", gap}, {"energy", energy}};
-}
-
 Vec3d place_of(const Simulation& s, const State& state, int node) {
   return s.model.rest_position[at(node)] + state.u[at(node)];
+}
+
+/// What a dependent node hands on to its hosts.
+Wrench handed_on(const Simulation& s, const MechanicalSystem& system, const State& state, std::size_t dependent) {
+  const double* f = system.dependent_forces().data() + 6 * dependent;
+  Wrench w;
+  w.add(place_of(s, state, s.model.points.dependents[dependent].node), {{f[0], f[1], f[2]}}, {{f[3], f[4], f[5]}});
+  return w;
+}
+
+nlohmann::ordered_json entry(const Wrench& w, double gap, double energy) {
+  return {{"force", json_of(w.force)}, {"moment", json_of(w.moment)}, {"gap", gap}, {"energy", energy}};
 }
 
 /// The body whose own node it is.
@@ -51,7 +69,7 @@ std::size_t owner_of(const Simulation& s, int node) {
 /// What a body's points do on a node that it shares.
 Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const MechanicalSystem& system, const State& state,
                int node) {
-  const NodeForce f = system.executor().group_force(tissue.body->first_group, tissue.body->group_count, node);
+  const auto f = system.executor().gradient_of_groups(tissue.body->first_group, tissue.body->group_count, node);
   Wrench w;
   const Mat3d Q = Mat3d::identity() + state.D[at(node)];
   const bool turns = s.model.kind(node) != FrameKind::vertex;
@@ -76,15 +94,13 @@ nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b
   for (std::size_t k = 0; k < dependents.size(); ++k) {
     const int node = dependents[k].node, own = node - b.body->first_node();
     if (own < 0 || own >= b.body->node_count()) continue;
-    const DependentForce& f = system.dependent_forces()[k];
-    partners[owner_of(s, dependents[k].hosts[0])].first.add(place_of(s, state, node), f.force * -1.0, f.torque * -1.0);
+    partners[owner_of(s, dependents[k].hosts[0])].first -= handed_on(s, system, state, k);
   }
   for (const int node : b.body->shared_nodes()) {
     const std::size_t owner = owner_of(s, node);
     const Wrench w = pull_on(s, b, system, state, node);
     auto& [sum, count] = partners[owner];
-    sum.force += w.force;
-    sum.moment += w.moment;
+    sum += w;
     ++count;
     gaps[owner] = std::max(gaps[owner], gap_at(s, b, state, node));
     gap = std::max(gap, gaps[owner]);
@@ -122,16 +138,15 @@ nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, c
     double energy = 0;
     for (const int index : built.springs) {
       const Spring& spring = s.model.points.springs[at(index)];
-      sum.add(place_of(s, state, spring.node), spring_force(spring, state.u[at(spring.node)]), {});
-      energy += spring_energy(spring, state.u[at(spring.node)]);
+      sum.add(place_of(s, state, spring.node), CpuExecutor::spring_force(spring, state), {});
+      energy += system.executor().spring_energy(index);
     }
     return entry(sum, 0, energy);
   }
   const std::vector<DependentNode>& dependents = s.model.points.dependents;
   for (std::size_t k = 0; k < dependents.size(); ++k) {
     if (!std::binary_search(built.nodes.begin(), built.nodes.end(), dependents[k].node)) continue;
-    const DependentForce& f = system.dependent_forces()[k];
-    sum.add(place_of(s, state, dependents[k].node), f.force, f.torque);
+    sum += handed_on(s, system, state, k);
   }
   return entry(sum, gap_of(s, c, built, state), 0);
 }

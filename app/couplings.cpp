@@ -19,9 +19,9 @@ namespace {
 std::string text(const Vec3d& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]); }
 
 /// Collects the nodes that depend on others, each with the coupling that made it.
-class DependentNodes {
+class Followers {
  public:
-  explicit DependentNodes(const Simulation& s) : s_(s) {
+  explicit Followers(const Simulation& s) : s_(s) {
     for (const FrameConstraint& c : s.model.constraints) held_[c.node] = &c;
   }
 
@@ -140,7 +140,7 @@ DependentNode embedded(const Simulation& s, const Coupling& c, int node, const S
 }
 
 /// A tissue's own frames on the faces of another body, between the nodes that it shares there, follow that body.
-void attach_interfaces(Simulation& s, const SimulatedBody& tissue, DependentNodes& dependents) {
+void attach_interfaces(Simulation& s, const SimulatedBody& tissue, Followers& dependents) {
   constexpr double kOnFace = 0.05;  // spacings
   const double tolerance = tissue.interfaces.empty() ? 0 : kOnFace * mean_spacing(tissue);
   for (const Interface& face : tissue.interfaces) {
@@ -175,7 +175,7 @@ void add_springs(Simulation& s, const Coupling& c, const std::vector<int>& nodes
 }  // namespace
 
 void add_couplings(Simulation& s, PointSetBuilder& points) {
-  DependentNodes dependents(s);
+  Followers dependents(s);
   for (const Coupling& c : s.scene.couplings) {
     const int body = body_index(s, c.body);
     BuiltCoupling& built = s.couplings.emplace_back();

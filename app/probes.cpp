@@ -117,6 +117,10 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
     for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
       e.elastic += snap.system->executor().shell_elastic(shell);
   }
+  const std::vector<Spring>& springs = s.model.points.springs;
+  for (std::size_t k = 0; k < springs.size(); ++k)
+    if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), springs[k].node))
+      e.elastic += snap.system->executor().spring_energy(static_cast<int>(k));
   for (const int i : probe.nodes)
     e.kinetic += 0.5 * inertia_product(s.model.inertia[at(i)], snap.state->v[at(i)], snap.state->Q_dot[at(i)]);
   const std::vector<double> factors = s.factors(snap.state->time);

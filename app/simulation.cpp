@@ -75,6 +75,15 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
   }
 }
 
+/// @throws SceneError  a host that would lose its mass
+void give_inertia_to_hosts(Simulation& s) {
+  try {
+    move_inertia_to_hosts(s.model);
+  } catch (const InputError& e) {
+    throw SceneError({{s.scene.couplings.empty() ? s.scene.bodies[0].place : s.scene.couplings[0].place, e.what()}});
+  }
+}
+
 SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
   try {
     BodyBuild build{s.model, points, {}, {}, {}, {}};
@@ -235,6 +244,7 @@ Simulation build_simulation(Scene scene) {
   add_couplings(s, points);
   s.model.points = std::move(points).finish(s.model.frame_kind);
   if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
+  give_inertia_to_hosts(s);
   s.initial = State::at_rest(s.model);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
   s.initial.turned.resize(s.model.constraints.size());

@@ -212,6 +212,12 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
   return energy;
 }
 
+CpuExecutor::NodeGradient CpuExecutor::gradient_of_groups(int first, int count, int node) const {
+  const int begin = set_.slot_begin[at(first)], end = set_.slot_begin[at(first + count)];
+  const NodeSum sum = gather(set_, slot_sums_, node, [&](int slot) { return slot >= begin && slot < end; });
+  return {sum.force, sum.N};
+}
+
 Vec3d CpuExecutor::tether_force(const Tether& tether, const State& state) const {
   const auto nodes = set_.nodes(tether.group);
   Vec3d u;

@@ -86,6 +86,14 @@ class CpuExecutor {
   /// Of a spring on its node [N].
   static Vec3d spring_force(const Spring& spring, const State& state);
 
+  /// What a range of groups adds to the gradient of a node at the last call of gradient(): force, and what is conjugate
+  /// to A.
+  struct NodeGradient {
+    Vec3d force{};
+    Mat3d N{};
+  };
+  NodeGradient gradient_of_groups(int first, int count, int node) const;
+
   /// What rounding alone leaves in the gradient of a connected part, as a norm with torques divided by the part's
   /// length, at the last call of gradient() [N]. It grows with the largest motion that the part ever went through here.
   double rounding(int part) const { return part_rounding_[static_cast<std::size_t>(part)]; }

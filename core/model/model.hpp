@@ -105,6 +105,7 @@ struct Model {
   int dof_count() const { return points.dofs.total(); }
   int constrained_dof_count() const;
   int dependent_dof_count() const;
+  int free_dof_count() const { return dof_count() - constrained_dof_count() - dependent_dof_count(); }
   FrameKind kind(int node) const { return frame_kind[at(node)]; }
   bool has_frames() const;  ///< nodes that turn
   /// Loads have a potential: no torque that keeps its direction in space, no follower, no pressure on a surface whose

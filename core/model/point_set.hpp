@@ -115,6 +115,8 @@ class PointSetBuilder {
 
   int shell_count() const { return static_cast<int>(set_.shells.size()); }
 
+  int spring_count() const { return static_cast<int>(set_.springs.size()); }
+
   void add_spring(const Spring& spring) { set_.springs.push_back(spring); }
 
   /// @pre no circle of nodes that depend on one another; a node depends at most once
