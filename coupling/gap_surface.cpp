@@ -61,10 +61,13 @@ void cancel(std::vector<Triangle>& triangles) {
 class FlatTriangles {
  public:
   FlatTriangles(TriangleMesh& mesh, double height) : mesh_(mesh), height_(height) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) enter(static_cast<int>(t));
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) enter(static_cast<int>(t));
+  }
+
+  void remove() {
     std::vector<int> flat;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      if (is_flat(mesh.triangles[t])) flat.push_back(static_cast<int>(t));
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+      if (is_flat(mesh_.triangles[t])) flat.push_back(static_cast<int>(t));
     for (bool changed = true; changed;) {
       changed = false;
       for (const int t : flat) changed = (is_flat(mesh_.triangles[at(t)]) && flip(t)) || changed;
@@ -172,7 +175,7 @@ TriangleMesh surface_over(const GapPatch& patch, const CheckedSides& sides) {
     add({b, foot[at(a)], foot[at(b)]});
   }
   cancel(mesh.triangles);
-  FlatTriangles(mesh, kSame * sides.size);
+  FlatTriangles(mesh, kSame * sides.size).remove();
   drop_unused_points(mesh);
   return mesh;
 }
