@@ -144,19 +144,25 @@ GapPatch gap_patch(const CheckedSides& sides) {
   const double longest = margin * mean_edge(sides.second);
   for (int k = 0; k < most_cuts; ++k)
     if (!refine(patch, sides, curved, longest)) break;
+  orient(patch);  // corners that touch may have hidden before where the gap is
   return patch;
 }
 
 double drop_touching(GapPatch& patch, double tolerance) {
   double all = 0, dropped = 0;
-  std::erase_if(patch.triangles, [&](const std::array<int, 3>& t) {
-    const Vec3d& a = patch.points[at(t[0])];
-    const double area = norm(cross(patch.points[at(t[1])] - a, patch.points[at(t[2])] - a));
-    const bool touches = std::all_of(t.begin(), t.end(), [&](int i) { return patch.gap(i) < tolerance; });
+  std::vector<std::array<int, 3>> kept;
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+    const auto& nodes = patch.triangles[t];
+    const Vec3d& a = patch.points[at(nodes[0])];
+    const double area = 0.5 * norm(cross(patch.points[at(nodes[1])] - a, patch.points[at(nodes[2])] - a));
+    const bool touches = std::all_of(nodes.begin(), nodes.end(), [&](int i) { return patch.gap(i) < tolerance; });
     all += area;
-    if (touches) dropped += area;
-    return touches;
-  });
+    if (touches || std::abs(prism_volume(patch, t)) <= tolerance * area)
+      dropped += area;
+    else
+      kept.push_back(nodes);
+  }
+  patch.triangles = std::move(kept);
   return all > 0 ? dropped / all : 0;
 }
 

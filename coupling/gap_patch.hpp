@@ -18,7 +18,8 @@ struct GapPatch {
 /// longer than half the gap and their feet straight.
 GapPatch gap_patch(const CheckedSides& sides);
 
-/// Leaves out the triangles whose corners all touch. Returns their part of the area.
+/// Leaves out the triangles whose corners all touch, and those over which there is no space as they and their feet lie
+/// in one plane. Returns their part of the area.
 double drop_touching(GapPatch& patch, double tolerance);
 
 /// Gives each fan of triangles around a vertex a vertex of its own, and cuts inner edges whose ends both touch at the

@@ -131,6 +131,7 @@ class Strip {
       Vec3d moment;
       for (const auto& t : faces_.triangles) {
         std::vector<Place> part;
+        part.reserve(t.size());
         for (const int node : t) part.push_back({faces_.points[at(node)] - origin_, place_[at(node)]});
         const auto [least, most] = std::minmax({part[0].s, part[1].s, part[2].s});
         if (most < from || least > from + width) continue;

@@ -61,14 +61,17 @@ void cancel(std::vector<Triangle>& triangles) {
 class FlatTriangles {
  public:
   FlatTriangles(TriangleMesh& mesh, double height) : mesh_(mesh), height_(height) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) enter(static_cast<int>(t));
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) enter(static_cast<int>(t));
+  }
+
+  void remove() {
     std::vector<int> flat;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      if (is_flat(mesh.triangles[t])) flat.push_back(static_cast<int>(t));
-    // Those beside a proper triangle go first; then their neighbours are beside one.
-    for (std::size_t left = flat.size() + 1; flat.size() < left;) {
-      left = flat.size();
-      std::erase_if(flat, [&](int t) { return !is_flat(mesh_.triangles[at(t)]) || flip(t); });
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+      if (is_flat(mesh_.triangles[t])) flat.push_back(static_cast<int>(t));
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const int t : flat) changed = (is_flat(mesh_.triangles[at(t)]) && flip(t)) || changed;
+      std::erase_if(flat, [&](int t) { return !is_flat(mesh_.triangles[at(t)]); });
     }
   }
 
@@ -91,11 +94,22 @@ class FlatTriangles {
     return best;
   }
 
+  double longest_edge(const Triangle& t) const {
+    const std::size_t k = peak(t);
+    return norm(mesh_.points[at(t[(k + 2) % 3])] - mesh_.points[at(t[(k + 1) % 3])]);
+  }
+
   bool is_flat(const Triangle& t) const {
     const Vec3d& a = mesh_.points[at(t[0])];
     const double area = norm(cross(mesh_.points[at(t[1])] - a, mesh_.points[at(t[2])] - a));
-    const std::size_t k = peak(t);
-    return area <= height_ * norm(mesh_.points[at(t[(k + 2) % 3])] - mesh_.points[at(t[(k + 1) % 3])]);
+    return area <= height_ * longest_edge(t);
+  }
+
+  /// A flip leaves fewer flat triangles, or two with shorter edges of two beside each other: it comes to an end.
+  bool improves(const Triangle& m, const Triangle& first, const Triangle& second, double longest) const {
+    if (!is_flat(m)) return !is_flat(first) && !is_flat(second);
+    constexpr double shorter = 1 - 1e-6;
+    return longest_edge(first) < shorter * longest && longest_edge(second) < shorter * longest;
   }
 
   bool flip(int t) {
@@ -110,8 +124,8 @@ class FlatTriangles {
     for (const int node : m)
       if (node != p && node != r) s = node;
     const Triangle first{p, q, s}, second{q, r, s};
-    if (s == q || across_.contains({q, s}) || across_.contains({s, q}) || is_flat(m) || is_flat(first) ||
-        is_flat(second))
+    if (s == q || across_.contains({q, s}) || across_.contains({s, q}) ||
+        norm(mesh_.points[at(s)] - mesh_.points[at(q)]) <= height_ || !improves(m, first, second, longest_edge(n)))
       return false;
     across_.erase({p, r});
     across_.erase({r, p});
@@ -161,7 +175,7 @@ TriangleMesh surface_over(const GapPatch& patch, const CheckedSides& sides) {
     add({b, foot[at(a)], foot[at(b)]});
   }
   cancel(mesh.triangles);
-  FlatTriangles(mesh, kSame * sides.size);
+  FlatTriangles(mesh, kSame * sides.size).remove();
   drop_unused_points(mesh);
   return mesh;
 }

@@ -123,10 +123,10 @@ std::string read_body_name(const TableReader& table, const std::vector<std::stri
 void check_other_body(const std::string& name, const Place& place, const std::string& own,
                       const std::vector<std::string>& bodies, Diagnostics& diagnostics) {
   if (name == own) return diagnostics.add(place, "is the body itself; must be another one");
+  if (std::find(bodies.begin(), bodies.end(), name) != bodies.end()) return;
   std::vector<std::string> others;
   std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(others), [&](const auto& b) { return b != own; });
-  if (std::find(others.begin(), others.end(), name) == others.end())
-    diagnostics.add(place, unknown_name("body", name, others));
+  diagnostics.add(place, unknown_name("body", name, others));
 }
 
 Constraint read_constraint(const TableReader& table, const std::vector<std::string>& bodies) {

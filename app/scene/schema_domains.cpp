@@ -130,8 +130,7 @@ Shape domain_schema() {
            "with "
            "`thickness`, triangles that bound no solid are sheets; with `radius`, its lines are lines. A shell, a "
            "rigid body or a surface takes the triangles, or the boundary of volume cells where there are none. The "
-           "path "
-           "is relative to the scene file."),
+           "path is relative to the scene file."),
        key("rectangle", rectangle(), "A flat sheet between two edges; a meshless body or a shell needs `thickness`."),
        key("annulus", annulus(), "A flat ring or a sector of it; for shells, rigid bodies and surfaces."),
        key("line", line(), "A straight line; the body needs `radius`."),

@@ -61,6 +61,47 @@ time_step = "auto"
 duration = "1 ms"
 TEXT
 
+cat >"$scene/couplings.toml" <<'TEXT'
+[bodies.bone]
+model = "rigid"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [2, 2, 2] } }
+mass = 2
+inertia = [["1 kg m2", 0, 0], [0, 1, 0], [0, 0, 1]]
+[bodies.plate]
+model = "rigid"
+domain = { cylinder = { from = [0, 0, 2], to = [0, 0, 3], radius = 1, cells = [2, 8], caps = false } }
+mass = 1
+[bodies.skin]
+model = "surface"
+domain = { sphere = { center = [0, 0, 0], radius = 1, cells = [8] } }
+[bodies.tissue]
+model = "meshless"
+domain = { between = ["bone", "plate"], where = { boundary = true }, as = "sheet" }
+thickness = "2 mm"
+mass = 1
+material = { young = 1e5, poisson = 0.3 }
+frames = { poisson_disk = 0.1, share = [{ body = "bone", where = "all", rotations = false }, { body = "plate" }] }
+[couplings.ride]
+kind = "embed"
+body = "skin"
+where = "all"
+to = "tissue"
+[couplings.foot]
+kind = "weld"
+body = "plate"
+where = { nearest = [0, 0, 0] }
+to = "bone"
+[couplings.ligament]
+kind = "spring"
+body = "bone"
+where = { ids = [0] }
+point = [0, 0, "1 cm"]
+stiffness = "2 N/mm"
+direction = [0, 0, 1]
+[solver]
+kind = "static"
+TEXT
+
 cat >"$gmsh/tetrahedron_22.msh" <<'TEXT'
 $MeshFormat
 2.2 0 8

@@ -56,12 +56,12 @@ TEST(ElementErrors, MeshlessBodiesTakeNoKeysOfElements) {
   EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
                                 "ellipsoid = { center = [0, 0, 0], radii = [1, 1, 1], cells = [8, 2] }")),
             "a.toml:6:73: bodies.beam.domain.ellipsoid.cells: is not used by model = \"meshless\"; remove it");
-  EXPECT_EQ(
-      errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
-                          "block = { corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, "
-                          "1], [1, 1, 1], [0, 1, 1]], cells = [1, 1, 1] }")),
-      "a.toml:6:20: bodies.beam.domain.block: is for other models; must be box, cylinder, ellipsoid, sphere, file, "
-      "rectangle, line or between");
+  EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
+                                "block = { corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, "
+                                "1], [1, 1, 1], [0, 1, 1]], cells = [1, 1, 1] }")),
+            "a.toml:6:20: bodies.beam.domain.block: is for mesh models and rigid bodies; must be box, cylinder, "
+            "ellipsoid, sphere, file, "
+            "rectangle, line or between");
 }
 
 TEST(ElementErrors, Values) {

@@ -120,10 +120,10 @@ TEST(ShellErrors, OthersTakeNoKeysOfSurfaces) {
             "a.toml:6:99: bodies.beam.domain.cylinder.closed: is not used by a solid; remove it\n"
             "a.toml:6:112: bodies.beam.domain.cylinder.caps: is not used by a solid; remove it");
   const std::string ring = "annulus = { center = [0, 0, 0], normal = [0, 0, 1], inner = 1, outer = 2, cells = [1, 8] }";
-  EXPECT_EQ(
-      errors_of(test::beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }", ring)),
-      "a.toml:6:22: bodies.beam.domain.annulus: is for other models; must be box, cylinder, ellipsoid, sphere, file, "
-      "rectangle, line or between");
+  EXPECT_EQ(errors_of(test::beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }", ring)),
+            "a.toml:6:22: bodies.beam.domain.annulus: is for shells and rigid bodies; must be box, cylinder, "
+            "ellipsoid, sphere, file, "
+            "rectangle, line or between");
   EXPECT_EQ(errors_of(test::mesh_body("tetrahedra", ring)),
             "a.toml:6:22: bodies.block.domain.annulus: is no solid, which model = \"tetrahedra\" needs; must be box, "
             "block, cylinder, ellipsoid, sphere or file");
