@@ -132,7 +132,8 @@ DependentNodes::Columns DependentNodes::columns_of(std::size_t dependent, std::s
 /// No free degree of the node was left when a dependent node's turn came.
 bool DependentNodes::is_gone(int node, std::size_t dependent) const {
   const int other = dependent_[at(node)];
-  return other >= 0 && at(other) > dependent && dependent_dofs(set_.dependents[at(other)], set_.dofs) == set_.dofs.size(node);
+  return other >= 0 && at(other) > dependent &&
+         dependent_dofs(set_.dependents[at(other)], set_.dofs) == set_.dofs.size(node);
 }
 
 void DependentNodes::condense(BlockMatrix& K) const {
