@@ -132,7 +132,8 @@ DependentNodes::Columns DependentNodes::columns_of(std::size_t dependent, std::s
 /// No free degree of the node was left when a dependent node's turn came.
 bool DependentNodes::is_gone(int node, std::size_t dependent) const {
   const int other = dependent_[at(node)];
-  return other >= 0 && at(other) > dependent && dependent_dofs(set_.dependents[at(other)], set_.dofs) == set_.dofs.size(node);
+  return other >= 0 && at(other) > dependent &&
+         dependent_dofs(set_.dependents[at(other)], set_.dofs) == set_.dofs.size(node);
 }
 
 void DependentNodes::condense(BlockMatrix& K) const {
@@ -154,13 +155,18 @@ void DependentNodes::condense_node(std::size_t dependent, BlockMatrix& K) const 
   const auto add = [&](std::size_t a, int u, const double* R, int first) {
     const int host = v.hosts[a], rows = J[a].count, columns = dofs.size(u);
     double *above = K.block(K.find(host, u)), *below = K.block(K.find(u, host));
-    for (int i = 0; i < rows; ++i)
-      for (int j = first; j < columns; ++j) {
-        double sum = 0;
-        for (int l = 0; l < m; ++l) sum += J[a].entry[l][i] * R[columns * l + j];
-        above[columns * i + j] += sum;
-        below[rows * j + i] += sum;
+    for (int i = 0; i < rows; ++i) {
+      double P[kMostDofs] = {};
+      for (int l = 0; l < m; ++l) {
+        const double factor = J[a].entry[l][i];  // most are zero
+        if (factor == 0) continue;
+        for (int j = first; j < columns; ++j) P[j] += factor * R[columns * l + j];
       }
+      for (int j = first; j < columns; ++j) {
+        above[columns * i + j] += P[j];
+        below[rows * j + i] += P[j];
+      }
+    }
   };
   const std::span<const int> columns = K.columns(v.node);
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -183,8 +189,11 @@ void DependentNodes::condense_node(std::size_t dependent, BlockMatrix& K) const 
     for (std::size_t a = 0; a < v.hosts.size(); ++a) {
       double* block = K.block(K.find(v.hosts[a], v.hosts[b]));
       for (int i = 0; i < J[a].count; ++i)
-        for (int j = 0; j < J[b].count; ++j)
-          for (int l = 0; l < m; ++l) block[J[b].count * i + j] += J[a].entry[l][i] * VJ[l][j];
+        for (int l = 0; l < m; ++l) {
+          const double factor = J[a].entry[l][i];
+          if (factor == 0) continue;
+          for (int j = 0; j < J[b].count; ++j) block[J[b].count * i + j] += factor * VJ[l][j];
+        }
     }
   }
   for (int i = 0; i < n; ++i)

@@ -33,7 +33,8 @@ class DependentNodes {
   /// Entries of dependent nodes of a direction, from those of their hosts.
   void expand(std::span<double> d) const;
   /// Moves forces on dependent nodes to their hosts.
-  /// @param forces  (dependents × 6) takes what each hands on, with what it had from those that depend on it: force, and
+  /// @param forces  (dependents × 6) takes what each hands on, with what it had from those that depend on it: force,
+  /// and
   ///                where it turns the torque about it; or empty
   void transfer(std::span<double> g, std::span<double> forces = {}) const;
   /// Adds to the nodes' own blocks the second derivative of the dependent nodes' places, f · Q b along rotations of

@@ -82,10 +82,24 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
     affine_[i] = static_cast<int>(inverse_mass_.size());
     inverse_mass_.push_back(inverse);
   }
+  if (!dependents.empty() && !model_.mass_damping.empty()) find_uneven_damping();
   place_dependents(model_.points, state_);
   place_dependent_rates(model_.points, state_);
   place_loads();
   start_velocities();
+}
+
+void ExplicitStepper::find_uneven_damping() {
+  uneven_damping_.resize(velocity_.size());
+  for (const DependentNode& d : model_.points.dependents)
+    for (const int host : d.hosts) {
+      const std::size_t i = at(host);
+      if (model_.frame_kind[i] == FrameKind::vertex || follows_[i] != 0) continue;
+      const double alpha = 2 * damping_[i] / dt_;
+      const FrameInertia &damping = model_.mass_damping[i], &inertia = model_.inertia[i];
+      uneven_damping_[i] = {damping.mass - alpha * inertia.mass, damping.first - inertia.first * alpha,
+                            damping.second - inertia.second * alpha};
+    }
 }
 
 /// Dead loads by node, and those on dependent nodes.
@@ -172,6 +186,10 @@ void ExplicitStepper::node_force(int node, double* load, double* force) const {
   if (!follower_.empty())
     for (int k = 0; k < n; ++k) load[k] += follower_[first + at(k)];
   for (int k = 0; k < n; ++k) force[k] = load[k] - gradient_[first + at(k)];
+  if (uneven_damping_.empty() || model_.kind(node) == FrameKind::vertex) return;
+  const PoseMotion v = pose_velocity(node, velocity_[at(node)]);
+  const InertiaForce drag = inertia_force(uneven_damping_[at(node)], v.u, v.Q);
+  add_node_force(model_.kind(node), state_.D[at(node)], -drag.force, drag.moment * -1.0, {}, force);
 }
 
 /// The whole step of a vertex that nothing holds; false for other nodes.

@@ -53,6 +53,7 @@ class ExplicitStepper {
   void place_loads();
   void update_forces();
   void transfer_to_hosts();
+  void find_uneven_damping();
   void start_velocities();
   void node_force(int node, double* load, double* force) const;
   Velocity kicked(int node, const double* force) const;
@@ -73,19 +74,21 @@ class ExplicitStepper {
   State& state_;
   double dt_;
 
-  std::vector<Velocity> velocity_;                    ///< at the last half step
-  std::vector<SpinInertia> turning_;                  ///< of rigid frames
-  std::vector<Vec3d> center_;                         ///< c / m of rigid frames [m]
-  std::vector<double> damping_;                       ///< α dt / 2
+  std::vector<Velocity> velocity_;    ///< at the last half step
+  std::vector<SpinInertia> turning_;  ///< of rigid frames
+  std::vector<Vec3d> center_;         ///< c / m of rigid frames [m]
+  std::vector<double> damping_;       ///< α dt / 2
+  /// Mass damping of hosts beyond α times their inertia: what they carry may be damped otherwise. Empty: none.
+  std::vector<FrameInertia> uneven_damping_;
   std::vector<int> constraint_;                       ///< of each node, −1: none
   std::vector<std::array<double, 16>> inverse_mass_;  ///< of free affine frames: (origin, axes)²
   std::vector<int> affine_;                           ///< index into it
   std::vector<int> load_begin_;                       ///< by node
   std::vector<PlacedLoad> loads_, dependent_loads_;
-  std::vector<char> follows_;                          ///< nodes all of which depends on others; empty: none
+  std::vector<char> follows_;  ///< nodes all of which depends on others; empty: none
   /// The last: of followers, of surface loads, and what comes from dependent nodes.
   std::vector<double> factors_, gradient_, follower_;
-  std::vector<double> increments_, last_increments_;   ///< prescribed, in constraint axes
+  std::vector<double> increments_, last_increments_;  ///< prescribed, in constraint axes
   std::vector<double> old_targets_;
   std::vector<Vec3d> old_forces_;  ///< of tethers
   StrainHistory history_;

@@ -59,7 +59,10 @@ class CoupledModel {
     o.nv = 2;
     o.jitter = 0.1;
     const ShellMesh mesh = patch_mesh(
-        [&](double s, double t) { return corner + Vec3d{{0.8 * s, 0.6 * t, 0.1 * s * s + 0.05 * t}}; }, o);
+        [&](double s, double t) {
+          return corner + Vec3d{{0.8 * s, 0.6 * t, 0.1 * s * s + 0.05 * t}};
+        },
+        o);
     return add<ShellBody>(shell_spec(mesh, {}));
   }
 
@@ -80,13 +83,16 @@ class CoupledModel {
     points.add_dependent({node, {frame}, {1.0}, {arm}, model.kind(node) == FrameKind::rigid});
   }
 
-  /// In the field of a body, at the node's place.
+  /// In the field of a body, at the node's place; off a surface, with an arm to the nearest place on it.
   void embed(int node, const ModelBody& body) {
     const Attachment place = body.attach(model.rest_position[at(node)]);
     DependentNode d{node, place.nodes, {}, {}, false};
+    Vec3d arm = model.rest_position[at(node)];
+    for (std::size_t k = 0; k < place.nodes.size(); ++k)
+      arm -= model.rest_position[at(place.nodes[k])] * place.influences[k].w + place.influences[k].b;
     for (const Influence& influence : place.influences) {
       d.w.push_back(influence.w);
-      d.b.push_back(influence.b);
+      d.b.push_back(influence.b + arm * influence.w);
     }
     points.add_dependent(std::move(d));
   }

@@ -42,7 +42,8 @@ class SpringsTest : public DerivativeTest<SpringCase, BuiltModel> {
 };
 
 INSTANTIATE_TEST_SUITE_P(, SpringsTest,
-                         testing::Values(SpringCase{"rigid", FrameKind::rigid}, SpringCase{"affine", FrameKind::affine}),
+                         testing::Values(SpringCase{"rigid", FrameKind::rigid},
+                                         SpringCase{"affine", FrameKind::affine}),
                          [](const auto& info) { return info.param.name; });
 
 TEST_P(SpringsTest, GradientOfTheEnergy) { expect_gradient_of_the_energy(); }
@@ -60,7 +61,8 @@ TEST_P(SpringsTest, EnergiesAndForces) {
   for (std::size_t k = 0; k < springs.size(); ++k) {
     sum += executor_.spring_energy(static_cast<int>(k));
     EXPECT_GT(executor_.spring_energy(static_cast<int>(k)), 0);
-    EXPECT_EQ(CpuExecutor::spring_force(springs[k], state_), -spring_gradient(springs[k], state_.u[at(springs[k].node)]));
+    EXPECT_EQ(CpuExecutor::spring_force(springs[k], state_),
+              -spring_gradient(springs[k], state_.u[at(springs[k].node)]));
   }
   Model without = built_.model;
   without.points.springs.clear();
