@@ -178,14 +178,14 @@ std::vector<double> spacing_around(const std::vector<CloudFrame>& frames, std::s
   return local_spacing(positions, dimension, own);
 }
 
-/// Of a body's own frames among all; of the shared ones where it has none itself.
-double mean_spacing(const ScatterSpec& choice, std::vector<CloudFrame> frames) {
+/// Around a body's own frames, where shared ones stand among them; around these where it has none itself.
+std::vector<double> own_spacing(const ScatterSpec& choice, std::vector<CloudFrame> frames) {
   const std::size_t own = frames.size();
   for (const SharedFrame& s : choice.shared)
     frames.push_back({s.x, Mat3d::identity(), choice.parts.dimension(), {}, true});
   std::vector<double> spacing = spacing_around(frames, choice.shared.empty() ? 0 : own);
   if (own > 0) spacing.resize(own);
-  return mean(spacing);
+  return spacing;
 }
 
 /// A user's points must lie in the matter, to a thousandth of its size.
@@ -214,7 +214,8 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   set.frames = frames_of(choice, std::get_if<ListedChoice>(&own), frames.places);
   set.own = set.frames.size();
   check_frames(choice, set.frames, size);
-  spec.spacing = std::max(mean_spacing(choice, set.frames), 1e-9 * size);
+  std::vector<double> spacing = own_spacing(choice, set.frames);
+  spec.spacing = std::max(mean(spacing), 1e-9 * size);
   spec.points =
       points_of(choice.parts, choice.points, kPointSpacing * (listed || set.own == 0 ? spec.spacing : frames.spacing));
   if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points", Blame::points);
@@ -222,7 +223,8 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   if (std::holds_alternative<ListedChoice>(choice.points)) check_inside(spec, size);
   check_curvature(spec.points, messages);
   add_shared(choice.shared, spec.points, set);
-  set.reach = reach_of(choice, spacing_around(set.frames, choice.shared.empty() ? 0 : set.own));
+  if (!set.shared.empty()) spacing = spacing_around(set.frames, set.own);
+  set.reach = reach_of(choice, spacing);
   widen_supports(choice.weights, spec.points, set);
   drop_idle_frames(choice.weights, spec.points, set, messages);
   spec.field = scattered_field(choice.weights, set.frames, set.reach);

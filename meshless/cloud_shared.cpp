@@ -5,6 +5,7 @@
 #include "meshless/cloud_parts.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace fascia {
 
@@ -21,7 +22,20 @@ void reach_to(const Vec3d& X, const std::vector<Vec3d>& positions, const std::ve
   }
 }
 
-/// Every frame reaches as many points as hold one, if it stands in or at the matter.
+/// Frames that a point follows before no more are led to it, and that it follows at most.
+constexpr int kFull = 3 * kMaxSlots / 4, kMost = 7 * kMaxSlots / 8;
+
+/// Shared frames on nodes of their own; the others are parts of a rigid body, one node together.
+std::vector<char> single_nodes(const CloudFrames& set) {
+  std::map<int, int> count;
+  for (const SharedFrame& s : set.shared) ++count[s.node];
+  std::vector<char> single(set.own, 1);
+  for (const SharedFrame& s : set.shared) single.push_back(count[s.node] == 1 ? 1 : 0);
+  return single;
+}
+
+/// Every frame in or at the matter reaches as many points as hold one. Where that would be too many frames a point,
+/// nodes are denser than points can tell apart: such a frame stays as it is, and is left out if it turns.
 void reach_points(const std::vector<CloudPoint>& points, CloudFrames& set) {
   std::vector<Vec3d> X;
   std::vector<int> dimension;
@@ -31,12 +45,27 @@ void reach_points(const std::vector<CloudPoint>& points, CloudFrames& set) {
   }
   const std::vector<double> spacing = local_spacing(X, dimension);
   const FrameSearch search(X);
+  const std::vector<char> single = single_nodes(set);
+  if (std::find(single.begin(), single.end(), 0) == single.end()) set.reach.most = kMost;
+  std::vector<int> frames_at(X.size(), 0);
+  for (std::size_t f = 0; f < set.frames.size(); ++f)
+    for (const int p : search.within(set.frames[f].x, set.reach.support[f])) frames_at[at(p)] += single[f];
   for (std::size_t f = 0; f < set.frames.size(); ++f) {
     const CloudFrame& frame = set.frames[f];
     const std::vector<int> near = search.nearest(frame.x, frame.dimension + 1);
     double& support = set.reach.support[f];
     if (norm(X[at(near.front())] - frame.x) > std::max(support, spacing[at(near.front())])) continue;
-    support = std::max(support, kBeyond * norm(X[at(near.back())] - frame.x));
+    const double wanted = kBeyond * norm(X[at(near.back())] - frame.x);
+    if (wanted <= support) continue;
+    std::vector<int> added = search.within(frame.x, wanted);
+    std::erase_if(added, [&](int p) { return norm(X[at(p)] - frame.x) <= support; });
+    const bool full = std::any_of(added.begin(), added.end(), [&](int p) { return frames_at[at(p)] >= kFull; });
+    if (full && single[f] != 0) {
+      if (f >= set.own && set.shared[f - set.own].turns) support = 0;
+      continue;
+    }
+    for (const int p : added) frames_at[at(p)] += single[f];
+    support = wanted;
   }
 }
 
@@ -93,6 +122,7 @@ ListedChoice unoccupied(const ListedChoice& choice, std::span<const Vec3d> occup
 void add_shared(std::span<const SharedFrame> shared, const std::vector<CloudPoint>& points, CloudFrames& set) {
   if (shared.empty()) return;
   std::vector<Vec3d> X;
+  X.reserve(points.size());
   for (const CloudPoint& p : points) X.push_back(p.place.X);
   const FrameSearch search(X);
   for (const SharedFrame& s : shared) {
@@ -127,6 +157,7 @@ void drop_idle_frames(ScatteredKind kind, const std::vector<CloudPoint>& points,
     if (all_used) break;
     CloudFrames kept;
     kept.reach.neighbours = set.reach.neighbours;
+    kept.reach.most = set.reach.most;
     for (std::size_t f = 0; f < used.size(); ++f) {
       if (used[f] == 0) continue;
       kept.frames.push_back(set.frames[f]);

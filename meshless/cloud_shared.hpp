@@ -27,7 +27,7 @@ ListedChoice unoccupied(const ListedChoice& choice, std::span<const Vec3d> occup
 void add_shared(std::span<const SharedFrame> shared, const std::vector<CloudPoint>& points, CloudFrames& set);
 
 /// Widens supports until every frame near the matter reaches a few points, and every point enough frames; so shared
-/// frames may be far denser than own ones, or far coarser.
+/// frames may be far denser than own ones, or far coarser. Of nodes denser than the points some are left out.
 void widen_supports(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set);
 
 /// Frames that move no point would be free: they are left out.

@@ -28,10 +28,18 @@ class NearFrames {
       const double support = reach_.support[at(i)];
       if (norm(f.x - place.X) < support && same_wall(f, place)) near.push_back({i, f.x, support});
     }
+    if (reach_.most > 0 && near.size() > at(reach_.most)) keep_deepest(place, near);
     return near;
   }
 
  private:
+  void keep_deepest(const ScatteredPlace& place, std::vector<NearFrame>& near) const {
+    const auto depth = [&](const NearFrame& f) { return std::pair(norm(f.x - place.X) / f.support, f.frame); };
+    std::nth_element(near.begin(), near.begin() + reach_.most, near.end(),
+                     [&](const NearFrame& a, const NearFrame& b) { return depth(a) < depth(b); });
+    near.resize(at(reach_.most));
+  }
+
   static std::vector<Vec3d> positions(const std::vector<CloudFrame>& frames) {
     std::vector<Vec3d> x(frames.size());
     std::transform(frames.begin(), frames.end(), x.begin(), [](const CloudFrame& f) { return f.x; });

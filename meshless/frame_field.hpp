@@ -29,6 +29,7 @@ struct CloudFrame {
 struct Reach {
   std::vector<double> support;  ///< of each frame [m]
   int neighbours = 0;           ///< above 0: the nearest ones, whatever the supports
+  int most = 0;                 ///< above 0: no more than these, the deepest in their supports
 };
 
 /// Weights of scattered frames. Frames on the opposite wall of a sheet do not count.

@@ -86,7 +86,8 @@ std::string replaced_by_shares(std::size_t count) {
 }
 
 std::string unreached_shares(std::size_t count) {
-  return std::to_string(count) + " shared nodes that reach no point of the body were left out";
+  return std::to_string(count) +
+         " shared nodes that reach no point of the body, or are denser than its points, were left out";
 }
 
 void refuse_off_grid(const Vec3d& x, double distance) {

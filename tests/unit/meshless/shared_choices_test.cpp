@@ -193,7 +193,7 @@ TEST(SharedChoices, NodesOutOfReachAreLeftOut) {
     ScatterSpec scatter = unit_scatter(SpacedChoice{0.34, 1});
     scatter.neighbours = neighbours;
     add_cloud(s, scatter);
-    EXPECT_TRUE(says(s.messages, "shared nodes that reach no point of the body were left out"));
+    EXPECT_TRUE(says(s.messages, "2 shared nodes that reach no point of the body"));
     EXPECT_FALSE(std::binary_search(s.body->shared_nodes().begin(), s.body->shared_nodes().end(), 0));
     EXPECT_FALSE(s.body->shared_nodes().empty());
   }
@@ -237,14 +237,45 @@ TEST(SharedChoices, LooseRotationsAreRefused) {
 /// Rotations of vertices that only this body holds count; those of other frames do not.
 TEST(SharedChoices, PointsMustHoldRotationsOfVertices) {
   for (const HostKind kind : {HostKind::frames, HostKind::turning, HostKind::still}) {
-    SharedModel s = hosted(kind, 8);
+    SharedModel s = hosted(kind, 4);
     ScatterSpec scatter = unit_scatter(SpacedChoice{0.5, 1});
-    scatter.points = CountedChoice{50, 1};
+    scatter.points = CountedChoice{30, 1};
     if (kind == HostKind::turning)
-      expect_refused([&] { add_cloud(s, scatter); }, Blame::points, "rotations of 81 shared vertices");
+      expect_refused([&] { add_cloud(s, scatter); }, Blame::points, "shared vertices");
     else
       add_cloud(s, scatter);
   }
+}
+
+/// A lattice of nodes finer or coarser than the body's own frames, in the midst of its matter. Of those eight times
+/// finer, points cannot tell all apart.
+TEST(SharedChoices, DenseNodesMayLieInside) {
+  for (const bool turns : {false, true})
+    for (const double step : {0.05, 0.1, 0.4}) {
+      SharedModel s;
+      const int n = static_cast<int>(std::lround(0.4 / step)) + 1;
+      for (int i = 0; i < n * n * n; ++i) {
+        const Vec3d x{{0.3 + step * (i % n), 0.3 + step * (i / n % n), 0.3 + step * (i / (n * n))}};
+        s.model.rest_position.push_back(x);
+        s.model.rest_orientation.push_back(Mat3d::identity());
+        s.model.frame_kind.push_back(turns ? FrameKind::rigid : FrameKind::vertex);
+        s.model.inertia.push_back({1, {}, Mat3d::diagonal(1)});
+        s.shared.push_back({i, x, {}, turns});
+      }
+      add_cloud(s, unit_scatter(SpacedChoice{step < 0.4 ? 0.4 : 0.2, 1}));
+      s.finish();
+      std::size_t most = 0;
+      for (std::size_t q = 0; q < s.body->points().size(); ++q)
+        most = std::max(most, s.body->attach_point(q).nodes.size());
+      std::printf("%d nodes %g apart: %zu shared, up to %zu frames a point; %s\n", n * n * n, step,
+                  s.body->shared_nodes().size(), most, s.body->quality().c_str());
+      if (step < 0.1) {
+        EXPECT_TRUE(says(s.messages, "denser than its points"));
+      } else {
+        EXPECT_EQ(s.body->shared_nodes().size(), s.shared.size());
+      }
+      EXPECT_NEAR(energy_of(s.model, rigid_state(s.model, rotation_increment({{0.7, -1.1, 2.0}}), {})), 0, 1e-18);
+    }
 }
 
 }  // namespace
