@@ -19,6 +19,7 @@ struct BodyBuild {
   std::vector<SharedFrame> shared;
   std::optional<MatterParts> between;  ///< of a domain between two bodies
   std::vector<Interface> interfaces;
+  std::string gap;  ///< what it fills between two bodies, in words
   std::vector<std::string> messages;
 };
 

@@ -168,6 +168,7 @@ void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& o
   for (const auto& [owner, count] : following)
     list += fmt::format("{}{} on the surface of \"{}\"", list.empty() ? "" : "; ", counted(count, "own frame"),
                         s.bodies[owner].name);
+  if (!b.gap.empty()) fmt::format_to(std::back_inserter(out), "body {}: {}\n", b.name, b.gap);
   fmt::format_to(std::back_inserter(out), "body {}: {}{}\n", b.name, shared.empty() ? "" : "shares ", list);
 }
 

@@ -140,7 +140,7 @@ DependentNode embedded(const Simulation& s, const Coupling& c, int node, const S
 }
 
 /// A tissue's own frames on the faces of another body, between the nodes that it shares there, follow that body.
-void attach_interfaces(Simulation& s, const SimulatedBody& tissue, Followers& dependents) {
+void attach_interfaces(const Simulation& s, const SimulatedBody& tissue, Followers& dependents) {
   constexpr double kOnFace = 0.05;  // spacings
   const double tolerance = tissue.interfaces.empty() ? 0 : kOnFace * mean_spacing(tissue);
   for (const Interface& face : tissue.interfaces) {
@@ -148,18 +148,13 @@ void attach_interfaces(Simulation& s, const SimulatedBody& tissue, Followers& de
     const SimulatedBody& host = s.bodies[at(face.body)];
     const bool rigid = s.scene.bodies[at(face.body)].model == BodyModel::rigid;
     const TriangleTree faces(face.faces);
-    std::size_t count = 0;
     for (int i = 0; i < tissue.body->node_count(); ++i) {
       const int node = tissue.node_ids[at(i)];
       if (!dependents.is_free(node) || faces.distance(tissue.nodes[at(i)]) > tolerance) continue;
       DependentNode d = follower(s, node, host);
       d.turns = rigid && s.model.kind(node) == FrameKind::rigid;
       dependents.add_follower(std::move(d));
-      ++count;
     }
-    if (count > 0)
-      s.warnings.push_back(
-          fmt::format("bodies.{}: {} of its own frames lie on \"{}\" and follow it", tissue.name, count, host.name));
   }
 }
 

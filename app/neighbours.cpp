@@ -113,12 +113,13 @@ MatterParts fill_gap(const Body& body, const BetweenDomain& between, const std::
   switch (between.as) {
     case BetweenKind::volume: {
       GapVolume gap = gap_volume(sides[0], sides[1]);
-      build.messages.push_back(fmt::format("fills {:.4g} m3 between \"{}\" and \"{}\", {:.3g} to {:.3g} m apart{}",
-                                           gap.volume, sides[0].body, sides[1].body, gap.smallest, gap.largest,
-                                           gap.touching > 0 ? fmt::format("; they touch over {:.2g} % of the faces of "
-                                                                          "\"{}\", where there is none",
-                                                                          100 * gap.touching, sides[0].body)
-                                                            : ""));
+      build.gap = fmt::format("fills {:.4g} m3 between \"{}\" and \"{}\", {:.3g} to {:.3g} m apart", gap.volume,
+                              sides[0].body, sides[1].body, gap.smallest, gap.largest);
+      if (gap.touching > 0)
+        build.messages.push_back(
+            fmt::format("\"{}\" and \"{}\" touch over {:.2g} % of the faces of the first, where there is no "
+                        "tissue between them",
+                        sides[0].body, sides[1].body, 100 * gap.touching));
       return solid_parts(std::move(gap.surface), gap.volume);
     }
     case BetweenKind::sheet:

@@ -86,7 +86,7 @@ void give_inertia_to_hosts(Simulation& s) {
 
 SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
   try {
-    BodyBuild build{s.model, points, {}, {}, {}, {}};
+    BodyBuild build{s.model, points, {}, {}, {}, {}, {}};
     gather_neighbours(s, body, build);
     SimulatedBody b;
     b.name = body.name;
@@ -100,6 +100,7 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     b.node_on_boundary = b.body->nodes_on_boundary();
     b.surface_on_boundary.assign(b.body->surface().points.size(), 1);
     b.interfaces = std::move(build.interfaces);
+    b.gap = std::move(build.gap);
     b.vertices = is_mesh_model(body) || body.model == BodyModel::surface;
     return b;
   } catch (const InputError& e) {

@@ -28,6 +28,7 @@ struct SimulatedBody {
   std::vector<Vec3d> nodes;   ///< their rest positions [m]
   std::vector<char> node_on_boundary;
   std::vector<char> surface_on_boundary;  ///< ones, for each point of the surface
+  std::string gap;                        ///< what it fills between two bodies, in words
   std::vector<Interface> interfaces;      ///< its own frames on these follow the other body
 
   /// The nodes, for regions.
