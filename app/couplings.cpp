@@ -113,8 +113,17 @@ DependentNode follower(const Simulation& s, int node, const SimulatedBody& host)
   const Attachment a = host.body->attach(s.model.rest_position[at(node)]);
   DependentNode d;
   d.node = node;
+  // A place beside the host's matter moves with its frames: with the full lever.
+  Vec3d beside = s.model.rest_position[at(node)];
+  double turning = 0;
   for (std::size_t k = 0; k < a.nodes.size(); ++k) {
     const Influence& i = a.influences[k];
+    beside -= s.model.rest_position[at(a.nodes[k])] * i.w + i.b;
+    if (!host.vertices) turning += i.w;
+  }
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    Influence i = a.influences[k];
+    if (turning > 0.5) i.b += beside * (i.w / turning);
     if (std::abs(i.w) <= kNothing && norm(i.b) <= kNothing * host.body->size()) continue;
     d.hosts.push_back(a.nodes[k]);
     d.w.push_back(i.w);

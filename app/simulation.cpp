@@ -11,6 +11,7 @@
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/block_matrix.hpp"
+#include "core/solver/dependents.hpp"
 #include "meshless/neighbours.hpp"
 
 #include <fmt/format.h>
@@ -68,7 +69,9 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
   if (moves && !is_dynamic(s.scene.solver.kind))
     throw SceneError(
         {{body.place, "initial motion needs a dynamic solver; remove initial, or use kind = \"implicit-euler\""}});
-  const Vec3d about = body.initial.about.value_or(center * (1 / mass)), w = body.initial.angular_velocity;
+  if (!moves) return;
+  const Vec3d about = body.initial.about.value_or(mass > 0 ? center * (1 / mass) : bounds_of(built.nodes).middle()),
+              w = body.initial.angular_velocity;
   for (int i = first; i < first + count; ++i) {
     s.initial.v[at(i)] = body.initial.velocity + cross(w, s.model.rest_position[at(i)] - about);
     if (s.model.kind(i) != FrameKind::vertex) s.initial.Q_dot[at(i)] = skew(w);
@@ -248,6 +251,7 @@ Simulation build_simulation(Scene scene) {
   give_inertia_to_hosts(s);
   s.initial = State::at_rest(s.model);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
+  place_dependent_rates(s.model.points, s.initial);
   s.initial.turned.resize(s.model.constraints.size());
   if (s.model.constrained_dof_count() == s.model.dof_count() && s.scene.solver.kind == SolverKind::modes)
     throw SceneError(

@@ -30,6 +30,7 @@ struct Bounds {
     return true;
   }
   bool contains(const Bounds& b) const { return contains(b.low) && contains(b.high); }
+  Vec3d middle() const { return (low + high) * 0.5; }
   /// Along each axis; of a box that holds something.
   Vec3d extent() const { return high - low; }
   double diagonal() const { return empty() ? 0 : norm(extent()); }
