@@ -1,9 +1,9 @@
 #include "core/geometry/bounds.hpp"
+#include "core/geometry/text.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "coupling/gap_sides.hpp"
 #include "coupling/rigid_body.hpp"
-#include "coupling/text.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace gap_parts;
 
 namespace {
 
-using coupling_parts::text;
+using message::text;
 
 /// The direction in which a side is long.
 Vec3d length_axis(const TriangleMesh& faces, const std::string& body) {

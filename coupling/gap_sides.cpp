@@ -2,9 +2,9 @@
 
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/inside.hpp"
+#include "core/geometry/text.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
-#include "coupling/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace fascia::gap_parts {
 
 namespace {
 
-using coupling_parts::text;
+using message::text;
 
 /// Distance [relative to the sides' size] within which sides touch, and bodies do not overlap yet.
 constexpr double kTouching = 1e-6;

@@ -2,9 +2,9 @@
 
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/inside.hpp"
+#include "core/geometry/text.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
-#include "coupling/text.hpp"
 
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace fascia {
 
 namespace {
 
-using coupling_parts::text;
+using message::text;
 
 /// A point near all triangles: moments about it lose no digits far from the origin.
 Vec3d near_point(const TriangleMesh& surface) {

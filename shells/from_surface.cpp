@@ -1,10 +1,10 @@
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
+#include "core/geometry/text.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "shells/shell_mesh.hpp"
 #include "shells/surface_checks.hpp"
-#include "shells/text.hpp"
 
 #include <algorithm>
 #include <map>
@@ -14,7 +14,7 @@ namespace fascia {
 namespace {
 
 using namespace surface_parts;
-using shell_parts::text;
+using message::text;
 
 bool is_any(CellType) { return true; }
 

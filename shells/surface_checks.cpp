@@ -2,8 +2,8 @@
 
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/surface_edges.hpp"
+#include "core/geometry/text.hpp"
 #include "core/math/index.hpp"
-#include "shells/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 namespace fascia {
 namespace {
 
-using shell_parts::text;
+using message::text;
 using surface_parts::Edge;
 
 constexpr double degree = std::numbers::pi / 180;

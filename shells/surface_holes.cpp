@@ -1,7 +1,7 @@
 #include "core/geometry/surface_edges.hpp"
+#include "core/geometry/text.hpp"
 #include "core/math/index.hpp"
 #include "shells/surface_checks.hpp"
-#include "shells/text.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -76,7 +76,7 @@ std::vector<ShellHole> holes(const ShellMesh& mesh) {
 }
 
 std::string openness(const ShellMesh& mesh) {
-  using shell_parts::text;
+  using message::text;
   const std::vector<ShellHole> found = holes(mesh);
   if (found.empty()) return "";
   const ShellHole& hole = found.front();

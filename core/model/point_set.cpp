@@ -2,11 +2,11 @@
 
 #include "core/math/index.hpp"
 #include "core/model/coloring.hpp"
+#include "core/model/disjoint_sets.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace fascia {
@@ -125,27 +125,11 @@ void sort_dependents(PointSet& set) {
 /// Numbers the connected parts in the order of their first nodes.
 void find_parts(PointSet& set, const std::vector<double>& group_length, const std::vector<Joint>& joints) {
   const auto n = static_cast<std::size_t>(set.node_count());
-  std::vector<int> parent(n);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) {
-      int& up = parent[static_cast<std::size_t>(i)];
-      i = up = parent[static_cast<std::size_t>(up)];
-    }
-    return i;
+  DisjointSets sets(set.node_count());
+  const auto join = [&](const auto& nodes) {
+    for (const int node : nodes) sets.join(node, nodes[0]);
   };
-  for (int group = 0; group < set.group_count(); ++group) {
-    for (const int node : set.nodes(group)) {
-      const int a = root(node), b = root(set.nodes(group)[0]);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  }
-  const auto join = [&](const auto& element) {
-    for (const int node : element) {
-      const int a = root(node), b = root(element[0]);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  };
+  for (int group = 0; group < set.group_count(); ++group) join(set.nodes(group));
   for (const ElementBlock& block : set.blocks) block.for_each_element(join);
   for (const ShellBlock& shell : set.shells)
     for (int e = 0; e < shell.count; ++e) join(shell.element(e));
@@ -157,7 +141,7 @@ void find_parts(PointSet& set, const std::vector<double>& group_length, const st
   std::vector<double> nodes, volume;
   set.node_part.resize(n);
   for (int i = 0; i < set.node_count(); ++i) {
-    const int r = root(i);
+    const int r = sets.root(i);
     if (r == i) {
       set.node_part[static_cast<std::size_t>(i)] = static_cast<int>(nodes.size());
       nodes.push_back(0);

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string>
 
-/// Numbers in messages; for the files of coupling only.
-namespace fascia::coupling_parts {
+/// Numbers and places in messages.
+namespace fascia::message {
 
 inline std::string text(double value) {
   std::array<char, 32> buffer{};
@@ -17,4 +17,4 @@ inline std::string text(double value) {
 
 inline std::string text(const Vec3d& X) { return "(" + text(X[0]) + ", " + text(X[1]) + ", " + text(X[2]) + ")"; }
 
-}  // namespace fascia::coupling_parts
+}  // namespace fascia::message
