@@ -47,7 +47,8 @@ class Followers {
           {{coupling.place, fmt::format("the node at {} of body \"{}\" is held by a constraint, and cannot "
                                         "follow \"{}\" too; leave it out of one of the regions",
                                         text(X), coupling.body, coupling.to)}});
-    by_node_[d.node] = {&coupling, std::move(d)};
+    const int node = d.node;
+    by_node_[node] = {&coupling, std::move(d)};
   }
 
   /// @throws SceneError  nodes that follow one another in a circle
