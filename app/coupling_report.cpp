@@ -174,13 +174,15 @@ void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& o
 
 }  // namespace
 
-nlohmann::ordered_json coupling_report(const Simulation& s, const MechanicalSystem& system, const State& state) {
-  nlohmann::ordered_json j = nlohmann::ordered_json::object();
+CouplingReports coupling_report(const Simulation& s, const MechanicalSystem& system, const State& state) {
+  CouplingReports reports;
   for (const SimulatedBody& b : s.bodies)
-    if (!b.interfaces.empty()) j[b.name] = report_tissue(s, b, system, state);
-  for (std::size_t k = 0; k < s.couplings.size(); ++k)
-    j[s.scene.couplings[k].name] = report_coupling(s, s.scene.couplings[k], s.couplings[k], system, state);
-  return j;
+    if (!b.interfaces.empty()) reports.emplace_back(b.name, report_tissue(s, b, system, state));
+  for (std::size_t k = 0; k < s.couplings.size(); ++k) {
+    const Coupling& c = s.scene.couplings[k];
+    reports.emplace_back(c.name, report_coupling(s, c, s.couplings[k], system, state));
+  }
+  return reports;
 }
 
 std::string coupling_layout(const Simulation& s) {

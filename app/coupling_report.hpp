@@ -6,14 +6,18 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace fascia::app {
+
+/// Name and entry of each coupling in summary.json.
+using CouplingReports = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
 
 /// What each coupling carries at a state at which the system was evaluated: welds, embeddings and springs by name, and
 /// bodies that share frames by theirs. Forces are those on `body` of a coupling, of a tissue those on each body that it
 /// is tied to; moments are about the origin of the world.
-nlohmann::ordered_json coupling_report(const Simulation& simulation, const MechanicalSystem& system,
-                                       const State& state);
+CouplingReports coupling_report(const Simulation& simulation, const MechanicalSystem& system, const State& state);
 
 /// The layout of couplings in sentences, a line each: who shares how many nodes with whom, what follows what, what each
 /// body could do alone, mechanisms.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/coupling_report.hpp"
 #include "app/probes.hpp"
 #include "app/simulation.hpp"
 #include "core/solver/drivers.hpp"
@@ -51,6 +52,6 @@ struct RunTimes {
 /// @param couplings  see coupling_report()
 nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
                                const std::vector<nlohmann::json>& probe_values, double stabilization_energy,
-                               const std::vector<FluidState>& fluids, const nlohmann::ordered_json& couplings);
+                               const std::vector<FluidState>& fluids, const CouplingReports& couplings);
 
 }  // namespace fascia::app

@@ -122,7 +122,7 @@ struct Outcome {
   std::vector<nlohmann::json> probes;
   double stabilization = 0;
   std::vector<FluidState> fluids;
-  nlohmann::ordered_json couplings;
+  CouplingReports couplings;
 };
 
 Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, const RunOptions& options) {

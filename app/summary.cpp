@@ -41,7 +41,7 @@ double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
 nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
                                const std::vector<nlohmann::json>& probe_values, double stabilization_energy,
-                               const std::vector<FluidState>& fluids, const nlohmann::ordered_json& couplings) {
+                               const std::vector<FluidState>& fluids, const CouplingReports& couplings) {
   nlohmann::ordered_json j;
   j["fascia"] = FASCIA_VERSION;
   j["scene"] = s.scene.path.filename().string();
@@ -65,7 +65,8 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   for (std::size_t f = 0; f < fluids.size(); ++f)
     j["bodies"][s.bodies[static_cast<std::size_t>(s.fluids[f].body)].name]["fluid"] = {
         {"volume", finite(fluids[f].volume)}, {"pressure", finite(fluids[f].pressure)}};
-  j["couplings"] = couplings.is_null() ? nlohmann::ordered_json::object() : couplings;
+  j["couplings"] = nlohmann::ordered_json::object();
+  for (const auto& [name, report] : couplings) j["couplings"][name] = report;
   j["dofs"] = s.model.free_dof_count();
   j["steps"] = run.steps;
   j["simulated_time"] = is_dynamic(s.scene.solver.kind) ? run.time : 0.0;
