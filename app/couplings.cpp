@@ -30,6 +30,8 @@ class Followers {
     return !by_node_.contains(node) && (held == held_.end() || held->second->translations == 0);
   }
 
+  bool follows(int node) const { return by_node_.contains(node); }
+
   /// A tissue's own frame on the surface of another body.
   void add_follower(DependentNode d) {
     const int node = d.node;
@@ -176,6 +178,23 @@ void add_springs(Simulation& s, const Coupling& c, const std::vector<int>& nodes
   }
 }
 
+/// @throws SceneError  a vertex of a surface that rides on nothing, which neither forces nor mass would move
+void check_surfaces_ride(const Simulation& s, const Followers& dependents) {
+  for (const SimulatedBody& b : s.bodies) {
+    const Body& described = s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())];
+    if (described.model != BodyModel::surface) continue;
+    const auto follows = [&](int node) { return dependents.follows(node); };
+    const auto first = std::find_if_not(b.node_ids.begin(), b.node_ids.end(), follows);
+    if (first == b.node_ids.end()) continue;
+    throw SceneError(
+        {{described.place,
+          fmt::format("{} of its {} vertices ride on nothing, the first at {}; a surface has no matter of its own: let "
+                      "its couplings select every vertex (where = \"all\")",
+                      std::count_if(first, b.node_ids.end(), [&](int node) { return !follows(node); }),
+                      b.node_ids.size(), text(s.model.rest_position[at(*first)]))}});
+  }
+}
+
 }  // namespace
 
 void add_couplings(Simulation& s, PointSetBuilder& points) {
@@ -194,6 +213,7 @@ void add_couplings(Simulation& s, PointSetBuilder& points) {
   }
   for (const SimulatedBody& b : s.bodies) attach_interfaces(s, b, dependents);
   dependents.check_circles();
+  check_surfaces_ride(s, dependents);
   dependents.give_to(points);
 }
 
