@@ -3,12 +3,14 @@
 #include "app/simulation.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "core/math/index.hpp"
+#include "meshless/neighbours.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 /// Welds, embeddings and springs of the scene.
@@ -88,21 +90,33 @@ class Followers {
   std::map<int, Made> by_node_;
 };
 
-DependentNode welded(const Simulation& s, const Coupling& c, int node, const SimulatedBody& host) {
-  const Vec3d& X = s.model.rest_position[at(node)];
-  int nearest = -1;
-  double least = 0;
-  for (std::size_t i = 0; i < host.nodes.size(); ++i) {
-    if (s.model.kind(host.node_ids[i]) == FrameKind::vertex) continue;
-    const double distance = squared_norm(host.nodes[i] - X);
-    if (nearest >= 0 && distance >= least) continue;
-    nearest = host.node_ids[i];
-    least = distance;
+/// The frames of a body that others are welded to.
+class WeldHosts {
+ public:
+  WeldHosts(const Simulation& s, const Coupling& c, const SimulatedBody& host) {
+    std::vector<Vec3d> positions;
+    for (std::size_t i = 0; i < host.nodes.size(); ++i) {
+      if (s.model.kind(host.node_ids[i]) == FrameKind::vertex) continue;
+      frames_.push_back(host.node_ids[i]);
+      positions.push_back(host.nodes[i]);
+    }
+    if (frames_.empty())
+      throw SceneError({{c.to_place, fmt::format("body \"{}\" has no frames, only nodes without rotation; use kind = "
+                                                 "\"embed\"",
+                                                 host.name)}});
+    search_.emplace(positions);
   }
-  if (nearest < 0)
-    throw SceneError({{c.to_place, fmt::format("body \"{}\" has no frames, only nodes without rotation; use kind = "
-                                               "\"embed\"",
-                                               host.name)}});
+
+  int nearest(const Vec3d& X) const { return frames_[at(search_->nearest(X, 1)[0])]; }
+
+ private:
+  std::vector<int> frames_;
+  std::optional<FrameSearch> search_;
+};
+
+DependentNode welded(const Simulation& s, const Coupling& c, int node, const WeldHosts& hosts) {
+  const Vec3d& X = s.model.rest_position[at(node)];
+  const int nearest = hosts.nearest(X);
   const FrameKind kind = s.model.kind(node), host_kind = s.model.kind(nearest);
   if (kind == FrameKind::affine || (kind == FrameKind::rigid && host_kind == FrameKind::affine))
     throw SceneError({{c.place, "welds affine frames; use kind = \"embed\", or frames of kind \"rigid\""}});
@@ -208,8 +222,12 @@ void add_couplings(Simulation& s, PointSetBuilder& points) {
       continue;
     }
     const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
-    for (const int node : built.nodes)
-      dependents.add(c, c.kind == CouplingKind::weld ? welded(s, c, node, host) : embedded(s, c, node, host));
+    if (c.kind == CouplingKind::weld) {
+      const WeldHosts hosts(s, c, host);
+      for (const int node : built.nodes) dependents.add(c, welded(s, c, node, hosts));
+    } else {
+      for (const int node : built.nodes) dependents.add(c, embedded(s, c, node, host));
+    }
   }
   for (const SimulatedBody& b : s.bodies) attach_interfaces(s, b, dependents);
   dependents.check_circles();

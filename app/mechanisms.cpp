@@ -23,6 +23,7 @@ class Finder {
   explicit Finder(const Simulation& s) : s_(s), members_(at(s.model.node_count())) {
     for (std::size_t b = 0; b < s.bodies.size(); ++b) find_pieces(static_cast<int>(b));
     for (std::size_t node = 0; node < members_.size(); ++node) join_members(node);
+    for (const DependentNode& d : s.model.points.dependents) follows_.emplace(d.node, &d);
     add_constraints();
     add_tethers();
     add_springs();
@@ -139,10 +140,20 @@ class Finder {
     }
   }
 
+  /// The piece that a node belongs to, or that it rides on through a surface without matter; −1: none.
+  int carrier(int node) const {
+    if (!members_[at(node)].empty()) return members_[at(node)][0].piece;
+    const auto follows = follows_.find(node);
+    int piece = -1;
+    if (follows != follows_.end())
+      for (const int host : follows->second->hosts) piece = std::max(piece, carrier(host));
+    return piece;
+  }
+
   void add_springs() {
     for (const Spring& spring : s_.model.points.springs) {
-      if (members_[at(spring.node)].empty()) continue;
-      const int piece = members_[at(spring.node)][0].piece;
+      const int piece = carrier(spring.node);
+      if (piece < 0) continue;
       const Vec3d along = squared_norm(spring.direction) > 0 ? spring.direction : spring.X - spring.point;
       if (squared_norm(along) > 0)
         add(piece, -1, spring.X, normalized(along), false);
@@ -155,8 +166,7 @@ class Finder {
     for (const DependentNode& d : s_.model.points.dependents) {
       if (members_[at(d.node)].empty()) continue;
       int host = -1;
-      for (const int h : d.hosts)
-        if (!members_[at(h)].empty()) host = members_[at(h)][0].piece;
+      for (const int h : d.hosts) host = std::max(host, carrier(h));
       const int piece = members_[at(d.node)][0].piece;
       if (host < 0 || host == piece) continue;
       const Vec3d& X = s_.model.rest_position[at(d.node)];
@@ -178,6 +188,7 @@ class Finder {
   std::vector<Piece> pieces_;
   std::vector<RigidPiece> rigid_;             ///< the same
   std::vector<std::vector<Member>> members_;  ///< of each node
+  std::map<int, const DependentNode*> follows_;
   std::vector<Tie> ties_;
 };
 
