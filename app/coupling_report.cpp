@@ -172,6 +172,37 @@ void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& o
   fmt::format_to(std::back_inserter(out), "body {}: {}{}\n", b.name, shared.empty() ? "" : "shares ", list);
 }
 
+void describe_support(const Simulation& s, const Mechanisms& m, std::string& out) {
+  constexpr std::size_t kListed = 4;
+  std::map<int, std::vector<std::size_t>> pieces;
+  for (std::size_t p = 0; p < m.pieces.size(); ++p) pieces[m.pieces[p].body].push_back(p);
+  const auto to_out = std::back_inserter(out);
+  for (const auto& [body, list] : pieces) {
+    const std::string& name = s.bodies[at(body)].name;
+    if (list.size() > kListed) {
+      const auto held =
+          std::count_if(list.begin(), list.end(), [&](std::size_t p) { return m.own_motions[p].empty(); });
+      fmt::format_to(to_out, "body {}: {} parts, {} of them alone held\n", name, list.size(), held);
+      continue;
+    }
+    for (const std::size_t p : list) {
+      const Vec3d& x = m.pieces[p].center;
+      const std::string part = fmt::format(" around ({:.4g}, {:.4g}, {:.4g})", x[0], x[1], x[2]);
+      fmt::format_to(to_out, "body {}{}: alone {}\n", name, m.pieces[p].whole ? "" : part,
+                     m.own_motions[p].empty() ? "held" : "free in " + m.own_motions[p]);
+    }
+  }
+  for (const Assembly& a : m.assemblies) {
+    if (!a.free.empty() && a.pieces.size() > 1)
+      fmt::format_to(to_out, "all coupled to {}: free in {}\n", s.bodies[at(m.pieces[at(a.pieces[0])].body)].name,
+                     fmt::join(a.free, ", "));
+    for (const LooseMotion& l : a.loose.motions)
+      fmt::format_to(to_out, "mechanism: \"{}\": {}\n", s.bodies[at(m.pieces[at(l.piece)].body)].name, l.name);
+    if (const std::size_t more = at(a.loose.count) - a.loose.motions.size(); more > 0)
+      fmt::format_to(to_out, "mechanism: {} more motions\n", more);
+  }
+}
+
 }  // namespace
 
 CouplingReports coupling_report(const Simulation& s, const MechanicalSystem& system, const State& state) {
@@ -201,22 +232,7 @@ std::string coupling_layout(const Simulation& s) {
                      c.kind == CouplingKind::weld ? "welded to frames of" : "embedded in", c.to);
   }
   if (s.bodies.size() < 2 && s.couplings.empty()) return out;
-  const Mechanisms m = find_mechanisms(s);
-  for (std::size_t p = 0; p < m.pieces.size(); ++p) {
-    const Piece& piece = m.pieces[p];
-    const std::string& name = s.bodies[at(piece.body)].name;
-    const std::string what = piece.whole ? name
-                                         : fmt::format("{} around ({:.4g}, {:.4g}, {:.4g})", name, piece.center[0],
-                                                       piece.center[1], piece.center[2]);
-    fmt::format_to(std::back_inserter(out), "body {}: alone {}\n", what,
-                   m.own_motions[p].empty() ? "held" : "free in " + m.own_motions[p]);
-  }
-  for (const Assembly& a : m.assemblies) {
-    if (!a.free.empty() && a.pieces.size() > 1)
-      fmt::format_to(std::back_inserter(out), "all coupled to {}: free in {}\n",
-                     s.bodies[at(m.pieces[at(a.pieces[0])].body)].name, fmt::join(a.free, ", "));
-    for (const std::string& motion : a.loose) fmt::format_to(std::back_inserter(out), "mechanism: {}\n", motion);
-  }
+  describe_support(s, find_mechanisms(s), out);
   return out;
 }
 

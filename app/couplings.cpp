@@ -3,12 +3,14 @@
 #include "app/simulation.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "core/math/index.hpp"
+#include "meshless/neighbours.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 /// Welds, embeddings and springs of the scene.
@@ -29,6 +31,8 @@ class Followers {
     const auto held = held_.find(node);
     return !by_node_.contains(node) && (held == held_.end() || held->second->translations == 0);
   }
+
+  bool follows(int node) const { return by_node_.contains(node); }
 
   /// A tissue's own frame on the surface of another body.
   void add_follower(DependentNode d) {
@@ -87,21 +91,33 @@ class Followers {
   std::map<int, Made> by_node_;
 };
 
-DependentNode welded(const Simulation& s, const Coupling& c, int node, const SimulatedBody& host) {
-  const Vec3d& X = s.model.rest_position[at(node)];
-  int nearest = -1;
-  double least = 0;
-  for (std::size_t i = 0; i < host.nodes.size(); ++i) {
-    if (s.model.kind(host.node_ids[i]) == FrameKind::vertex) continue;
-    const double distance = squared_norm(host.nodes[i] - X);
-    if (nearest >= 0 && distance >= least) continue;
-    nearest = host.node_ids[i];
-    least = distance;
+/// The frames of a body that others are welded to.
+class WeldHosts {
+ public:
+  WeldHosts(const Simulation& s, const Coupling& c, const SimulatedBody& host) {
+    std::vector<Vec3d> positions;
+    for (std::size_t i = 0; i < host.nodes.size(); ++i) {
+      if (s.model.kind(host.node_ids[i]) == FrameKind::vertex) continue;
+      frames_.push_back(host.node_ids[i]);
+      positions.push_back(host.nodes[i]);
+    }
+    if (frames_.empty())
+      throw SceneError({{c.to_place, fmt::format("body \"{}\" has no frames, only nodes without rotation; use kind = "
+                                                 "\"embed\"",
+                                                 host.name)}});
+    search_.emplace(positions);
   }
-  if (nearest < 0)
-    throw SceneError({{c.to_place, fmt::format("body \"{}\" has no frames, only nodes without rotation; use kind = "
-                                               "\"embed\"",
-                                               host.name)}});
+
+  int nearest(const Vec3d& X) const { return frames_[at(search_->nearest(X, 1)[0])]; }
+
+ private:
+  std::vector<int> frames_;
+  std::optional<FrameSearch> search_;
+};
+
+DependentNode welded(const Simulation& s, const Coupling& c, int node, const WeldHosts& hosts) {
+  const Vec3d& X = s.model.rest_position[at(node)];
+  const int nearest = hosts.nearest(X);
   const FrameKind kind = s.model.kind(node), host_kind = s.model.kind(nearest);
   if (kind == FrameKind::affine || (kind == FrameKind::rigid && host_kind == FrameKind::affine))
     throw SceneError({{c.place, "welds affine frames; use kind = \"embed\", or frames of kind \"rigid\""}});
@@ -177,6 +193,23 @@ void add_springs(Simulation& s, const Coupling& c, const std::vector<int>& nodes
   }
 }
 
+/// @throws SceneError  a vertex of a surface that rides on nothing, which neither forces nor mass would move
+void check_surfaces_ride(const Simulation& s, const Followers& dependents) {
+  for (const SimulatedBody& b : s.bodies) {
+    const Body& described = s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())];
+    if (described.model != BodyModel::surface) continue;
+    const auto follows = [&](int node) { return dependents.follows(node); };
+    const auto first = std::find_if_not(b.node_ids.begin(), b.node_ids.end(), follows);
+    if (first == b.node_ids.end()) continue;
+    throw SceneError(
+        {{described.place,
+          fmt::format("{} of its {} vertices ride on nothing, the first at {}; a surface has no matter of its own: let "
+                      "its couplings select every vertex (where = \"all\")",
+                      std::count_if(first, b.node_ids.end(), [&](int node) { return !follows(node); }),
+                      b.node_ids.size(), text(s.model.rest_position[at(*first)]))}});
+  }
+}
+
 }  // namespace
 
 void add_couplings(Simulation& s, PointSetBuilder& points) {
@@ -190,11 +223,16 @@ void add_couplings(Simulation& s, PointSetBuilder& points) {
       continue;
     }
     const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
-    for (const int node : built.nodes)
-      dependents.add(c, c.kind == CouplingKind::weld ? welded(s, c, node, host) : embedded(s, c, node, host));
+    if (c.kind == CouplingKind::weld) {
+      const WeldHosts hosts(s, c, host);
+      for (const int node : built.nodes) dependents.add(c, welded(s, c, node, hosts));
+    } else {
+      for (const int node : built.nodes) dependents.add(c, embedded(s, c, node, host));
+    }
   }
   for (const SimulatedBody& b : s.bodies) attach_interfaces(s, b, dependents);
   dependents.check_circles();
+  check_surfaces_ride(s, dependents);
   dependents.give_to(points);
 }
 

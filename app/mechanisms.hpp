@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/loose_motions.hpp"
 #include "app/simulation.hpp"
 
 #include <string>
@@ -19,9 +20,9 @@ struct Piece {
 
 /// Pieces that hang together, and what of them is free.
 struct Assembly {
-  std::vector<int> pieces;         ///< of Mechanisms::pieces
-  std::vector<std::string> free;   ///< motions of all pieces as one body that no support resists
-  std::vector<std::string> loose;  ///< further ones, each with the body that moves most in it
+  std::vector<int> pieces;        ///< of Mechanisms::pieces
+  std::vector<std::string> free;  ///< motions of all pieces as one body that no support resists
+  LooseMotions loose;             ///< further ones
 };
 
 struct Mechanisms {

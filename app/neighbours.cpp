@@ -12,7 +12,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <map>
+#include <set>
 
 namespace fascia::app {
 
@@ -30,35 +33,44 @@ std::vector<std::string> givers_of(const Body& body) {
 void share_rigid(const SimulatedBody& giver, const Model& model, const std::vector<bool>& chosen, BodyBuild& build) {
   const int node = giver.body->first_node();
   const std::vector<Vec3d>& points = giver.body->surface().points;
+  const auto key = [](const Vec3d& x) { return std::array<double, 3>{x[0], x[1], x[2]}; };
+  std::set<std::array<double, 3>> known;
+  for (const SharedFrame& f : build.shared)
+    if (f.node == node) known.insert(key(f.x));
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (chosen[i]) build.shared.push_back({node, points[i], points[i] - model.rest_position[at(node)], true});
+    if (chosen[i] && known.insert(key(points[i])).second)
+      build.shared.push_back({node, points[i], points[i] - model.rest_position[at(node)], true});
 }
 
 /// @param within  further condition on the position
+/// @return how many nodes are selected; those that are shared already stay as they are
 std::size_t share_nodes(const Simulation& s, const SharedNodes& share, const std::function<bool(const Vec3d&)>& within,
                         BodyBuild& build) {
-  const std::size_t before = build.shared.size();
   const int index = body_index(s, share.body);
   const SimulatedBody& giver = s.bodies[at(index)];
   if (s.scene.bodies[at(index)].model == BodyModel::rigid) {
     std::vector<bool> chosen = select(share.where, giver.selectable_surface());
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] && within(giver.body->surface().points[i]);
     share_rigid(giver, s.model, chosen, build);
-    return build.shared.size() - before;
+    return static_cast<std::size_t>(std::count(chosen.begin(), chosen.end(), true));
   }
+  std::map<int, std::size_t> known;
+  for (std::size_t k = 0; k < build.shared.size(); ++k)
+    if (squared_norm(build.shared[k].arm) == 0) known.emplace(build.shared[k].node, k);
   const std::vector<bool> chosen = select(share.where, giver.selectable_nodes());
+  std::size_t count = 0;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (!chosen[i] || !within(giver.nodes[i])) continue;
+    ++count;
     const int node = giver.node_ids[i];
-    const auto same = std::find_if(build.shared.begin(), build.shared.end(),
-                                   [&](const SharedFrame& f) { return f.node == node && squared_norm(f.arm) == 0; });
     const bool turns = share.rotations || s.model.kind(node) != FrameKind::vertex;
-    if (same == build.shared.end())
+    const auto [same, fresh] = known.try_emplace(node, build.shared.size());
+    if (fresh)
       build.shared.push_back({node, giver.nodes[i], {}, turns});
     else
-      same->turns = same->turns || turns;
+      build.shared[same->second].turns = build.shared[same->second].turns || turns;
   }
-  return build.shared.size() - before;
+  return count;
 }
 
 /// The faces of a body's surface whose points are all selected.

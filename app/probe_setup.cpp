@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace fascia::app {
 
@@ -60,6 +61,40 @@ int find_fluid(const Simulation& s, const ResolvedProbe& r) {
                                       : fmt::format("asks for one of {} fluids; name its body", found.size())}});
 }
 
+/// Nodes of a probe without a region: those of its body, or of the scene; of displacements the shared ones too.
+std::vector<int> nodes_of(const Simulation& s, const ResolvedProbe& r) {
+  const Quantity q = r.probe->quantity;
+  if (r.body >= 0 && (q == Quantity::max_displacement || q == Quantity::mean_displacement))
+    return s.bodies[at(r.body)].node_ids;
+  const ModelBody* body = r.body >= 0 ? s.bodies[at(r.body)].body.get() : nullptr;
+  std::vector<int> nodes(at(body ? body->node_count() : s.model.node_count()));
+  std::iota(nodes.begin(), nodes.end(), body ? body->first_node() : 0);
+  return nodes;
+}
+
+/// Inertia lies at nodes: at shared ones that of all their bodies, at followed ones that of what follows.
+void warn_of_shared_mass(Simulation& s, const ResolvedProbe& r) {
+  const Quantity q = r.probe->quantity;
+  if (r.body < 0 || (q != Quantity::kinetic_energy && q != Quantity::total_energy && q != Quantity::momentum &&
+                     q != Quantity::angular_momentum))
+    return;
+  const ModelBody& body = *s.bodies[at(r.body)].body;
+  const auto own = [&](int node) { return node >= body.first_node() && node < body.first_node() + body.node_count(); };
+  const bool shares = std::any_of(s.bodies.begin(), s.bodies.end(), [&](const SimulatedBody& b) {
+    const std::vector<int>& shared = b.body->shared_nodes();
+    return b.body.get() == &body ? !shared.empty() : std::any_of(shared.begin(), shared.end(), own);
+  });
+  const std::vector<DependentNode>& dependents = s.model.points.dependents;
+  const bool follows = std::any_of(dependents.begin(), dependents.end(), [&](const DependentNode& d) {
+    return std::any_of(d.hosts.begin(), d.hosts.end(), [&](int host) { return own(host) != own(d.node); });
+  });
+  if (shares || follows)
+    s.warnings.push_back(
+        fmt::format("{}: masses of what is coupled count at the nodes that move them, whichever their body: this is "
+                    "not all of \"{}\", or more; leave body out for the whole scene",
+                    r.probe->place.key, s.bodies[at(r.body)].name));
+}
+
 }  // namespace
 
 Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place) {
@@ -104,10 +139,9 @@ void resolve_probes(Simulation& s) {
     if (probe.where) {
       r.nodes = r.tethered.empty() ? select_nodes(s, r.body, *probe.where) : find_nodes(s, r.body, *probe.where);
     } else {
-      const int first = r.body >= 0 ? s.bodies[at(r.body)].body->first_node() : 0;
-      const int count = r.body >= 0 ? s.bodies[at(r.body)].body->node_count() : s.model.node_count();
-      for (int i = first; i < first + count; ++i) r.nodes.push_back(i);
+      r.nodes = nodes_of(s, r);
     }
+    warn_of_shared_mass(s, r);
     r.about = probe.about.value_or(Vec3d{});
     if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))
       s.warnings.push_back(fmt::format("{}: is zero in a static solve", probe.place.key));

@@ -341,8 +341,10 @@ int check_scene(const RunOptions& options) {
              followers > 0 ? fmt::format(", {} that follow others", followers) : "", tethers, s.scene.loads.size(),
              s.probes.size());
   if (s.stable_step > 0)
-    fmt::print("stable time step {:.4g} s, {} steps of {:.4g} s\n", s.stable_step, s.scene.solver.steps,
-               s.scene.solver.time_step);
+    fmt::print("{}, {} steps of {:.4g} s\n",
+               std::isfinite(s.stable_step) ? fmt::format("stable time step {:.4g} s", s.stable_step)
+                                            : "nothing elastic limits the time step",
+               s.scene.solver.steps, s.scene.solver.time_step);
   for (const SimulatedBody& b : s.bodies)
     if (s.stable_step > 0 && b.body->fastest_cell() > 0)
       fmt::print("body {}: {} {} limits the time step\n", b.name,

@@ -70,6 +70,17 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
     throw SceneError(
         {{body.place, "initial motion needs a dynamic solver; remove initial, or use kind = \"implicit-euler\""}});
   if (!moves) return;
+  const std::vector<DependentNode>& dependents = s.model.points.dependents;
+  const auto following = std::count_if(dependents.begin(), dependents.end(), [&](const DependentNode& d) {
+    return d.node >= first && d.node < first + count;
+  });
+  if (following == count)
+    throw SceneError({{body.place,
+                       "initial motion is lost on this body: all its nodes belong to other bodies or follow them; give "
+                       "those the motion and remove initial"}});
+  if (following > 0)
+    s.warnings.push_back(fmt::format("bodies.{}.initial: {} of {} {}s follow other bodies, and start as these do",
+                                     body.name, following, count, built.node_word()));
   const Vec3d about = body.initial.about.value_or(mass > 0 ? center * (1 / mass) : bounds_of(built.nodes).middle()),
               w = body.initial.angular_velocity;
   for (int i = first; i < first + count; ++i) {
@@ -256,6 +267,12 @@ Simulation build_simulation(Scene scene) {
   if (s.model.constrained_dof_count() == s.model.dof_count() && s.scene.solver.kind == SolverKind::modes)
     throw SceneError(
         {{s.scene.solver.place, "the constraints hold every degree of freedom; leave some free for modes"}});
+  const PointSet& set = s.model.points;
+  if (s.scene.solver.kind == SolverKind::modes && set.group_count() == 0 && set.blocks.empty() && set.shells.empty() &&
+      set.springs.empty())
+    throw SceneError({{s.scene.solver.place,
+                       "nothing in the scene is elastic, so that nothing vibrates; add springs or a body of another "
+                       "model, or use kind = \"implicit-euler\""}});
   add_loads(s);
   if (s.scene.solver.kind == SolverKind::statics) check_support(s);
   if (s.scene.solver.kind == SolverKind::modes &&

@@ -126,7 +126,8 @@ void check_other_body(const std::string& name, const Place& place, const std::st
   if (std::find(bodies.begin(), bodies.end(), name) != bodies.end()) return;
   std::vector<std::string> others;
   std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(others), [&](const auto& b) { return b != own; });
-  diagnostics.add(place, unknown_name("body", name, others));
+  diagnostics.add(place, others.empty() ? fmt::format("{} is no known body; the scene has no other", in_quotes(name))
+                                        : unknown_name("body", name, others));
 }
 
 Constraint read_constraint(const TableReader& table, const std::vector<std::string>& bodies) {
