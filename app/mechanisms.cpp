@@ -52,7 +52,9 @@ std::vector<std::string> free_motions(const Matrix6& resistance) {
   return names;
 }
 
-std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+std::string joined(const std::vector<std::string>& names) {
+  return names.size() == 6 ? "every direction" : fmt::format("{}", fmt::join(names, ", "));
+}
 
 /// A direction in which something resists the motion of a piece against another one, or against the ground (−1).
 struct Tie {
