@@ -12,6 +12,10 @@ namespace fascia::app {
 
 namespace {
 
+std::string joined(const std::vector<std::string>& motions) {
+  return motions.size() == 6 ? "every direction" : fmt::format("{}", fmt::join(motions, ", "));
+}
+
 /// A piece that a node belongs to. `turns`: the piece drives the node's rotation.
 struct Member {
   int piece = 0;
@@ -45,7 +49,7 @@ class Finder {
     for (const Tie& t : ties_)
       if (t.other < 0) own[at(t.piece)].push_back(&t);
     for (std::size_t p = 0; p < pieces_.size(); ++p)
-      m.own_motions.push_back(fmt::format("{}", fmt::join(free_motions(own[p], rigid_[p]), ", ")));
+      m.own_motions.push_back(joined(free_motions(own[p], rigid_[p])));
     m.pieces = std::move(pieces_);
     return m;
   }
