@@ -1,0 +1,87 @@
+// A block cut in two whose halves share, embed or weld nodes, beside the block in one piece.
+#include "tests/support/coupled_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace fascia::test {
+namespace {
+
+constexpr double kTiny = 1e-3;
+
+std::string plane(double x) { return box({x - kTiny, -kTiny, -kTiny}, {x + kTiny, 1 + kTiny, 1 + kTiny}); }
+
+const std::string kTop =
+    "[world]\ngravity=[0,0,-10]\n[materials.soft]\nyoung=1e4\npoisson=0.3\n[solver.newton]\ntolerance=1e-11\n";
+
+/// Clamped at x = 0, pulled by 600 Pa at x = 2 and bent by the weight.
+std::string ends(const std::string& left, const std::string& right) {
+  return fix(left, plane(0)) +
+         fmt::format("[[loads]]\nbody=\"{}\"\nwhere={}\ntraction=[600,0,0]\n", right, plane(2)) +
+         probe_at("tip", right, {2, 0.5, 0.5});
+}
+
+Vector whole(Kind kind, int n) {
+  return TextRun(kTop + box_body("a", kind, {0, 0, 0}, {2, 1, 1}, n) + ends("a", "a")).vector("tip");
+}
+
+struct Cut {
+  const char* name;
+  Kind left, right;
+  std::string share;     ///< of the right half
+  std::string coupling;  ///< further text
+};
+
+Vector cut(const Cut& c, int n) {
+  const TextRun run(kTop + box_body("a", c.left, {0, 0, 0}, {1, 1, 1}, n) +
+                    box_body("b", c.right, {1, 0, 0}, {2, 1, 1}, n, c.share) + c.coupling + ends("a", "b"));
+  return run.vector("tip");
+}
+
+TEST(CouplingBlock, Explore) {
+  const std::string face = fmt::format("{{body=\"a\",where={}}}", plane(1));
+  const std::string still = fmt::format("{{body=\"a\",where={},rotations=false}}", plane(1));
+  const std::string a_in_b = coupling("join", "embed", "a", plane(1), "to=\"b\"");
+  const std::string b_in_a = coupling("join", "embed", "b", plane(1), "to=\"a\"");
+  const Cut cuts[] = {
+      {"grid shares grid", Kind::grid, Kind::grid, face, ""},
+      {"scattered shares grid", Kind::grid, Kind::scattered, face, ""},
+      {"scattered shares scattered", Kind::scattered, Kind::scattered, face, ""},
+      {"grid shares tetrahedra", Kind::tetrahedra, Kind::grid, face, ""},
+      {"grid shares tetrahedra, still", Kind::tetrahedra, Kind::grid, still, ""},
+      {"scattered shares tetrahedra", Kind::tetrahedra, Kind::scattered, face, ""},
+      {"scattered shares tetrahedra, still", Kind::tetrahedra, Kind::scattered, still, ""},
+      {"scattered shares hexahedra", Kind::hexahedra, Kind::scattered, face, ""},
+      {"scattered shares hexahedra, still", Kind::hexahedra, Kind::scattered, still, ""},
+      {"tetrahedra embedded in grid", Kind::tetrahedra, Kind::grid, "", a_in_b},
+      {"tetrahedra embedded in scattered", Kind::tetrahedra, Kind::scattered, "", a_in_b},
+      {"grid embedded in tetrahedra", Kind::tetrahedra, Kind::grid, "", b_in_a},
+      {"scattered embedded in tetrahedra", Kind::tetrahedra, Kind::scattered, "", b_in_a},
+      {"tetrahedra embedded in hexahedra", Kind::tetrahedra, Kind::hexahedra, "", a_in_b},
+      {"hexahedra embedded in tetrahedra", Kind::tetrahedra, Kind::hexahedra, "", b_in_a},
+      {"scattered embedded in scattered", Kind::scattered, Kind::scattered, "", b_in_a},
+  };
+  std::map<std::pair<Kind, int>, Vector> known;
+  const auto of = [&](Kind kind, int n) {
+    const auto found = known.find({kind, n});
+    return found != known.end() ? found->second : known[{kind, n}] = whole(kind, n);
+  };
+  for (const Kind kind : {Kind::grid, Kind::scattered, Kind::tetrahedra, Kind::hexahedra})
+    for (const int n : {2, 4, 6}) {
+      const Vector u = of(kind, n);
+      std::printf("%-12s %d: %.5f %.5f\n", name_of(kind), n, u[0], u[2]);
+    }
+  std::printf("%-36s %8s %8s %8s\n", "", "n = 2", "4", "6");
+  for (const Cut& c : cuts) {
+    std::printf("%-36s", c.name);
+    for (const int n : {2, 4, 6}) {
+      const Vector u = cut(c, n), l = of(c.left, n), r = of(c.right, n);
+      std::printf("   %.5f: %+.3f %% %+.3f %%", u[2], 100 * (u[2] / l[2] - 1), 100 * (u[2] / r[2] - 1));
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+}  // namespace fascia::test

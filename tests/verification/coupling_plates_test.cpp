@@ -1,0 +1,139 @@
+// Tissue between rigid plates, and between organs of other resolutions.
+#include "tests/support/coupled_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace fascia::test {
+namespace {
+
+const std::string kTop = "[materials.soft]\nyoung=1e4\npoisson=0.3\n[solver.newton]\ntolerance=1e-10\n";
+
+std::string level(double z) { return box({-1, -1, z - 1e-3}, {2, 2, z + 1e-3}); }
+
+std::string plate(const std::string& name, double low, double high, int n) {
+  return fmt::format(
+      "[bodies.{}]\nmodel=\"rigid\"\nmass=1\ndomain={{box={{min=[0,0,{}],max=[1,1,{}],cells=[{},{},1]}}}}\n", name, low,
+      high, n, n);
+}
+
+struct Motion {
+  const char* name;
+  std::string move;
+};
+const std::array<Motion, 3> kMotions{{{"stretch", "move={translate=[0,0,0.1]}"},
+                                      {"shear", "move={translate=[0.2,0,0]}"},
+                                      {"twist", "move={rotate={axis=[0,0,1],angle=0.4,center=[0.5,0.5,0]}}"}}};
+
+std::string about(const std::string& name, const std::string& body, const std::string& where,
+                  const std::string& quantity) {
+  return probe_of(name, body, where, quantity) + (quantity == "moment" ? "about=[0.5,0.5,1]\n" : "");
+}
+
+struct Wrench {
+  Vector force, moment;
+};
+
+/// 20-node hexahedra between clamped faces.
+Wrench clamped(const Motion& m, int n) {
+  const TextRun run(kTop + box_body("a", Kind::hexahedra, {0, 0, 0}, {1, 1, 1}, n, "", "density=12\norder=2") +
+                    fix("a", level(0)) + fix("a", level(1), m.move) + about("force", "a", level(1), "force") +
+                    about("moment", "a", level(1), "moment"));
+  return {run.vector("force"), run.vector("moment")};
+}
+
+/// @param tissue  what fills the space between the plates
+Wrench between(const Motion& m, int n, const std::string& tissue) {
+  const TextRun run(kTop + plate("lower", -0.1, 0, n) + plate("upper", 1, 1.1, n) + tissue +
+                    fix("lower", "\"all\"") + fix("upper", "\"all\"", m.move) +
+                    about("force", "upper", "\"all\"", "force") + about("moment", "upper", "\"all\"", "moment") +
+                    probe_of("origin", "upper", "\"all\"", "moment"));
+  const Vector pull = run.coupling("tissue", "force", "upper"), turn = run.coupling("tissue", "moment", "upper");
+  const Wrench w{run.vector("force"), run.vector("moment")};
+  EXPECT_LT(length(pull + w.force), 1e-8 * length(w.force) + 1e-9) << m.name;
+  EXPECT_LT(length(turn + run.vector("origin")), 1e-8 * length(turn) + 1e-9) << m.name;
+  const Vector other = run.coupling("tissue", "force", "lower");
+  EXPECT_LT(length(pull + other), 1e-8 * length(pull) + 1e-9) << m.name;
+  return w;
+}
+
+std::string grid_tissue(int n) {
+  return box_body("tissue", Kind::grid, {0, 0, 0}, {1, 1, 1}, n,
+                  fmt::format("{{body=\"lower\",where={}}},{{body=\"upper\",where={}}}", level(0), level(1)));
+}
+std::string gap_tissue(int n) {
+  return fmt::format(
+      "[bodies.tissue]\nmodel=\"meshless\"\nmaterial=\"soft\"\ndensity=12\n"
+      "domain={{between=[\"lower\",\"upper\"],where={}}}\nframes={{poisson_disk={:.17g}}}\n",
+      box({-1, -1, -1e-3}, {2, 2, 1 + 1e-3}), 1.0 / n);
+}
+
+TEST(CouplingPlates, ForcesBetweenRigidPlates) {
+  for (const Motion& m : kMotions) {
+    const Wrench fine = clamped(m, 6), coarse = clamped(m, 4);
+    std::printf("%-8s hexahedra: force (%.2f %.2f %.2f) N, moment (%.2f %.2f %.2f) N m; coarser %.2f %%\n", m.name,
+                fine.force[0], fine.force[1], fine.force[2], fine.moment[0], fine.moment[1], fine.moment[2],
+                100 * relative(coarse.force + coarse.moment, fine.force + fine.moment));
+    for (const int n : {3, 5, 7}) {
+      const Wrench grid = between(m, n, grid_tissue(n)), gap = between(m, n, gap_tissue(n));
+      const auto off = [&](const Wrench& w) {
+        const double size = std::hypot(length(fine.force), length(fine.moment));
+        return std::hypot(length(w.force - fine.force), length(w.moment - fine.moment)) / size;
+      };
+      std::printf("  n = %d: grid %.2f %%, between %.2f %%\n", n, 100 * off(grid), 100 * off(gap));
+      if (n == 7) {
+        EXPECT_LT(off(grid), 0.03);
+        EXPECT_LT(off(gap), 0.03);
+      }
+    }
+  }
+}
+
+// -------------------------------------------------------------------------------------------------- resolutions
+std::string wall(const std::string& name, double z, int n, bool shell) {
+  const std::string matter = "density=12\nmaterial={young=1e6,poisson=0.3}\n";
+  if (shell)
+    return fmt::format("[bodies.{}]\nmodel=\"shell\"\nthickness=0.05\n{}domain={{rectangle={{origin=[0,0,{}],"
+                       "edge_u=[1,0,0],edge_v=[0,1,0],cells=[{},{}]}}}}\n",
+                       name, matter, z, n, n);
+  const double other = z > 0.2 ? z + 0.1 : z - 0.1;
+  return fmt::format(
+      "[bodies.{}]\nmodel=\"tetrahedra\"\norder=2\n{}domain={{box={{min=[0,0,{}],max=[1,1,{}],cells=[{},{},1]}}}}\n", name,
+      matter, std::min(z, other), std::max(z, other), n, n);
+}
+
+/// Mean displacement of the upper wall, which a force pulls sideways and up.
+Vector pulled(int cells, double spacing, bool shell) {
+  const TextRun run(kTop + wall("lower", 0, cells, shell) + wall("upper", 0.4, cells, shell) +
+                    fmt::format("[bodies.tissue]\nmodel=\"meshless\"\nmaterial=\"soft\"\ndensity=12\n"
+                                "domain={{between=[\"lower\",\"upper\"],where={}}}\nframes={{poisson_disk={}}}\n",
+                                box({-1, -1, -1e-3}, {2, 2, 0.4 + 1e-3}), spacing) +
+                    fix("lower", "\"all\"", shell ? "fix=\"all\"" : "fix=\"position\"") +
+                    "[[loads]]\nbody=\"upper\"\nwhere=\"all\"\ntotal_force=[500,0,400]\n" +
+                    "[probes.mean]\nbody=\"upper\"\nquantity=\"mean_displacement\"\n" +
+                    probe_at("middle", "upper", {0.5, 0.5, 0.4}));
+  const nlohmann::json& warnings = run.summary()["warnings"];
+  if (!warnings.empty()) std::printf("    %s\n", warnings.dump().c_str());
+  std::printf("  cells %2d, spacing %.4f: (%.5f %.5f %.5f), mean %s, %d iterations, %d shared, gap %.1e\n", cells, spacing,
+              run.vector("middle")[0], run.vector("middle")[1], run.vector("middle")[2],
+              run.probe("mean").dump().c_str(), run.newton_iterations(),
+              run.summary()["bodies"]["tissue"]["shared"].get<int>(),
+              run.summary()["couplings"]["tissue"]["gap"].get<double>());
+  return run.vector("middle");
+}
+
+TEST(CouplingPlates, Resolutions) {
+  for (const bool shell : {true, false}) {
+    std::printf("%s, tissue 0.4 thick\n", shell ? "shells" : "tetrahedra");
+    const Vector finest = pulled(8, 1.0 / 8, shell);
+    const std::pair<int, double> cases[] = {{4, 0.25}, {8, 0.25}, {16, 0.25}, {3, 1.0 / 12}, {4, 1.0 / 8}};
+    for (const auto& [cells, spacing] : cases) {
+      const double off = relative(pulled(cells, spacing, shell), finest);
+      std::printf("    %.2f %%\n", 100 * off);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fascia::test
