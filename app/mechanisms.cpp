@@ -48,6 +48,7 @@ std::vector<std::string> free_motions(const Matrix6& resistance) {
     if (rest.norm() > 1e-6) found.push_back(rest.normalized());
   }
   std::vector<std::string> names;
+  names.reserve(found.size());
   for (const Motion6& f : found) names.push_back(named_motion(f));
   return names;
 }
