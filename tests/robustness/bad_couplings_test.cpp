@@ -189,6 +189,12 @@ TEST_F(BadCouplings, Between) {
                  {"bodies.tissue.frames.grid", "cannot fill the space between two bodies"});
   expect_refused(apart + with(gap("", sides), "[\"low\", \"up\"]", "[\"low\", \"low\"]") + rest,
                  {"bodies.tissue.domain.between[1]", "is the same body again"});
+  const std::string line =
+      with(with(slab("up", "meshless", 2), "box = { min = [0, 0, 0.200000], max = [0.2, 0.2, 0.300000] }",
+                "line = { from = [0, 0, 0.2], to = [0.2, 0.2, 0.2] }"),
+           "grid = [3, 3, 2]", "grid = [3]");
+  expect_refused(kTwo + line + "radius = 0.01\n" + gap("", sides) + rest,
+                 {"bodies.tissue.domain", "body \"up\" has no faces"});
   for (const char* model : {"rigid", "meshless", "hexahedra"})
     expect_sound(kTwo + slab("up", model, 2) + gap("", sides) + rest);
 }
