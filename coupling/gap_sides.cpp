@@ -39,6 +39,10 @@ TriangleMesh compact(const TriangleMesh& mesh) {
 }
 
 void check_faces(const GapSide& side) {
+  if (side.whole.triangles.empty())
+    throw InputError("body " + quoted(side.body) +
+                     " has no faces between which a space could lie, as lines have none; couple it by frames.share or "
+                     "[couplings.NAME]");
   if (side.faces.triangles.empty())
     throw InputError("where selects no face of the surface of body " + quoted(side.body) +
                      "; a face counts when all its vertices are selected");

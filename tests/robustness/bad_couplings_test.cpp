@@ -49,6 +49,13 @@ std::string tissue(const std::string& frames, const std::string& share) {
          frames + ", share = [" + share + "] }\ndensity = 1000\nmaterial = \"soft\"\n";
 }
 
+/// The texts one after the other.
+std::string all(std::initializer_list<std::string> parts) {
+  std::string text;
+  for (const std::string& part : parts) text += part;
+  return text;
+}
+
 std::string gap(const std::string& more = "", const std::string& where = "") {
   return "[bodies.tissue]\nmodel = \"meshless\"\ndomain = { between = [\"low\", \"up\"]" +
          (where.empty() ? "" : ", where = " + where) + more +
@@ -125,22 +132,22 @@ TEST_F(BadCouplings, ContradictingHolds) {
   for (const char* frames : {"grid = [3, 3, 2]", "count = 8"}) {
     SCOPED_TRACE(frames);
     for (const std::string& both : {hold + move, move + hold})
-      expect_refused(kTwo + tissue(frames, share) + both + kStatic,
+      expect_refused(all({kTwo, tissue(frames, share), both, kStatic}),
                      {"constraints[", "prescribes another value than an earlier constraint"});
-    expect_sound(kTwo + tissue(frames, share) + hold + fixed("tissue", level(1)) + kStatic);
+    expect_sound(all({kTwo, tissue(frames, share), hold, fixed("tissue", level(1)), kStatic}));
   }
 }
 
 TEST_F(BadCouplings, Circles) {
   const std::string rest = fixed("low", kBottom) + kStatic;
   for (const char* model : {"meshless", "tetrahedra"}) {
-    const std::string bodies = std::string(kGravity) + kMaterial + slab("low", model, 0) + slab("up", model, 1);
-    expect_refused(
-        bodies + coupling("a", "embed", "up", level(1), "low") + coupling("b", "embed", "low", level(1), "up") + rest,
-        {"couplings.b:", "closes a circle: body \"low\" follows \"up\""});
+    const std::string bodies = all({kGravity, kMaterial, slab("low", model, 0), slab("up", model, 1)});
+    expect_refused(all({bodies, coupling("a", "embed", "up", level(1), "low"),
+                        coupling("b", "embed", "low", level(1), "up"), rest}),
+                   {"couplings.b:", "closes a circle: body \"low\" follows \"up\""});
     // A chain is none.
-    expect_sound(bodies + slab("top", model, 2) + coupling("a", "embed", "up", level(1), "low") +
-                 coupling("b", "embed", "top", level(2), "up") + rest);
+    expect_sound(all({bodies, slab("top", model, 2), coupling("a", "embed", "up", level(1), "low"),
+                      coupling("b", "embed", "top", level(2), "up"), rest}));
   }
   std::string other = tissue("count = 8", "{ body = \"tissue\" }");
   expect_refused(
@@ -189,8 +196,14 @@ TEST_F(BadCouplings, Between) {
                  {"bodies.tissue.frames.grid", "cannot fill the space between two bodies"});
   expect_refused(apart + with(gap("", sides), "[\"low\", \"up\"]", "[\"low\", \"low\"]") + rest,
                  {"bodies.tissue.domain.between[1]", "is the same body again"});
+  const std::string line =
+      with(with(slab("up", "meshless", 2), "box = { min = [0, 0, 0.200000], max = [0.2, 0.2, 0.300000] }",
+                "line = { from = [0, 0, 0.2], to = [0.2, 0.2, 0.2] }"),
+           "grid = [3, 3, 2]", "grid = [3]");
+  expect_refused(kTwo + line + "radius = 0.01\n" + gap("", sides) + rest,
+                 {"bodies.tissue.domain", "body \"up\" has no faces"});
   for (const char* model : {"rigid", "meshless", "hexahedra"})
-    expect_sound(kTwo + slab("up", model, 2) + gap("", sides) + rest);
+    expect_sound(all({kTwo, slab("up", model, 2), gap("", sides), rest}));
 }
 
 TEST_F(BadCouplings, MechanismsAreNamed) {
@@ -272,7 +285,7 @@ TEST_F(BadCouplings, Surfaces) {
   const std::string skin = slab("skin", "surface", 0), rest = fixed("low", kBottom);
   expect_refused(kTwo + skin + rest + kStatic, {"bodies.skin:", "rides on nothing; add [couplings.NAME]"});
   for (const char* solver : {kStatic, kDynamic})
-    expect_refused(kTwo + skin + coupling("a", "embed", "skin", level(1), "low") + rest + solver,
+    expect_refused(all({kTwo, skin, coupling("a", "embed", "skin", level(1), "low"), rest, solver}),
                    {"bodies.skin:", "9 of its 18 vertices ride on nothing", "where = \"all\""});
   const std::string rides = kTwo + skin + coupling("a", "embed", "skin", "\"all\"", "low") + rest;
   expect_sound(rides + kStatic);
