@@ -7,6 +7,7 @@
 #include "app/results.hpp"
 #include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
+#include "app/solver_settings.hpp"
 #include "core/math/rotation.hpp"
 #include "core/solver/clock.hpp"
 #include "core/solver/explicit_dynamics.hpp"
@@ -25,54 +26,10 @@ namespace {
 volatile std::sig_atomic_t interrupted = 0;
 void on_interrupt(int) { interrupted = 1; }
 
-SolverSettings settings_of(const Solver& solver) {
-  SolverSettings s;
-  s.max_iterations = solver.newton_max_iterations;
-  s.tolerance = solver.newton_tolerance;
-  s.proceed_on_limit = solver.on_limit == OnLimit::proceed;
-  s.linear = solver.linear == LinearKind::cg         ? LinearMethod::cg
-             : solver.linear == LinearKind::cholesky ? LinearMethod::cholesky
-                                                     : LinearMethod::automatic;
-  switch (solver.preconditioner) {
-    case PreconditionerKind::automatic:
-      s.preconditioner = Preconditioner::automatic;
-      break;
-    case PreconditionerKind::none:
-      s.preconditioner = Preconditioner::none;
-      break;
-    case PreconditionerKind::jacobi:
-      s.preconditioner = Preconditioner::jacobi;
-      break;
-    case PreconditionerKind::block_jacobi:
-      s.preconditioner = Preconditioner::block_jacobi;
-      break;
-    case PreconditionerKind::cholesky:
-      s.preconditioner = Preconditioner::cholesky;
-      break;
-  }
-  s.cg.max_iterations = solver.linear_max_iterations;
-  s.cg.tolerance = solver.linear_tolerance;
-  s.tangent = solver.full_tangent ? Tangent::full : Tangent::material;
-  return s;
-}
-
 PathSettings path_of(const Simulation& s) {
   const Solver& solver = s.scene.solver;
   const bool arc = solver.control == StaticControl::arc_length;
   return {arc ? PathControl::arc_length : PathControl::displacement, solver.load_steps, solver.max_steps, s.controlled};
-}
-
-TimeScheme scheme_of(SolverKind kind) {
-  switch (kind) {
-    case SolverKind::bdf2:
-      return TimeScheme::bdf2;
-    case SolverKind::newmark:
-      return TimeScheme::newmark;
-    case SolverKind::midpoint:
-      return TimeScheme::midpoint;
-    default:
-      return TimeScheme::implicit_euler;
-  }
 }
 
 Simulation load(const RunOptions& options) {
