@@ -44,11 +44,23 @@ Vec3d place_of(const Simulation& s, const State& state, int node) {
   return s.model.rest_position[at(node)] + state.u[at(node)];
 }
 
-/// What a dependent node hands on to its hosts.
-Wrench handed_on(const Simulation& s, const MechanicalSystem& system, const State& state, std::size_t dependent) {
+/// Weight of what moves with a node.
+Wrench weight_of(const Simulation& s, const State& state, int node, const FrameInertia& inertia) {
+  if (s.gravity_load < 0) return {};
+  const double factor = s.factors(state.time)[at(s.model.loads[at(s.gravity_load)].schedule)];
+  const Vec3d g = s.scene.world.gravity * factor, arm = (Mat3d::identity() + state.D[at(node)]) * inertia.first;
+  Wrench w;
+  w.add(place_of(s, state, node), g * inertia.mass, cross(arm, g));
+  return w;
+}
+
+/// What hosts do on a dependent node, whose weight they carry.
+Wrench support_of(const Simulation& s, const MechanicalSystem& system, const State& state, std::size_t dependent) {
   const double* f = system.dependent_forces().data() + 6 * dependent;
   Wrench w;
-  w.add(place_of(s, state, s.model.points.dependents[dependent].node), {{f[0], f[1], f[2]}}, {{f[3], f[4], f[5]}});
+  const int node = s.model.points.dependents[dependent].node;
+  w.add(place_of(s, state, node), {{f[0], f[1], f[2]}}, {{f[3], f[4], f[5]}});
+  w -= weight_of(s, state, node, s.dependent_inertia[dependent]);
   return w;
 }
 
@@ -66,14 +78,16 @@ std::size_t owner_of(const Simulation& s, int node) {
                                   s.bodies.begin());
 }
 
-/// What a body's points do on a node that it shares.
+/// What a body's points do on a node that it shares, with the weight of its matter there.
 Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const MechanicalSystem& system, const State& state,
-               int node) {
+               std::size_t shared) {
+  const int node = tissue.body->shared_nodes()[shared];
   const auto f = system.executor().gradient_of_groups(tissue.body->first_group, tissue.body->group_count, node);
   Wrench w;
   const Mat3d Q = Mat3d::identity() + state.D[at(node)];
   const bool turns = s.model.kind(node) != FrameKind::vertex;
   w.add(place_of(s, state, node), f.force * -1.0, turns ? axl(Q * transpose(f.N)) * -1.0 : Vec3d{});
+  w += weight_of(s, state, node, tissue.shared_inertia[shared]);
   return w;
 }
 
@@ -94,11 +108,12 @@ nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b
   for (std::size_t k = 0; k < dependents.size(); ++k) {
     const int node = dependents[k].node, own = node - b.body->first_node();
     if (own < 0 || own >= b.body->node_count()) continue;
-    partners[owner_of(s, dependents[k].hosts[0])].first -= handed_on(s, system, state, k);
+    partners[owner_of(s, dependents[k].hosts[0])].first -= support_of(s, system, state, k);
   }
-  for (const int node : b.body->shared_nodes()) {
+  for (std::size_t k = 0; k < b.body->shared_nodes().size(); ++k) {
+    const int node = b.body->shared_nodes()[k];
     const std::size_t owner = owner_of(s, node);
-    const Wrench w = pull_on(s, b, system, state, node);
+    const Wrench w = pull_on(s, b, system, state, k);
     auto& [sum, count] = partners[owner];
     sum += w;
     ++count;
@@ -146,7 +161,7 @@ nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, c
   const std::vector<DependentNode>& dependents = s.model.points.dependents;
   for (std::size_t k = 0; k < dependents.size(); ++k) {
     if (!std::binary_search(built.nodes.begin(), built.nodes.end(), dependents[k].node)) continue;
-    sum += handed_on(s, system, state, k);
+    sum += support_of(s, system, state, k);
   }
   return entry(sum, gap_of(s, c, built, state), 0);
 }

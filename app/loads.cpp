@@ -32,10 +32,11 @@ void add_gravity(Simulation& s) {
     const FrameInertia& inertia = s.model.inertia[at(i)];
     load.nodes.push_back({i, g * inertia.mass, outer(g, inertia.first), {}});
   }
-  // Free fall must not strain a body: in dynamics weight is shared as mass is.
+  // Free fall must not strain a body: in dynamics weight is shared as mass is. Other bodies may add to a node's mass,
+  // and hosts may have taken it.
   for (const SimulatedBody& b : s.bodies)
-    for (std::size_t i = 0; i < b.body->weights().size() && s.scene.solver.kind == SolverKind::statics; ++i)
-      load.nodes[at(b.body->first_node()) + i].force = g * b.body->weights()[i];
+    for (std::size_t i = 0; i < b.lumped_mass.size() && s.scene.solver.kind == SolverKind::statics; ++i)
+      load.nodes[at(b.body->first_node()) + i].force += g * (b.body->weights()[i] - b.lumped_mass[i]);
   s.gravity_load = static_cast<int>(s.model.loads.size());
   s.model.loads.push_back(std::move(load));
 }

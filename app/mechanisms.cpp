@@ -48,8 +48,7 @@ class Finder {
     std::vector<std::vector<const Tie*>> own(pieces_.size());
     for (const Tie& t : ties_)
       if (t.other < 0) own[at(t.piece)].push_back(&t);
-    for (std::size_t p = 0; p < pieces_.size(); ++p)
-      m.own_motions.push_back(joined(free_motions(own[p], rigid_[p])));
+    for (std::size_t p = 0; p < pieces_.size(); ++p) m.own_motions.push_back(joined(free_motions(own[p], rigid_[p])));
     m.pieces = std::move(pieces_);
     return m;
   }

@@ -105,8 +105,9 @@ void add_shares(const Simulation& s, const Body& body, BodyBuild& build) {
 }
 
 /// Nodes of both sides that lie on the selected faces, where the scene does not name the shared ones.
-void share_sides(const Simulation& s, const BetweenDomain& between, const std::array<GapSide, 2>& sides,
-                 BodyBuild& build) {
+/// Vertices keep no rotation where the weights allow: soft tissue would turn them far.
+void share_sides(const Simulation& s, const Body& body, const BetweenDomain& between,
+                 const std::array<GapSide, 2>& sides, BodyBuild& build) {
   constexpr double kOnFace = 1e-3;
   for (std::size_t k = 0; k < 2; ++k) {
     const SimulatedBody& giver = s.bodies[at(body_index(s, between.bodies[k]))];
@@ -115,6 +116,7 @@ void share_sides(const Simulation& s, const BetweenDomain& between, const std::a
     SharedNodes share;
     share.body = between.bodies[k];
     share.where = {between.where.place, AllRegion{}};
+    share.rotations = body.weights != WeightKind::automatic && body.weights != WeightKind::mls;
     share_nodes(
         s, share, [&](const Vec3d& X) { return faces.distance(X) <= tolerance; }, build);
   }
@@ -166,7 +168,7 @@ void gather_neighbours(Simulation& s, const Body& body, BodyBuild& build) {
                                        side_of(s, between->bodies[1], between->where)};
     build.between = fill_gap(body, *between, sides, build);
     for (const GapSide& side : sides) build.interfaces.push_back({body_index(s, side.body), side.faces});
-    if (!body.shares && between->as == BetweenKind::volume) share_sides(s, *between, sides, build);
+    if (!body.shares && between->as == BetweenKind::volume) share_sides(s, body, *between, sides, build);
   }
   if (body.shares) add_shares(s, body, build);
 }

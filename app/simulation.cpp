@@ -91,11 +91,16 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
 
 /// @throws SceneError  a host that would lose its mass
 void give_inertia_to_hosts(Simulation& s) {
+  for (const DependentNode& d : s.model.points.dependents) s.dependent_inertia.push_back(s.model.inertia[at(d.node)]);
   try {
     move_inertia_to_hosts(s.model);
   } catch (const InputError& e) {
     throw SceneError({{s.scene.couplings.empty() ? s.scene.bodies[0].place : s.scene.couplings[0].place, e.what()}});
   }
+}
+
+FrameInertia added(const FrameInertia& before, const FrameInertia& after) {
+  return {after.mass - before.mass, after.first - before.first, after.second - before.second};
 }
 
 SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
@@ -104,7 +109,12 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     gather_neighbours(s, body, build);
     SimulatedBody b;
     b.name = body.name;
+    const std::vector<FrameInertia> before = s.model.inertia;
     b.body = build_body(body, build);
+    for (const int node : b.body->shared_nodes())
+      b.shared_inertia.push_back(added(before[at(node)], s.model.inertia[at(node)]));
+    for (std::size_t i = 0; i < b.body->weights().size(); ++i)
+      b.lumped_mass.push_back(s.model.inertia[at(b.body->first_node()) + i].mass);
     give_rotations(s.model, build.shared, *b.body);
     build.messages.insert(build.messages.end(), b.body->messages().begin(), b.body->messages().end());
     for (const std::string& m : build.messages) s.warnings.push_back("bodies." + body.name + ": " + m);

@@ -27,9 +27,11 @@ struct SimulatedBody {
   std::vector<int> node_ids;  ///< of the model: its own, then those that it shares
   std::vector<Vec3d> nodes;   ///< their rest positions [m]
   std::vector<char> node_on_boundary;
-  std::vector<char> surface_on_boundary;  ///< ones, for each point of the surface
-  std::string gap;                        ///< what it fills between two bodies, in words
-  std::vector<Interface> interfaces;      ///< its own frames on these follow the other body
+  std::vector<char> surface_on_boundary;     ///< ones, for each point of the surface
+  std::string gap;                           ///< what it fills between two bodies, in words
+  std::vector<FrameInertia> shared_inertia;  ///< its own on the nodes that it shares
+  std::vector<double> lumped_mass;           ///< of its nodes, where a static weight is shared otherwise [kg]
+  std::vector<Interface> interfaces;         ///< its own frames on these follow the other body
 
   /// The nodes, for regions.
   Selectable selectable_nodes() const;
@@ -88,8 +90,9 @@ struct Simulation {
   std::vector<ResolvedProbe> probes;
   std::vector<TetheredMaterial> tethered;
   std::vector<FluidOfBody> fluids;
-  std::vector<BuiltCoupling> couplings;       ///< of Scene::couplings
-  std::optional<ControlledPoint> controlled;  ///< of control = "displacement"
+  std::vector<BuiltCoupling> couplings;         ///< of Scene::couplings
+  std::vector<FrameInertia> dependent_inertia;  ///< of dependent nodes, before their hosts took it over
+  std::optional<ControlledPoint> controlled;    ///< of control = "displacement"
   State initial;
   std::vector<std::string> warnings;
   int gravity_load = -1;   ///< index of gravity in Model::loads
