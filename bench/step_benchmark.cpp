@@ -19,7 +19,7 @@
 namespace fascia::app {
 namespace {
 
-constexpr double kMeasuredSeconds = 0.3;
+constexpr double kMeasuredSeconds = 1;
 
 /// Shortest time of a call [ms]: what else the machine does only adds to it.
 double shortest(const std::function<void()>& call) {
