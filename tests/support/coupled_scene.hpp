@@ -80,8 +80,8 @@ inline std::string box_body(const std::string& name, Kind kind, const Vector& lo
   const std::string frames = kind == Kind::grid
                                  ? fmt::format("grid=[{},{},{}]", cells[0] + 1, cells[1] + 1, cells[2] + 1)
                                  : fmt::format("poisson_disk={:.17g}", 1.0 / n);
-  return text + fmt::format("model=\"meshless\"\ndomain={{box={{{}}}}}\nframes={{{},share=[{}]}}\n", corners, frames,
-                            share);
+  return text +
+         fmt::format("model=\"meshless\"\ndomain={{box={{{}}}}}\nframes={{{},share=[{}]}}\n", corners, frames, share);
 }
 
 inline std::string fix(const std::string& body, const std::string& where, const std::string& what = "fix=\"all\"") {

@@ -18,8 +18,8 @@ Vector turned(const Vector& x) {
 
 struct Setting {
   bool turn = false;
-  double unit = 1;      ///< of length, in metres
-  bool mixed = false;   ///< bodies and shares in another order
+  double unit = 1;     ///< of length, in metres
+  bool mixed = false;  ///< bodies and shares in another order
   Kind tissue = Kind::grid;
 
   Vector place(const Vector& x) const { return (turn ? turned(x) : x) * (1 / unit); }
@@ -51,16 +51,17 @@ std::string moved(const Setting& s) {
 Vector end_of(const Setting& s) {
   const std::string organ = "[bodies.organ]\nmodel=\"tetrahedra\"\n" + matter(s, 1e4) + moved(s) +
                             "domain={box={min=[0,0,0],max=[1,1,1],cells=[2,2,2]}}\n";
-  const std::string bone = fmt::format("[bodies.bone]\nmodel=\"rigid\"\nmass=20\n{}"
-                                       "domain={{box={{min=[2,0,0],max=[3,1,1],cells=[1,2,2]}}}}\n",
-                                       moved(s));
-  const std::string skin =
-      "[bodies.skin]\nmodel=\"shell\"\n" + matter(s, 1e5) + fmt::format("thickness={:.17g}\n", 0.05 / s.unit) + moved(s) +
-      "domain={rectangle={origin=[1.25,0,1],edge_u=[0.5,0,0],edge_v=[0,1,0],cells=[2,2]}}\n";
+  const std::string bone = fmt::format(
+      "[bodies.bone]\nmodel=\"rigid\"\nmass=20\n{}"
+      "domain={{box={{min=[2,0,0],max=[3,1,1],cells=[1,2,2]}}}}\n",
+      moved(s));
+  const std::string skin = "[bodies.skin]\nmodel=\"shell\"\n" + matter(s, 1e5) +
+                           fmt::format("thickness={:.17g}\n", 0.05 / s.unit) + moved(s) +
+                           "domain={rectangle={origin=[1.25,0,1],edge_u=[0.5,0,0],edge_v=[0,1,0],cells=[2,2]}}\n";
   const std::string from_organ = "{body=\"organ\",where=" + slab(s, 1) + "}",
                     from_bone = "{body=\"bone\",where=" + slab(s, 2) + "}", from_skin = "{body=\"skin\"}";
-  const std::string shares = s.mixed ? from_skin + "," + from_bone + "," + from_organ
-                                     : from_organ + "," + from_bone + "," + from_skin;
+  const std::string shares =
+      s.mixed ? from_skin + "," + from_bone + "," + from_organ : from_organ + "," + from_bone + "," + from_skin;
   const std::string frames =
       s.tissue == Kind::grid ? "grid=[5,3,3]" : fmt::format("poisson_disk={:.17g}", 0.3 / s.unit);
   const std::string tissue = "[bodies.tissue]\nmodel=\"meshless\"\n" + matter(s, 1e4) + moved(s) +
@@ -70,8 +71,8 @@ Vector end_of(const Setting& s) {
   const std::string ride = coupling("ride", "embed", "paint", "\"all\"", "to=\"organ\"");
   const std::string all = s.mixed ? paint + tissue + skin + bone + organ : organ + bone + skin + tissue + paint;
   const TextRun run(
-      fmt::format("[world]\ngravity={}\n[solver.newton]\ntolerance=1e-12\n", list(s.way({2, 1, -3}) * (1 / s.unit))) + all +
-      ride + fix("organ", slab(s, 0)) +
+      fmt::format("[world]\ngravity={}\n[solver.newton]\ntolerance=1e-12\n", list(s.way({2, 1, -3}) * (1 / s.unit))) +
+      all + ride + fix("organ", slab(s, 0)) +
       fmt::format("[[loads]]\nbody=\"paint\"\nwhere=\"all\"\ntraction={}\n", list(s.way({0, 0, -100}) * s.unit)) +
       probe_at("tip", "bone", s.place({3, 1, 1})));
   return run.vector("tip") * s.unit;
@@ -91,10 +92,10 @@ TEST(CouplingInvariance, OrderUnitsAndTurns) {
     const double order = relative(end_of(mixed), u), rotation = relative(end_of(turn), turned(u)),
                  small = relative(end_of(mm), u), large = relative(end_of(km), u),
                  all = relative(end_of(both), turned(u));
-    std::printf("%-10s tip (%.4f %.4f %.4f) m: order %.1e, turn %.1e, mm %.1e, km %.1e, all %.1e\n", name_of(kind), u[0],
-                u[1], u[2], order, rotation, small, large, all);
+    std::printf("%-10s tip (%.4f %.4f %.4f) m: order %.1e, turn %.1e, mm %.1e, km %.1e, all %.1e\n", name_of(kind),
+                u[0], u[1], u[2], order, rotation, small, large, all);
     for (const double off : {order, rotation, small, large, all}) {
-      EXPECT_LT(off, kind == Kind::grid ? 1e-9 : 0.02);
+      EXPECT_LT(off, 1e-9);
     }
   }
 }

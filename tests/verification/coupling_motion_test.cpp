@@ -48,7 +48,7 @@ TEST(CouplingMotion, FreeFlight) {
   std::printf("%-16s %10s %10s %12s %12s %10s\n", "", "momentum", "angular", "energy, max", "min", "elastic");
   for (const std::string kind : {"implicit-euler", "midpoint", "explicit"}) {
     const std::string steps = kind == "explicit" ? "time_step=\"auto\"\nduration=0.4\n"
-                                               : "time_step=0.01\nsteps=40\nnewton.tolerance=1e-12\n";
+                                                 : "time_step=0.01\nsteps=40\nnewton.tolerance=1e-12\n";
     const TextRun run(flight("kind=\"" + kind + "\"\n" + steps));
     const auto rows = run.history();
     ASSERT_GT(rows.size(), 10u);
@@ -80,7 +80,8 @@ TEST(CouplingMotion, Springs) {
            coupling("rope", "spring", "ball", "\"all\"", "stiffness=400\n" + spring) +
            "[solver.newton]\ntolerance=1e-12\n" + probe_at("u", "ball", {0, 0, 0});
   };
-  for (const std::string spring : {"point=[0,0,1]", "point=[0.3,0,1]\ndirection=[0,0,2]", "point=[0,0,1]\ndirection=[0,0,-1]"}) {
+  for (const std::string spring :
+       {"point=[0,0,1]", "point=[0.3,0,1]\ndirection=[0,0,2]", "point=[0,0,1]\ndirection=[0,0,-1]"}) {
     const TextRun run(hung(spring));
     const double u = run.vector("u")[2], force = run.coupling("rope", "force")[2],
                  energy = run.summary()["couplings"]["rope"]["energy"];
@@ -105,13 +106,16 @@ TEST(CouplingMotion, ASurfaceRides) {
                    probe_at("b", "skin", {1.8, 0.4, 1}) + probe_at("tip", "host", {2, 0.5, 0.5}));
   };
   for (const Kind kind : {Kind::grid, Kind::scattered, Kind::tetrahedra, Kind::hexahedra}) {
-    const TextRun dead(loaded(kind, "skin", "traction=[10,20,-150]")), dead_host(loaded(kind, "host", "traction=[10,20,-150]")),
-        pressed(loaded(kind, "skin", "pressure=150")), pressed_host(loaded(kind, "host", "pressure=150"));
-    const double ride = std::max(relative(dead.vector("a"), dead.vector("b")), relative(pressed.vector("a"), pressed.vector("b")));
+    const TextRun dead(loaded(kind, "skin", "traction=[10,20,-150]")),
+        dead_host(loaded(kind, "host", "traction=[10,20,-150]")), pressed(loaded(kind, "skin", "pressure=150")),
+        pressed_host(loaded(kind, "host", "pressure=150"));
+    const double ride =
+        std::max(relative(dead.vector("a"), dead.vector("b")), relative(pressed.vector("a"), pressed.vector("b")));
     const double resultant = length(dead.vector("force") + Vector{10, 20, -150} * 2) / (2 * 150);
-    std::printf("%-12s rides to %.1e, resultant to %.1e; tip: traction %+.2f %%, pressure %+.2f %% (%.4f m)\n",
-                name_of(kind), ride, resultant, 100 * (length(dead.vector("tip")) / length(dead_host.vector("tip")) - 1),
-                100 * (length(pressed.vector("tip")) / length(pressed_host.vector("tip")) - 1), length(dead.vector("tip")));
+    std::printf(
+        "%-12s rides to %.1e, resultant to %.1e; tip: traction %+.2f %%, pressure %+.2f %% (%.4f m)\n", name_of(kind),
+        ride, resultant, 100 * (length(dead.vector("tip")) / length(dead_host.vector("tip")) - 1),
+        100 * (length(pressed.vector("tip")) / length(pressed_host.vector("tip")) - 1), length(dead.vector("tip")));
     EXPECT_LT(ride, 1e-12);
     EXPECT_LT(resultant, 1e-9);
   }
