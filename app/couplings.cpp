@@ -34,6 +34,8 @@ class Followers {
 
   bool follows(int node) const { return by_node_.contains(node); }
 
+  bool is_held(int node) const { return held_.contains(node); }
+
   /// A tissue's own frame on the surface of another body.
   void add_follower(DependentNode d) {
     const int node = d.node;
@@ -165,6 +167,16 @@ DependentNode embedded(const Simulation& s, const Coupling& c, int node, const S
   return d;
 }
 
+/// The node takes the rotation of the host that moves it most.
+void turn_with_nearest(const Simulation& s, DependentNode& d) {
+  const auto most = static_cast<std::size_t>(std::max_element(d.w.begin(), d.w.end()) - d.w.begin());
+  if (s.model.kind(d.hosts[most]) != FrameKind::rigid) return;
+  std::swap(d.hosts[0], d.hosts[most]);
+  std::swap(d.w[0], d.w[most]);
+  std::swap(d.b[0], d.b[most]);
+  d.turns = true;
+}
+
 /// A tissue's own frames on the faces of another body, between the nodes that it shares there, follow that body.
 void attach_interfaces(const Simulation& s, const SimulatedBody& tissue, Followers& dependents) {
   constexpr double kOnFace = 0.05;  // spacings
@@ -172,13 +184,13 @@ void attach_interfaces(const Simulation& s, const SimulatedBody& tissue, Followe
   for (const Interface& face : tissue.interfaces) {
     if (face.faces.triangles.empty()) continue;
     const SimulatedBody& host = s.bodies[at(face.body)];
-    const bool rigid = s.scene.bodies[at(face.body)].model == BodyModel::rigid;
     const TriangleTree faces(face.faces);
     for (int i = 0; i < tissue.body->node_count(); ++i) {
       const int node = tissue.node_ids[at(i)];
       if (!dependents.is_free(node) || faces.distance(tissue.nodes[at(i)]) > tolerance) continue;
       DependentNode d = follower(s, node, host);
-      d.turns = rigid && s.model.kind(node) == FrameKind::rigid;
+      if (s.model.kind(node) == FrameKind::rigid && !host.vertices && !dependents.is_held(node))
+        turn_with_nearest(s, d);
       dependents.add_follower(std::move(d));
     }
   }

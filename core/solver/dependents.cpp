@@ -90,7 +90,7 @@ void DependentNodes::transfer(std::span<double> g, std::span<double> forces) con
       for (int i = 0; i < 3; ++i) host[i] += v.w[a] * f[i];
       // The lever of a rigid frame is turned already.
       add_moment(set_.dofs.kind(v.hosts[a]), outer(f, lever(k, a)), Mat3d::identity(), host + 3);
-      if (v.turns)
+      if (v.turns && a == 0)
         for (int i = 3; i < 6; ++i) host[i] += own[i];
     }
     if (!forces.empty()) std::fill_n(std::copy_n(own, m, forces.data() + 6 * k), 6 - m, 0.0);
@@ -120,7 +120,7 @@ DependentNodes::Columns DependentNodes::columns_of(std::size_t dependent, std::s
     const Mat3d W = skew(b);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) J.entry[i][3 + j] = -W(i, j);
-    if (v.turns)
+    if (v.turns && host == 0)
       for (int i = 3; i < 6; ++i) J.entry[i][i] = 1;
   } else if (kind == FrameKind::affine) {
     for (int q = 0; q < 3; ++q)
