@@ -168,7 +168,8 @@ void MechanicalSystem::add_inertia() {
   for (double& r : inertia_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
 }
 
-void MechanicalSystem::add_node_blocks(Linearization& lin) const {
+/// @param turning  false leaves out how forces on dependent nodes turn their hosts, tethers' pull among them
+void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) const {
   const bool full = lin.tangent == Tangent::full;
   const DofLayout& dofs = model_.points.dofs;
   if (full) {
@@ -178,7 +179,7 @@ void MechanicalSystem::add_node_blocks(Linearization& lin) const {
           add_rotation_block(
               lin.node_blocks.data() + dofs.block_begin(n.node),
               rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) * -factors_[at(load.schedule)]);
-    dependents_.add_turning(dependent_forces_, lin.node_blocks);
+    if (turning) dependents_.add_turning(dependent_forces_, lin.node_blocks);
   }
   surfaces_.linearize(state_, factors_, lin);
   for (RankOne& term : lin.low_rank) dependents_.transfer(term.g);
@@ -313,7 +314,7 @@ DirectionReport MechanicalSystem::direction() {
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
         const bool material = kind == TamerTangent::material;
         executor_.linearize(state_, history_, material ? Tangent::material : settings_.tangent, fallback, false);
-        add_node_blocks(fallback);
+        add_node_blocks(fallback, false);
         return fallback;
       });
   DirectionReport report;

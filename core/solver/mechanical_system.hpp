@@ -129,7 +129,7 @@ class MechanicalSystem {
   double rotation_in(int node, const double* vector) const;
   double largest_angle() const;
   double largest_rotation_in(std::span<const double> vector) const;
-  void add_node_blocks(Linearization& lin) const;
+  void add_node_blocks(Linearization& lin, bool turning = true) const;
 
   const Model& model_;
   SolverSettings settings_;
