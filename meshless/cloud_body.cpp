@@ -162,16 +162,14 @@ void CloudBody::add_inertia(const CloudSpec& spec, Model& model) {
     const double mass_damping = spec.material(points_[q].middle).mass_damping;
     if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
     const ScatteredWeights& w = share[point_places_[q].place];
+    std::vector<MassShare> masses;
     for (std::size_t k = 0; k < w.frame.size(); ++k) {
-      const std::size_t node = at(node_of(w.frame[k]));
+      const int node = node_of(w.frame[k]);
       const bool turns = w.frame[k] < node_count_ || share_[at(w.frame[k] - node_count_)].turns;
-      const FrameInertia part =
-          inertia_at(spec.density * points_[q].volume * w.w[k], points_[q].X - model.rest_position[node], turns);
-      const double m = part.mass;
-      model.inertia[node] += part;
-      if (mass_damping > 0)
-        model.mass_damping[node] += {m * mass_damping, part.first * mass_damping, part.second * mass_damping};
+      masses.push_back(
+          {node, spec.density * points_[q].volume * w.w[k], points_[q].X - model.rest_position[at(node)], turns});
     }
+    add_masses(masses, mass_damping, model);
   }
   if (!model.mass_damping.empty()) model.mass_damping.resize(model.rest_position.size());
 }

@@ -113,15 +113,14 @@ void GridBody::add_inertia(const GridSpec& spec, const std::vector<Sample>& samp
     if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
     double sum = 0;
     for (std::size_t k = 0; k < share.w.size(); ++k) sum += share.w[k] * support[at(share.grid_node[k])];
+    std::vector<MassShare> masses;
     for (std::size_t k = 0; k < share.w.size(); ++k) {
       const SharedFrame* other = share_at(share.grid_node[k]);
-      const auto frame = at(frame_of_grid_node_[at(share.grid_node[k])]);
-      const double m = spec.density * s.volume * share.w[k] * support[at(share.grid_node[k])] / sum;
-      const FrameInertia part = inertia_at(m, X - model.rest_position[frame], other == nullptr || other->turns);
-      model.inertia[frame] += part;
-      if (mass_damping > 0)
-        model.mass_damping[frame] += {m * mass_damping, part.first * mass_damping, part.second * mass_damping};
+      const int frame = frame_of_grid_node_[at(share.grid_node[k])];
+      masses.push_back({frame, spec.density * s.volume * share.w[k] * support[at(share.grid_node[k])] / sum,
+                        X - model.rest_position[at(frame)], other == nullptr || other->turns});
     }
+    add_masses(masses, mass_damping, model);
   }
   if (!model.mass_damping.empty()) model.mass_damping.resize(model.rest_position.size());
 }

@@ -76,9 +76,22 @@ bool blend_turning(std::span<const int> nodes, std::span<const int> still, std::
   return enough;
 }
 
-FrameInertia inertia_at(double m, const Vec3d& d, bool turns) {
-  if (!turns) return {m, {}, {}};
-  return {m, d * m, outer(d, d) * m};
+void add_masses(std::span<const MassShare> shares, double damping, Model& model) {
+  double all = 0, turning = 0;
+  Vec3d missing;
+  for (const MassShare& s : shares) {
+    all += s.m;
+    if (s.turns) turning += s.m;
+    if (!s.turns) missing += s.d * s.m;
+  }
+  const Vec3d more = turning >= kLeastTurning * all ? missing * (1 / turning) : Vec3d{};
+  for (const MassShare& s : shares) {
+    const Vec3d d = s.d + more;
+    const FrameInertia part = s.turns ? FrameInertia{s.m, d * s.m, outer(d, d) * s.m} : FrameInertia{s.m, {}, {}};
+    model.inertia[at(s.node)] += part;
+    if (damping > 0)
+      model.mass_damping[at(s.node)] += {part.mass * damping, part.first * damping, part.second * damping};
+  }
 }
 
 std::string replaced_by_shares(std::size_t count) {

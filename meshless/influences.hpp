@@ -29,8 +29,18 @@ std::vector<int> still_nodes(std::span<const SharedFrame> shared);
 /// @returns  whether the blend is worth a stabilisation: false where W is below 0.1
 bool blend_turning(std::span<const int> nodes, std::span<const int> still, std::vector<Influence>& influences);
 
-/// Inertia of a mass m at X on a node; a still one takes no lever.
-FrameInertia inertia_at(double m, const Vec3d& d, bool turns);
+/// What a node takes of a point's mass.
+struct MassShare {
+  int node = 0;  ///< of the model
+  double m = 0;  ///< [kg]
+  Vec3d d{};     ///< from the node to the point [m]
+  bool turns = true;
+};
+
+/// Adds the inertia of a point's mass to its nodes. Still ones take no lever; the others' grow by as much as keeps the
+/// mass centre.
+/// @param damping  α of the point's material [1/s]
+void add_masses(std::span<const MassShare> shares, double damping, Model& model);
 
 /// Over the body's size: shared and own frames this near to each other are one.
 inline constexpr double kCoincident = 1e-6;

@@ -20,8 +20,10 @@ void give_away(const Model& model, std::vector<FrameInertia>& inertia, std::vect
   for (auto d = dependents.rbegin(); d != dependents.rend(); ++d) {
     FrameInertia& own = inertia[at(d->node)];
     const bool keeps = model.kind(d->node) != FrameKind::vertex && !d->turns;
-    const FrameInertia given = keeps ? FrameInertia{own.mass, {}, {}} : own;
-    own = keeps ? FrameInertia{0, {}, own.second} : FrameInertia{};
+    // A frame that turns by itself keeps the moment about its mass centre.
+    const Mat3d carried = own.mass > 0 ? outer(own.first, own.first) * (1 / own.mass) : Mat3d{};
+    const FrameInertia given = keeps ? FrameInertia{own.mass, own.first, carried} : own;
+    own = keeps ? FrameInertia{0, {}, own.second - carried} : FrameInertia{};
     for (std::size_t k = 0; k < d->hosts.size(); ++k) {
       const int host = d->hosts[k];
       const Vec3d r = model.rest_position[at(d->node)] - model.rest_position[at(host)];
