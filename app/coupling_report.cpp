@@ -153,7 +153,8 @@ nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, c
     double energy = 0;
     for (const int index : built.springs) {
       const Spring& spring = s.model.points.springs[at(index)];
-      sum.add(place_of(s, state, spring.node), CpuExecutor::spring_force(spring, state), {});
+      const Vec3d end = place_of(s, state, spring.node) + spring.arm + state.D[at(spring.node)] * spring.arm;
+      sum.add(end, CpuExecutor::spring_force(spring, state), {});
       energy += system.executor().spring_energy(index);
     }
     return entry(sum, 0, energy);

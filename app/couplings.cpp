@@ -196,12 +196,26 @@ void attach_interfaces(const Simulation& s, const SimulatedBody& tissue, Followe
   }
 }
 
-void add_springs(Simulation& s, const Coupling& c, const std::vector<int>& nodes, PointSetBuilder& points,
-                 BuiltCoupling& built) {
-  for (const int node : nodes) {
+/// From the selected nodes; of a rigid body from the selected points of its surface, if there are any.
+void add_springs(const Simulation& s, const Coupling& c, PointSetBuilder& points, BuiltCoupling& built) {
+  constexpr double kAtPoint = 1e-9;  // of the body's size
+  const int body = body_index(s, c.body);
+  const SimulatedBody& b = s.bodies[at(body)];
+  std::vector<Spring> springs;
+  if (s.scene.bodies[at(body)].model == BodyModel::rigid) {
+    const std::vector<bool> chosen = select(c.where, b.selectable_surface());
+    const std::vector<Vec3d>& X = b.body->surface().points;
+    for (std::size_t i = 0; i < X.size(); ++i)
+      if (chosen[i]) springs.push_back({b.node_ids[0], 0, X[i], c.point, {}, X[i] - b.nodes[0]});
+  }
+  if (springs.empty())
+    for (const int node : built.nodes) springs.push_back({node, 0, s.model.rest_position[at(node)], c.point, {}, {}});
+  for (Spring& spring : springs) {
+    spring.stiffness = c.stiffness / static_cast<double>(springs.size());
+    spring.direction = c.direction.value_or(Vec3d{});
+    if (norm(spring.X - spring.point) <= kAtPoint * b.body->size()) spring.point = spring.X;
     built.springs.push_back(points.spring_count());
-    points.add_spring({node, c.stiffness / static_cast<double>(nodes.size()), s.model.rest_position[at(node)], c.point,
-                       c.direction.value_or(Vec3d{})});
+    points.add_spring(spring);
   }
 }
 
@@ -231,7 +245,7 @@ void add_couplings(Simulation& s, PointSetBuilder& points) {
     BuiltCoupling& built = s.couplings.emplace_back();
     built.nodes = select_nodes(s, body, c.where);
     if (c.kind == CouplingKind::spring) {
-      add_springs(s, c, built.nodes, points, built);
+      add_springs(s, c, points, built);
       continue;
     }
     const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];

@@ -89,6 +89,17 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
   }
 }
 
+/// Dependent nodes start as their hosts do, frames that turn by themselves with the hosts' mean spin.
+void start_dependents(Simulation& s) {
+  place_dependent_rates(s.model.points, s.initial);
+  for (const DependentNode& d : s.model.points.dependents) {
+    if (d.turns || s.model.kind(d.node) == FrameKind::vertex) continue;
+    Mat3d rate;
+    for (std::size_t k = 0; k < d.hosts.size(); ++k) rate += s.initial.Q_dot[at(d.hosts[k])] * d.w[k];
+    s.initial.Q_dot[at(d.node)] = rate;
+  }
+}
+
 /// @throws SceneError  a host that would lose its mass
 void give_inertia_to_hosts(Simulation& s) {
   for (const DependentNode& d : s.model.points.dependents) s.dependent_inertia.push_back(s.model.inertia[at(d.node)]);
@@ -272,7 +283,7 @@ Simulation build_simulation(Scene scene) {
   give_inertia_to_hosts(s);
   s.initial = State::at_rest(s.model);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
-  place_dependent_rates(s.model.points, s.initial);
+  start_dependents(s);
   s.initial.turned.resize(s.model.constraints.size());
   if (s.model.constrained_dof_count() == s.model.dof_count() && s.scene.solver.kind == SolverKind::modes)
     throw SceneError(

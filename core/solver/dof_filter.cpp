@@ -38,7 +38,7 @@ DofFilter::DofFilter(const Model& model)
         if (c.whole || (i != q && 3 - i - q < c.rotations)) fixed_[at(first + 3 + 3 * q + i)] = true;
   }
   for (const DependentNode& d : model.points.dependents) {
-    assert(held_[at(d.node)] == 0);
+    assert(!fixed_[at(dofs_.begin(d.node))]);  // a rotation that stays its own may be held
     held_[at(d.node)] = 1;
     for (int k = 0; k < dependent_dofs(d, dofs_); ++k) fixed_[at(dofs_.begin(d.node) + k)] = true;
   }

@@ -32,6 +32,11 @@ BuiltModel on_springs(FrameKind kind) {
   points.add_spring({2, 5000, X[2], X[2] + Vec3d{{0.3, 0.1, 0}}, {}});
   points.add_spring({2, 4000, X[2], X[2] - Vec3d{{0, 0.2, 0.1}}, {}});
   points.add_spring({5, 2000, X[5], X[5], {}});
+  if (kind == FrameKind::rigid) {
+    const Vec3d arm{{0.2, -0.1, 0.3}};
+    points.add_spring({3, 2500, X[3] + arm, X[3] - arm, {}, arm});
+    points.add_spring({3, 1500, X[3] - arm, {}, normalized(Vec3d{{2, 1, 2}}), -arm});
+  }
   built.model.points = std::move(points).finish(built.model.frame_kind);
   return built;
 }
@@ -61,8 +66,9 @@ TEST_P(SpringsTest, EnergiesAndForces) {
   for (std::size_t k = 0; k < springs.size(); ++k) {
     sum += executor_.spring_energy(static_cast<int>(k));
     EXPECT_GT(executor_.spring_energy(static_cast<int>(k)), 0);
-    EXPECT_EQ(CpuExecutor::spring_force(springs[k], state_),
-              -spring_gradient(springs[k], state_.u[at(springs[k].node)]));
+    EXPECT_EQ(
+        CpuExecutor::spring_force(springs[k], state_),
+        -spring_gradient(springs[k], state_.u[at(springs[k].node)] + state_.D[at(springs[k].node)] * springs[k].arm));
   }
   Model without = built_.model;
   without.points.springs.clear();
