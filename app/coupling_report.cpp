@@ -167,10 +167,6 @@ nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, c
   return entry(sum, gap_of(s, c, built, state), 0);
 }
 
-std::string counted(std::size_t count, const char* word) {
-  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
-}
-
 void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& out) {
   std::map<std::size_t, std::size_t> shared, following;
   for (const int node : b.body->shared_nodes()) ++shared[owner_of(s, node)];
@@ -182,10 +178,10 @@ void describe_tissue(const Simulation& s, const SimulatedBody& b, std::string& o
     list += fmt::format("{}{} of \"{}\"", list.empty() ? "" : ", ", counted(count, s.bodies[owner].node_word()),
                         s.bodies[owner].name);
   for (const auto& [owner, count] : following)
-    list += fmt::format("{}{} on the surface of \"{}\"", list.empty() ? "" : "; ", counted(count, "own frame"),
+    list += fmt::format("{}{} of its own frames on the surface of \"{}\"", list.empty() ? "" : "; ", count,
                         s.bodies[owner].name);
   if (!b.gap.empty()) fmt::format_to(std::back_inserter(out), "body {}: {}\n", b.name, b.gap);
-  fmt::format_to(std::back_inserter(out), "body {}: {}{}\n", b.name, shared.empty() ? "" : "shares ", list);
+  fmt::format_to(std::back_inserter(out), "body {}: {}{}\n", b.name, shared.empty() ? "is tied by " : "shares ", list);
 }
 
 void describe_support(const Simulation& s, const Mechanisms& m, std::string& out) {
@@ -220,6 +216,10 @@ void describe_support(const Simulation& s, const Mechanisms& m, std::string& out
 }
 
 }  // namespace
+
+std::string counted(std::size_t count, const char* word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
 
 CouplingReports coupling_report(const Simulation& s, const MechanicalSystem& system, const State& state) {
   CouplingReports reports;

@@ -19,6 +19,9 @@ using CouplingReports = std::vector<std::pair<std::string, nlohmann::ordered_jso
 /// is tied to; moments are about the origin of the world.
 CouplingReports coupling_report(const Simulation& simulation, const MechanicalSystem& system, const State& state);
 
+/// "1 frame", "2 frames"
+std::string counted(std::size_t count, const char* word);
+
 /// The layout of couplings in sentences, a line each: who shares how many nodes with whom, what follows what, what each
 /// body could do alone, mechanisms.
 std::string coupling_layout(const Simulation& simulation);

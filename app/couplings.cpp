@@ -196,13 +196,14 @@ void attach_interfaces(const Simulation& s, const SimulatedBody& tissue, Followe
   }
 }
 
-/// From the selected nodes; of a rigid body from the selected points of its surface, if there are any.
+/// From the selected nodes; of a rigid body from the selected points of its surface, if there are any; from its mass
+/// centre where all of it is selected.
 void add_springs(const Simulation& s, const Coupling& c, PointSetBuilder& points, BuiltCoupling& built) {
   constexpr double kAtPoint = 1e-9;  // of the body's size
   const int body = body_index(s, c.body);
   const SimulatedBody& b = s.bodies[at(body)];
   std::vector<Spring> springs;
-  if (s.scene.bodies[at(body)].model == BodyModel::rigid) {
+  if (s.scene.bodies[at(body)].model == BodyModel::rigid && !std::holds_alternative<AllRegion>(c.where.shape)) {
     const std::vector<bool> chosen = select(c.where, b.selectable_surface());
     const std::vector<Vec3d>& X = b.body->surface().points;
     for (std::size_t i = 0; i < X.size(); ++i)

@@ -283,8 +283,8 @@ std::string describe(const SimulatedBody& b) {
 int check_scene(const RunOptions& options) {
   const Simulation s = load(options);
   for (const SimulatedBody& b : s.bodies)
-    fmt::print("body {}: {}, {} {}s, {} integration points{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
-               b.body->node_count(), b.node_word(), b.body->points().size(),
+    fmt::print("body {}: {}, {}, {}{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
+               counted(at(b.body->node_count()), b.node_word()), counted(b.body->points().size(), "integration point"),
                b.body->selective() ? " (lambda at one point a cell)" : "", b.body->volume(), b.body->mass());
   for (const SimulatedBody& b : s.bodies)
     if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
@@ -294,9 +294,9 @@ int check_scene(const RunOptions& options) {
   fmt::print("{}", coupling_layout(s));
   const int free = s.model.free_dof_count(), followers = s.model.dependent_dof_count();
   const std::string tethers = s.model.tethers.empty() ? "" : fmt::format("{} tethers, ", s.model.tethers.size());
-  fmt::print("{} unknowns ({} prescribed{}), {}{} loads, {} probes\n", free, s.model.constrained_dof_count(),
-             followers > 0 ? fmt::format(", {} that follow others", followers) : "", tethers, s.scene.loads.size(),
-             s.probes.size());
+  fmt::print("{} unknowns ({} prescribed{}), {}{}, {}\n", free, s.model.constrained_dof_count(),
+             followers > 0 ? fmt::format(", {} that follow others", followers) : "", tethers,
+             counted(s.scene.loads.size(), "load"), counted(s.probes.size(), "probe"));
   if (s.stable_step > 0)
     fmt::print("{}, {} steps of {:.4g} s\n",
                std::isfinite(s.stable_step) ? fmt::format("stable time step {:.4g} s", s.stable_step)

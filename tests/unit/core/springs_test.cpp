@@ -66,9 +66,9 @@ TEST_P(SpringsTest, EnergiesAndForces) {
   for (std::size_t k = 0; k < springs.size(); ++k) {
     sum += executor_.spring_energy(static_cast<int>(k));
     EXPECT_GT(executor_.spring_energy(static_cast<int>(k)), 0);
-    EXPECT_EQ(
-        CpuExecutor::spring_force(springs[k], state_),
-        -spring_gradient(springs[k], state_.u[at(springs[k].node)] + state_.D[at(springs[k].node)] * springs[k].arm));
+    const Vec3d u = state_.u[at(springs[k].node)] + state_.D[at(springs[k].node)] * springs[k].arm;
+    const Vec3d force = CpuExecutor::spring_force(springs[k], state_);
+    EXPECT_LE(norm(force + spring_gradient(springs[k], u)), 1e-14 * norm(force));
   }
   Model without = built_.model;
   without.points.springs.clear();
