@@ -113,5 +113,47 @@ TEST(CouplingBlock, HalvesWeldedToAPlate) {
   }
 }
 
+/// A stiff wall of shells on a soft block, that share the nodes of its upper face, bends with it; against 20-node
+/// hexahedra with a layer of the wall's thickness embedded in them. The layer lies on the block, the wall's middle in
+/// its face: 0.4 % of the lever.
+TEST(CouplingBlock, AWallOnACore) {
+  const std::string top =
+      "[materials.core]\nyoung=1e4\npoisson=0.3\n[materials.skin]\nyoung=1e7\npoisson=0.3\n[solver]\nkind=\"static\"\n"
+      "[[loads]]\nbody=\"core\"\nwhere={box={min=[1.99,-1,-1],max=[2.01,2,2]}}\ntraction=[0,0,-100]\n" +
+      fix("core", plane(0)) + probe_at("tip", "core", {2, 0.5, 0.5});
+  const auto solids = [&](int n) {
+    return TextRun(
+               top + fix("skin", plane(0)) +
+               fmt::format("[bodies.core]\nmodel=\"hexahedra\"\norder=2\ndomain={{box={{min=[0,0,0],max=[2,1,1],"
+                           "cells=[{0},{1},{1}]}}}}\ndensity=1\nmaterial=\"core\"\n"
+                           "[bodies.skin]\nmodel=\"hexahedra\"\norder=2\ndomain={{box={{min=[0,0,1],max=[2,1,1.004],"
+                           "cells=[{0},{1},1]}}}}\ndensity=1\nmaterial=\"skin\"\n"
+                           "[couplings.glue]\nkind=\"embed\"\nbody=\"skin\"\nto=\"core\"\n"
+                           "where={{box={{min=[0.01,-1,0.9999],max=[3,2,1.0001]}}}}\n",
+                           2 * n, n))
+        .vector("tip")[2];
+  };
+  const auto coupled = [&](const std::string& frames, int n) {
+    return TextRun(top +
+                   fmt::format("[bodies.skin]\nmodel=\"shell\"\ndomain={{rectangle={{origin=[0,0,1],edge_u=[2,0,0],"
+                               "edge_v=[0,1,0],cells=[{},{}],diagonal=\"alternating\"}}}}\nthickness=0.004\n"
+                               "density=1\nmaterial=\"skin\"\n[bodies.core]\nmodel=\"meshless\"\ndomain={{box={{min="
+                               "[0,0,0],max=[2,1,1]}}}}\nframes={{{},share=[{{body=\"skin\"}}]}}\ndensity=1\n"
+                               "material=\"core\"\n",
+                               2 * n, n, frames))
+        .vector("tip")[2];
+  };
+  const double reference = solids(6);
+  std::printf("a wall on a core: %.5f m\n", reference);
+  const auto expect = [&](const char* name, double u, double bound) {
+    std::printf("  %-22s %.5f, %+.2f %%\n", name, u, 100 * (u / reference - 1));
+    EXPECT_NEAR(u, reference, bound * std::abs(reference)) << name;
+  };
+  expect("grid 9 x 5 x 5", coupled("grid=[9,5,5]", 4), 0.02);
+  expect("grid 17 x 9 x 9", coupled("grid=[17,9,9]", 8), 0.005);
+  expect("scattered, 0.2", coupled("poisson_disk=0.2", 4), 0.02);
+  expect("scattered, 0.125", coupled("poisson_disk=0.125", 8), 0.01);
+}
+
 }  // namespace
 }  // namespace fascia::test
