@@ -63,10 +63,8 @@ void check_inertia(const TableReader& table, const Mat3d& inertia) {
 void read_inertia(const TableReader& table, Body& body) {
   body.inertia_place = table.place("inertia");
   if (!table.has("inertia")) return;
-  if (table.has("density"))
-    table.error("inertia", "is not used beside density, which gives the inertia; give mass in the place of density");
-  else if (!table.has("mass"))
-    table.error("inertia", "needs the mass too; must stand beside mass, in kg");
+  if (!table.has("mass") && !table.has("density"))
+    table.error("inertia", "needs the mass too; must stand beside mass or density");
   const auto rows = table.vectors("inertia");
   if (!rows) return;
   body.inertia = transpose(Mat3d::from_columns((*rows)[0], (*rows)[1], (*rows)[2]));

@@ -92,7 +92,7 @@ Shape body_schema() {
       key("radius", number("m", above(0)), "Radius of a meshless line, or of a file's lines."),
       key("inertia", array(vector3("kg m2"), 3, 3),
           "Inertia of a rigid body about its mass centre, by rows, along the global axes after `transform`; beside "
-          "`mass`.")
+          "`mass` or `density`.")
           .defaults("of the mass spread evenly over the volume, or over an open surface"),
       key("fluid", fluid_schema(), "What fills a closed body: its cavities, or all that its surface encloses.")};
   const std::vector<Key> elements = element_keys();

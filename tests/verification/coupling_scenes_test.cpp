@@ -80,6 +80,11 @@ TEST(CouplingScenes, ALiverHangsFromTheDiaphragm) {
   EXPECT_NEAR(W, 18.300, 0.01 * 18.3);
   EXPECT_NEAR(run.vector("rim")[1], W, 1e-6 * W);
   expect_near(sum(run.vector("rim"), force(run, "vena_cava")), {0, W, 0}, 1e-6 * W);
+  // What ties the liver carries its weight, that of the tissues on its nodes apart.
+  const double own = 9.81 * run.summary()["bodies"]["liver"]["mass"].get<double>();
+  std::array<double, 3> ties = force(run, "vena_cava");
+  for (const char* tissue : {"falciform", "coronary", "omentum"}) ties = sum(ties, force(run, tissue, "liver"));
+  expect_near(ties, {0, own, 0}, 1e-6 * W);
   EXPECT_NEAR(run.vector("liver")[1], -19.1e-3, 0.01 * 19.1e-3);
   EXPECT_NEAR(run.vector("liver")[2], 7.5e-3, 0.01 * 7.5e-3);
 }
