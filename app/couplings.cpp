@@ -44,7 +44,7 @@ class Followers {
 
   void add(const Coupling& coupling, DependentNode d) {
     const Vec3d& X = s_.model.rest_position[at(d.node)];
-    if (const auto known = by_node_.find(d.node); known != by_node_.end() && known->second.coupling != nullptr)
+    if (const auto known = by_node_.find(d.node); known != by_node_.end())
       throw SceneError({{coupling.place, fmt::format("the node at {} follows couplings.{} already; let each node "
                                                      "follow one body",
                                                      text(X), known->second.coupling->name)}});

@@ -65,7 +65,7 @@ int find_fluid(const Simulation& s, const ResolvedProbe& r) {
 std::vector<int> nodes_of(const Simulation& s, const ResolvedProbe& r) {
   const Quantity q = r.probe->quantity;
   if (r.body >= 0 && (q == Quantity::max_displacement || q == Quantity::mean_displacement))
-    return s.bodies[at(r.body)].node_ids;
+    return find_nodes(s, r.body, {{}, AllRegion{}});
   const ModelBody* body = r.body >= 0 ? s.bodies[at(r.body)].body.get() : nullptr;
   std::vector<int> nodes(at(body ? body->node_count() : s.model.node_count()));
   std::iota(nodes.begin(), nodes.end(), body ? body->first_node() : 0);

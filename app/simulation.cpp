@@ -120,7 +120,7 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     gather_neighbours(s, body, build);
     SimulatedBody b;
     b.name = body.name;
-    const std::vector<FrameInertia> before = s.model.inertia;
+    const std::vector<FrameInertia> before = build.shared.empty() ? std::vector<FrameInertia>{} : s.model.inertia;
     b.body = build_body(body, build);
     for (const int node : b.body->shared_nodes())
       b.shared_inertia.push_back(added(before[at(node)], s.model.inertia[at(node)]));
@@ -239,6 +239,7 @@ std::vector<int> find_nodes(const Simulation& s, int body, const Region& region)
   std::vector<int> nodes;
   for (std::size_t i = 0; i < chosen.size(); ++i)
     if (chosen[i]) nodes.push_back(b.node_ids[i]);
+  std::sort(nodes.begin(), nodes.end());  // shared ones come last, with lower numbers
   if (!nodes.empty() || s.scene.bodies[at(body)].model != BodyModel::rigid) return nodes;
   const std::vector<bool> surface = select(region, b.selectable_surface());
   if (std::find(surface.begin(), surface.end(), true) != surface.end()) nodes.push_back(b.node_ids[0]);

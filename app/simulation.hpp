@@ -149,8 +149,8 @@ int body_index(const Simulation& simulation, const std::string& name);
 Vec3d place_on_body(Simulation& simulation, int body, const Vec3d& X, const Place& place);
 /// Mean distance of a body's nodes to their nearest one [m].
 double mean_spacing(const SimulatedBody& body);
-/// Model nodes of a body that a region selects; none or more. A rigid body's frame is selected with any point of its
-/// surface.
+/// Model nodes of a body that a region selects, ascending; none or more. A rigid body's frame is selected with any
+/// point of its surface.
 std::vector<int> find_nodes(const Simulation& simulation, int body, const Region& region);
 /// The same. @throws SceneError where it selects none
 std::vector<int> select_nodes(const Simulation& simulation, int body, const Region& region);

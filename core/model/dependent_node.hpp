@@ -15,7 +15,7 @@ namespace fascia {
 /// A frame that does not turn with its host keeps its own rotation.
 struct DependentNode {
   int node = 0;
-  std::vector<int> hosts;  ///< ascending; they may depend on others in turn
+  std::vector<int> hosts;  ///< distinct; they may depend on others in turn
   std::vector<double> w;   ///< [-]
   std::vector<Vec3d> b;    ///< [m]
   bool turns = false;      ///< the first host is a rigid frame, whose rotation it has

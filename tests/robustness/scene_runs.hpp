@@ -111,6 +111,22 @@ class SceneRuns : public ::testing::Test {
     return result;
   }
 
+  /// @param blamed  what the message must say
+  void expect_refused(const std::string& scene, const std::vector<std::string>& blamed) const {
+    write("scene.toml", scene);
+    for (const char* command : {"check", "run"}) {
+      std::vector<std::string> arguments{command, "scene.toml"};
+      if (command == std::string("run")) arguments.insert(arguments.end(), {"--output", "out"});
+      const ProgramResult result = fascia(arguments);
+      EXPECT_EQ(result.status, 2) << result.err;
+      EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+      EXPECT_EQ(result.err.rfind("scene.toml:", 0), 0u) << result.err;
+      for (const std::string& says : blamed)
+        EXPECT_NE(result.err.find(says), std::string::npos) << "should say '" << says << "': " << result.err;
+      EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+    }
+  }
+
   nlohmann::json summary(const std::string& directory) const {
     return nlohmann::json::parse(read_text(folder_ / directory / "summary.json"));
   }

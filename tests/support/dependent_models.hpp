@@ -84,9 +84,10 @@ class CoupledModel {
   }
 
   /// In the field of a body, at the node's place; off a surface, with an arm to the nearest place on it.
-  void embed(int node, const ModelBody& body) {
+  /// @param turns  with the first of several hosts
+  void embed(int node, const ModelBody& body, bool turns = false) {
     const Attachment place = body.attach(model.rest_position[at(node)]);
-    DependentNode d{node, place.nodes, {}, {}, false};
+    DependentNode d{node, place.nodes, {}, {}, turns};
     Vec3d arm = model.rest_position[at(node)];
     for (std::size_t k = 0; k < place.nodes.size(); ++k)
       arm -= model.rest_position[at(place.nodes[k])] * place.influences[k].w + place.influences[k].b;
@@ -128,11 +129,11 @@ inline std::unique_ptr<CoupledModel> coupled_model(const std::string& name, doub
     const int frame = m.add_frame({{-0.3, 0.4, 0.1}}, 5);
     for (int i = first; i < last; ++i)
       if (m.model.rest_position[at(i)][0] < 0.1) m.weld(i, frame);
-  } else if (name.starts_with("shell in")) {
+  } else if (name.starts_with("shell in") || name.starts_with("shell turned")) {
     m.add_grid(name.ends_with("affine grid"), stiffness_damping, mass_damping);
     const auto [first, last] = m.add_shell({{0.6, 0.2, 0.5}});
     for (int i = first; i < last; ++i)
-      if (m.model.rest_position[at(i)][0] < 0.95) m.embed(i, *m.bodies[0]);
+      if (m.model.rest_position[at(i)][0] < 0.95) m.embed(i, *m.bodies[0], name.starts_with("shell turned"));
   } else {  // chain: tetrahedra in a shell whose edge is on a frame
     const auto [shell, tetrahedra] = m.add_shell({});
     const auto [first, last] = m.add_tetrahedra({{0.1, 0.2, 0.02}}, {{0.4, 0.3, 0.5}}, {2, 1, 2});
@@ -146,8 +147,14 @@ inline std::unique_ptr<CoupledModel> coupled_model(const std::string& name, doub
   return built;
 }
 
-inline const std::vector<std::string> kWaysToDepend{
-    "tetrahedra on a frame", "tetrahedra in a rigid grid", "tetrahedra in an affine grid", "tetrahedra in tetrahedra",
-    "shell on a frame",      "shell in a rigid grid",      "shell in an affine grid",      "chain"};
+inline const std::vector<std::string> kWaysToDepend{"tetrahedra on a frame",
+                                                    "tetrahedra in a rigid grid",
+                                                    "tetrahedra in an affine grid",
+                                                    "tetrahedra in tetrahedra",
+                                                    "shell on a frame",
+                                                    "shell in a rigid grid",
+                                                    "shell in an affine grid",
+                                                    "shell turned by a rigid grid",
+                                                    "chain"};
 
 }  // namespace fascia::test
