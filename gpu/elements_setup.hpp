@@ -4,9 +4,9 @@
 #include "core/model/errors.hpp"
 #include "core/physics/element_law.hpp"
 #include "gpu/elements.hpp"
+#include "gpu/incidence.hpp"
 
 #include <limits>
-#include <numeric>
 
 /// How Elements copies the blocks of a PointSet, for the files that instantiate it.
 namespace fascia::gpu {
@@ -48,17 +48,6 @@ inline std::vector<int> nodes_of_lanes(const ElementBlock& block) {
       for (int k = 0; k < block.nodes * kElementLanes; ++k)
         nodes[at(batch * block.nodes * kElementLanes + k)] = block.nodes_of_patch(patch)[block.local_of(batch)[k]];
   return nodes;
-}
-
-/// Lists of what lies about each node, ascending. @param for_each  calls act(node, value) for all, in the same order
-template <class ForEach>
-void list_by_node(int nodes, const ForEach& for_each, std::vector<int>& begin, std::vector<int>& value) {
-  begin.assign(at(nodes) + 1, 0);
-  for_each([&](int node, int) { ++begin[at(node) + 1]; });
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  value.resize(at(begin.back()));
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for_each([&](int node, int what) { value[at(next[at(node)]++)] = what; });
 }
 
 /// Σ |g|² over the nodes (batches × points × 8).

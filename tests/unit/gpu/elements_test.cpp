@@ -17,7 +17,7 @@ struct Case {
   ElementOptions options;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 /// Each law on each shape, with every choice of penalty, damping and averages.
 std::vector<Case> cases() {
@@ -93,7 +93,7 @@ ElementBodySpec spec_of(const ElementOptions& o, const Vec3d& shift) {
 }
 
 /// Bodies of several kinds in one model: places of forces, strains and quantities of each block.
-TEST(GpuElements, OfSeveralBodies) {
+TEST(GpuElementBodies, OfSeveralBodies) {
   ElementOptions first, second, third;
   first.locking = ElementLocking::averaged;
   first.neo_hookean = true;
@@ -115,7 +115,7 @@ TEST(GpuElements, OfSeveralBodies) {
 }
 
 /// Inside out, the rotation is found another way.
-TEST(GpuElements, TurnedInsideOut) {
+TEST(GpuElementBodies, TurnedInsideOut) {
   for (const ElementShape shape : {ElementShape::tet4, ElementShape::hex8}) {
     ElementOptions o;
     o.shape = shape;
@@ -128,7 +128,7 @@ TEST(GpuElements, TurnedInsideOut) {
   }
 }
 
-TEST(GpuElements, AreNoneOfAModelWithoutThem) {
+TEST(GpuElementBodies, AreNoneOfAModelWithoutThem) {
   const BuiltModel built = block();
   const HostElements none(built.model.points);
   EXPECT_TRUE(none.empty());
