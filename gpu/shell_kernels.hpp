@@ -110,79 +110,80 @@ struct ShellForces {
   }
 };
 
-/// The tangent of a triangle at a pose, ready for directions.
-struct ShellTangent {
-  ShellLane shell;
-  ShellTriangle<double> triangle;
-  Mat3d axes;
+/// Place of the entry (i, j ≤ i) of a triangle's tangent.
+FASCIA_HD constexpr int stiffness_row(int i, int j) { return i * (i + 1) / 2 + j; }
 
-  FASCIA_HD ShellTangent(const ShellBlockView& block, int element, const PoseView& pose, const HistoryView& history)
-      : shell(block, element, pose, history.inverse_step),
-        triangle(shell.constants, shell.u, shell.D),
-        axes(present_axes(shell, triangle)) {
+/// Columns of a triangle's tangent for the freedoms of one corner, which a thread computes: rows below the diagonal.
+struct ShellStiffness {
+  ShellBlockView block;
+  HistoryView history;
+  PoseView pose;
+  bool full;
+
+  FASCIA_HD void operator()(int i) const {
+    const int b = i / kLanes % 3, lane = i % kLanes, batch = i / kLanes / 3, element = batch * kLanes + lane;
+    const ShellLane shell(block, element, pose, history.inverse_step);
+    ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
     triangle.prepare_products(total_stress(shell, triangle.strain(), old_strain(history, element)));
-  }
-  FASCIA_HD ShellNodes<double> product(const ShellNodes<double>& motion, bool full) const {
-    return triangle.product(motion, 1 + shell.viscosity, full);
+    const Mat3d axes = present_axes(shell, triangle);
+    double* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
+    for (int k = 0; k < 6; ++k) {
+      const Vec3d unit = axes.row(k % 3);
+      ShellNodes<double> motion;
+      for (int a = 0; a < 3; ++a)
+        if (a == b) (k < 3 ? motion.x : motion.r)[a] = unit;
+      const ShellNodes<double> f = triangle.product(motion, 1 + shell.viscosity, full);
+      for (int a = 0; a < 3; ++a) {
+        if (a < b) continue;
+        const Vec3d force = axes * f.x[a], torque = axes * f.r[a];
+        for (int r = 0; r < 6; ++r)
+          if (a > b || r >= k) rows[stiffness_row(6 * a + r, 6 * b + k) * kLanes] = r < 3 ? force[r] : torque[r - 3];
+      }
+    }
   }
 };
 
 struct ShellProduct {
   ShellBlockView block;
-  HistoryView history;
-  PoseView pose;
   const double* d;
   const int* dof;
-  bool full;
 
   FASCIA_HD void operator()(int i) const {
-    const ShellTangent tangent(block, i, pose, history);
-    ShellNodes<double> motion;
+    const int batch = i / kLanes, lane = i % kLanes;
+    const double* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
+    double x[18], y[18];
     for (int a = 0; a < 3; ++a) {
-      const double* own = d + dof[tangent.shell.node[a]];
-      motion.x[a] = transpose(tangent.axes) * Vec3d{{own[0], own[1], own[2]}};
-      motion.r[a] = transpose(tangent.axes) * Vec3d{{own[3], own[4], own[5]}};
+      const double* own = d + dof[block.node[(at(batch) * 3 + at(a)) * kLanes + at(lane)]];
+      for (int k = 0; k < 6; ++k) x[6 * a + k] = own[k];
     }
-    const ShellNodes<double> f = tangent.product(motion, full);
-    for (int a = 0; a < 3; ++a) store_shell_corner(block, i, a, tangent.axes * f.x[a], tangent.axes * f.r[a]);
+    for (int r = 0; r < 18; ++r) {
+      y[r] = 0;
+      for (int c = 0; c <= r; ++c) {
+        const double K = rows[stiffness_row(r, c) * kLanes];
+        y[r] += K * x[c];
+        if (c < r) y[c] += K * x[r];
+      }
+    }
+    for (int a = 0; a < 3; ++a)
+      store_shell_corner(block, i, a, {{y[6 * a], y[6 * a + 1], y[6 * a + 2]}},
+                         {{y[6 * a + 3], y[6 * a + 4], y[6 * a + 5]}});
   }
 };
 
-/// Force and torque on each frame for a unit of its own degree of freedom: a thread for each corner.
+/// A row of each frame's own block.
 struct ShellDiagonal {
-  ShellBlockView block;
-  HistoryView history;
-  PoseView pose;
-  bool full;
-  int freedom;
-
-  FASCIA_HD void operator()(int i) const {
-    const int corner = i / kLanes % 3, element = i / kLanes / 3 * kLanes + i % kLanes;
-    const ShellTangent tangent(block, element, pose, history);
-    ShellNodes<double> motion;
-    for (int a = 0; a < 3; ++a)
-      if (a == corner) (freedom < 3 ? motion.x : motion.r)[a] = tangent.axes.row(freedom % 3);
-    const ShellNodes<double> f = tangent.product(motion, full);
-    for (int a = 0; a < 3; ++a)
-      if (a == corner) store_shell_corner(block, element, a, tangent.axes * f.x[a], tangent.axes * f.r[a]);
-  }
-};
-
-/// The next column of each frame's own block: what unit motions left on the corners.
-struct ShellDiagonalColumn {
   ShellsView set;
   NodesView nodes;
   double* blocks;
-  int freedom;
 
-  FASCIA_HD void operator()(int node) const {
-    if (set.node_begin[node] == set.node_begin[node + 1]) return;
-    NodeSums sums;
-    set.add_sums(node, sums);
-    double* out = blocks + nodes.block[node];
-    for (int r = 0; r < 3; ++r) {
-      out[6 * r + freedom] += sums.force[r];
-      out[6 * (3 + r) + freedom] += sums.torque[r];
+  FASCIA_HD void operator()(int i) const {
+    const int node = i / 6, r = i % 6;
+    for (int k = set.node_begin[node]; k < set.node_begin[node + 1]; ++k) {
+      const int place = set.node_corner[k], a = place / (6 * kLanes) % 3;
+      const double* rows = set.stiffness + at(place / (18 * kLanes)) * kShellStiffness * kLanes + place % kLanes;
+      double* out = blocks + nodes.block[node] + 6 * r;
+      for (int c = 0; c < 6; ++c)
+        out[c] += rows[(c <= r ? stiffness_row(6 * a + r, 6 * a + c) : stiffness_row(6 * a + c, 6 * a + r)) * kLanes];
     }
   }
 };

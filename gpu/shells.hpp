@@ -9,6 +9,9 @@
 
 namespace fascia::gpu {
 
+/// Entries of a triangle's symmetric tangent (18 × 18), on and below the diagonal by rows.
+inline constexpr int kShellStiffness = 171;
+
 /// One block of triangles, in the layout of core/model/shell_block.hpp.
 struct ShellBlockView {
   int count = 0, batches = 0;
@@ -17,12 +20,13 @@ struct ShellBlockView {
   const int* node = nullptr;          ///< (batches × 3 × 8)
   double* corners = nullptr;          ///< (batches × 3 × 6 × 8): force and torque of the last pass on each node
   double* quantities = nullptr;       ///< (batches × 8 × kQuantities)
+  double* stiffness = nullptr;        ///< (batches × kShellStiffness × 8), of the linearisation
 };
 
 /// What all triangles gave the nodes of a model.
 struct ShellsView {
   const int *node_begin = nullptr, *node_corner = nullptr;  ///< place of each corner's force, ascending
-  const double* corners = nullptr;
+  const double *corners = nullptr, *stiffness = nullptr;
 
   /// Adds what the last pass gave a node.
   FASCIA_HD void add_sums(int node, NodeSums& sums) const {
@@ -37,6 +41,7 @@ struct ShellsView {
 };
 
 /// The triangles of shells of a model on the device: forces and torques on their corners, which frames then gather.
+/// A linearisation keeps the tangent of each triangle: as many bytes as all that a product would recompute it from.
 template <class Space>
 class Shells {
  public:
@@ -55,11 +60,11 @@ class Shells {
   /// The gradient of the energy at a pose, for add_sums(). @param part_motion  largest motion of each part (parts) [m];
   /// quantities only where it is given
   void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
-  /// Keeps what products need of a pose.
+  /// Keeps the tangents at a pose.
   void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent);
   /// The tangent's product at the linearisation, for add_sums().
   void product(const DirectionView& direction);
-  /// Adds the tangent's own block of each node, by rows; what add_sums() gives is lost.
+  /// Adds the tangent's own block of each node, by rows.
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   /// @param E  (strain_size())
   void store_strain(const PoseView& pose, double* E);
@@ -76,23 +81,13 @@ class Shells {
   static HistoryView history_of(const Block& block, const double* E, double inverse_step) {
     return {E == nullptr || !block.view.damped ? nullptr : E + block.strain_begin, inverse_step};
   }
-  HistoryView kept_history(const Block& block) const {
-    return history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
-  }
 
   std::vector<Block> blocks_;
   Array<Space, int> node_begin_, node_corner_, dof_;
-  Array<Space, double> corners_, quantities_;
+  Array<Space, double> corners_, quantities_, stiffness_;
   ShellsView view_;
   int nodes_ = 0;
   std::size_t strain_size_ = 0;
-
-  // Of the linearisation.
-  Array<Space, Vec3d> u_;
-  Array<Space, Mat3d> D_;
-  Array<Space, double> E_;
-  double inverse_step_ = 0;
-  Tangent tangent_ = Tangent::full;
 };
 
 }  // namespace fascia::gpu

@@ -28,15 +28,18 @@ Shells<Space>::Shells(const PointSet& set) : nodes_(set.node_count()) {
   corners_.resize(lanes * 18);
   quantities_.resize(lanes * kQuantities);
   quantities_.set_zero();
-  double *corner = corners_.data(), *quantity = quantities_.data();
+  stiffness_.resize(lanes * kShellStiffness);
+  double *corner = corners_.data(), *quantity = quantities_.data(), *stiffness = stiffness_.data();
   std::vector<int> dof;
   for (int node = 0; node < nodes_; ++node) dof.push_back(set.dofs.begin(node));
   dof_.upload(dof);
   for (Block& block : blocks_) {
     block.view.corners = corner;
     block.view.quantities = quantity;
+    block.view.stiffness = stiffness;
     corner += at(block.view.batches) * kElementLanes * 18;
     quantity += at(block.view.batches) * kElementLanes * kQuantities;
+    stiffness += at(block.view.batches) * kElementLanes * kShellStiffness;
   }
   find_corners(set);
 }
@@ -57,7 +60,7 @@ void Shells<Space>::find_corners(const PointSet& set) {
   list_by_node(nodes_, for_each_corner, begin, corner);
   node_begin_.upload(begin);
   node_corner_.upload(corner);
-  view_ = {node_begin_.data(), node_corner_.data(), corners_.data()};
+  view_ = {node_begin_.data(), node_corner_.data(), corners_.data(), stiffness_.data()};
 }
 
 template <class Space>
@@ -82,38 +85,21 @@ void Shells<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
 
 template <class Space>
 void Shells<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
-  if (empty()) return;
-  inverse_step_ = history.inverse_step;
-  tangent_ = tangent;
-  u_.resize(at(nodes_));
-  D_.resize(at(nodes_));
-  Space::copy(u_.data(), pose.u, u_.size() * sizeof(Vec3d));
-  Space::copy(D_.data(), pose.D, D_.size() * sizeof(Mat3d));
-  E_.resize(history.E == nullptr ? 0 : strain_size_);
-  if (history.E != nullptr) Space::copy(E_.data(), history.E, E_.size() * sizeof(double));
+  for (const Block& block : blocks_)
+    Space::for_each(3 * block.view.batches * kElementLanes,
+                    kernels::ShellStiffness{block.view, history_of(block, history.E, history.inverse_step), pose,
+                                            tangent == Tangent::full});
 }
 
 template <class Space>
 void Shells<Space>::product(const DirectionView& direction) {
   for (const Block& block : blocks_)
-    Space::for_each(block.view.batches * kElementLanes, kernels::ShellProduct{block.view,
-                                                                              kept_history(block),
-                                                                              {u_.data(), D_.data()},
-                                                                              direction.d,
-                                                                              dof_.data(),
-                                                                              tangent_ == Tangent::full});
+    Space::for_each(block.view.batches * kElementLanes, kernels::ShellProduct{block.view, direction.d, dof_.data()});
 }
 
 template <class Space>
 void Shells<Space>::add_diagonal(const NodesView& nodes, const Mat3d*, double* blocks) {
-  if (empty()) return;
-  for (int freedom = 0; freedom < 6; ++freedom) {
-    for (const Block& block : blocks_)
-      Space::for_each(3 * block.view.batches * kElementLanes,
-                      kernels::ShellDiagonal{
-                          block.view, kept_history(block), {u_.data(), D_.data()}, tangent_ == Tangent::full, freedom});
-    Space::for_each(nodes_, kernels::ShellDiagonalColumn{view_, nodes, blocks, freedom});
-  }
+  if (!empty()) Space::for_each(6 * nodes_, kernels::ShellDiagonal{view_, nodes, blocks});
 }
 
 template <class Space>
