@@ -5,6 +5,8 @@
 #include "gpu/lanes.hpp"
 #include "gpu/shells.hpp"
 
+#include <utility>
+
 /// One triangle of a shell, a lane of a batch.
 namespace fascia::gpu::kernels {
 
@@ -143,6 +145,17 @@ struct ShellStiffness {
   }
 };
 
+/// y ← y + K x with what a row and its mirror image have; R is a constant so that x and y stay in registers.
+template <int R>
+FASCIA_HD void multiply_row(const double* rows, const double* x, double* y) {
+  for (int c = 0; c < R; ++c) {
+    const double K = rows[stiffness_row(R, c) * kLanes];
+    y[R] += K * x[c];
+    y[c] += K * x[R];
+  }
+  y[R] += rows[stiffness_row(R, R) * kLanes] * x[R];
+}
+
 struct ShellProduct {
   ShellBlockView block;
   const double* d;
@@ -151,19 +164,13 @@ struct ShellProduct {
   FASCIA_HD void operator()(int i) const {
     const int batch = i / kLanes, lane = i % kLanes;
     const double* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
-    double x[18], y[18];
+    double x[18], y[18] = {};
     for (int a = 0; a < 3; ++a) {
       const double* own = d + dof[block.node[(at(batch) * 3 + at(a)) * kLanes + at(lane)]];
       for (int k = 0; k < 6; ++k) x[6 * a + k] = own[k];
     }
-    for (int r = 0; r < 18; ++r) {
-      y[r] = 0;
-      for (int c = 0; c <= r; ++c) {
-        const double K = rows[stiffness_row(r, c) * kLanes];
-        y[r] += K * x[c];
-        if (c < r) y[c] += K * x[r];
-      }
-    }
+    const auto multiply = [&]<int... R>(std::integer_sequence<int, R...>) { (multiply_row<R>(rows, x, y), ...); };
+    multiply(std::make_integer_sequence<int, 18>{});
     for (int a = 0; a < 3; ++a)
       store_shell_corner(block, i, a, {{y[6 * a], y[6 * a + 1], y[6 * a + 2]}},
                          {{y[6 * a + 3], y[6 * a + 4], y[6 * a + 5]}});
