@@ -7,6 +7,14 @@
 /// is in points_buffer.
 namespace fascia::gpu::kernels {
 
+/// Σ u gᵀ of a point.
+FASCIA_HD inline Mat3d point_gradient(const ElementBlockView& block, int batch, int q, int lane, const Vec3d* values) {
+  const double* g = gradient_of(block, batch, q);
+  Mat3d H;
+  for (int a = 0; a < block.nodes; ++a) H += outer(values[node_of(block, batch, a, lane)], gradient(g, a, lane));
+  return H;
+}
+
 /// Displacement gradients at the points of elements. @param values  by node of the model
 struct GradientPass {
   ElementBlockView block;
@@ -16,10 +24,7 @@ struct GradientPass {
   FASCIA_HD int count() const { return block.lanes() * block.points; }
   FASCIA_HD void operator()(int i) const {
     const int lane = i % kLanes, q = i / kLanes % block.points, batch = i / kLanes / block.points;
-    const double* g = gradient_of(block, batch, q);
-    Mat3d H;
-    for (int a = 0; a < block.nodes; ++a) H += outer(values[node_of(block, batch, a, lane)], gradient(g, a, lane));
-    store_matrix(point_rows(out, block, batch, q), 0, lane, H);
+    store_matrix(point_rows(out, block, batch, q), 0, lane, point_gradient(block, batch, q, lane, values));
   }
 };
 
@@ -163,7 +168,8 @@ struct LinearizePass : ElementPass<L, N> {
   }
 };
 
-template <ElementLaw L, int N>
+/// Where a point is computed alone, the gradient of dx needs no pass of its own.
+template <ElementLaw L, int N, bool Plain>
 struct ProductPass : ElementPass<L, N> {
   using ElementPass<L, N>::block;
   using ElementPass<L, N>::history;
@@ -173,7 +179,7 @@ struct ProductPass : ElementPass<L, N> {
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N> x = this->points_of(i, u, block.H);
     const auto m = element_material(block, x.batch, x.lane, history.inverse_step);
-    ElementAt<L, N> element(x, m, turn_of<L, N>(x, true), block.averaged ? block.pressure[i] : 0.0, full);
+    ElementAt<L, N, Plain> element(x, m, turn_of<L, N>(x, true), block.averaged ? block.pressure[i] : 0.0, full);
     if constexpr (N == 4) {
       const Mat3d dF = x.gradient_of_nodes(dx);
       element.begin_direction([&](int) { return dF; });
@@ -182,7 +188,10 @@ struct ProductPass : ElementPass<L, N> {
         if (block.averaged) dP += volumetric_gradient<L>(x.H(0)) * mean_of_nodes(block, x.batch, x.lane);
       x.store_forces(dP * x.v(0));
     } else {
-      const auto dF = [&](int q) { return matrix(point_rows(block.points_buffer, block, x.batch, q), 0, x.lane); };
+      const auto dF = [&](int q) {
+        return this->split ? point_gradient(block, x.batch, q, x.lane, dx)
+                           : matrix(point_rows(block.points_buffer, block, x.batch, q), 0, x.lane);
+      };
       element.begin_direction(dF);
       for (int q = x.begin(); q < x.end(); ++q)
         store_matrix(point_rows(block.points_buffer, block, x.batch, q), 0, x.lane,

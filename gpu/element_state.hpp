@@ -28,8 +28,8 @@ FASCIA_HD Mat3d mean_gradient(const Points& x) {
 }
 
 /// An element at a state, ready for stresses and, after begin_direction(), for their differentials. Neither has what
-/// averages about nodes add.
-template <ElementLaw L, int N>
+/// averages about nodes add. Plain: known to have neither penalty nor damping, which spares half of the registers.
+template <ElementLaw L, int N, bool Plain = false>
 class ElementAt {
  public:
   using Points = ElementPoints<N>;
@@ -46,13 +46,13 @@ class ElementAt {
         full_(full),
         volume_(total_volume()),
         element_(turn.H, turn.D, volume_, full) {
-    if (block_.penalised) {
+    if (penalised()) {
       for (int q = x_.begin(); q < x_.end(); ++q) swelling_ += x_.v(q) * volume_change(x_.H(q));
       swelling_ /= volume_;
     }
     if constexpr (kTurns) {
       // In one point alone only viscous stress has axes of its own.
-      if (Points::kOne && !block_.damped) return;
+      if (Points::kOne && !damped()) return;
       for (int q = x_.begin(); q < x_.end(); ++q) element_.add_point(x_.H(q), sigma(q), x_.v(q));
       element_.close();
     }
@@ -64,7 +64,7 @@ class ElementAt {
       P = element_.first_piola(sigma(q));
     else
       P = point(q).first_piola();
-    if (block_.penalised) P += cofactor(Mat3d::identity() + x_.H(q)) * (m_.penalty * swelling_ * std::abs(swelling_));
+    if (penalised()) P += cofactor(Mat3d::identity() + x_.H(q)) * (m_.penalty * swelling_ * std::abs(swelling_));
     return P;
   }
 
@@ -82,7 +82,7 @@ class ElementAt {
   }
   /// Energy of the penalty [J].
   FASCIA_HD double penalty_energy() const {
-    return block_.penalised ? volume_ * m_.penalty * swelling_ * swelling_ * std::abs(swelling_) / 3 : 0.0;
+    return penalised() ? volume_ * m_.penalty * swelling_ * swelling_ * std::abs(swelling_) / 3 : 0.0;
   }
 
   /// Strain that the law and its damping see.
@@ -100,7 +100,7 @@ class ElementAt {
       Mat3d mean;
       for (int q = x_.begin(); q < x_.end(); ++q) mean += Points::kOne ? dF(q) : dF(q) * (x_.v(q) / volume_);
       element_.begin_direction(mean);
-      if (full_ && !(Points::kOne && !block_.damped)) {
+      if (full_ && !(Points::kOne && !damped())) {
         for (int q = x_.begin(); q < x_.end(); ++q) {
           const Mat3d dA = element_.relative_differential(x_.H(q), dF(q));
           element_.add_direction(x_.H(q), sigma(q), dA, element_.stress_differential(dA, m_), x_.v(q));
@@ -108,7 +108,7 @@ class ElementAt {
         element_.close_direction();
       }
     }
-    if (block_.penalised) {
+    if (penalised()) {
       d_swelling_ = 0;
       for (int q = x_.begin(); q < x_.end(); ++q)
         d_swelling_ += x_.v(q) * contract(cofactor(Mat3d::identity() + x_.H(q)), dF(q));
@@ -125,7 +125,7 @@ class ElementAt {
     } else {
       dP = point(q).differential(dF, m_, block_.averaged ? 0.0 : m_.lambda, full_);
     }
-    if (block_.penalised) {
+    if (penalised()) {
       const Mat3d F = Mat3d::identity() + x_.H(q);
       dP += cofactor(F) * (2 * m_.penalty * std::abs(swelling_) * d_swelling_);
       if (full_) dP += cofactor_differential(F, dF) * (m_.penalty * swelling_ * std::abs(swelling_));
@@ -138,17 +138,19 @@ class ElementAt {
     FASCIA_HD Nothing(const Mat3d&, const Mat3d&, double, bool) {}
   };
 
+  FASCIA_HD bool penalised() const { return !Plain && block_.penalised; }
+  FASCIA_HD bool damped() const { return !Plain && block_.damped; }
   /// Not 0 in lanes that are not used.
   FASCIA_HD double total_volume() const {
     double sum = 0;
     for (int q = x_.begin(); q < x_.end(); ++q) sum += x_.v(q);
     return sum > 0 ? sum : 1.0;
   }
-  FASCIA_HD Mat3d old(int q) const { return block_.damped ? x_.old(q) : Mat3d{}; }
-  FASCIA_HD Mat3d sigma(int q) const { return element_.stress(strain(q), m_, old(q), block_.damped); }
+  FASCIA_HD Mat3d old(int q) const { return damped() ? x_.old(q) : Mat3d{}; }
+  FASCIA_HD Mat3d sigma(int q) const { return element_.stress(strain(q), m_, old(q), damped()); }
   FASCIA_HD ElasticPoint<L, double> point(int q) const {
     const Mat3d H = x_.H(q);
-    return {H, m_, block_.averaged ? pressure_ : m_.lambda * volumetric_strain<L>(H), old(q), block_.damped};
+    return {H, m_, block_.averaged ? pressure_ : m_.lambda * volumetric_strain<L>(H), old(q), damped()};
   }
 
   const Points& x_;

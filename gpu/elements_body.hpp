@@ -71,10 +71,14 @@ void Elements<Space>::product(const DirectionView& direction) {
   for (Block& block : blocks_) {
     const ElementBlockView& view = block.view;
     if (view.averaged) average(block, u_.data(), direction.dx);
-    if (!view.one_point()) run<Space>(kernels::GradientPass{view, direction.dx, view.points_buffer});
     kernels::with_kind(view, [&]<ElementLaw L, int N>() {
-      run<Space>(kernels::ProductPass<L, N>{
-          {view, kept_history(block), false}, u_.data(), direction.dx, tangent_ == Tangent::full});
+      const kernels::ElementPass<L, N> pass(view, kept_history(block), false);
+      if (N == 0 && !pass.split) run<Space>(kernels::GradientPass{view, direction.dx, view.points_buffer});
+      const bool full = tangent_ == Tangent::full;
+      if (view.penalised || view.damped)
+        run<Space>(kernels::ProductPass<L, N, false>{pass, u_.data(), direction.dx, full});
+      else
+        run<Space>(kernels::ProductPass<L, N, true>{pass, u_.data(), direction.dx, full});
     });
     if (!view.one_point()) run<Space>(kernels::CornerPass{view});
   }
