@@ -28,7 +28,7 @@ FASCIA_HD Mat3d mean_gradient(const Points& x) {
 }
 
 /// An element at a state, ready for stresses and, after begin_direction(), for their differentials. Neither has what
-/// averages about nodes add. Plain: known to have neither penalty nor damping, which spares half of the registers.
+/// averages about nodes add. Plain: known to have neither penalty nor damping, which spares registers.
 template <ElementLaw L, int N, bool Plain = false>
 class ElementAt {
  public:
