@@ -37,31 +37,30 @@ class PartSums {
     part_piece_.upload(part_piece);
   }
 
-  /// out[K · part + k] = Σ of item(i, sums) over the part's items.
-  template <int K, class Item>
+  /// out[(K + M) · part + k] = what item(i, sums) builds up over the part's items: sums, then maxima.
+  template <int K, int M = 0, class Item>
   void sum(const Item& item, double* out) {
-    piece_sums_.resize(at(pieces_ * K));
-    const int *order = order_.data(), *begin = begin_.data(), *part_piece = part_piece_.data();
-    double* pieces = piece_sums_.data();
-    Space::for_each(pieces_, PieceBody<K, Item>{order, begin, pieces, item});
+    piece_sums_.resize(at(pieces_) * sizeof(Sums<K, M>) / sizeof(double));
+    auto* pieces = reinterpret_cast<Sums<K, M>*>(piece_sums_.data());
+    const int* part_piece = part_piece_.data();
+    Space::for_each(pieces_, PieceBody<K, M, Item>{order_.data(), begin_.data(), pieces, item});
     Space::for_each(parts_, [part_piece, pieces, out] FASCIA_HD(int part) {
-      for (int k = 0; k < K; ++k) {
-        double sum = 0;
-        for (int p = part_piece[part]; p < part_piece[part + 1]; ++p) sum += pieces[K * p + k];
-        out[K * part + k] = sum;
-      }
+      Sums<K, M> total;
+      for (int p = part_piece[part]; p < part_piece[part + 1]; ++p) total.add(pieces[p]);
+      for (int k = 0; k < K; ++k) out[(K + M) * part + k] = total.v[k];
+      for (int k = 0; k < M; ++k) out[(K + M) * part + K + k] = total.largest[k];
     });
   }
 
-  template <int K, class Item>
+  template <int K, int M, class Item>
   struct PieceBody {
     const int *order, *begin;
-    double* pieces;
+    Sums<K, M>* pieces;
     Item item;
     FASCIA_HD void operator()(int p) const {
-      Sums<K> sums;
+      Sums<K, M> sums;
       for (int i = begin[p]; i < begin[p + 1]; ++i) item(order[i], sums);
-      for (int k = 0; k < K; ++k) pieces[K * p + k] = sums.v[k];
+      pieces[p] = sums;
     }
   };
 

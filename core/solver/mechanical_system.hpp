@@ -30,6 +30,9 @@ struct PathDirections {
 /// du and Ds, never from a difference of positions, so that small steps keep their digits.
 class MechanicalSystem {
  public:
+  using Pose = State;
+  using Memory = StepMemory;
+
   MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings);
 
   /// Starts a step of implicit Euler from `start`. @param dt  0: statics
@@ -78,6 +81,17 @@ class MechanicalSystem {
       const InertiaForce f = inertia_force(model_.inertia[at(c.node)], a.u, a.Q);
       add(gradient_, c.node, f.force, f.moment, {});
     }
+  }
+
+  /// After a midpoint step: evaluates the state at its end, at rest, with what accelerated supports carry.
+  /// @param before  the state at its start
+  void look_back(const State& state, const State& before, double dt) {
+    begin_step(state, 0);
+    evaluate();
+    add_support_inertia([&](int node) {
+      const auto i = at(node);
+      return PoseMotion{(state.v[i] - before.v[i]) * (1 / dt), (state.Q_dot[i] - before.Q_dot[i]) * (1 / dt)};
+    });
   }
 
   /// Largest rotation [rad] by which a boundary motion would turn a frame from its present place.
