@@ -2,6 +2,7 @@
 
 #include "core/math/index.hpp"
 #include "gpu/array.hpp"
+#include "gpu/space.hpp"
 
 #include <algorithm>
 #include <numeric>
