@@ -14,7 +14,7 @@ RunReport run_implicit(const Model& model, State& state, const FactorFunction& f
 }
 
 DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
-                                  const SolverSettings& settings, std::span<const double> direction) {
+                          const SolverSettings& settings, std::span<const double> direction) {
   return evaluate_in<CudaSpace>(model, state, factors, settings, direction);
 }
 

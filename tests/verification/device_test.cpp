@@ -1,8 +1,8 @@
+#include "gpu/device.hpp"
+#include "app/backend.hpp"
 #include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
-#include "app/backend.hpp"
 #include "app/solver_settings.hpp"
-#include "gpu/device.hpp"
 #include "gpu/run.hpp"
 #include "tests/support/models.hpp"
 
