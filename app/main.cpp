@@ -1,5 +1,6 @@
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
+#include "app/version.hpp"
 #include "core/model/errors.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ void add_scene_options(CLI::App& command, RunOptions& options) {
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"fascia: simulator of connective tissue and the organs that it ties together", "fascia"};
-  app.set_version_flag("--version", std::string("fascia ") + FASCIA_VERSION);
+  app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   RunOptions options;
   CLI::App* run = app.add_subcommand("run", "simulate a scene and write its results");

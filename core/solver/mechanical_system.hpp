@@ -31,6 +31,9 @@ struct PathDirections {
 /// du and Ds, never from a difference of positions, so that small steps keep their digits.
 class MechanicalSystem {
  public:
+  using Pose = State;
+  using Memory = StepMemory;
+
   MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings);
 
   /// Starts a step of implicit Euler from `start`. @param dt  0: statics
@@ -81,6 +84,24 @@ class MechanicalSystem {
     }
   }
 
+  /// Takes what the same step gave elsewhere, after an evaluation at its state.
+  void adopt(std::span<const double> gradient, std::span<const double> dependent_forces, const InternalEnergy& energy) {
+    gradient_.assign(gradient.begin(), gradient.end());
+    dependent_forces_.assign(dependent_forces.begin(), dependent_forces.end());
+    internal_ = energy;
+  }
+
+  /// After a midpoint step: evaluates the state at its end, at rest, with what accelerated supports carry.
+  /// @param before  the state at its start
+  void look_back(const State& state, const State& before, double dt) {
+    begin_step(state, 0);
+    evaluate();
+    add_support_inertia([&](int node) {
+      const auto i = at(node);
+      return PoseMotion{(state.v[i] - before.v[i]) * (1 / dt), (state.Q_dot[i] - before.Q_dot[i]) * (1 / dt)};
+    });
+  }
+
   /// Largest rotation [rad] by which a boundary motion would turn a frame from its present place.
   double prescribed_rotation() const;
 
@@ -127,7 +148,6 @@ class MechanicalSystem {
   StepNode step_node(std::size_t node) const;
   StepInertia node_inertia(std::size_t node) const;
   const FrameInertia* damping_of(std::size_t node) const;  ///< null: none
-  double largest_angle() const;
   double largest_rotation_in(std::span<const double> vector) const;
   void add_node_blocks(Linearization& lin, bool turning = true) const;
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace fascia::app {
+
+/// The program and its backends, for --version:
+///
+///     fascia 0.1.0
+///     backends: cpu, cuda (toolkit 13.0, for 80-virtual, 90-real)
+std::string version_text();
+
+}  // namespace fascia::app
