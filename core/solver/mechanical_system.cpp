@@ -1,8 +1,6 @@
 #include "core/solver/mechanical_system.hpp"
 
 #include "core/math/index.hpp"
-#include "core/math/rotation.hpp"
-#include "core/physics/inertia.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/node_force.hpp"
 #include "core/solver/node_load.hpp"

@@ -3,7 +3,6 @@
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "core/solver/node_finish.hpp"
-#include "core/solver/node_force.hpp"
 #include "core/solver/small_factor.hpp"
 
 #include <algorithm>
