@@ -18,7 +18,7 @@ namespace fascia::gpu {
 /// K sums and M maxima of values that are not negative, which a loop builds up.
 template <int K, int M = 0>
 struct Sums {
-  double v[K]{};
+  double v[K == 0 ? 1 : K]{};
   double largest[M == 0 ? 1 : M]{};
 
   FASCIA_HD void add(const Sums& other) {

@@ -83,6 +83,13 @@ class MechanicalSystem {
     }
   }
 
+  /// Takes what the same step gave elsewhere, after an evaluation at its state.
+  void adopt(std::span<const double> gradient, std::span<const double> dependent_forces, const InternalEnergy& energy) {
+    gradient_.assign(gradient.begin(), gradient.end());
+    dependent_forces_.assign(dependent_forces.begin(), dependent_forces.end());
+    internal_ = energy;
+  }
+
   /// After a midpoint step: evaluates the state at its end, at rest, with what accelerated supports carry.
   /// @param before  the state at its start
   void look_back(const State& state, const State& before, double dt) {
@@ -141,7 +148,6 @@ class MechanicalSystem {
   bool rigid(std::size_t node) const { return model_.frame_kind[node] == FrameKind::rigid; }
   PoseMotion motion_of(std::size_t node) const;  ///< since the start of the step
   double rotation_in(int node, const double* vector) const;
-  double largest_angle() const;
   double largest_rotation_in(std::span<const double> vector) const;
   void add_node_blocks(Linearization& lin, bool turning = true) const;
 

@@ -1,0 +1,16 @@
+#include "gpu/cuda_space.cuh"
+#include "gpu/run_body.hpp"
+
+namespace fascia::gpu {
+
+RunReport run_statics(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                      const StaticsSettings& statics, const DeviceObserver& observe) {
+  return run_statics_in<CudaSpace>(model, state, factors, settings, statics, observe);
+}
+
+RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                       const DynamicsSettings& dynamics, const DeviceObserver& observe) {
+  return run_implicit_in<CudaSpace>(model, state, factors, settings, dynamics, observe);
+}
+
+}  // namespace fascia::gpu
