@@ -70,19 +70,13 @@ double prescribed_rotation(const Model& model, std::span<const std::array<double
 void move_state(const Model& model, std::span<const double> global, State& state) {
   for (int i = 0; i < model.node_count(); ++i) {
     const double* d = global.data() + model.points.dofs.begin(i);
-    state.u[at(i)] += Vec3d{{d[0], d[1], d[2]}};
-    Mat3d& D = state.D[at(i)];
-    if (model.kind(i) == FrameKind::rigid)
-      D = compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}}), D);
-    else
-      D += frame_variation(model.kind(i), d + 3, {});
+    advance_increment(model.kind(i), d, 1, state.u[at(i)], state.D[at(i)]);
   }
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const FrameConstraint& c = model.constraints[k];
     if (model.kind(c.node) != FrameKind::rigid) continue;
-    const double* d = global.data() + model.points.dofs.begin(c.node) + 3;
-    for (int a = 0; a < c.rotations; ++a)
-      state.turned[k][at(a)] += dot(c.rotation_axes.row(a), Vec3d{{d[0], d[1], d[2]}});
+    const double* d = global.data() + model.points.dofs.begin(c.node);
+    advance_turned(c, d, 1, state.turned[k].data());
   }
 }
 

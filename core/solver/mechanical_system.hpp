@@ -5,6 +5,7 @@
 #include "core/physics/inertia.hpp"
 #include "core/solver/dependents.hpp"
 #include "core/solver/newton.hpp"
+#include "core/solver/node_step.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "core/solver/tangent_solver.hpp"
 #include "core/solver/time_scheme.hpp"
@@ -136,18 +137,17 @@ class MechanicalSystem {
   void place_dependents_of_step();
   void add_loads();
   void add_inertia();
-  void add_vertex_inertia(int node);
   void add_squares(std::span<const double> global, std::vector<double>& free, std::vector<double>& fixed);
   void add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N, const Vec3d& torque) const;
-  void predict_node(std::size_t node, const StepMemory& memory);
   void predict_strain(const StepMemory& memory);
   State moved_by_velocity(double time) const;
   void follow_boundaries(State& end, const std::vector<PoseMotion>& before, StepMemory& memory) const;
   void finish_middle(State& end, std::vector<PoseMotion>& motion) const;
-  void finish_middle_of_frame(std::size_t node, const FrameConstraint* held, State& end, PoseMotion& motion) const;
   bool rigid(std::size_t node) const { return model_.frame_kind[node] == FrameKind::rigid; }
-  PoseMotion motion_of(std::size_t node) const;  ///< since the start of the step
-  double rotation_in(int node, const double* vector) const;
+  PoseMotion node_motion(std::size_t node) const;  ///< since the start of the step
+  StepNode step_node(std::size_t node) const;
+  StepInertia node_inertia(std::size_t node) const;
+  const FrameInertia* damping_of(std::size_t node) const;  ///< null: none
   double largest_rotation_in(std::span<const double> vector) const;
   void add_node_blocks(Linearization& lin, bool turning = true) const;
 
