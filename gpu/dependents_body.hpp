@@ -4,6 +4,7 @@
 #include "core/solver/dependents.hpp"
 #include "core/solver/node_force.hpp"
 #include "gpu/dependents.hpp"
+#include "gpu/node_rows.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -44,7 +45,6 @@ Dependents<Space>::Dependents(const PointSet& set) {
     kind.push_back(set.dofs.kind(host));
     most_host_dofs_ = std::max(most_host_dofs_, set.dofs.size(host));
   }
-  std::vector<int> row_of_host(at(set.node_count()), -1);
   for (int k = 0; k < static_cast<int>(index.size());) {
     Level& next = levels_.emplace_back();
     next.begin = k;
@@ -52,18 +52,9 @@ Dependents<Space>::Dependents(const PointSet& set) {
     const int of = level(index[at(k)]);
     while (k < static_cast<int>(index.size()) && level(index[at(k)]) == of) ++k;
     next.count = k - next.begin;
-    std::vector<int> rows, row_host;
-    for (int pair = next.first_pair; pair < pair_begin[at(k)]; ++pair) {
-      int& row = row_of_host[at(hosts[at(pair)])];
-      if (row < 0) {
-        row = static_cast<int>(row_host.size());
-        row_host.push_back(hosts[at(pair)]);
-      }
-      rows.push_back(row);
-    }
-    for (const int host : row_host) row_of_host[at(host)] = -1;
-    next.by_host = RowSums<Space>(rows, static_cast<int>(row_host.size()), kMostDofs);
-    next.hosts.upload(row_host);
+    const NodeRows rows({hosts.begin() + next.first_pair, hosts.begin() + pair_begin[at(k)]}, set.node_count());
+    next.by_host = RowSums<Space>(rows.row, static_cast<int>(rows.nodes.size()), kMostDofs);
+    next.hosts.upload(rows.nodes);
   }
   pairs_ = static_cast<int>(hosts.size());
   node_.upload(node);
