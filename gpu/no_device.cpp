@@ -27,4 +27,10 @@ RunReport run_implicit(const Model&, State&, const FactorFunction&, const Solver
   return {};
 }
 
+DeviceEvaluation evaluate(const Model&, const State&, std::span<const double>, const SolverSettings&,
+                          std::span<const double>) {
+  require_device();
+  return {};
+}
+
 }  // namespace fascia::gpu

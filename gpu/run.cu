@@ -13,4 +13,9 @@ RunReport run_implicit(const Model& model, State& state, const FactorFunction& f
   return run_implicit_in<CudaSpace>(model, state, factors, settings, dynamics, observe);
 }
 
+DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
+                                  const SolverSettings& settings, std::span<const double> direction) {
+  return evaluate_in<CudaSpace>(model, state, factors, settings, direction);
+}
+
 }  // namespace fascia::gpu

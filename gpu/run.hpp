@@ -29,6 +29,18 @@ RunReport run_statics(const Model& model, State& state, const FactorFunction& fa
 RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
                        const DynamicsSettings& dynamics, const DeviceObserver& observe);
 
+/// What a model has at a state, for comparisons.
+struct DeviceEvaluation {
+  Evaluation judged;
+  InternalEnergy energy;
+  std::vector<double> gradient;  ///< as MechanicalSystem::gradient()
+  std::vector<double> product;   ///< of the tangent with a direction
+};
+
+/// At rest loads of these factors, without inertia. @param direction  by degrees of freedom, in world axes
+DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
+                          const SolverSettings& settings, std::span<const double> direction);
+
 /// The same in the space of the host: slow, and for tests of what the device computes.
 RunReport run_statics_on_host(const Model& model, State& state, const FactorFunction& factors,
                               const SolverSettings& settings, const StaticsSettings& statics,
@@ -36,5 +48,7 @@ RunReport run_statics_on_host(const Model& model, State& state, const FactorFunc
 RunReport run_implicit_on_host(const Model& model, State& state, const FactorFunction& factors,
                                const SolverSettings& settings, const DynamicsSettings& dynamics,
                                const DeviceObserver& observe);
+DeviceEvaluation evaluate_on_host(const Model& model, const State& state, std::span<const double> factors,
+                                  const SolverSettings& settings, std::span<const double> direction);
 
 }  // namespace fascia::gpu

@@ -77,4 +77,18 @@ RunReport run_implicit_in(const Model& model, State& state, const FactorFunction
   });
 }
 
+template <class Space>
+DeviceEvaluation evaluate_in(const Model& model, const State& state, std::span<const double> factors,
+                             const SolverSettings& settings, std::span<const double> direction) {
+  System<Space> system(model, settings);
+  system.set_factors(factors);
+  system.begin_step(DeviceState<Space>(state), 0);
+  DeviceEvaluation out;
+  out.judged = system.evaluate();
+  out.energy = system.internal_energy();
+  out.gradient = system.gradient();
+  out.product = system.product(direction);
+  return out;
+}
+
 }  // namespace fascia::gpu

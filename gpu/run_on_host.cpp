@@ -14,4 +14,9 @@ RunReport run_implicit_on_host(const Model& model, State& state, const FactorFun
   return run_implicit_in<HostSpace>(model, state, factors, settings, dynamics, observe);
 }
 
+DeviceEvaluation evaluate_on_host(const Model& model, const State& state, std::span<const double> factors,
+                                  const SolverSettings& settings, std::span<const double> direction) {
+  return evaluate_in<HostSpace>(model, state, factors, settings, direction);
+}
+
 }  // namespace fascia::gpu

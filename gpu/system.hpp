@@ -59,8 +59,8 @@ class System {
   std::vector<double> gradient() const { return gradient_.downloaded(); }
   /// As MechanicalSystem::dependent_forces().
   std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
-  /// y = K d at a state, by degrees of freedom in world axes: for tests.
-  std::vector<double> product(const State& state, std::span<const double> d);
+  /// K d at the last evaluation, by degrees of freedom in world axes.
+  std::vector<double> product(std::span<const double> d);
 
  private:
   kernels::StepView step_view();

@@ -100,9 +100,7 @@ DirectionReport System<Space>::direction() {
 }
 
 template <class Space>
-std::vector<double> System<Space>::product(const State& state, std::span<const double> d) {
-  begin_step(Pose(state), 0);
-  evaluate();
+std::vector<double> System<Space>::product(std::span<const double> d) {
   linearize(settings_.tangent, true);
   const NodesView& nodes = data_.view().nodes;
   world_d_.upload(d);
