@@ -264,6 +264,8 @@ DirectionReport MechanicalSystem::direction() {
   report.usable = solved.usable;
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
+  report.linear_residual = solved.residual;
+  report.cg_seconds = solved.cg_seconds;
   filter_.to_global(direction_);
   dependents_.expand(direction_);
   surfaces_.aim(lin_, direction_);
