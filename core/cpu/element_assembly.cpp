@@ -1,4 +1,5 @@
 #include "core/cpu/element_batch.hpp"
+#include "core/math/transpose_lanes.hpp"
 #include "core/model/errors.hpp"
 #include "core/solver/block_matrix.hpp"
 

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "core/math/portability.hpp"
+
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 namespace fascia {
 
@@ -64,7 +65,7 @@ Batch<W> where_positive(const Batch<W>& condition, const Batch<W>& a, const Batc
   return Batch<W>::of(condition.v > 0 ? a.v : b.v);
 }
 
-inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
+FASCIA_HD inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
 
 template <int W>
 Batch<W> abs(const Batch<W>& a) {
@@ -78,7 +79,7 @@ Batch<W> for_each(Batch<W> a, const Function& f) {
   return a;
 }
 template <class Function>
-double for_each(double a, const Function& f) {
+FASCIA_HD double for_each(double a, const Function& f) {
   return f(a);
 }
 
@@ -99,7 +100,7 @@ double largest(const Batch<W>& a) {
   for (int i = 1; i < W; ++i) most = a.v[i] > most ? a.v[i] : most;
   return most;
 }
-inline double largest(double a) { return a; }
+FASCIA_HD inline double largest(double a) { return a; }
 
 /// Sum over the lanes, always in the same order.
 template <int W>
@@ -114,20 +115,6 @@ double lane_sum(const Batch<W>& a) {
     }
     return lane_sum(low + high);
   }
-}
-
-/// Turns W batches into one another: lane l of batch k becomes lane k of batch l.
-template <int W, int Step = 1>
-void transpose_lanes(Batch<W> (&rows)[W]) {
-  using Register = typename Batch<W>::Register;
-  const auto exchange = []<int... L>(std::integer_sequence<int, L...>, Register & a, Register & b) {
-    const Register low = __builtin_shufflevector(a, b, ((L & Step) != 0 ? W + L - Step : L)...);
-    b = __builtin_shufflevector(a, b, ((L & Step) != 0 ? W + L : L + Step)...);
-    a = low;
-  };
-  for (int i = 0; i < W; ++i)
-    if ((i & Step) == 0) exchange(std::make_integer_sequence<int, W>{}, rows[i].v, rows[i + Step].v);
-  if constexpr (2 * Step < W) transpose_lanes<W, 2 * Step>(rows);
 }
 
 #if defined(__AVX512F__)

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "core/math/portability.hpp"
+
 #include <cstddef>
 
 namespace fascia {
 
 /// An index that is known not to be negative, for the standard containers.
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+FASCIA_HD constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace fascia

@@ -11,7 +11,7 @@ namespace fascia {
 /// exp([r]×) − I, accurate for small r.
 ///
 /// @param r  rotation vector [rad]
-inline Mat3d rotation_increment(const Vec3d& r) {
+FASCIA_HD inline Mat3d rotation_increment(const Vec3d& r) {
   const double angle = norm(r);
   const double half = 0.5 * angle;
   const double sinc = angle > 1e-8 ? std::sin(angle) / angle : 1.0 - angle * angle / 6.0;
@@ -21,16 +21,16 @@ inline Mat3d rotation_increment(const Vec3d& r) {
 }
 
 /// (I + A)(I + B) − I: applies the rotation I + A after I + B.
-inline Mat3d compose_increments(const Mat3d& A, const Mat3d& B) { return A + B + A * B; }
+FASCIA_HD inline Mat3d compose_increments(const Mat3d& A, const Mat3d& B) { return A + B + A * B; }
 
 /// Removes the drift of I + D from orthogonality, which rounding leaves; D's own accuracy is kept.
-inline Mat3d orthonormalized_increment(const Mat3d& D) {
+FASCIA_HD inline Mat3d orthonormalized_increment(const Mat3d& D) {
   const Mat3d C = D + transpose(D) + transpose_times(D, D);
   return D - (C + D * C) * 0.5;
 }
 
 /// Rotation of the polar decomposition of I + D, minus I: for blended rotations Σ w Q, which are not orthogonal.
-inline Mat3d polar_increment(Mat3d D) {
+FASCIA_HD inline Mat3d polar_increment(Mat3d D) {
   for (int i = 0; i < 100; ++i) {
     const Mat3d Q = Mat3d::identity() + D;
     const double det = determinant(Q);
@@ -44,7 +44,7 @@ inline Mat3d polar_increment(Mat3d D) {
 }
 
 /// Rotation vector of I + D, |r| ≤ π [rad].
-inline Vec3d rotation_vector(const Mat3d& D) {
+FASCIA_HD inline Vec3d rotation_vector(const Mat3d& D) {
   const Vec3d s = axl(transpose(D)) * 0.5;  // sin(angle) · axis
   const double sine = norm(s);
   const double cosine_minus_one = 0.5 * trace(D);
@@ -62,12 +62,12 @@ inline Vec3d rotation_vector(const Mat3d& D) {
 }
 
 /// Rotation matrix about a unit axis by an angle [rad].
-inline Mat3d rotation_about(const Vec3d& axis, double angle) {
+FASCIA_HD inline Mat3d rotation_about(const Vec3d& axis, double angle) {
   return Mat3d::identity() + rotation_increment(axis * angle);
 }
 
 /// Orthonormal rows whose first is along `first`.
-inline Mat3d basis_from(const Vec3d& first) {
+FASCIA_HD inline Mat3d basis_from(const Vec3d& first) {
   const Vec3d a = normalized(first);
   int k = 0;
   for (int i = 1; i < 3; ++i)

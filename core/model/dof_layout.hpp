@@ -13,7 +13,9 @@ namespace fascia {
 enum class FrameKind : unsigned char { rigid, affine, vertex };
 
 /// Number of degrees of freedom of a node.
-constexpr int dof_count(FrameKind kind) { return kind == FrameKind::vertex ? 3 : kind == FrameKind::rigid ? 6 : 12; }
+FASCIA_HD constexpr int dof_count(FrameKind kind) {
+  return kind == FrameKind::vertex ? 3 : kind == FrameKind::rigid ? 6 : 12;
+}
 
 /// Where the degrees of freedom of each node stand in a vector: displacement (3), then for a rigid frame its rotation
 /// vector (3), for an affine one the columns of A (9).
@@ -46,7 +48,7 @@ class DofLayout {
 inline constexpr int kMostDofs = 12;
 
 /// dA of a frame for the increments behind its displacement. @param Q  its present I + D
-inline Mat3d frame_variation(FrameKind kind, const double* d, const Mat3d& Q) {
+FASCIA_HD inline Mat3d frame_variation(FrameKind kind, const double* d, const Mat3d& Q) {
   if (kind == FrameKind::rigid) return skew(Vec3d{{d[0], d[1], d[2]}}) * Q;
   Mat3d dA;
   if (kind == FrameKind::vertex) return dA;
@@ -56,7 +58,7 @@ inline Mat3d frame_variation(FrameKind kind, const double* d, const Mat3d& Q) {
 }
 
 /// Adds what N, conjugate to A, is on the degrees of freedom behind the displacement.
-inline void add_moment(FrameKind kind, const Mat3d& N, const Mat3d& Q, double* g) {
+FASCIA_HD inline void add_moment(FrameKind kind, const Mat3d& N, const Mat3d& Q, double* g) {
   if (kind == FrameKind::vertex) return;
   if (kind == FrameKind::rigid) {
     const Vec3d torque = axl(Q * transpose(N));
@@ -68,7 +70,7 @@ inline void add_moment(FrameKind kind, const Mat3d& N, const Mat3d& Q, double* g
 }
 
 /// N of a torque: ½ [τ]× A⁻ᵀ, which works on the spin of A alone. (A rigid frame's A⁻ᵀ is A.)
-inline Mat3d moment_of_torque(const Vec3d& torque, const Mat3d& A) {
+FASCIA_HD inline Mat3d moment_of_torque(const Vec3d& torque, const Mat3d& A) {
   return skew(torque) * transpose(inverse(A)) * 0.5;
 }
 

@@ -17,7 +17,7 @@ struct FrameInertia {
   Vec3d first{};    ///< c = Σ m_q w d, d = X_q − X_i [kg m]
   Mat3d second{};   ///< S = Σ m_q w d dᵀ [kg m²]
 
-  FrameInertia& operator+=(const FrameInertia& o) {
+  FASCIA_HD FrameInertia& operator+=(const FrameInertia& o) {
     mass += o.mass;
     first += o.first;
     second += o.second;
@@ -61,7 +61,7 @@ struct FrameConstraint {
   std::array<int, 3> translation_motion{-1, -1, -1};  ///< index into Model::motions, −1: held
   std::array<int, 3> rotation_motion{-1, -1, -1};
   /// The motion that turns the frame, −1 where none does.
-  int turning_motion() const {
+  FASCIA_HD int turning_motion() const {
     for (const int motion : rotation_motion)
       if (motion >= 0) return motion;
     return -1;

@@ -17,7 +17,7 @@ template <class T>
 class CorotationalElement {
  public:
   /// @param H_mean  mean displacement gradient, volume the element's [m³]
-  CorotationalElement(const Mat3<T>& H_mean, const T& volume, bool full) : full_(full), volume_(volume) {
+  FASCIA_HD CorotationalElement(const Mat3<T>& H_mean, const T& volume, bool full) : full_(full), volume_(volume) {
     D_ = nearest_rotation_increment(H_mean);
     R_ = Mat3<T>::identity() + D_;
     stretch_ = sym(relative(H_mean)) + Mat3<T>::identity();
@@ -31,11 +31,11 @@ class CorotationalElement {
   }
 
   /// Rᵀ F − I
-  Mat3<T> relative(const Mat3<T>& H) const { return transpose(D_) + H + transpose_times(D_, H); }
-  Mat3<T> strain(const Mat3<T>& H) const { return sym(relative(H)); }
+  FASCIA_HD Mat3<T> relative(const Mat3<T>& H) const { return transpose(D_) + H + transpose_times(D_, H); }
+  FASCIA_HD Mat3<T> strain(const Mat3<T>& H) const { return sym(relative(H)); }
 
   /// Stress in the element's axes, elastic and viscous.
-  static Mat3<T> stress(const Mat3<T>& strain, const ElementMaterial<T>& m, const Mat3<T>& old, bool damped) {
+  FASCIA_HD static Mat3<T> stress(const Mat3<T>& strain, const ElementMaterial<T>& m, const Mat3<T>& old, bool damped) {
     const StVenantKirchhoff<T> law{m.lambda, m.mu};
     Mat3<T> sigma = law.second_piola(strain);
     if (damped) sigma += law.second_piola(strain - old) * m.viscosity;
@@ -43,35 +43,36 @@ class CorotationalElement {
   }
 
   /// First pass over the points: Σ v axl(A σ).
-  void add_point(const Mat3<T>& H, const Mat3<T>& sigma, const T& v) {
+  FASCIA_HD void add_point(const Mat3<T>& H, const Mat3<T>& sigma, const T& v) {
     t_ += axl((Mat3<T>::identity() + relative(H)) * sigma) * v;
   }
-  void close() { c_ = G_inverse_ * t_; }
+  FASCIA_HD void close() { c_ = G_inverse_ * t_; }
 
-  Mat3<T> first_piola(const Mat3<T>& sigma) const { return R_ * (sigma - skew(c_) * (T(1) / volume_)); }
+  FASCIA_HD Mat3<T> first_piola(const Mat3<T>& sigma) const { return R_ * (sigma - skew(c_) * (T(1) / volume_)); }
 
   /// A direction: first the mean of dF, then each point, then close_direction(), then differential() of each point.
-  void begin_direction(const Mat3<T>& dF_mean) {
+  FASCIA_HD void begin_direction(const Mat3<T>& dF_mean) {
     const Mat3<T> Z = transpose_times(R_, dF_mean);
     w_ = G_inverse_ * axl(Z) * T(-1);
     if (!full_) w_ = {};
     d_stretch_ = sym(Z - skew(w_) * stretch_);
     dt_ = {};
   }
-  Mat3<T> relative_differential(const Mat3<T>& H, const Mat3<T>& dF) const {
+  FASCIA_HD Mat3<T> relative_differential(const Mat3<T>& H, const Mat3<T>& dF) const {
     return transpose_times(R_, dF) - skew(w_) * (Mat3<T>::identity() + relative(H));
   }
-  static Mat3<T> stress_differential(const Mat3<T>& dA, const ElementMaterial<T>& m) {
+  FASCIA_HD static Mat3<T> stress_differential(const Mat3<T>& dA, const ElementMaterial<T>& m) {
     return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(sym(dA)) * (T(1) + m.viscosity);
   }
-  void add_direction(const Mat3<T>& H, const Mat3<T>& sigma, const Mat3<T>& dA, const Mat3<T>& dsigma, const T& v) {
+  FASCIA_HD void add_direction(const Mat3<T>& H, const Mat3<T>& sigma, const Mat3<T>& dA, const Mat3<T>& dsigma,
+                               const T& v) {
     dt_ += axl(dA * sigma + (Mat3<T>::identity() + relative(H)) * dsigma) * v;
   }
-  void close_direction() {
+  FASCIA_HD void close_direction() {
     const Mat3<T> dG = Mat3<T>::diagonal(trace(d_stretch_)) - d_stretch_;
     dc_ = G_inverse_ * (dt_ - dG * c_);
   }
-  Mat3<T> differential(const Mat3<T>& sigma, const Mat3<T>& dsigma) const {
+  FASCIA_HD Mat3<T> differential(const Mat3<T>& sigma, const Mat3<T>& dsigma) const {
     if (!full_) return R_ * dsigma;
     return R_ * (skew(w_) * sigma + dsigma - (skew(w_) * skew(c_) + skew(dc_)) * (T(1) / volume_));
   }

@@ -14,13 +14,13 @@ struct LambdaMean {
   double volume = 0, sum = 0, inverse = 0;
   bool positive = true;
 
-  void add(double lambda, double v) {
+  FASCIA_HD void add(double lambda, double v) {
     volume += v;
     sum += lambda * v;
     positive = positive && lambda > 0;
     if (lambda > 0) inverse += v / lambda;
   }
-  double value() const {
+  FASCIA_HD double value() const {
     if (volume <= 0) return 0;
     return positive ? volume / inverse : sum / volume;
   }

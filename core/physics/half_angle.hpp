@@ -2,7 +2,6 @@
 
 #include "core/math/batch.hpp"
 
-#include <array>
 #include <cmath>
 
 namespace fascia {
@@ -15,7 +14,7 @@ struct HalfAngle {
   T z{}, f{}, df{}, ddf{};
 
   HalfAngle() = default;
-  explicit HalfAngle(const T& sine_squared) : z(sine_squared) {
+  FASCIA_HD explicit HalfAngle(const T& sine_squared) : z(sine_squared) {
     if (largest(z) < kSmall)
       expand();
     else
@@ -25,26 +24,27 @@ struct HalfAngle {
  private:
   static constexpr double kSmall = 0.02;  ///< twelve terms leave 1e-20 here
   static constexpr int kTerms = 12;
-  /// c_n
-  static constexpr std::array<double, kTerms + 3> kSeries = [] {
-    std::array<double, kTerms + 3> c{1};
-    for (std::size_t n = 1; n < c.size(); ++n)
-      c[n] = c[n - 1] * 2.0 * static_cast<double>(n) / (2.0 * static_cast<double>(n) + 1);
-    return c;
-  }();
+  struct Series {
+    double c[kTerms + 3];
+  };
+  FASCIA_HD static constexpr Series series() {
+    Series s{{1}};
+    for (int n = 1; n < kTerms + 3; ++n) s.c[n] = s.c[n - 1] * 2.0 * n / (2.0 * n + 1);
+    return s;
+  }
 
-  void expand() {
+  FASCIA_HD void expand() {
+    constexpr Series s = series();
     f = df = ddf = T(0);
     for (int n = kTerms; n >= 0; --n) {
-      const auto c = [&](int k) { return kSeries[static_cast<std::size_t>(k)]; };
-      f = f * z + T(c(n));
-      df = df * z + T(c(n + 1) * (n + 1));
-      ddf = ddf * z + T(c(n + 2) * (n + 2) * (n + 1));
+      f = f * z + T(s.c[n]);
+      df = df * z + T(s.c[n + 1] * (n + 1));
+      ddf = ddf * z + T(s.c[n + 2] * (n + 2) * (n + 1));
     }
   }
 
   /// Closed forms, and the series in lanes that they would lose digits in.
-  void evaluate() {
+  FASCIA_HD void evaluate() {
     HalfAngle low;
     low.z = for_each(z, [](double s) { return s < kSmall ? s : 0.0; });
     low.expand();

@@ -6,7 +6,7 @@
 /// |(a, A)|² = m a·a + 2 a·(A c) + tr(A S Aᵀ), exact for every rigid motion of the body.
 namespace fascia {
 
-inline double inertia_product(const FrameInertia& i, const Vec3d& a, const Mat3d& A) {
+FASCIA_HD inline double inertia_product(const FrameInertia& i, const Vec3d& a, const Mat3d& A) {
   return i.mass * squared_norm(a) + 2 * dot(a, A * i.first) + contract(A * i.second, A);
 }
 
@@ -15,13 +15,13 @@ struct InertiaForce {
   Vec3d force{};
   Mat3d moment{};
 };
-inline InertiaForce inertia_force(const FrameInertia& i, const Vec3d& a, const Mat3d& A) {
+FASCIA_HD inline InertiaForce inertia_force(const FrameInertia& i, const Vec3d& a, const Mat3d& A) {
   return {a * i.mass + A * i.first, outer(a, i.first) + A * i.second};
 }
 
 /// The Hessian of half the square above on the degrees of freedom of a frame, at I + D = Q; of a rigid one, without
 /// the part that vanishes with the motion.
-inline void add_inertia_block(FrameKind kind, const FrameInertia& inertia, const Mat3d& Q, double* block) {
+FASCIA_HD inline void add_inertia_block(FrameKind kind, const FrameInertia& inertia, const Mat3d& Q, double* block) {
   if (kind == FrameKind::vertex) {
     for (int i = 0; i < 3; ++i) block[4 * i] += inertia.mass;
     return;
@@ -58,8 +58,8 @@ struct Momentum {
 };
 
 /// Momentum of one frame. @param x  present position of its origin, Q its rotation
-inline Momentum momentum_of(const FrameInertia& i, const Vec3d& x, const Mat3d& Q, const Vec3d& v, const Mat3d& Q_dot,
-                            const Vec3d& about) {
+FASCIA_HD inline Momentum momentum_of(const FrameInertia& i, const Vec3d& x, const Mat3d& Q, const Vec3d& v,
+                                      const Mat3d& Q_dot, const Vec3d& about) {
   const Vec3d arm = Q * i.first, arm_dot = Q_dot * i.first, r = x - about;
   return {v * i.mass + arm_dot,
           cross(r, v * i.mass + arm_dot) + cross(arm, v) + axl(times_transpose(Q * i.second, Q_dot)),

@@ -42,7 +42,7 @@ FASCIA_HD constexpr bool is_tether(const ThinMaterial<T>& m) {
 
 /// The two constants of a thin law, S_tt = λ' tr_t(E) + 2μ E_tt in its tangent directions: a sheet's λ' = 2λμ/(λ + 2μ)
 /// makes plane stress, a line's λ' = E − 2μ makes S₁₁ = E E₁₁.
-constexpr Lame thin_lame(Law law, const Lame& m) {
+FASCIA_HD constexpr Lame thin_lame(Law law, const Lame& m) {
   if (law == Law::sheet) return {2 * m.lambda * m.mu / (m.lambda + 2 * m.mu), m.mu};
   if (law == Law::line) return {m.mu * (3 * m.lambda + 2 * m.mu) / (m.lambda + m.mu) - 2 * m.mu, m.mu};
   return m;

@@ -1,12 +1,14 @@
 #pragma once
 
+#include "core/math/portability.hpp"
+
 namespace fascia {
 
 /// Stress of a point: of a solid, St Venant-Kirchhoff or neo-Hookean; plane stress; that of a rod; or no stress but a
 /// spring to a place in space.
 enum class Law : unsigned char { solid, neo_hookean, sheet, line, tether };
 
-constexpr bool is_solid(Law law) { return law == Law::solid || law == Law::neo_hookean; }
+FASCIA_HD constexpr bool is_solid(Law law) { return law == Law::solid || law == Law::neo_hookean; }
 
 /// What keeps frames from moving where strain does not see them: nothing; Qbar tied to the rotation in F; affine
 /// frames: the blended A tied to F.

@@ -20,28 +20,28 @@ template <class T>
 struct ShellStrain {
   T membrane[6]{}, bending[6]{};
 
-  Vec3<T> rotation(int a) const { return {{bending[2 * a], bending[2 * a + 1], membrane[3 + a]}}; }
-  void set_rotation(int a, const Vec3<T>& theta) {
+  FASCIA_HD Vec3<T> rotation(int a) const { return {{bending[2 * a], bending[2 * a + 1], membrane[3 + a]}}; }
+  FASCIA_HD void set_rotation(int a, const Vec3<T>& theta) {
     bending[2 * a] = theta[0];
     bending[2 * a + 1] = theta[1];
     membrane[3 + a] = theta[2];
   }
-  ShellStrain& operator+=(const ShellStrain& o) {
+  FASCIA_HD ShellStrain& operator+=(const ShellStrain& o) {
     for (int k = 0; k < 6; ++k) {
       membrane[k] += o.membrane[k];
       bending[k] += o.bending[k];
     }
     return *this;
   }
-  friend ShellStrain operator+(ShellStrain a, const ShellStrain& b) { return a += b; }
-  friend ShellStrain operator-(ShellStrain a, const ShellStrain& b) {
+  friend FASCIA_HD ShellStrain operator+(ShellStrain a, const ShellStrain& b) { return a += b; }
+  friend FASCIA_HD ShellStrain operator-(ShellStrain a, const ShellStrain& b) {
     for (int k = 0; k < 6; ++k) {
       a.membrane[k] -= b.membrane[k];
       a.bending[k] -= b.bending[k];
     }
     return a;
   }
-  friend ShellStrain operator*(ShellStrain a, const T& s) {
+  friend FASCIA_HD ShellStrain operator*(ShellStrain a, const T& s) {
     for (int k = 0; k < 6; ++k) {
       a.membrane[k] *= s;
       a.bending[k] *= s;
@@ -52,7 +52,7 @@ struct ShellStrain {
 
 /// y = A x of a packed symmetric matrix.
 template <class T>
-void multiply_packed(const T* A, const T* x, T* y) {
+FASCIA_HD void multiply_packed(const T* A, const T* x, T* y) {
   for (int i = 0; i < 6; ++i) {
     y[i] = A[i * (i + 1) / 2 + i] * x[i];
     for (int j = 0; j < i; ++j) {
@@ -63,7 +63,7 @@ void multiply_packed(const T* A, const T* x, T* y) {
 }
 
 template <class T>
-ShellStrain<T> shell_stress(const ShellConstants<T>& c, const ShellStrain<T>& e) {
+FASCIA_HD ShellStrain<T> shell_stress(const ShellConstants<T>& c, const ShellStrain<T>& e) {
   ShellStrain<T> s;
   multiply_packed(c.membrane, e.membrane, s.membrane);
   multiply_packed(c.bending, e.bending, s.bending);
@@ -72,7 +72,7 @@ ShellStrain<T> shell_stress(const ShellConstants<T>& c, const ShellStrain<T>& e)
 
 /// Σ a b over the strains.
 template <class T>
-T contract(const ShellStrain<T>& a, const ShellStrain<T>& b) {
+FASCIA_HD T contract(const ShellStrain<T>& a, const ShellStrain<T>& b) {
   T sum{};
   for (int k = 0; k < 6; ++k) sum += a.membrane[k] * b.membrane[k] + a.bending[k] * b.bending[k];
   return sum;
@@ -86,7 +86,7 @@ struct ShellNodes {
 
 /// (e + d) / |e + d| − e of a unit vector e, accurate for small d.
 template <class T>
-Vec3<T> unit_increment(const Vec3<T>& e, const Vec3<T>& d) {
+FASCIA_HD Vec3<T> unit_increment(const Vec3<T>& e, const Vec3<T>& d) {
   using std::sqrt;
   const T excess = T(2) * dot(e, d) + squared_norm(d), length = sqrt(T(1) + excess);
   return d - (e + d) * (excess / (length * (T(1) + length)));
@@ -97,7 +97,7 @@ template <class T>
 class ShellTriangle {
  public:
   /// @param u  displacements, D  rotations − I, both in rest axes
-  ShellTriangle(const ShellConstants<T>& constants, const Vec3<T>* u, const Mat3<T>* D) : c_(constants) {
+  FASCIA_HD ShellTriangle(const ShellConstants<T>& constants, const Vec3<T>* u, const Mat3<T>* D) : c_(constants) {
     Vec3<T> h[2];
     for (int a = 0; a < 3; ++a)
       for (int j = 0; j < 2; ++j) h[j] += u[a] * c_.g[a][j];
@@ -107,19 +107,21 @@ class ShellTriangle {
   }
 
   /// T₀ᵀ T − I
-  const Mat3<T>& turned() const { return Z_; }
-  const ShellStrain<T>& strain() const { return e_; }
+  FASCIA_HD const Mat3<T>& turned() const { return Z_; }
+  FASCIA_HD const ShellStrain<T>& strain() const { return e_; }
   /// Right stretch of the plane: U₁₁, U₁₂, U₂₂.
-  const T* stretch() const { return U_; }
+  FASCIA_HD const T* stretch() const { return U_; }
 
   /// Forces and torques of what is conjugate to the strains.
-  ShellNodes<T> forces(const ShellStrain<T>& s) const { return at_nodes(s, moments(s)); }
+  FASCIA_HD ShellNodes<T> forces(const ShellStrain<T>& s) const { return at_nodes(s, moments(s)); }
 
   /// Change of the strains for a motion of the nodes (in element axes).
-  ShellStrain<T> strain_differential(const ShellNodes<T>& d) const { return strain_differential(variation(d), d); }
+  FASCIA_HD ShellStrain<T> strain_differential(const ShellNodes<T>& d) const {
+    return strain_differential(variation(d), d);
+  }
 
   /// Keeps what products need of the state. @param s  conjugate to the strains there
-  void prepare_products(const ShellStrain<T>& s) {
+  FASCIA_HD void prepare_products(const ShellStrain<T>& s) {
     s_ = s;
     m_ = moments(s);
     f_ = at_nodes(s, m_);
@@ -129,7 +131,7 @@ class ShellTriangle {
   /// (derivative of forces and torques, plus half the torque times the rotation).
   /// @param stiffness  factor of D: 1, more with damping
   /// @param full  false leaves out the second term
-  ShellNodes<T> product(const ShellNodes<T>& d, const T& stiffness, bool full) const {
+  FASCIA_HD ShellNodes<T> product(const ShellNodes<T>& d, const T& stiffness, bool full) const {
     const Variation v = variation(d);
     const ShellStrain<T> ds = shell_stress(c_, strain_differential(v, d)) * stiffness;
     Moments dm = moments(ds);
@@ -157,7 +159,7 @@ class ShellTriangle {
     T dU[3];  ///< of U₁₁, U₁₂, U₂₂
   };
 
-  void turn(const Vec3<T>* h) {
+  FASCIA_HD void turn(const Vec3<T>* h) {
     const Vec3<T> e1{{T(1), T(0), T(0)}}, e3{{T(0), T(0), T(1)}};
     Vec3<T> tilt = cross(h[0], h[1]);  // of (e₁ + h₁) × (e₂ + h₂) − e₃
     tilt[0] -= h[0][2];
@@ -176,7 +178,7 @@ class ShellTriangle {
     Z_ = Mat3<T>::from_columns(t, b, n);
   }
 
-  void stretch(const Vec3<T>* h) {
+  FASCIA_HD void stretch(const Vec3<T>* h) {
     const auto entry = [&](int i, int j) { return h[j][i] + Z_(j, i) + dot(Z_.column(i), h[j]); };
     U_[0] = T(1) + entry(0, 0);
     U_[1] = T(0.5) * (entry(0, 1) + entry(1, 0));
@@ -191,7 +193,7 @@ class ShellTriangle {
     e_.membrane[2] = h[0][1] + h[1][0] + dot(h[0], h[1]);
   }
 
-  void rotate(int a, const Mat3<T>& D) {
+  FASCIA_HD void rotate(int a, const Mat3<T>& D) {
     const Mat3<T> L = transpose(Z_) + D + transpose_times(Z_, D);  // Λ − I, Λ = Tᵀ Q T₀
     Lambda_[a] = Mat3<T>::identity() + L;
     sine_[a] = axl(transpose(L)) * T(0.5);
@@ -200,21 +202,21 @@ class ShellTriangle {
   }
 
   /// B s, Bᵀ s of B = ½ (tr Λ I − Λ), the derivative of the sine vector.
-  Vec3<T> sine_differential(int a, const Vec3<T>& s) const {
+  FASCIA_HD Vec3<T> sine_differential(int a, const Vec3<T>& s) const {
     return (s * (T(3) - T(4) * angle_[a].z) - Lambda_[a] * s) * T(0.5);
   }
-  Vec3<T> sine_moment(int a, const Vec3<T>& s) const {
+  FASCIA_HD Vec3<T> sine_moment(int a, const Vec3<T>& s) const {
     return (s * (T(3) - T(4) * angle_[a].z) - transpose(Lambda_[a]) * s) * T(0.5);
   }
   /// dθ = J ψ, J = f B + ½ f' a aᵀ, ψ: spin of Λ.
-  Vec3<T> rotation_differential(int a, const Vec3<T>& spin) const {
+  FASCIA_HD Vec3<T> rotation_differential(int a, const Vec3<T>& spin) const {
     return sine_differential(a, spin) * angle_[a].f + sine_[a] * (T(0.5) * angle_[a].df * dot(sine_[a], spin));
   }
-  Vec3<T> moment(int a, const Vec3<T>& s) const {
+  FASCIA_HD Vec3<T> moment(int a, const Vec3<T>& s) const {
     return sine_moment(a, s) * angle_[a].f + sine_[a] * (T(0.5) * angle_[a].df * dot(sine_[a], s));
   }
   /// Derivative of Jᵀ s at fixed s.
-  Vec3<T> moment_differential(int a, const Vec3<T>& s, const Vec3<T>& spin) const {
+  FASCIA_HD Vec3<T> moment_differential(int a, const Vec3<T>& s, const Vec3<T>& spin) const {
     const HalfAngle<T>& h = angle_[a];
     const Vec3<T>& sine = sine_[a];
     const T dz = T(0.5) * dot(sine, spin), along = dot(sine, s);
@@ -224,14 +226,14 @@ class ShellTriangle {
            (dsine * along + sine * dot(dsine, s)) * (T(0.5) * h.df);
   }
 
-  Moments moments(const ShellStrain<T>& s) const {
+  FASCIA_HD Moments moments(const ShellStrain<T>& s) const {
     Moments m;
     for (int a = 0; a < 3; ++a) m.m[a] = moment(a, s.rotation(a));
     m.sum = m.m[0] + m.m[1] + m.m[2];
     return m;
   }
 
-  Variation variation(const ShellNodes<T>& d) const {
+  FASCIA_HD Variation variation(const ShellNodes<T>& d) const {
     Variation v;
     for (int a = 0; a < 3; ++a)
       for (int j = 0; j < 2; ++j) v.p[j] += d.x[a] * c_.g[a][j];
@@ -244,7 +246,7 @@ class ShellTriangle {
     return v;
   }
 
-  ShellStrain<T> strain_differential(const Variation& v, const ShellNodes<T>& d) const {
+  FASCIA_HD ShellStrain<T> strain_differential(const Variation& v, const ShellNodes<T>& d) const {
     ShellStrain<T> e;
     e.membrane[0] = U_[0] * v.p[0][0] + U_[1] * v.p[0][1];
     e.membrane[1] = U_[1] * v.p[1][0] + U_[2] * v.p[1][1];
@@ -254,7 +256,7 @@ class ShellTriangle {
   }
 
   /// What is conjugate to Tᵀ δF: U S, and what moments against the element's own rotation ask of it.
-  ShellNodes<T> at_nodes(const ShellStrain<T>& s, const Moments& m) const {
+  FASCIA_HD ShellNodes<T> at_nodes(const ShellStrain<T>& s, const Moments& m) const {
     const T* S = s.membrane;
     const Vec3<T>& M = m.sum;
     const Vec3<T> y[2] = {{{U_[0] * S[0] + U_[1] * S[2], U_[1] * S[0] + U_[2] * S[2] - M[2] * inverse_trace_,
@@ -270,7 +272,8 @@ class ShellTriangle {
   }
 
   /// Change of the above with the stretch, at fixed stress and moments.
-  void conjugates_differential(const ShellStrain<T>& s, const Vec3<T>& M, const Variation& v, Vec3<T>* y) const {
+  FASCIA_HD void conjugates_differential(const ShellStrain<T>& s, const Vec3<T>& M, const Variation& v,
+                                         Vec3<T>* y) const {
     const T* S = s.membrane;
     const T* dU = v.dU;
     // −U⁻¹ dU U⁻¹

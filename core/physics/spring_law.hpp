@@ -12,7 +12,7 @@ struct SpringStretch {
 };
 
 /// @param u  displacement of the node [m]
-inline SpringStretch spring_stretch(const Spring& spring, const Vec3d& u) {
+FASCIA_HD inline SpringStretch spring_stretch(const Spring& spring, const Vec3d& u) {
   SpringStretch s;
   if (squared_norm(spring.direction) > 0) {
     s.t = spring.direction;
@@ -32,13 +32,13 @@ inline SpringStretch spring_stretch(const Spring& spring, const Vec3d& u) {
 }
 
 /// Energy k s² / 2 of the stretch s [J].
-inline double spring_energy(const Spring& spring, const Vec3d& u) {
+FASCIA_HD inline double spring_energy(const Spring& spring, const Vec3d& u) {
   const double s = spring_stretch(spring, u).stretch;
   return 0.5 * spring.stiffness * s * s;
 }
 
 /// Gradient of the energy: k s t [N].
-inline Vec3d spring_gradient(const Spring& spring, const Vec3d& u) {
+FASCIA_HD inline Vec3d spring_gradient(const Spring& spring, const Vec3d& u) {
   const SpringStretch s = spring_stretch(spring, u);
   if (squared_norm(spring.direction) == 0 && s.rest_length == 0) return u * spring.stiffness;
   return s.t * (spring.stiffness * s.stretch);
@@ -46,7 +46,7 @@ inline Vec3d spring_gradient(const Spring& spring, const Vec3d& u) {
 
 /// Second derivative of the energy: k t tᵀ, and of one that runs to a point k (1 − l₀/l) (I − t tᵀ) [N/m].
 /// @param geometric  false leaves the latter out, which is negative in compression; where l₀ = 0 it is stiffness
-inline Mat3d spring_tangent(const Spring& spring, const Vec3d& u, bool geometric) {
+FASCIA_HD inline Mat3d spring_tangent(const Spring& spring, const Vec3d& u, bool geometric) {
   const SpringStretch s = spring_stretch(spring, u);
   const bool directed = squared_norm(spring.direction) > 0;
   if (!directed && s.rest_length == 0) return Mat3d::diagonal(spring.stiffness);

@@ -7,7 +7,7 @@ namespace fascia {
 /// λ and μ of a Young modulus [Pa] and a Poisson ratio in (−1, ½).
 struct Lame {
   double lambda = 0, mu = 0;  ///< [Pa]
-  static constexpr Lame from_young(double young, double poisson) {
+  FASCIA_HD static constexpr Lame from_young(double young, double poisson) {
     return {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))};
   }
 };

@@ -7,8 +7,8 @@ namespace fascia {
 
 /// Adds a force, what is conjugate to A, and a torque to the entries of one node.
 /// @param D  its present A − I
-inline void add_node_force(FrameKind kind, const Mat3d& D, const Vec3d& force, const Mat3d& N, const Vec3d& torque,
-                           double* g) {
+FASCIA_HD inline void add_node_force(FrameKind kind, const Mat3d& D, const Vec3d& force, const Mat3d& N,
+                                     const Vec3d& torque, double* g) {
   const Mat3d A = Mat3d::identity() + D;
   for (int k = 0; k < 3; ++k) g[k] += force[k];
   if (kind == FrameKind::vertex) return;
@@ -17,14 +17,16 @@ inline void add_node_force(FrameKind kind, const Mat3d& D, const Vec3d& force, c
 
 /// Of a moment L = Σ f (Q b)ᵀ on a rigid frame: minus the second derivative of its work f · Q b along rotation
 /// increments.
-inline Mat3d rotation_tangent(const Mat3d& L) { return sym(L) - Mat3d::diagonal(trace(L)); }
+FASCIA_HD inline Mat3d rotation_tangent(const Mat3d& L) { return sym(L) - Mat3d::diagonal(trace(L)); }
 
-inline void add_rotation_block(double* block, const Mat3d& rr) {
+FASCIA_HD inline void add_rotation_block(double* block, const Mat3d& rr) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) block[6 * (3 + i) + 3 + j] += rr(i, j);
 }
 
 /// ω of a motion Q_dot of a rotation Q: the spin of Q_dot Qᵀ.
-inline Vec3d spin_of(const Mat3d& Q_dot, const Mat3d& Q) { return axl(transpose(times_transpose(Q_dot, Q))) * 0.5; }
+FASCIA_HD inline Vec3d spin_of(const Mat3d& Q_dot, const Mat3d& Q) {
+  return axl(transpose(times_transpose(Q_dot, Q))) * 0.5;
+}
 
 }  // namespace fascia

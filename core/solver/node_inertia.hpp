@@ -15,16 +15,18 @@ struct SpinInertia {
   bool regular = false;          ///< has an inverse
 
   SpinInertia() = default;
-  explicit SpinInertia(const FrameInertia& i)
+  FASCIA_HD explicit SpinInertia(const FrameInertia& i)
       : SpinInertia(i.mass > 0 ? i.second - outer(i.first, i.first) * (1 / i.mass) : i.second) {}
-  explicit SpinInertia(const Mat3d& J) {
+  FASCIA_HD explicit SpinInertia(const Mat3d& J) {
     rest = Mat3d::diagonal(trace(J)) - J;
     const double size = trace(rest);
     regular = determinant(rest) > kSingular * size * size * size;
     if (regular) inverse_rest = inverse(rest);
   }
-  Vec3d momentum(const Mat3d& Q, const Vec3d& spin) const { return Q * (rest * (transpose(Q) * spin)); }
-  Vec3d spin(const Mat3d& Q, const Vec3d& momentum) const { return Q * (inverse_rest * (transpose(Q) * momentum)); }
+  FASCIA_HD Vec3d momentum(const Mat3d& Q, const Vec3d& spin) const { return Q * (rest * (transpose(Q) * spin)); }
+  FASCIA_HD Vec3d spin(const Mat3d& Q, const Vec3d& momentum) const {
+    return Q * (inverse_rest * (transpose(Q) * momentum));
+  }
 
  private:
   static constexpr double kSingular = 1e-10;

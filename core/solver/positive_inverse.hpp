@@ -10,7 +10,7 @@ namespace fascia {
 /// The inverse of a small symmetric matrix, by rows, as a preconditioner: by L D Lᵀ whose pivots are kept positive, so
 /// that the result is positive definite also where the matrix is not (then it is the inverse of a matrix nearby).
 /// @param a  n × n, n ≤ kMostDofs; overwritten
-inline void positive_inverse(double* a, int n) {
+FASCIA_HD inline void positive_inverse(double* a, int n) {
   double largest = 0, L[kMostDofs][kMostDofs] = {}, d[kMostDofs] = {};
   for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(a[n * i + i]));
   if (largest == 0) largest = 1;

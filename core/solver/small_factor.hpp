@@ -9,7 +9,7 @@ class SmallFactor {
  public:
   /// False where a pivot falls below kSingular of its diagonal entry: the matrix is singular.
   /// @param a  n × n by rows, n ≤ kMostDofs; its lower triangle is read
-  bool factorize(const double* a, int n) {
+  FASCIA_HD bool factorize(const double* a, int n) {
     n_ = n;
     for (int j = 0; j < n; ++j) {
       d_[j] = a[n * j + j];
@@ -25,7 +25,7 @@ class SmallFactor {
   }
 
   /// x ← A⁻¹ x
-  void solve(double* x) const {
+  FASCIA_HD void solve(double* x) const {
     for (int i = 0; i < n_; ++i)
       for (int k = 0; k < i; ++k) x[i] -= L_[i][k] * x[k];
     for (int i = n_ - 1; i >= 0; --i) {

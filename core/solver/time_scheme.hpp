@@ -30,9 +30,9 @@ struct PoseMotion {
   Vec3d u{};  ///< of its place
   Mat3d Q{};  ///< of Q or A
 
-  friend PoseMotion operator+(const PoseMotion& a, const PoseMotion& b) { return {a.u + b.u, a.Q + b.Q}; }
-  friend PoseMotion operator-(const PoseMotion& a, const PoseMotion& b) { return {a.u - b.u, a.Q - b.Q}; }
-  friend PoseMotion operator*(const PoseMotion& a, double s) { return {a.u * s, a.Q * s}; }
+  friend FASCIA_HD PoseMotion operator+(const PoseMotion& a, const PoseMotion& b) { return {a.u + b.u, a.Q + b.Q}; }
+  friend FASCIA_HD PoseMotion operator-(const PoseMotion& a, const PoseMotion& b) { return {a.u - b.u, a.Q - b.Q}; }
+  friend FASCIA_HD PoseMotion operator*(const PoseMotion& a, double s) { return {a.u * s, a.Q * s}; }
 };
 
 /// What a scheme keeps of the step before; empty before the first one.
