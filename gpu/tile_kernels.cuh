@@ -81,15 +81,16 @@ __device__ inline void copy_lists(const DeviceTiles<Constant>& t, const SharedPl
 /// Blocks of kernels that take tiles of any size have a thread for each lane, in whole warps.
 inline constexpr int kMostTileThreads = 320;
 
-/// Threads and residency that kernels are compiled for: 128 registers a thread where the tile size is known.
+/// Threads and residency that kernels are compiled for: 128 registers a thread where the tile size is known, 168 with
+/// drilling.
 constexpr int block_threads(int lanes) { return lanes > 0 ? lanes : kMostTileThreads; }
-constexpr int resident_blocks(int lanes) { return lanes > 0 ? 512 / lanes : 1; }
+constexpr int resident_blocks(int lanes, bool drilling) { return lanes > 0 ? (drilling ? 384 : 512) / lanes : 1; }
 
 /// p = z + β p_old of all touched frames, then one partial of K p for each frame of each tile, and parts of p · K p.
 /// @param Threads  lanes of a tile; 0: any number
 template <int K, int Threads, bool Drilling, class Constant>
 __global__ __launch_bounds__(block_threads(Threads),
-                             resident_blocks(Threads)) void product_kernel(ProductArgs<Constant> a) {
+                             resident_blocks(Threads, Drilling)) void product_kernel(ProductArgs<Constant> a) {
   extern __shared__ __align__(16) char shared[];
   constexpr int kWords = kPointWords<Drilling>;
   const int P = Threads > 0 ? Threads : a.tiles.tile_size;
