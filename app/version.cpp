@@ -4,13 +4,14 @@
 
 namespace fascia::app {
 
-std::string version_text() {
+std::string backend_list() {
 #if defined(FASCIA_CUDA)
-  const std::string backends = fmt::format("cpu, cuda ({})", FASCIA_CUDA);
+  return fmt::format("cpu, cuda ({})", FASCIA_CUDA);
 #else
-  const std::string backends = "cpu";
+  return "cpu";
 #endif
-  return fmt::format("fascia {}\nbackends: {}", FASCIA_VERSION, backends);
 }
+
+std::string version_text() { return fmt::format("fascia {}\nbackends: {}", FASCIA_VERSION, backend_list()); }
 
 }  // namespace fascia::app

@@ -10,4 +10,7 @@ namespace fascia::app {
 ///     backends: cpu, cuda (toolkit 13.0, for 80-virtual, 90-real)
 std::string version_text();
 
+/// Its second half: "cpu, cuda (toolkit 13.0, for 80-virtual, 90-real)".
+std::string backend_list();
+
 }  // namespace fascia::app

@@ -84,6 +84,29 @@ struct CgUpdate {
   }
 };
 
+/// Puts a new solve in the place of the last.
+struct CgBegin {
+  CgView v;
+  CgProgress fresh;
+  FASCIA_HD void operator()(int) const { *v.progress = fresh; }
+};
+
+/// Ends the first sum: of the right-hand side.
+struct CgStart {
+  CgView v;
+  FASCIA_HD void operator()(const Sums<1>& total) const {
+    CgProgress& s = *v.progress;
+    s.rz = s.rz_start = total.v[0];
+    if (s.rz - s.rz != 0) s.status = CgStatus::not_finite;
+    s.done = !(s.rz > 0) || s.limit <= 0;
+  }
+};
+
+struct CgResidual {
+  CgView v;
+  FASCIA_HD void operator()(const Sums<1>& total) const { v.residual(total.v[0]); }
+};
+
 }  // namespace kernels
 
 /// Preconditioned conjugate gradients as in core/solver/cg.hpp, without the host: scalars stay in the space, and the
@@ -108,17 +131,12 @@ class ConjugateGradients {
     p_.set_zero();
     Ap_.set_zero();
     const CgProgress fresh{0, 0, 0, 0, options.tolerance, options.max_iterations, 0, 0, CgStatus::converged};
-    Space::for_each(1, [v, fresh] FASCIA_HD(int) { *v.progress = fresh; });
-    Space::template sum<1>(nodes.count, kernels::CgUpdate{nodes, v, inverse}, [v] FASCIA_HD(const Sums<1>& t) {
-      CgProgress& s = *v.progress;
-      s.rz = s.rz_start = t.v[0];
-      if (t.v[0] - t.v[0] != 0) s.status = CgStatus::not_finite;
-      s.done = !(t.v[0] > 0) || s.limit <= 0;
-    });
+    Space::for_each(1, kernels::CgBegin{v, fresh});
+    const kernels::CgUpdate update{nodes, v, inverse};
+    Space::template sum<1>(nodes.count, update, kernels::CgStart{v});
     loop_.run(key, options.max_iterations, &progress_.data()->done, [&] {
       apply(v);
-      Space::template sum<1>(nodes.count, kernels::CgUpdate{nodes, v, inverse},
-                             [v] FASCIA_HD(const Sums<1>& t) { v.residual(t.v[0]); });
+      Space::template sum<1>(nodes.count, update, kernels::CgResidual{v});
     });
     CgProgress end;
     progress_.download(std::span(&end, 1));

@@ -20,49 +20,58 @@ __global__ void __launch_bounds__(256) for_each(int count, Body body) {
   if (i < count) body(i);
 }
 
-/// Sum over a block's threads, in a fixed order; valid in thread 0.
-template <int K>
-__device__ void block_sum(Sums<K>& s) {
-  __shared__ double part[K][32];
+/// Of a block's threads, in a fixed order; valid in thread 0.
+template <int K, int M>
+__device__ void block_sum(Sums<K, M>& s) {
+  __shared__ Sums<K, M> part[32];
   const int lane = static_cast<int>(threadIdx.x & 31), warp = static_cast<int>(threadIdx.x >> 5);
-  for (int k = 0; k < K; ++k) {
-    for (int step = 16; step > 0; step >>= 1) s.v[k] += __shfl_down_sync(0xffffffffu, s.v[k], step);
-    if (lane == 0) part[k][warp] = s.v[k];
-  }
-  __syncthreads();
-  const int warps = static_cast<int>(blockDim.x >> 5);
-  if (warp == 0) {
-    for (int k = 0; k < K; ++k) {
-      s.v[k] = lane < warps ? part[k][lane] : 0.0;
-      for (int step = 16; step > 0; step >>= 1) s.v[k] += __shfl_down_sync(0xffffffffu, s.v[k], step);
+  const auto warp_sum = [&] {
+    for (int step = 16; step > 0; step >>= 1) {
+      Sums<K, M> other;
+      for (int k = 0; k < K; ++k) other.v[k] = __shfl_down_sync(0xffffffffu, s.v[k], step);
+      for (int k = 0; k < M; ++k) other.largest[k] = __shfl_down_sync(0xffffffffu, s.largest[k], step);
+      s.add(other);
     }
+  };
+  warp_sum();
+  if (lane == 0) part[warp] = s;
+  __syncthreads();
+  if (warp == 0) {
+    s = lane < static_cast<int>(blockDim.x >> 5) ? part[lane] : Sums<K, M>{};
+    warp_sum();
   }
   __syncthreads();
 }
 
 /// Each block leaves its part; the last one to finish adds them up.
-/// @param partial  (K × blocks), @param finished  0 before and after
-template <int K, class Body, class End>
+/// @param partial  (blocks × (K + M)), @param finished  0 before and after
+template <int K, int M, class Body, class End>
 __global__ void __launch_bounds__(256) sum(int count, Body body, End end, double* partial, unsigned* finished) {
-  Sums<K> s;
+  Sums<K, M> s;
   for (int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); i < count;
        i += static_cast<int>(gridDim.x * blockDim.x))
     body(i, s);
-  block_sum<K>(s);
+  block_sum<K, M>(s);
   __shared__ bool last;
   if (threadIdx.x == 0) {
-    for (int k = 0; k < K; ++k) partial[k * gridDim.x + blockIdx.x] = s.v[k];
+    double* own = partial + blockIdx.x * (K + M);
+    for (int k = 0; k < K; ++k) own[k] = s.v[k];
+    for (int k = 0; k < M; ++k) own[K + k] = s.largest[k];
     __threadfence();
     last = atomicInc(finished, gridDim.x - 1) == gridDim.x - 1;
   }
   __syncthreads();
   if (!last) return;
   __threadfence();
-  Sums<K> total;
-  for (int k = 0; k < K; ++k)
-    for (unsigned b = threadIdx.x; b < gridDim.x; b += blockDim.x)
-      total.v[k] += static_cast<volatile double*>(partial)[k * gridDim.x + b];
-  block_sum<K>(total);
+  Sums<K, M> total;
+  for (unsigned b = threadIdx.x; b < gridDim.x; b += blockDim.x) {
+    const volatile double* of = partial + b * (K + M);
+    Sums<K, M> other;
+    for (int k = 0; k < K; ++k) other.v[k] = of[k];
+    for (int k = 0; k < M; ++k) other.largest[k] = of[K + k];
+    total.add(other);
+  }
+  block_sum<K, M>(total);
   if (threadIdx.x == 0) end(total);
 }
 
@@ -87,13 +96,13 @@ struct CudaSpace {
     check(cudaGetLastError(), "starting a kernel");
   }
 
-  template <int K, class Body, class End>
+  template <int K, int M = 0, class Body, class End>
   static void sum(int count, const Body& body, const End& end) {
-    static_assert(K <= kMostSums);
+    static_assert(K + M <= kMostSums);
     const int threads = count < kSmall ? 64 : 256;
     const unsigned grid = std::min(blocks(std::max(count, 1), threads), kMostBlocks);
     const Scratch& s = scratch();
-    kernels::sum<K><<<grid, threads, 0, stream()>>>(count, body, end, s.partial, s.finished);
+    kernels::sum<K, M><<<grid, threads, 0, stream()>>>(count, body, end, s.partial, s.finished);
     check(cudaGetLastError(), "starting a sum");
   }
 

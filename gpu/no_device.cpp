@@ -1,4 +1,5 @@
 #include "gpu/device.hpp"
+#include "gpu/run.hpp"
 
 /// A build without the CUDA toolkit.
 namespace fascia::gpu {
@@ -12,6 +13,24 @@ std::vector<DeviceInfo> usable_devices(std::string& reason) {
 
 DeviceInfo require_device() {
   throw NoDevice("backend \"cuda\" is not in this build, which was made without the CUDA toolkit; use --backend cpu");
+}
+
+RunReport run_statics(const Model&, State&, const FactorFunction&, const SolverSettings&, const StaticsSettings&,
+                      const DeviceObserver&) {
+  require_device();
+  return {};
+}
+
+RunReport run_implicit(const Model&, State&, const FactorFunction&, const SolverSettings&, const DynamicsSettings&,
+                       const DeviceObserver&) {
+  require_device();
+  return {};
+}
+
+DeviceEvaluation evaluate(const Model&, const State&, std::span<const double>, const SolverSettings&,
+                          std::span<const double>) {
+  require_device();
+  return {};
 }
 
 }  // namespace fascia::gpu

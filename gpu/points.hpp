@@ -79,7 +79,6 @@ class Points {
   };
   template <class Act>
   void for_kinds(const Act& act);
-  void sum_slots();
 
   std::vector<Kind> kinds_;
   Array<Space, int> slot_begin_, slot_node_, slot_group_, node_slot_begin_, node_slot_;

@@ -71,13 +71,12 @@ void Points<Space>::for_kinds(const Act& act) {
                        });
 }
 
-template <class Space>
-void Points<Space>::sum_slots() {
-  const PointsView set = view_;
-  Space::for_each(3 * set.slots, [set] FASCIA_HD(int i) { kernels::sum_slot_row(set, i / 3, i % 3); });
-}
-
 namespace kernels {
+
+struct SlotSums {
+  PointsView set;
+  FASCIA_HD void operator()(int i) const { sum_slot_row(set, i / 3, i % 3); }
+};
 
 template <PointKind Kind>
 struct PointForces {
@@ -159,7 +158,7 @@ void Points<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
     Space::for_each(lanes, kernels::PointForces<K>{view_, nodes, pose, history, part_motion, groups});
   });
-  sum_slots();
+  Space::for_each(3 * view_.slots, kernels::SlotSums{view_});
 }
 
 template <class Space>
@@ -176,7 +175,7 @@ void Points<Space>::product(const DirectionView& direction) {
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
     Space::for_each(lanes, kernels::PointProduct<K>{view_, direction, inverse_step_, tangent_, groups});
   });
-  sum_slots();
+  Space::for_each(3 * view_.slots, kernels::SlotSums{view_});
 }
 
 template <class Space>

@@ -15,10 +15,20 @@
 /// A loop's body is a function object of values and pointers into the space, called for each index in any order.
 namespace fascia::gpu {
 
-/// Sums that a loop builds up.
-template <int K>
+/// K sums and M maxima of values that are not negative, which a loop builds up.
+template <int K, int M = 0>
 struct Sums {
-  double v[K]{};
+  double v[K == 0 ? 1 : K]{};
+  double largest[M == 0 ? 1 : M]{};
+
+  FASCIA_HD void add(const Sums& other) {
+    for (int k = 0; k < K; ++k) v[k] += other.v[k];
+    for (int k = 0; k < M; ++k) note(k, other.largest[k]);
+  }
+  /// A value that is not a number stays.
+  FASCIA_HD void note(int k, double value) {
+    if (!(value <= largest[k])) largest[k] = value;
+  }
 };
 
 struct HostSpace {
@@ -41,14 +51,14 @@ struct HostSpace {
   }
 
   /// body(i, sums) for i < count, then once end(totals). The order of additions depends on the count alone.
-  template <int K, class Body, class End>
+  template <int K, int M = 0, class Body, class End>
   static void sum(int count, const Body& body, const End& end) {
     constexpr int kChunk = 256;
-    Sums<K> total;
+    Sums<K, M> total;
     for (int begin = 0; begin < count; begin += kChunk) {
-      Sums<K> part;
+      Sums<K, M> part;
       for (int i = begin; i < std::min(count, begin + kChunk); ++i) body(i, part);
-      for (int k = 0; k < K; ++k) total.v[k] += part.v[k];
+      total.add(part);
     }
     end(total);
   }

@@ -1,0 +1,73 @@
+#include "gpu/tile_solver_impl.cuh"
+
+#include <algorithm>
+
+namespace fascia {
+
+namespace tile {
+
+DeviceLimits DeviceLimits::present() {
+  int device = 0;
+  DeviceLimits limits;
+  check(cudaGetDevice(&device), "finding the device");
+  check(cudaDeviceGetAttribute(&limits.multiprocessors, cudaDevAttrMultiProcessorCount, device), "asking the device");
+  check(cudaDeviceGetAttribute(&limits.shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device),
+        "asking the device");
+  return limits;
+}
+
+namespace {
+
+/// Tiles of small problems have this many points at least; where four threads take a point, at most kWidePoints.
+constexpr int kLeastResidentPoints = 32;
+
+int whole(int n, int of) { return (n + of - 1) / of * of; }
+
+/// Tiles by which shared memory holds two blocks of 256 threads, or more smaller ones (measured).
+int usual_tile_size(int influences, TileConstants constants, bool drilling) {
+  if (influences <= 4) return 256;
+  if (influences <= 8) return constants == TileConstants::float32 && !drilling ? 256 : 128;
+  return influences <= 16 ? 128 : 64;
+}
+
+template <class Constant>
+std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolverSettings& settings,
+                                        ThreadPool& pool) {
+  const DeviceLimits limits = DeviceLimits::present();
+  const int n = points.point_count();
+  if (n == 0) return nullptr;
+  if (settings.resident && n <= limits.multiprocessors * kMostTileThreads) {
+    const int share = (n + limits.multiprocessors - 1) / limits.multiprocessors;
+    for (int size = std::max(kLeastResidentPoints, whole(share, 16)); size <= kMostTileThreads; size += 16) {
+      auto layout = make_tiles(points, {size, kMostTileFrames}, pool);
+      if (!layout) break;
+      const ResidentPlan plan =
+          resident_plan<Constant>(*layout, points.drilling ? kStressWords<true> : kStressWords<false>);
+      if (plan.bytes > limits.shared_bytes) break;
+      if (layout->tile_count > limits.multiprocessors) continue;
+      return std::make_unique<Solver<Constant>>(std::move(*layout), plan, limits);
+    }
+  }
+  const int wanted = settings.tile_size > 0
+                         ? settings.tile_size
+                         : usual_tile_size(points.most_influences(), settings.constants, points.drilling);
+  for (int size = wanted; size >= 64; size /= 2) {
+    auto layout = make_tiles(points, {size, kMostTileFrames}, pool);
+    if (!layout) continue;
+    const int words = points.drilling ? kPointWords<true> : kPointWords<false>;
+    if (shared_plan<Constant>(*layout, words).bytes > limits.shared_bytes) continue;
+    return std::make_unique<Solver<Constant>>(std::move(*layout), std::nullopt, limits);
+  }
+  return nullptr;
+}
+
+}  // namespace
+}  // namespace tile
+
+std::unique_ptr<TileSolver> TileSolver::make(const TilePoints& points, const TileSolverSettings& settings,
+                                             ThreadPool& pool) {
+  return settings.constants == TileConstants::float32 ? tile::make_solver<float>(points, settings, pool)
+                                                      : tile::make_solver<double>(points, settings, pool);
+}
+
+}  // namespace fascia

@@ -1,0 +1,9 @@
+#include "gpu/tile_solver_cg.cuh"
+
+namespace fascia::tile {
+
+template SharedPlan shared_plan<float>(const TileLayout&, int);
+template ResidentPlan resident_plan<float>(const TileLayout&, int);
+template class Solver<float>;
+
+}  // namespace fascia::tile

@@ -1,0 +1,113 @@
+#pragma once
+
+#include "gpu/tile_memory.cuh"
+#include "gpu/tile_resident.cuh"
+#include "gpu/tile_solver.hpp"
+#include "gpu/tile_state_kernels.cuh"
+
+#include <optional>
+
+namespace fascia::tile {
+
+/// Iterations of CG that a graph runs between two looks at the residual; even, as p alternates between two buffers.
+inline constexpr int kLoopIterations = 10;
+
+struct DeviceLimits {
+  int multiprocessors = 0, shared_bytes = 0;
+  static DeviceLimits present();
+};
+
+/// Offsets of parts in shared memory, each on 16 bytes.
+class Carver {
+ public:
+  int take(std::size_t bytes) {
+    const int begin = next_;
+    next_ += static_cast<int>((bytes + 15) / 16 * 16);
+    return begin;
+  }
+  int bytes() const { return next_; }
+
+ private:
+  int next_ = 0;
+};
+
+template <class Constant>
+SharedPlan shared_plan(const TileLayout& layout, int point_words);
+
+template <class Constant>
+ResidentPlan resident_plan(const TileLayout& layout, int stress_words);
+
+/// A TileSolver whose constants are of one type.
+template <class Constant>
+class Solver final : public TileSolver {
+ public:
+  /// @param resident  the plan of a layout whose tiles stay on chip
+  Solver(TileLayout layout, std::optional<ResidentPlan> resident, const DeviceLimits& limits);
+  ~Solver() override;
+
+  void store_strain(const double* u, const double* D) override;
+  void forces(const double* u, const double* D, double inverse_step, double* gradient, double* moments) override;
+  TileEnergy gradient(const double* u, const double* D, double inverse_step, double* gradient,
+                      double* moments) override;
+  void linearize(const double* u, const double* D, Tangent tangent, double inverse_step) override;
+  void set_node_blocks(const double* blocks) override;
+  void set_held(std::span<const std::uint8_t> held) override;
+  void build_preconditioner() override;
+  void clear_preconditioner() override;
+  void multiply(const double* x, double* y) override;
+  CgReport solve(const double* b, double* x, const CgOptions& options) override;
+  void start_solve(const double* b, double* x, const CgOptions& options) override;
+  CgReport finish_solve() override;
+  const TileLayout& layout() const override { return layout_; }
+  bool resident() const override { return resident_.has_value(); }
+
+ private:
+  using ProductKernel = void (*)(ProductArgs<Constant>);
+  using StateKernel = void (*)(StateArgs<Constant>);
+  using ResidentKernel = void (*)(ResidentArgs<Constant>);
+
+  void upload();
+  void choose_kernels(const DeviceLimits& limits);
+  void run_state(const double* u, const double* D, StateArgs<Constant> args);
+  StateArgs<Constant> state_args(double inverse_step) const;
+  ProductArgs<Constant> product_args() const;
+  VectorArgs vector_args() const;
+  CgState options_state(const CgOptions& options) const;
+  void launch_product(const ProductArgs<Constant>& args, cudaStream_t stream);
+  void launch_iterations(cudaStream_t stream, cudaGraphConditionalHandle loop);
+  void build_graph();
+  void drop_graph();
+  int frame_blocks() const { return (layout_.frame_count + kUpdateThreads - 1) / kUpdateThreads; }
+  int words() const { return layout_.drilling ? kPointWords<true> : kPointWords<false>; }
+
+  TileLayout layout_;
+  std::optional<ResidentPlan> resident_;
+  SharedPlan plan_;
+  DeviceTiles<Constant> tiles_{};
+  Tangent tangent_ = Tangent::full;
+  double inverse_step_ = 0;
+  bool has_node_blocks_ = false, has_held_ = false;
+
+  ProductKernel product_ = nullptr;
+  StateKernel state_ = nullptr;
+  ResidentKernel resident_kernel_ = nullptr;
+  void (*jacobi_)(ProductArgs<Constant>, const std::uint8_t*, Tangent, double, float*) = nullptr;
+  int threads_ = 0, resident_threads_ = 0, product_blocks_ = 0, state_blocks_ = 0, update_blocks_ = 0;
+
+  Buffer<Constant> weights_, places_;
+  Buffer<std::uint16_t> material_, list_, list_begin_;
+  Buffer<std::uint8_t> local_, held_;
+  Buffer<int> tile_frame_begin_, frame_node_, frame_slot_begin_, slot_tile_, slot_tile_frame_;
+  Buffer<TileFrame> tile_frames_;
+  Buffer<TileHead> head_;
+  Buffer<TileMaterial> materials_;
+
+  Buffer<double> rest_, pose_, motion_, points_, strain_, node_blocks_;
+  Buffer<float> inverse_;
+  Buffer<double> x_, r_, z_, p_, q_;  ///< p and q: directions of even and odd iterations
+  Buffer<double> partials_, gradient_partials_, rz_parts_, curvature_parts_, energy_parts_, dots_;
+  Buffer<CgState> cg_;  ///< two for CG in turn, one for products, one for the end
+  cudaGraphExec_t graph_ = nullptr;
+};
+
+}  // namespace fascia::tile
