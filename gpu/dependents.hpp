@@ -89,8 +89,8 @@ class Dependents {
   void add_turning(const NodesView& nodes, const double* forces, double* node_blocks);
 
   /// Moves the own blocks of dependent nodes to their hosts, each as Jᵀ K_vv J, and leaves the identity in their place.
-  /// What a dependent node has with other nodes is left out: the blocks stay positive definite, but are not those of the
-  /// condensed matrix.
+  /// What a dependent node has with other nodes is left out: the blocks stay positive definite, but are not those of
+  /// the condensed matrix.
   void add_diagonal(const NodesView& nodes, double* blocks);
 
  private:

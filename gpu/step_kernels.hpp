@@ -94,7 +94,7 @@ struct MoveByVelocity {
 struct ForceView {
   double *gradient = nullptr, *load = nullptr, *inertia = nullptr;
   double* node_energy = nullptr;  ///< (nodes × 3): of loads, of inertia [J], square of the inertia that cancels [N²]
-  Mat3d *L = nullptr, *tether_L = nullptr;  ///< N Qᵀ of frames; of tethers alone, where there are any
+  Mat3d *L = nullptr, *tether_L = nullptr;  ///< N Qᵀ of frames, springs apart; of tethers alone, where there are any
 };
 
 /// Internal forces, dead loads and inertia of a node.
@@ -110,12 +110,13 @@ struct NodeForces {
     const Mat3d D = s.D_now(i), Q = Mat3d::identity() + D;
     NodeSums sums;
     blocks.add_sums(i, sums);
+    if (s.turning) f.L[i] = sums.N + times_transpose(sums.N, D);
+    if (blocks.has_springs) blocks.springs.add_sums(i, sums);
     double g[kMostDofs] = {}, load[kMostDofs] = {}, inertia[kMostDofs] = {};
     for (int k = 0; k < 3; ++k) g[k] = sums.force[k];
     add_moment(kind, sums.N, Q, g + 3);
     if (kind == FrameKind::rigid)
       for (int k = 0; k < 3; ++k) g[3 + k] += sums.torque[k];
-    if (s.turning) f.L[i] = sums.N + times_transpose(sums.N, D);
     if (f.tether_L != nullptr) {
       NodeSums pull;
       blocks.points.add_tether_sums(i, pull);

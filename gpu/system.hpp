@@ -4,7 +4,9 @@
 #include "core/solver/drivers.hpp"
 #include "gpu/blocks.hpp"
 #include "gpu/cg.hpp"
+#include "gpu/dependents.hpp"
 #include "gpu/device_state.hpp"
+#include "gpu/followers.hpp"
 #include "gpu/model_data.hpp"
 #include "gpu/operator_kernels.hpp"
 #include "gpu/part_sums.hpp"
@@ -69,6 +71,7 @@ class System {
   HistoryView history() const { return {damped_ ? E_.data() : nullptr, damped_ ? inverse_step_ : 0.0}; }
   PoseView pose() const { return {u_.data(), D_.data()}; }
   void rebuild_state();
+  void place_dependents();
   void evaluate_forces();
   void evaluate_loads();
   Evaluation judge();
@@ -77,6 +80,8 @@ class System {
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
   void apply_tangent(const CgView& v);
+  void multiply(const kernels::ProductView& w);
+  void gather_product(const kernels::ProductView& w);
   std::uint64_t operator_key() const;
   CgReport solve(const CgOptions& options);
   void place_tethers();
@@ -86,6 +91,8 @@ class System {
   DofFilter filter_;
   ModelData<Space> data_;
   Blocks<Space> blocks_;
+  Dependents<Space> dependents_;
+  Followers<Space> followers_;
   PartSums<Space> node_parts_;
   ConjugateGradients<Space> cg_;
   bool conservative_, turning_, damped_;

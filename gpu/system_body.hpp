@@ -19,6 +19,8 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
       filter_(model),
       data_(model, filter_, zero_factors(model).size()),
       blocks_(model.points),
+      dependents_(model.points),
+      followers_(model),
       node_parts_(model.points.node_part, model.points.part_count()),
       cg_(at(model.dof_count())),
       conservative_(model.loads_are_conservative()),
@@ -39,6 +41,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
     array->set_zero();
   }
   node_energy_.resize(3 * n);
+  dependent_forces_.resize(6 * model.points.dependents.size());
   for (auto* array : {&part_motion_, &new_motion_}) {
     array->resize(parts);
     array->set_zero();
@@ -70,6 +73,16 @@ template <class Space>
 void System<Space>::rebuild_state() {
   known_.reset();
   Space::for_each(model_.node_count(), kernels::RebuildState{step_view()});
+  place_dependents();
+}
+
+/// In the present state, and their increments by those of their hosts, which keep the digits of small steps.
+template <class Space>
+void System<Space>::place_dependents() {
+  if (dependents_.empty()) return;
+  dependents_.place_increments(du_.data(), Ds_.data(), start_.D.data());
+  dependents_.place(u_.data(), D_.data());
+  dependents_.turn(D_.data());
 }
 
 /// Everything that acts on the nodes, into gradient_, load_ and inertia_.
@@ -82,7 +95,9 @@ void System<Space>::evaluate_forces() {
   blocks_.forces(nodes, pose(), history(), largest);
   const kernels::ForceView f = force_view();
   Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f});
+  if (!followers_.empty()) followers_.add_forces(nodes, pose(), data_.view().factors, load_.data());
   Space::for_each(model_.dof_count(), kernels::AddInertiaAndLoads{f});
+  if (!dependents_.empty()) dependents_.transfer(nodes, gradient_.data(), dependent_forces_.data());
 }
 
 /// What the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
@@ -135,7 +150,9 @@ Evaluation System<Space>::judge() {
     const double residual = std::sqrt(q[kernels::kResidual]);
     const double reference =
         std::sqrt(std::max({q[kernels::kLoad], q[kernels::kInertia], q[kernels::kReaction], tethers}));
-    const double floor = 4 * kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]);
+    const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
+    // 4: sums of a few terms of the estimated size in each entry.
+    const double floor = 4 * leverage * kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]);
     const double allowed = std::max(settings_.tolerance * reference, floor);
     const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
     if (excess < e.excess && p > 0) continue;
@@ -170,6 +187,7 @@ template <class Space>
 void System<Space>::apply(double step) {
   known_.reset();
   Space::for_each(model_.node_count(), kernels::Advance{step_view(), direction_.data(), step});
+  place_dependents();
 }
 
 template <class Space>

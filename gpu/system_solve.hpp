@@ -22,9 +22,12 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   Space::for_each(nodes.count, kernels::NodeBlocks{step_view(), L_.data(), taken_off, Q_.data(), node_blocks_.data(),
                                                    tangent == Tangent::full});
   blocks_.linearize(nodes, pose(), history(), tangent, node_blocks_.data());
+  if (!dependents_.empty() && tangent == Tangent::full && tethers_turn)
+    dependents_.add_turning(nodes, dependent_forces_.data(), node_blocks_.data());
   inverse_.copy_from(node_blocks_);
   const Preconditioner kind = settings_.preconditioner;
   if (kind != Preconditioner::none) blocks_.add_diagonal(nodes, Q_.data(), inverse_.data());
+  if (!dependents_.empty()) dependents_.add_diagonal(nodes, inverse_.data());
   Space::for_each(nodes.count, kernels::InvertBlocks{data_.view(), inverse_.data(), kind == Preconditioner::jacobi,
                                                      kind == Preconditioner::none});
 }
@@ -34,9 +37,27 @@ template <class Space>
 void System<Space>::apply_tangent(const CgView& v) {
   const kernels::ProductView w = product_view();
   Space::for_each(w.m.nodes.count, kernels::NextDirection{w, v});
+  multiply(w);
+  if (dependents_.empty()) {
+    const kernels::GatherProduct gather{w, blocks_.view()};
+    Space::template sum<1>(w.m.nodes.count, kernels::GatherAndFinish{gather, {w, v}}, kernels::TakeCurvature{v});
+    return;
+  }
+  gather_product(w);
+  Space::template sum<1>(w.m.nodes.count, kernels::FinishProduct{w, v}, kernels::TakeCurvature{v});
+}
+
+/// What blocks make of the direction in world axes, with what depends on it.
+template <class Space>
+void System<Space>::multiply(const kernels::ProductView& w) {
+  if (!dependents_.empty()) dependents_.expand(w.m.nodes, w.d, w.dx, w.dA, w.Q);
   blocks_.product({w.d, w.dx, w.dA});
-  const kernels::GatherProduct gather{w, blocks_.view()};
-  Space::template sum<1>(w.m.nodes.count, kernels::GatherAndFinish{gather, {w, v}}, kernels::TakeCurvature{v});
+}
+
+template <class Space>
+void System<Space>::gather_product(const kernels::ProductView& w) {
+  Space::for_each(w.m.nodes.count, kernels::GatherProduct{w, blocks_.view()});
+  if (!dependents_.empty()) dependents_.transfer(w.m.nodes, w.y, nullptr);
 }
 
 /// Of what the loops of a product have been recorded with.
@@ -90,6 +111,7 @@ DirectionReport System<Space>::direction() {
       kernels::TakeDirection{data_.view(), cg_.solution(), prescribed_left_ ? prescribed_.data() : nullptr,
                              gradient_.data(), direction_.data()},
       kernels::StoreSums<1, 2>{slope_.data()});
+  if (!dependents_.empty()) dependents_.expand(data_.view().nodes, direction_.data(), nullptr, nullptr, Q_.data());
   double values[3];
   slope_.download(values);
   report.slope = values[0];
@@ -106,8 +128,8 @@ std::vector<double> System<Space>::product(std::span<const double> d) {
   world_d_.upload(d);
   const kernels::ProductView w = product_view();
   Space::for_each(nodes.count, kernels::SplitDirection{w});
-  blocks_.product({w.d, w.dx, w.dA});
-  Space::for_each(nodes.count, kernels::GatherProduct{w, blocks_.view()});
+  multiply(w);
+  gather_product(w);
   return world_y_.downloaded();
 }
 

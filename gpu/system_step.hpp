@@ -14,6 +14,10 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
     start_.turned.resize(turned_.size());
     start_.turned.set_zero();
   }
+  if (!dependents_.empty()) {
+    dependents_.place(start_.u.data(), start_.D.data());
+    dependents_.place_rates(start_.v.data(), start_.Q_dot.data());
+  }
   du_.set_zero();
   Ds_.set_zero();
   turned_.copy_from(start_.turned);
@@ -49,6 +53,7 @@ void System<Space>::predict_strain(const Memory& memory) {
   for (const double sign : {1.0, -1.0}) {
     Space::for_each(model_.node_count(),
                     kernels::MoveByVelocity{step_view(), sign * step_.h, moved_u_.data(), moved_D_.data()});
+    if (!dependents_.empty()) dependents_.place(moved_u_.data(), moved_D_.data());
     blocks_.store_strain({moved_u_.data(), moved_D_.data()}, sign > 0 ? ahead_E_.data() : behind_E_.data());
   }
   Space::for_each(
@@ -127,6 +132,10 @@ typename System<Space>::Pose System<Space>::finish_step(double end_time, Memory&
     Space::for_each(n, kernels::FinishStep{step_view(), end.u.data(), end.v.data(), end.D.data(), end.Q_dot.data(),
                                            memory.motion.data(), memory.velocity.data(), a, before, remembers});
   }
+  if (!dependents_.empty()) {
+    dependents_.place(end.u.data(), end.D.data());
+    dependents_.place_rates(end.v.data(), end.Q_dot.data());
+  }
   reached_.reset();
   if (step_.scheme == TimeScheme::implicit_euler && !turning_ && !damped_ && model_.tethers.empty())
     reached_ = {end.step, internal_.total()};
@@ -144,6 +153,7 @@ void System<Space>::start_acceleration(const Pose& start, double dt, Memory& mem
   step_.h = 0;  // forces without inertia
   evaluate_forces();
   Space::for_each(model_.node_count(), kernels::ForceOfAcceleration{step_view(), force_view(), world_y_.data()});
+  if (!dependents_.empty()) dependents_.transfer(data_.view().nodes, world_y_.data(), nullptr);
   Space::for_each(model_.node_count(),
                   kernels::StartAcceleration{step_view(), world_y_.data(), memory.acceleration.data()});
 }
