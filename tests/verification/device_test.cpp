@@ -119,21 +119,26 @@ std::string name_of(const ::testing::TestParamInfo<Device::ParamType>& info) {
   return (std::get<0>(info.param) == Where::host ? "host_" : "device_") + std::get<1>(info.param);
 }
 
-constexpr auto kPlaces = {Where::host, Where::device};
+/// Every kind of body, coupling and load.
+const auto kStates = ::testing::Values(
+    "soft_cantilever", "affine_beside_rigid", "scattered_cantilever", "paper_sheet", "line_cantilever",
+    "traction_clamped", "breathing_liver", "tumbling_box", "five_tissues", "three_beams", "uterus_bladder",
+    "bone_plate", "hanging_liver", "ligament_springs", "riding_surface", "coupled_surfaces", "cook_neo_hookean",
+    "soft_cantilever_tetrahedra", "soft_cantilever_hexahedra", "pushed_cylinder", "nearly_incompressible", "shell_roof",
+    "shell_liver", "sheet_beside_shell", "elastica", "shell_pull_out", "thinning_volume", "roll_up", "liver_tetrahedra",
+    "paper_coupling");
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceState,
-                         ::testing::Combine(::testing::ValuesIn(kPlaces),
-                                            ::testing::Values("soft_cantilever", "affine_beside_rigid",
-                                                              "scattered_cantilever", "paper_sheet", "line_cantilever",
-                                                              "traction_clamped", "breathing_liver", "tumbling_box")),
-                         name_of);
+                         ::testing::Combine(::testing::Values(Where::host, Where::device), kStates), name_of);
+
+/// Every scheme, kind of element and coupling, in seconds.
+const auto kSolutions = ::testing::Values(
+    "soft_cantilever", "affine_cantilever", "svk_uniaxial", "sheet_bending", "traction_clamped", "settling_beam",
+    "tumbling_box", "midpoint_spin", "free_fall", "rigid_turn", "bone_plate", "riding_surface", "ligament_springs",
+    "soft_cantilever_tetrahedra", "shell_spin", "struck_beam", "roll_up", "line_swing", "hanging_column");
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
-                         ::testing::Combine(::testing::ValuesIn(kPlaces),
-                                            ::testing::Values("soft_cantilever", "affine_cantilever", "svk_uniaxial",
-                                                              "sheet_bending", "traction_clamped", "settling_beam",
-                                                              "tumbling_box", "midpoint_spin", "free_fall")),
-                         name_of);
+                         ::testing::Combine(::testing::Values(Where::host, Where::device), kSolutions), name_of);
 
 }  // namespace
 }  // namespace fascia::test
