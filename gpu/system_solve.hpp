@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/solver/clock.hpp"
 #include "gpu/boundary_kernels.hpp"
 #include "gpu/system.hpp"
 
@@ -91,14 +92,16 @@ DirectionReport System<Space>::direction() {
     Space::for_each(n, kernels::RightHandSide{data_.view(), gradient_.data(), moved, cg_.rhs()});
   };
   right_hand_side();
-  CgOptions options = settings_.cg;
-  CgReport cg = solve(options);
+  const Clock::time_point start = Clock::now();
+  CgReport cg = solve(settings_.cg);
   if (cg.status == CgStatus::negative_curvature && !model_.tethers.empty()) {
     linearize(settings_.tangent, false);
     right_hand_side();
-    cg = solve(options);
+    cg = solve(settings_.cg);
   }
   DirectionReport report;
+  report.cg_seconds = seconds_since(start);
+  report.linear_residual = cg.relative_residual;
   report.linear_iterations = cg.iterations;
   if (cg.status == CgStatus::negative_curvature) report.trouble = "CG met negative curvature";
   if (cg.status == CgStatus::not_finite) {

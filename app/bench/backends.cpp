@@ -2,6 +2,8 @@
 #include "app/solver_settings.hpp"
 #include "core/solver/clock.hpp"
 #include "core/solver/drivers.hpp"
+#include "gpu/device.hpp"
+#include "gpu/run.hpp"
 
 #include <fmt/format.h>
 
@@ -11,39 +13,61 @@
 namespace fascia::app {
 namespace {
 
-/// Times the steps of an implicit run, warm-up left out.
-StepTimes time_steps(const Simulation& s, MechanicalSystem& system, const SolverSettings& settings,
-                     const StepPlan& plan) {
-  StepTimes times;
-  times.cg_iterations = INT_MAX;
-  State state = s.initial;
-  Clock::time_point start = Clock::now();
-  const auto observe = [&](const StepInfo& step, const State&, MechanicalSystem&) {
-    if (step.step <= plan.warm_up) {
-      start = Clock::now();
+/// Collects the times of the steps of an implicit run, warm-up left out.
+class StepWatch {
+ public:
+  explicit StepWatch(const StepPlan& plan) : plan_(plan) { times_.cg_iterations = INT_MAX; }
+
+  /// Goes on?
+  bool see(const StepInfo& step) {
+    if (step.step <= plan_.warm_up) {
+      start_ = Clock::now();
       return true;
     }
-    times.step_ms.push_back(1e3 * step.seconds);
-    times.cg_ms.push_back(1e3 * step.newton.cg_seconds);
-    times.cg_iterations = std::min(times.cg_iterations, step.newton.linear_iterations);
-    if (times.step_ms.size() == 1) times.residual = step.newton.linear_residual;
-    times.trouble = step.newton.trouble;
-    const int done = static_cast<int>(times.step_ms.size());
-    return done < plan.fewest || (done < plan.most && seconds_since(start) < plan.seconds);
-  };
-  const RunReport report = run_implicit(
-      system, state, [&](double t) { return s.factors(t); }, settings,
-      {scheme_of(s.scene.solver.kind), s.scene.solver.time_step, plan.warm_up + plan.most}, observe);
-  if (times.step_ms.empty()) times.cg_iterations = 0;
-  if (report.status != RunStatus::converged && report.status != RunStatus::interrupted) times.trouble = report.message;
-  return times;
+    times_.step_ms.push_back(1e3 * step.seconds);
+    times_.cg_ms.push_back(1e3 * step.newton.cg_seconds);
+    times_.cg_iterations = std::min(times_.cg_iterations, step.newton.linear_iterations);
+    if (times_.step_ms.size() == 1) times_.residual = step.newton.linear_residual;
+    times_.trouble = step.newton.trouble;
+    const int done = static_cast<int>(times_.step_ms.size());
+    return done < plan_.fewest || (done < plan_.most && seconds_since(start_) < plan_.seconds);
+  }
+  StepTimes times(const RunReport& report) && {
+    if (times_.step_ms.empty()) times_.cg_iterations = 0;
+    if (report.status != RunStatus::converged && report.status != RunStatus::interrupted)
+      times_.trouble = report.message;
+    return std::move(times_);
+  }
+
+ private:
+  const StepPlan& plan_;
+  StepTimes times_;
+  Clock::time_point start_ = Clock::now();
+};
+
+DynamicsSettings dynamics_of(const Simulation& s, const StepPlan& plan) {
+  return {scheme_of(s.scene.solver.kind), s.scene.solver.time_step, plan.warm_up + plan.most};
 }
 
 StepTimes run_on_cpu(const Simulation& s, const StepPlan& plan, int threads) {
   const SolverSettings settings = settings_of(s.scene.solver);
   ThreadPool pool(threads);
   MechanicalSystem system(s.model, pool, settings);
-  return time_steps(s, system, settings, plan);
+  State state = s.initial;
+  StepWatch watch(plan);
+  const RunReport report = run_implicit(
+      system, state, [&](double t) { return s.factors(t); }, settings, dynamics_of(s, plan),
+      [&](const StepInfo& step, const State&, MechanicalSystem&) { return watch.see(step); });
+  return std::move(watch).times(report);
+}
+
+StepTimes run_on_gpu(const Simulation& s, const StepPlan& plan) {
+  State state = s.initial;
+  StepWatch watch(plan);
+  const RunReport report = gpu::run_implicit(
+      s.model, state, [&](double t) { return s.factors(t); }, settings_of(s.scene.solver), dynamics_of(s, plan),
+      [&](const StepInfo& step, gpu::DeviceStep&) { return watch.see(step); });
+  return std::move(watch).times(report);
 }
 
 Backend cpu(int threads) {
@@ -61,6 +85,8 @@ std::vector<Backend> available_backends(int threads) {
   const int all = threads > 0 ? threads : ThreadPool(0).size();
   std::vector<Backend> backends{cpu(1)};
   if (all > 1) backends.push_back(cpu(all));
+  std::string reason;
+  if (!gpu::usable_devices(reason).empty()) backends.push_back({"cuda", 0, run_on_gpu});
   return backends;
 }
 
