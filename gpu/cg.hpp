@@ -6,13 +6,14 @@
 #include "gpu/space.hpp"
 #include "gpu/views.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fascia::gpu {
 
 /// Where a solve stands, in memory of the space.
 struct CgProgress {
-  double rz = 0, rz_start = 0, alpha = 0, beta = 0;
+  double rz = 0, rz_start = 0, rr = 0, rr_start = 0, alpha = 0, beta = 0;
   double tolerance = 0;
   int limit = 0, iterations = 0;
   int done = 0;
@@ -37,13 +38,14 @@ struct CgView {
     s.alpha = s.status == CgStatus::negative_curvature && s.iterations == 0 ? 1.0 : 0.0;  // x = p at the first
   }
   /// After x, r and z were updated.
-  FASCIA_HD void residual(double rz) const {
+  FASCIA_HD void residual(double rz, double rr) const {
     CgProgress& s = *progress;
     if (s.done != 0) {
       s.alpha = 0;
       return;
     }
     ++s.iterations;
+    s.rr = rr;
     s.beta = rz / s.rz;
     s.rz = rz;
     s.done = 1;
@@ -59,13 +61,13 @@ struct CgView {
 
 namespace kernels {
 
-/// Σ of r · z of a node with z = M⁻¹ r, after x ← x + α p, r ← r − α Ap.
+/// r · z and r · r of a node with z = M⁻¹ r, after x ← x + α p, r ← r − α Ap.
 struct CgUpdate {
   NodesView nodes;
   CgView v;
   const double* inverse;
 
-  FASCIA_HD void operator()(int node, Sums<1>& sums) const {
+  FASCIA_HD void operator()(int node, Sums<2>& sums) const {
     const CgProgress& s = *v.progress;
     if (s.done != 0 && s.alpha == 0) return;
     const int first = nodes.dof[node], n = nodes.size(node);
@@ -80,6 +82,7 @@ struct CgUpdate {
       for (int j = 0; j < n; ++j) z += block[n * i + j] * r[j];
       v.z[first + i] = z;
       sums.v[0] += r[i] * z;
+      sums.v[1] += r[i] * r[i];
     }
   }
 };
@@ -94,9 +97,10 @@ struct CgBegin {
 /// Ends the first sum: of the right-hand side.
 struct CgStart {
   CgView v;
-  FASCIA_HD void operator()(const Sums<1>& total) const {
+  FASCIA_HD void operator()(const Sums<2>& total) const {
     CgProgress& s = *v.progress;
     s.rz = s.rz_start = total.v[0];
+    s.rr = s.rr_start = total.v[1];
     if (s.rz - s.rz != 0) s.status = CgStatus::not_finite;
     s.done = !(s.rz > 0) || s.limit <= 0;
   }
@@ -104,7 +108,7 @@ struct CgStart {
 
 struct CgResidual {
   CgView v;
-  FASCIA_HD void operator()(const Sums<1>& total) const { v.residual(total.v[0]); }
+  FASCIA_HD void operator()(const Sums<2>& total) const { v.residual(total.v[0], total.v[1]); }
 };
 
 }  // namespace kernels
@@ -130,18 +134,21 @@ class ConjugateGradients {
     x_.set_zero();
     p_.set_zero();
     Ap_.set_zero();
-    const CgProgress fresh{0, 0, 0, 0, options.tolerance, options.max_iterations, 0, 0, CgStatus::converged};
+    CgProgress fresh;
+    fresh.tolerance = options.tolerance;
+    fresh.limit = options.max_iterations;
     Space::for_each(1, kernels::CgBegin{v, fresh});
     const kernels::CgUpdate update{nodes, v, inverse};
-    Space::template sum<1>(nodes.count, update, kernels::CgStart{v});
+    Space::template sum<2>(nodes.count, update, kernels::CgStart{v});
     loop_.run(key, options.max_iterations, &progress_.data()->done, [&] {
       apply(v);
-      Space::template sum<1>(nodes.count, update, kernels::CgResidual{v});
+      Space::template sum<2>(nodes.count, update, kernels::CgResidual{v});
     });
     CgProgress end;
     progress_.download(std::span(&end, 1));
     if (end.status == CgStatus::converged && end.rz_start - end.rz_start != 0) end.status = CgStatus::not_finite;
-    return {end.status, end.iterations, end.rz_start > 0 ? std::sqrt(std::max(end.rz, 0.0) / end.rz_start) : 0.0};
+    const auto ratio = [](double now, double start) { return start > 0 ? std::sqrt(std::max(now, 0.0) / start) : 0.0; };
+    return {end.status, end.iterations, ratio(end.rz, end.rz_start), ratio(end.rr, end.rr_start)};
   }
 
  private:

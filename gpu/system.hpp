@@ -11,6 +11,7 @@
 #include "gpu/operator_kernels.hpp"
 #include "gpu/part_sums.hpp"
 #include "gpu/step_kernels.hpp"
+#include "gpu/surfaces.hpp"
 
 #include <array>
 #include <optional>
@@ -74,6 +75,12 @@ class System {
   void place_dependents();
   void evaluate_forces();
   void evaluate_loads();
+  void add_other_loads();
+  /// Of the surfaces' figures in the report.
+  std::span<const double> figures() const {
+    return std::span(report_values_)
+        .subspan(report_values_.size() - 3 - surfaces_.figure_count(), surfaces_.figure_count());
+  }
   Evaluation judge();
   double energy_at_start();
   void predict_strain(const Memory& memory);
@@ -93,6 +100,7 @@ class System {
   Blocks<Space> blocks_;
   Dependents<Space> dependents_;
   Followers<Space> followers_;
+  Surfaces<Space> surfaces_;
   PartSums<Space> node_parts_;
   ConjugateGradients<Space> cg_;
   bool conservative_, turning_, damped_;

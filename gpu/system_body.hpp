@@ -21,6 +21,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
       blocks_(model.points),
       dependents_(model.points),
       followers_(model),
+      surfaces_(model),
       node_parts_(model.points.node_part, model.points.part_count()),
       cg_(at(model.dof_count())),
       conservative_(model.loads_are_conservative()),
@@ -47,7 +48,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
     array->set_zero();
   }
   if (!model.tethers.empty()) tether_L_.resize(n);
-  report_.resize(parts * kernels::kNodeQuantities + blocks_.report_size() + 3);
+  report_.resize(parts * kernels::kNodeQuantities + blocks_.report_size() + surfaces_.figure_count() + 3);
   report_.set_zero();
   report_values_.resize(report_.size());
   node_blocks_.resize(model.points.dofs.block_total());
@@ -95,9 +96,20 @@ void System<Space>::evaluate_forces() {
   blocks_.forces(nodes, pose(), history(), largest);
   const kernels::ForceView f = force_view();
   Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f});
-  if (!followers_.empty()) followers_.add_forces(nodes, pose(), data_.view().factors, load_.data());
+  add_other_loads();
   Space::for_each(model_.dof_count(), kernels::AddInertiaAndLoads{f});
   if (!dependents_.empty()) dependents_.transfer(nodes, gradient_.data(), dependent_forces_.data());
+}
+
+/// Loads that are not of one node alone.
+template <class Space>
+void System<Space>::add_other_loads() {
+  const ModelView& m = data_.view();
+  if (!followers_.empty()) followers_.add_forces(m.nodes, pose(), m.factors, load_.data());
+  if (surfaces_.empty()) return;
+  surfaces_.add_forces(m.nodes, pose(), m.factors, load_.data());
+  Space::copy(report_.data() + report_.size() - 3 - surfaces_.figure_count(), surfaces_.figures(),
+              surfaces_.figure_count() * sizeof(double));
 }
 
 /// What the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
@@ -152,7 +164,9 @@ Evaluation System<Space>::judge() {
         std::sqrt(std::max({q[kernels::kLoad], q[kernels::kInertia], q[kernels::kReaction], tethers}));
     const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
     // 4: sums of a few terms of the estimated size in each entry.
-    const double floor = 4 * leverage * kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]);
+    const double of_surfaces = surfaces_.empty() ? 0.0 : surfaces_.rounding(static_cast<int>(p), figures());
+    const double floor =
+        4 * leverage * std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]), of_surfaces);
     const double allowed = std::max(settings_.tolerance * reference, floor);
     const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
     if (excess < e.excess && p > 0) continue;
@@ -161,6 +175,7 @@ Evaluation System<Space>::judge() {
     e.relative = residual / scale;
     e.relative_floor = floor / scale;
   }
+  if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
   e.energy = internal_.total() + load_energy_ + inertia_energy_;
   e.residual = std::sqrt(total);
   prescribed_left_ = false;
@@ -174,6 +189,7 @@ Evaluation System<Space>::judge() {
 template <class Space>
 void System<Space>::evaluate_loads() {
   Space::for_each(model_.node_count(), kernels::NodeForces{step_view(), BlocksView{}, force_view()});
+  add_other_loads();
   node_parts_.template sum<kernels::kNodeQuantities>(kernels::NodeReport{data_.view(), force_view()}, report_.data());
   report_.download(report_values_);
   load_energy_ = inertia_energy_ = 0;
@@ -181,11 +197,13 @@ void System<Space>::evaluate_loads() {
     load_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kLoadEnergy];
     inertia_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kInertiaEnergy];
   }
+  if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
 }
 
 template <class Space>
 void System<Space>::apply(double step) {
   known_.reset();
+  if (!surfaces_.empty()) surfaces_.approach(step);
   Space::for_each(model_.node_count(), kernels::Advance{step_view(), direction_.data(), step});
   place_dependents();
 }
@@ -195,6 +213,7 @@ void System<Space>::save() {
   saved_du_.copy_from(du_);
   saved_Ds_.copy_from(Ds_);
   saved_turned_.copy_from(turned_);
+  if (!surfaces_.empty()) surfaces_.save();
 }
 
 template <class Space>
@@ -202,6 +221,7 @@ void System<Space>::restore() {
   du_.copy_from(saved_du_);
   Ds_.copy_from(saved_Ds_);
   turned_.copy_from(saved_turned_);
+  if (!surfaces_.empty()) surfaces_.restore();
   rebuild_state();
 }
 

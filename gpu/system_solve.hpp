@@ -25,6 +25,11 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   blocks_.linearize(nodes, pose(), history(), tangent, node_blocks_.data());
   if (!dependents_.empty() && tangent == Tangent::full && tethers_turn)
     dependents_.add_turning(nodes, dependent_forces_.data(), node_blocks_.data());
+  if (!surfaces_.empty()) {
+    surfaces_.linearize(nodes, Q_.data(), data_.view().factors, tangent, node_blocks_.data());
+    for (int t = 0; t < surfaces_.terms() && !dependents_.empty(); ++t)
+      dependents_.transfer(nodes, surfaces_.volume_gradient(t), nullptr);
+  }
   inverse_.copy_from(node_blocks_);
   const Preconditioner kind = settings_.preconditioner;
   if (kind != Preconditioner::none) blocks_.add_diagonal(nodes, Q_.data(), inverse_.data());
@@ -39,7 +44,7 @@ void System<Space>::apply_tangent(const CgView& v) {
   const kernels::ProductView w = product_view();
   Space::for_each(w.m.nodes.count, kernels::NextDirection{w, v});
   multiply(w);
-  if (dependents_.empty()) {
+  if (dependents_.empty() && surfaces_.empty()) {
     const kernels::GatherProduct gather{w, blocks_.view()};
     Space::template sum<1>(w.m.nodes.count, kernels::GatherAndFinish{gather, {w, v}}, kernels::TakeCurvature{v});
     return;
@@ -58,7 +63,9 @@ void System<Space>::multiply(const kernels::ProductView& w) {
 template <class Space>
 void System<Space>::gather_product(const kernels::ProductView& w) {
   Space::for_each(w.m.nodes.count, kernels::GatherProduct{w, blocks_.view()});
+  if (!surfaces_.empty()) surfaces_.add_product(w.m.nodes, w.Q, {w.d, w.dx, w.dA}, w.y);
   if (!dependents_.empty()) dependents_.transfer(w.m.nodes, w.y, nullptr);
+  if (!surfaces_.empty()) surfaces_.add_volume_product(w.d, w.y);
 }
 
 /// Of what the loops of a product have been recorded with.
@@ -101,7 +108,7 @@ DirectionReport System<Space>::direction() {
   }
   DirectionReport report;
   report.cg_seconds = seconds_since(start);
-  report.linear_residual = cg.relative_residual;
+  report.linear_residual = cg.relative_norm;
   report.linear_iterations = cg.iterations;
   if (cg.status == CgStatus::negative_curvature) report.trouble = "CG met negative curvature";
   if (cg.status == CgStatus::not_finite) {
@@ -115,6 +122,7 @@ DirectionReport System<Space>::direction() {
                              gradient_.data(), direction_.data()},
       kernels::StoreSums<1, 2>{slope_.data()});
   if (!dependents_.empty()) dependents_.expand(data_.view().nodes, direction_.data(), nullptr, nullptr, Q_.data());
+  if (!surfaces_.empty()) surfaces_.aim(direction_.data());
   double values[3];
   slope_.download(values);
   report.slope = values[0];

@@ -21,6 +21,7 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
   du_.set_zero();
   Ds_.set_zero();
   turned_.copy_from(start_.turned);
+  if (!surfaces_.empty()) surfaces_.begin_step();
   step_ = StepConstants::of(scheme, dt, memory.step);
   inverse_step_ = 0;
   if (dt > 0) {
@@ -103,6 +104,7 @@ void System<Space>::start_from_prediction() {
 template <class Space>
 typename System<Space>::Pose System<Space>::finish_step(double end_time, Memory& memory) {
   reached_factors_ = factors_;
+  if (!surfaces_.empty()) surfaces_.finish_step();
   const bool remembers = step_.h > 0 && step_.scheme != TimeScheme::implicit_euler;
   const bool same_step = memory.step == step_.step && memory.motion.size() == u_.size();
   Pose end;

@@ -43,12 +43,10 @@ void add_product(const SurfaceTangent& tangent, const DofLayout& dofs, const std
       const double* d = x.data() + dofs.begin(share.node);
       dx[at(v)] += share_variation(share, dofs.kind(share.node), d, Q[at(share.node)]);
     }
-  FaceBlocks K;
   for (int f = 0; f < load.face_count(); ++f) {
-    const std::span<const int> face = load.face(f);
-    face_blocks(SurfaceFace::of(load, f), tangent.x.data(), tangent.pressure, tangent.gradient, K);
-    for (std::size_t i = 0; i < face.size(); ++i)
-      for (std::size_t j = 0; j < face.size(); ++j) force[at(face[i])] += K[i][j] * dx[at(face[j])];
+    const SurfaceFace face = SurfaceFace::of(load, f);
+    add_face_product(face, tangent.x.data(), tangent.pressure, tangent.gradient, dx.data(),
+                     [&](int a, const Vec3d& term) { force[at(face.vertex[a])] += term; });
   }
   for (int v = 0; v < load.vertex_count(); ++v)
     for (const SurfaceShare& share : load.shares_of(v))

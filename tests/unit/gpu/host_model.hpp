@@ -103,16 +103,22 @@ inline std::vector<double> diagonal_blocks(const BlockMatrix& matrix, const DofL
   return blocks;
 }
 
-/// @param what  said where it does not hold
+/// |values − reference| / |reference|; 0 where nothing differs.
 template <class Values, class Reference>
-void expect_near(const Values& values, const Reference& reference, const char* what) {
-  ASSERT_EQ(values.size(), reference.size()) << what;
+double relative(const Values& values, const Reference& reference) {
   double error = 0, scale = 0;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     error += (values[i] - reference[i]) * (values[i] - reference[i]);
     scale += reference[i] * reference[i];
   }
-  EXPECT_LE(std::sqrt(error), 1e-12 * std::sqrt(scale)) << what;
+  return error == 0 ? 0.0 : std::sqrt(error / scale);
+}
+
+/// @param what  said where it does not hold
+template <class Values, class Reference>
+void expect_near(const Values& values, const Reference& reference, const char* what) {
+  ASSERT_EQ(values.size(), reference.size()) << what;
+  EXPECT_LE(relative(values, reference), 1e-12) << what;
 }
 
 /// A class of the backend against the executor of a model that has nothing else.
