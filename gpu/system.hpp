@@ -66,6 +66,9 @@ class System {
   std::vector<double> product(std::span<const double> d);
 
  private:
+  /// Times the usual limit of conjugate gradients that a slender body may take.
+  static constexpr int kPatience = 20;
+
   kernels::StepView step_view();
   kernels::ForceView force_view();
   kernels::ProductView product_view();

@@ -100,11 +100,16 @@ DirectionReport System<Space>::direction() {
   };
   right_hand_side();
   const Clock::time_point start = Clock::now();
-  CgReport cg = solve(settings_.cg);
+  CgOptions options = settings_.cg;
+  // A limit that nobody set is no reason to stop: there is no direct solver here that could take over.
+  const bool guessed =
+      settings_.linear == LinearMethod::automatic && options.max_iterations == CgOptions{}.max_iterations;
+  if (guessed) options.max_iterations *= kPatience;
+  CgReport cg = solve(options);
   if (cg.status == CgStatus::negative_curvature && !model_.tethers.empty()) {
     linearize(settings_.tangent, false);
     right_hand_side();
-    cg = solve(settings_.cg);
+    cg = solve(options);
   }
   DirectionReport report;
   report.cg_seconds = seconds_since(start);
