@@ -215,11 +215,18 @@ __device__ inline void clear_held(const std::uint8_t* held, std::size_t frame, d
 __device__ inline void sum_partials(const double* partials, int begin, int end, double* y) {
 #pragma unroll
   for (int i = 0; i < kDofs; ++i) y[i] = 0;
-  for (int slot = begin; slot < end; ++slot) {
-    double part[kDofs];
-    load_words<kDofs>(partials + kDofs * static_cast<std::size_t>(slot), part);
+  constexpr int kAhead = 2;  // on their way at a time
+  for (int first = begin; first < end; first += kAhead) {
+    double part[kAhead][kDofs];
 #pragma unroll
-    for (int i = 0; i < kDofs; ++i) y[i] += part[i];
+    for (int s = 0; s < kAhead; ++s)
+      if (first + s < end) load_words<kDofs>(partials + kDofs * static_cast<std::size_t>(first + s), part[s]);
+#pragma unroll
+    for (int s = 0; s < kAhead; ++s) {
+#pragma unroll
+      for (int i = 0; i < kDofs; ++i)
+        if (first + s < end) y[i] += part[s][i];
+    }
   }
 }
 

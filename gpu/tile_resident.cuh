@@ -60,12 +60,6 @@ __device__ inline bool arrived(const double2& v, unsigned flag) {
   const auto bits = static_cast<unsigned>((__double_as_longlong(v.x) & 1LL) + (__double_as_longlong(v.y) & 1LL));
   return bits == 2 * flag;
 }
-__device__ inline double2 receive(const double* from, unsigned flag) {
-  double2 v = look(from);
-  while (!arrived(v, flag)) v = look(from);
-  return v;
-}
-
 /// Copies of what blocks send to all, so that not all of them ask for the same words.
 inline constexpr int kReplicas = 8;
 
@@ -76,13 +70,19 @@ __device__ inline double2 receive_dots(const double* dots, int blocks, unsigned 
   const int lane = static_cast<int>(threadIdx.x) % 32;
   for (int first = lane; first < blocks; first += 32 * kAhead) {
     double2 v[kAhead];
+    bool missing = true;
+    while (missing) {
+      missing = false;
 #pragma unroll
-    for (int i = 0; i < kAhead; ++i)
-      if (first + 32 * i < blocks) v[i] = look(dots + 2 * (first + 32 * i));
+      for (int i = 0; i < kAhead; ++i)
+        if (first + 32 * i < blocks) v[i] = look(dots + 2 * (first + 32 * i));
+#pragma unroll
+      for (int i = 0; i < kAhead; ++i)
+        if (first + 32 * i < blocks) missing = missing || !arrived(v[i], flag);
+    }
 #pragma unroll
     for (int i = 0; i < kAhead; ++i) {
       if (first + 32 * i >= blocks) continue;
-      if (!arrived(v[i], flag)) v[i] = receive(dots + 2 * (first + 32 * i), flag);
       sum.x += v[i].x;
       sum.y += v[i].y;
     }
@@ -95,24 +95,33 @@ __device__ inline double2 receive_dots(const double* dots, int blocks, unsigned 
   return sum;
 }
 
-/// Σ of a frame's partials in the order of its tiles; several are on their way at a time.
+/// Σ of a frame's partials in the order of its tiles. All that are missing are asked for at once: one after the other
+/// each would cost a way to memory and back.
 __device__ inline void receive_partials(const double* partials, int begin, int end, unsigned flag, double* w) {
   constexpr int kAhead = 4;
 #pragma unroll
   for (int i = 0; i < kDofs; ++i) w[i] = 0;
   for (int first = begin; first < end; first += kAhead) {
     double2 v[kAhead][kDofs / 2];
+    bool missing = true;
+    while (missing) {
+      missing = false;
 #pragma unroll
-    for (int s = 0; s < kAhead; ++s)
+      for (int s = 0; s < kAhead; ++s)
 #pragma unroll
-      for (int i = 0; i < kDofs / 2; ++i)
-        if (first + s < end) v[s][i] = look(partials + kDofs * (first + s) + 2 * i);
+        for (int i = 0; i < kDofs / 2; ++i)
+          if (first + s < end) v[s][i] = look(partials + kDofs * (first + s) + 2 * i);
+#pragma unroll
+      for (int s = 0; s < kAhead; ++s)
+#pragma unroll
+        for (int i = 0; i < kDofs / 2; ++i)
+          if (first + s < end) missing = missing || !arrived(v[s][i], flag);
+    }
 #pragma unroll
     for (int s = 0; s < kAhead; ++s) {
       if (first + s >= end) continue;
 #pragma unroll
       for (int i = 0; i < kDofs / 2; ++i) {
-        if (!arrived(v[s][i], flag)) v[s][i] = receive(partials + kDofs * (first + s) + 2 * i, flag);
         w[2 * i] += v[s][i].x;
         w[2 * i + 1] += v[s][i].y;
       }
