@@ -1,5 +1,7 @@
+#include "app/bench/benchmark.hpp"
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
+#include "app/version.hpp"
 #include "core/model/errors.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +22,28 @@ void add_scene_options(CLI::App& command, RunOptions& options) {
   command.add_option("--backend", options.backend, "cpu, cuda or auto")->check(CLI::IsMember({"cpu", "cuda", "auto"}));
 }
 
+CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
+  CLI::App* bench = app.add_subcommand("bench", "time published and other cases on this machine's backends");
+  bench->add_option("name", options.name, "which benchmark; without a name they are listed");
+  bench->add_option("--sizes", options.sizes, "only these numbers of points or cells: --sizes 360,6070,1e6")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  bench->add_option("--max-points", options.max_points, "leave out larger cases")->check(CLI::PositiveNumber);
+  bench->add_option("--settings", options.settings, "paper: as published; default: the program's own choice; both")
+      ->check(CLI::IsMember({"paper", "default", "both"}));
+  bench->add_option("--repeat", options.repeat, "steps that are timed; otherwise those of a second, 3 to 100")
+      ->check(CLI::PositiveNumber);
+  bench->add_option("--threads", options.threads, "threads beside the run on one, 0 for all")
+      ->check(CLI::NonNegativeNumber);
+  bench->add_option("--output", options.output, "directory for the table, CSV, JSON and the scenes");
+  bench->add_flag("--json", options.json, "print JSON, and nothing else, on standard output");
+  bench->add_flag("--quiet", options.quiet, "do not say what is being timed");
+  return bench;
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App app{"fascia: simulator of connective tissue and the organs that it ties together", "fascia"};
-  app.set_version_flag("--version", std::string("fascia ") + FASCIA_VERSION);
+  app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   RunOptions options;
   CLI::App* run = app.add_subcommand("run", "simulate a scene and write its results");
@@ -34,12 +55,15 @@ int dispatch(int argc, char** argv) {
   run->add_flag("-v,--verbose", options.verbose, "a line for each step");
   CLI::App* check = app.add_subcommand("check", "read and validate a scene, and say what would be simulated");
   add_scene_options(*check, options);
+  BenchOptions bench_options;
+  const CLI::App* bench = add_bench(app, bench_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e, std::cout, std::cerr);
     return code == 0 ? kDone : kWrongInput;
   }
+  if (bench->parsed()) return run_bench(bench_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/backend.hpp"
 #include "app/coupling_report.hpp"
 #include "app/probes.hpp"
 #include "app/simulation.hpp"
@@ -50,7 +51,7 @@ struct RunTimes {
 /// summary.json. Modes put a list into the probes of quantity frequency.
 /// @param fluids  of Simulation::fluids at the end; none of modes
 /// @param couplings  see coupling_report()
-nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
+nlohmann::ordered_json summary(const Simulation& s, Backend backend, const RunReport& run, const RunTimes& times, int threads,
                                const std::vector<nlohmann::json>& probe_values, double stabilization_energy,
                                const std::vector<FluidState>& fluids, const CouplingReports& couplings);
 

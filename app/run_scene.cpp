@@ -1,5 +1,6 @@
 #include "app/run_scene.hpp"
 
+#include "app/backend.hpp"
 #include "app/coupling_report.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
@@ -12,6 +13,8 @@
 #include "core/solver/clock.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
+#include "gpu/device.hpp"
+#include "gpu/run.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -37,7 +40,6 @@ Simulation load(const RunOptions& options) {
   if (options.output) scene.output.directory = *options.output;
   if (options.backend) scene.solver.backend = *options.backend;
   if (options.threads) scene.solver.threads = *options.threads;
-  if (scene.solver.backend == "cuda") throw BackendError("backend \"cuda\" is not in this build; use --backend cpu");
   Simulation s = build_simulation(std::move(scene));
   if (s.scene.solver.kind == SolverKind::central_differences) {
     ThreadPool pool(s.scene.solver.threads);
@@ -82,7 +84,37 @@ struct Outcome {
   CouplingReports couplings;
 };
 
-Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, const RunOptions& options) {
+/// Statics or implicit dynamics on the GPU. A device that is lost ends the run with what was seen last.
+/// @throws BackendError  where it has too little memory
+RunReport run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                     const gpu::DeviceObserver& observe) {
+  const Solver& solver = s.scene.solver;
+  RunReport seen;
+  const gpu::DeviceObserver watch = [&](const StepInfo& step, gpu::DeviceStep& device) {
+    seen.steps = step.step;
+    seen.time = step.time;
+    return observe(step, device);
+  };
+  try {
+    if (solver.kind == SolverKind::statics)
+      return gpu::run_statics(s.model, state, factors, settings, {solver.load_steps}, watch);
+    return gpu::run_implicit(s.model, state, factors, settings,
+                             {scheme_of(solver.kind), solver.time_step, solver.steps}, watch);
+  } catch (const gpu::DeviceLost& e) {
+    seen.status = RunStatus::not_converged;
+    seen.message = fmt::format("after step {}: {}; the results end with the last one that was saved; try again, or "
+                               "--backend cpu",
+                               seen.steps, e.what());
+    return seen;
+  } catch (const std::runtime_error& e) {
+    if (dynamic_cast<const gpu::DeviceMemoryError*>(&e) == nullptr && dynamic_cast<const gpu::NoDevice*>(&e) == nullptr)
+      throw;
+    throw BackendError(e.what());
+  }
+}
+
+Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultFiles& files,
+                 const RunOptions& options) {
   Outcome out;
   const Clock::time_point setup = Clock::now();
   const SolverSettings settings = settings_of(s.scene.solver);
@@ -105,18 +137,31 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
     if (fields) saved_step = step;
     output_seconds += seconds_since(start);
   };
-  const auto observe = [&](const StepInfo& step, const State& at, MechanicalSystem&) {
+  // What is watched in all steps, and what is saved of some: `show` makes `system` stand there.
+  const auto watch = [&](const StepInfo& step, const InternalEnergy& energy,
+                         const std::function<const State&()>& show) {
     out.times.steps.push_back(step.seconds);
     progress.update(step);
     const bool due = rule.save(step);
-    if (due || statics) save(step.time, step.step, at, due);
-    out.stabilization = system.internal_energy().stabilization;
-    if (statics && !path) snaps.look(step.time, system.internal_energy().elastic);
+    if (due || statics) save(step.time, step.step, show(), due);
+    out.stabilization = energy.stabilization;
+    if (statics && !path) snaps.look(step.time, energy.elastic);
     return interrupted == 0;
+  };
+  const auto observe = [&](const StepInfo& step, const State& at, MechanicalSystem&) {
+    return watch(step, system.internal_energy(), [&]() -> const State& { return at; });
+  };
+  const auto observe_on_gpu = [&](const StepInfo& step, gpu::DeviceStep& device) {
+    return watch(step, device.energy(), [&]() -> const State& {
+      device.show(system, factors(step.time));
+      return device.state();
+    });
   };
   const Clock::time_point start = Clock::now();
   if (path) {
     out.run = run_path(system, state, factors, settings, path_of(s), observe);
+  } else if (statics && backend == Backend::cuda) {
+    out.run = run_on_gpu(s, state, factors, settings, observe_on_gpu);
   } else if (statics) {
     out.run = run_statics(system, state, factors, settings, {s.scene.solver.load_steps}, observe);
   } else {
@@ -136,6 +181,8 @@ Outcome simulate(const Simulation& s, ThreadPool& pool, ResultFiles& files, cons
                                out.stabilization = system.internal_energy().stabilization;
                                return interrupted == 0;
                              });
+    } else if (backend == Backend::cuda) {
+      out.run = run_on_gpu(s, state, factors, settings, observe_on_gpu);
     } else {
       out.run = run_implicit(system, state, factors, settings,
                              {scheme_of(s.scene.solver.kind), s.scene.solver.time_step, s.scene.solver.steps}, observe);
@@ -242,6 +289,7 @@ int exit_status(RunStatus status) {
 int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   Simulation s = load(options);
+  const Backend backend = choose_backend(s);
   io::ResultDirectory directory(s.scene.output.directory);
   ThreadPool pool(s.scene.solver.threads);
   const std::string name = s.scene.path.stem().string();
@@ -249,7 +297,7 @@ int run_scene(const RunOptions& options) {
   const double setup = seconds_since(start);
   std::signal(SIGINT, on_interrupt);
   Outcome out =
-      s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files) : simulate(s, pool, files, options);
+      s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files) : simulate(s, backend, pool, files, options);
   out.times.setup += setup;
   files.finish();
   if (s.scene.output.picture) make_picture(s, directory.path(), name);
@@ -258,7 +306,7 @@ int run_scene(const RunOptions& options) {
     s.warnings.push_back(w);
   }
   const nlohmann::ordered_json j =
-      summary(s, out.run, out.times, pool.size(), out.probes, out.stabilization, out.fluids, out.couplings);
+      summary(s, backend, out.run, out.times, pool.size(), out.probes, out.stabilization, out.fluids, out.couplings);
   io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
   directory.commit();
   if (options.json)

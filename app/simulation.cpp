@@ -24,15 +24,6 @@ namespace fascia::app {
 
 namespace {
 
-double available_memory() {
-  std::ifstream info("/proc/meminfo");
-  std::string key, unit;
-  double kilobytes = 0;
-  while (info >> key >> kilobytes >> unit)
-    if (key == "MemAvailable:") return kilobytes * 1024;
-  return 1e18;
-}
-
 void check_memory(const Scene& scene) {
   const double need = estimated_memory(scene), have = available_memory();
   if (need <= have && need < 2e11) return;
@@ -148,6 +139,15 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
 }
 
 }  // namespace
+
+double available_memory() {
+  std::ifstream info("/proc/meminfo");
+  std::string key, unit;
+  double kilobytes = 0;
+  while (info >> key >> kilobytes >> unit)
+    if (key == "MemAvailable:") return kilobytes * 1024;
+  return 1e18;
+}
 
 double estimated_memory(const Scene& scene) {
   double bytes = 30e6;  // the program itself

@@ -102,6 +102,9 @@ struct Simulation {
   std::vector<double> factors(double time) const;
 };
 
+/// Memory that a process may still take [bytes].
+double available_memory();
+
 /// Rough memory of a scene [bytes], known before anything is allocated.
 double estimated_memory(const Scene& scene);
 

@@ -39,7 +39,7 @@ double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
 }  // namespace
 
-nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const RunTimes& times, int threads,
+nlohmann::ordered_json summary(const Simulation& s, Backend backend, const RunReport& run, const RunTimes& times, int threads,
                                const std::vector<nlohmann::json>& probe_values, double stabilization_energy,
                                const std::vector<FluidState>& fluids, const CouplingReports& couplings) {
   nlohmann::ordered_json j;
@@ -48,7 +48,7 @@ nlohmann::ordered_json summary(const Simulation& s, const RunReport& run, const 
   if (!s.scene.title.empty()) j["title"] = s.scene.title;
   j["status"] = status_name(run.status);
   j["message"] = run.message;
-  j["backend"] = "cpu";
+  j["backend"] = name_of(backend);
   j["precision"] = "double";
   j["threads"] = threads;
   j["bodies"] = nlohmann::ordered_json::object();

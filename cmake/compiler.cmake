@@ -9,13 +9,16 @@ endif()
 
 add_library(fascia_flags INTERFACE)
 target_include_directories(fascia_flags INTERFACE ${CMAKE_SOURCE_DIR})
-target_compile_options(fascia_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+target_compile_options(fascia_flags INTERFACE
+  $<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
+  $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;--extended-lambda;-Xcompiler=-Wall,-Wextra,-Wshadow>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns inside its own headers: AVX-512 (bug 105593), std::string (bugs 105329, 105651).
-  target_compile_options(fascia_flags INTERFACE -Wno-psabi -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow)
+  target_compile_options(fascia_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-Wno-psabi;-Wno-maybe-uninitialized;-Wno-restrict;-Wno-stringop-overflow>)
 endif()
 if(FASCIA_NATIVE)
-  target_compile_options(fascia_flags INTERFACE -march=native)
+  # Not for nvcc's host pass, whose front end does not know every instruction that the host compiler does.
+  target_compile_options(fascia_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-march=native>)
 endif()
 if(FASCIA_SANITIZE)
   target_compile_options(fascia_flags INTERFACE -fsanitize=${FASCIA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

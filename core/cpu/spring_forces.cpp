@@ -1,7 +1,7 @@
 #include "core/cpu/executor.hpp"
 #include "core/math/index.hpp"
 #include "core/physics/spring_law.hpp"
-#include "core/solver/node_force.hpp"
+#include "core/solver/node_load.hpp"
 
 /// The springs of CpuExecutor: few beside points and elements, one after the other.
 namespace fascia {
@@ -10,17 +10,15 @@ namespace {
 
 /// Displacement of the place that a spring is attached to.
 Vec3d end_of(const Spring& spring, const State& state) {
-  return state.u[at(spring.node)] + state.D[at(spring.node)] * spring.arm;
+  return spring_end(spring, state.u[at(spring.node)], state.D[at(spring.node)]);
 }
 
 }  // namespace
 
 void CpuExecutor::add_spring_forces(const State& state, std::span<double> gradient) const {
-  for (const Spring& spring : set_.springs) {
-    const Vec3d g = spring_gradient(spring, end_of(spring, state));
-    add_node_force(set_.dofs.kind(spring.node), state.D[at(spring.node)], g, outer(g, spring.arm), {},
-                   gradient.data() + set_.dofs.begin(spring.node));
-  }
+  for (const Spring& spring : set_.springs)
+    add_spring_force(set_.dofs.kind(spring.node), spring, state.u[at(spring.node)], state.D[at(spring.node)],
+                     gradient.data() + set_.dofs.begin(spring.node));
 }
 
 /// Elastic energy of all; adds their rounding by part [N²].
@@ -38,25 +36,9 @@ double CpuExecutor::note_springs(const State& state) {
 }
 
 void CpuExecutor::linearize_springs(const State& state, Linearization& out) const {
-  for (const Spring& spring : set_.springs) {
-    const Vec3d u = end_of(spring, state);
-    const bool full = out.tangent == Tangent::full;
-    const Mat3d K = spring_tangent(spring, u, full);
-    const int n = set_.dofs.size(spring.node);
-    double* block = out.node_blocks.data() + set_.dofs.block_begin(spring.node);
-    const auto add = [&](int row, int column, const Mat3d& part) {
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) block[n * (row + i) + column + j] += part(i, j);
-    };
-    add(0, 0, K);
-    if (squared_norm(spring.arm) == 0) continue;
-    const Vec3d arm = spring.arm + state.D[at(spring.node)] * spring.arm;
-    const Mat3d W = skew(arm) * -1.0;  // du of the end for a small rotation
-    add(0, 3, K * W);
-    add(3, 0, transpose(W) * K);
-    add(3, 3, transpose(W) * K * W);
-    if (full) add_rotation_block(block, rotation_tangent(outer(spring_gradient(spring, u), arm)));
-  }
+  for (const Spring& spring : set_.springs)
+    add_spring_block(set_.dofs.kind(spring.node), spring, state.u[at(spring.node)], state.D[at(spring.node)],
+                     out.tangent == Tangent::full, out.node_blocks.data() + set_.dofs.block_begin(spring.node));
 }
 
 Vec3d CpuExecutor::spring_force(const Spring& spring, const State& state) {

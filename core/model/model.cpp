@@ -1,14 +1,8 @@
 #include "core/model/model.hpp"
 
-#include "core/math/rotation.hpp"
-
 #include <algorithm>
 
 namespace fascia {
-
-Vec3d PrescribedMotion::displacement(const Vec3d& X, double factor) const {
-  return rotation_increment(axis * (angle * factor)) * (X - center) + translation * factor;
-}
 
 int Model::constrained_dof_count() const {
   int count = 0;

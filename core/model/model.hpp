@@ -23,6 +23,12 @@ struct FrameInertia {
     second += o.second;
     return *this;
   }
+  FASCIA_HD FrameInertia& operator*=(double s) {
+    mass *= s;
+    first *= s;
+    second *= s;
+    return *this;
+  }
 };
 
 /// Force and moment state on a frame: energy −(force · u + couple : D); torque keeps its direction in space.
@@ -83,7 +89,9 @@ struct PrescribedMotion {
   Vec3d translation{}, axis{{0, 0, 1}}, center{};
   double angle = 0;  ///< [rad], may exceed 2π
 
-  Vec3d displacement(const Vec3d& X, double factor) const;
+  FASCIA_HD Vec3d displacement(const Vec3d& X, double factor) const {
+    return rotation_increment(axis * (angle * factor)) * (X - center) + translation * factor;
+  }
 };
 
 /// Everything about a scene that does not move.
@@ -131,6 +139,20 @@ struct State {
   static State at_rest(const Model& model);
 };
 
+/// A follower's force and torque turned with the rotation in I + D, and scaled.
+struct TurnedFollower {
+  Vec3d force{}, torque{};
+  Mat3d couple{};  ///< vertices only: Σ f ⊗ dX that works as the torque does [N m]
+};
+/// @param D  Σ w D of frames, Σ u gᵀ of vertices
+FASCIA_HD inline TurnedFollower turned_follower(const Vec3d& force, const Vec3d& torque, const Mat3d& D, bool vertices,
+                                                double factor) {
+  const Mat3d Q = Mat3d::identity() + polar_increment(D);
+  TurnedFollower turned{Q * force * factor, Q * torque * factor, {}};
+  if (vertices) turned.couple = skew(turned.torque) * transpose(inverse(Mat3d::identity() + D)) * 0.5;
+  return turned;
+}
+
 /// Calls act(node, force, couple, torque) for each frame of a follower: turned with the rotation in Σ w Q, and scaled.
 template <class Act>
 void for_each_share(const FollowerLoad& load, const State& state, double factor, const Act& act) {
@@ -138,9 +160,7 @@ void for_each_share(const FollowerLoad& load, const State& state, double factor,
   Mat3d D;
   for (std::size_t k = 0; k < load.nodes.size(); ++k)
     D += vertices ? outer(state.u[at(load.nodes[k])], load.g[k]) : state.D[at(load.nodes[k])] * load.w[k];
-  const Mat3d F = Mat3d::identity() + D, Q = Mat3d::identity() + polar_increment(D);
-  const Vec3d force = Q * load.force * factor, torque = Q * load.torque * factor;
-  const Mat3d couple = vertices ? skew(torque) * transpose(inverse(F)) * 0.5 : Mat3d{};
+  const auto [force, torque, couple] = turned_follower(load.force, load.torque, D, vertices, factor);
   for (std::size_t k = 0; k < load.nodes.size(); ++k) {
     if (vertices) {
       act(load.nodes[k], force * load.w[k] + couple * load.g[k], Mat3d{}, Vec3d{});

@@ -2,66 +2,12 @@
 
 #include "core/math/index.hpp"
 #include "core/model/model.hpp"
+#include "core/model/surface_face.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace fascia {
-
-namespace {
-
-/// Σ N x and its derivatives along s and t.
-struct FacePlace {
-  Vec3d x{}, s{}, t{};
-
-  FacePlace(const FaceRulePoint& p, std::span<const int> face, const std::vector<Vec3d>& vertices) {
-    for (std::size_t a = 0; a < face.size(); ++a) {
-      const Vec3d& v = vertices[at(face[a])];
-      x += v * p.N[a];
-      s += v * p.ds[a];
-      t += v * p.dt[a];
-    }
-  }
-};
-
-double triple(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return dot(a, cross(b, c)); }
-
-/// Volume − volume at rest, as a sum of terms with the displacement in each.
-/// @param sizes  of the terms [m³]
-double volume_change(const SurfaceLoad& load, const SurfaceForces& f, double& sizes) {
-  double change = 0;
-  for (int k = 0; k < load.face_count(); ++k) {
-    const std::span<const int> face = load.face(k);
-    for (const FaceRulePoint& p : face_rule(static_cast<int>(face.size()))) {
-      const FacePlace rest(p, face, load.X), u(p, face, f.u), now(p, face, f.x);
-      const double terms[3] = {triple(u.x, rest.s, rest.t), triple(now.x, u.s, rest.t), triple(now.x, now.s, u.t)};
-      for (const double term : terms) {
-        change += p.weight / 3 * term;
-        sizes += p.weight / 3 * std::abs(term);
-      }
-    }
-  }
-  return change;
-}
-
-/// Adds the forces of a pressure w · x; returns ∫ w · x dV.
-double add_weight(const SurfaceLoad& load, const Vec3d& w, SurfaceForces& f) {
-  double moment = 0;
-  for (int k = 0; k < load.face_count(); ++k) {
-    const std::span<const int> face = load.face(k);
-    for (const FaceRulePoint& p : face_rule(static_cast<int>(face.size()))) {
-      const FacePlace now(p, face, f.x);
-      const Vec3d n = cross(now.s, now.t) * p.weight;
-      const double pressure = dot(w, now.x);
-      for (std::size_t a = 0; a < face.size(); ++a) f.force[at(face[a])] += n * (pressure * p.N[a]);
-      moment += 0.25 * pressure * dot(now.x, n);  // div(x (w · x)) = 4 w · x
-    }
-  }
-  return moment;
-}
-
-}  // namespace
 
 std::span<const int> SurfaceLoad::face(int f) const {
   return std::span(face_vertex).subspan(at(face_begin[at(f)]), at(face_begin[at(f + 1)] - face_begin[at(f)]));
@@ -92,9 +38,10 @@ void measure_at_rest(SurfaceLoad& load) {
   std::vector<Vec3d> from_middle;
   for (const Vec3d& X : load.X) from_middle.push_back(X - middle);
   for (int k = 0; k < load.face_count(); ++k) {
-    const std::span<const int> face = load.face(k);
-    for (const FaceRulePoint& p : face_rule(static_cast<int>(face.size()))) {
-      const FacePlace rest(p, face, from_middle);
+    const SurfaceFace face = SurfaceFace::of(load, k);
+    for (int q = 0; q < face.points; ++q) {
+      const FaceRulePoint& p = face.rule[q];
+      const FacePlace rest(p, face, from_middle.data());
       const double cone = p.weight * triple(rest.x, rest.s, rest.t);
       volume += cone / 3;
       moment += rest.x * (cone / 4);
@@ -113,33 +60,28 @@ void evaluate(const SurfaceLoad& load, const State& state, std::span<const doubl
   f.force.resize(n);
   for (std::size_t v = 0; v < n; ++v) {
     for (const SurfaceShare& share : load.shares_of(static_cast<int>(v)))
-      f.u[v] += state.u[at(share.node)] * share.w + state.D[at(share.node)] * share.b;
+      f.u[v] += share_displacement(share, state.u[at(share.node)], state.D[at(share.node)]);
     f.x[v] = load.X[v] - load.datum + f.u[v];
   }
   for (int k = 0; k < load.face_count(); ++k) {
-    const std::span<const int> face = load.face(k);
-    for (const FaceRulePoint& p : face_rule(static_cast<int>(face.size()))) {
-      const FacePlace now(p, face, f.x);
-      const Vec3d normal = cross(now.s, now.t) * p.weight;
-      for (std::size_t a = 0; a < face.size(); ++a) f.area[at(face[a])] += normal * p.N[a];
-    }
+    const SurfaceFace face = SurfaceFace::of(load, k);
+    add_face_area(face, f.x.data(), [&](int a, const Vec3d& area) { f.area[at(face.vertex[a])] += area; });
   }
   const double s = factors[at(load.schedule)];
   f.pressure = s * load.pressure;
   f.energy = f.volume = f.stiffness = f.rounding = 0;
   double uncertain = 0;  // of the pressure [Pa]
   if (load.has_potential) {
-    constexpr double eps = std::numeric_limits<double>::epsilon();
-    double sizes = 0;
-    const double change = volume_change(load, f, sizes), wanted = s * (load.volume - load.rest_volume);
-    f.volume = load.rest_volume + change;
-    f.energy = -f.pressure * change;
-    if (load.bulk_modulus > 0) {
-      f.stiffness = load.bulk_modulus / (load.rest_volume + wanted);
-      f.pressure += f.stiffness * (wanted - change);
-      f.energy += 0.5 * f.stiffness * (change - wanted) * (change - wanted);
-      uncertain = eps * f.stiffness * (sizes + std::abs(wanted));
-    }
+    double change = 0, sizes = 0;
+    for (int k = 0; k < load.face_count(); ++k)
+      add_face_volume(SurfaceFace::of(load, k), load.X.data(), f.u.data(), f.x.data(), change, sizes);
+    const SurfacePressure now =
+        surface_pressure(load.pressure, load.bulk_modulus, load.rest_volume, load.volume, s, change, sizes);
+    f.volume = now.volume;
+    f.pressure = now.pressure;
+    f.energy = now.energy;
+    f.stiffness = now.stiffness;
+    uncertain = now.rounding;
   }
   double squared_area = 0;
   for (std::size_t v = 0; v < n; ++v) {
@@ -147,7 +89,15 @@ void evaluate(const SurfaceLoad& load, const State& state, std::span<const doubl
     squared_area += squared_norm(f.area[v]);
   }
   f.rounding = uncertain * std::sqrt(squared_area);
-  if (squared_norm(load.weight) > 0) f.energy -= add_weight(load, load.weight * factors[at(load.weight_schedule)], f);
+  if (!(squared_norm(load.weight) > 0)) return;
+  const Vec3d weight = load.weight * factors[at(load.weight_schedule)];
+  double moment = 0;
+  for (int k = 0; k < load.face_count(); ++k) {
+    const SurfaceFace face = SurfaceFace::of(load, k);
+    add_face_weight(face, f.x.data(), weight, moment,
+                    [&](int a, const Vec3d& force) { f.force[at(face.vertex[a])] += force; });
+  }
+  f.energy -= moment;
 }
 
 }  // namespace fascia

@@ -17,8 +17,11 @@ template <class T>
 class CorotationalElement {
  public:
   /// @param H_mean  mean displacement gradient, volume the element's [m³]
-  FASCIA_HD CorotationalElement(const Mat3<T>& H_mean, const T& volume, bool full) : full_(full), volume_(volume) {
-    D_ = nearest_rotation_increment(H_mean);
+  FASCIA_HD CorotationalElement(const Mat3<T>& H_mean, const T& volume, bool full)
+      : CorotationalElement(H_mean, nearest_rotation_increment(H_mean), volume, full) {}
+  /// The same where R − I of the mean is known.
+  FASCIA_HD CorotationalElement(const Mat3<T>& H_mean, const Mat3<T>& D, const T& volume, bool full)
+      : full_(full), volume_(volume), D_(D) {
     R_ = Mat3<T>::identity() + D_;
     stretch_ = sym(relative(H_mean)) + Mat3<T>::identity();
     const Mat3<T> G = Mat3<T>::diagonal(trace(stretch_)) - stretch_;

@@ -11,6 +11,9 @@ struct SpringStretch {
   double stretch = 0;                  ///< u · n, or l − l₀ [m]
 };
 
+/// Displacement of the place that a spring is attached to [m]. @param u, D  displacement and A − I of its node
+FASCIA_HD inline Vec3d spring_end(const Spring& spring, const Vec3d& u, const Mat3d& D) { return u + D * spring.arm; }
+
 /// @param u  displacement of the node [m]
 FASCIA_HD inline SpringStretch spring_stretch(const Spring& spring, const Vec3d& u) {
   SpringStretch s;

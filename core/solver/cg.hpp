@@ -16,7 +16,8 @@ enum class CgStatus { converged, limit, negative_curvature, not_finite };
 struct CgReport {
   CgStatus status = CgStatus::converged;
   int iterations = 0;
-  double relative_residual = 0;
+  double relative_residual = 0;  ///< |r|_M⁻¹ / |b|_M⁻¹
+  double relative_norm = 0;      ///< |r| / |b|
 };
 
 /// Preconditioned conjugate gradients for A x = b from x = 0.
@@ -33,6 +34,12 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
   using Vector = typename Space::Vector;
   CgReport report;
   Vector r = b, z = space.zeros(b.size()), p = z, Ap = z;
+  const auto stop = [&](CgStatus status, double residual) {
+    report.status = status;
+    report.relative_residual = residual;
+    report.relative_norm = std::sqrt(space.dot(r, r) / space.dot(b, b));
+    return report;
+  };
   x = z;
   double rz = precondition(r, z);
   const double rz_start = rz;
@@ -42,26 +49,22 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
   for (; report.iterations < options.max_iterations; ++report.iterations) {
     apply(p, Ap);
     const double curvature = space.dot(p, Ap);
-    if (!std::isfinite(curvature)) return {CgStatus::not_finite, report.iterations, std::sqrt(rz / rz_start)};
+    if (!std::isfinite(curvature)) return stop(CgStatus::not_finite, std::sqrt(rz / rz_start));
     if (curvature <= 0) {
       if (report.iterations == 0) x = p;
-      return {CgStatus::negative_curvature, report.iterations, std::sqrt(rz / rz_start)};
+      return stop(CgStatus::negative_curvature, std::sqrt(rz / rz_start));
     }
     const double alpha = rz / curvature;
     space.advance(alpha, p, Ap, x, r);
     const double rz_next = precondition(r, z);
     if (rz_next <= options.tolerance * options.tolerance * rz_start) {
       ++report.iterations;
-      rz = rz_next;
-      report.relative_residual = std::sqrt(std::max(rz, 0.0) / rz_start);
-      return report;
+      return stop(CgStatus::converged, std::sqrt(std::max(rz_next, 0.0) / rz_start));
     }
     space.xpay(z, rz_next / rz, p);
     rz = rz_next;
   }
-  report.status = CgStatus::limit;
-  report.relative_residual = std::sqrt(rz / rz_start);
-  return report;
+  return stop(CgStatus::limit, std::sqrt(rz / rz_start));
 }
 
 }  // namespace fascia

@@ -7,15 +7,6 @@
 
 namespace fascia {
 
-namespace {
-
-void multiply(const Mat3d& A, double* v) {
-  const Vec3d r = A * Vec3d{{v[0], v[1], v[2]}};
-  std::copy(r.v, r.v + 3, v);
-}
-
-}  // namespace
-
 DofFilter::DofFilter(const Model& model)
     : dofs_(model.points.dofs), turn_of_node_(at(model.node_count()), -1), fixed_(at(model.dof_count()), false) {
   held_.assign(turn_of_node_.size(), 0);
@@ -47,26 +38,23 @@ DofFilter::DofFilter(const Model& model)
   free_count_ = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), false));
 }
 
-void DofFilter::apply(const Turn& turn, bool back, double* v) const {
-  const Mat3d T = back ? transpose(turn.translation) : turn.translation;
-  const Mat3d R = back ? transpose(turn.rotation) : turn.rotation;
-  multiply(T, v);
-  if (dofs_.kind(turn.node) == FrameKind::vertex) return;
-  if (dofs_.kind(turn.node) == FrameKind::rigid) return multiply(R, v + 3);
-  Mat3d A;
-  for (int q = 0; q < 3; ++q)
-    for (int i = 0; i < 3; ++i) A(i, q) = v[3 + 3 * q + i];
-  A = times_transpose(R * A, R);
-  for (int q = 0; q < 3; ++q)
-    for (int i = 0; i < 3; ++i) v[3 + 3 * q + i] = A(i, q);
+void DofFilter::apply(const DofTurn& turn, bool back, double* v) const {
+  turn_dofs(dofs_.kind(turn.node), turn.translation, turn.rotation, back, v);
+}
+
+unsigned DofFilter::fixed_of(int node) const {
+  unsigned fixed = 0;
+  for (int k = 0; k < dofs_.size(node); ++k)
+    if (fixed_[at(dofs_.begin(node) + k)]) fixed |= 1U << k;
+  return fixed;
 }
 
 void DofFilter::to_local(std::span<double> v) const {
-  for (const Turn& t : turns_) apply(t, false, v.data() + dofs_.begin(t.node));
+  for (const DofTurn& t : turns_) apply(t, false, v.data() + dofs_.begin(t.node));
 }
 
 void DofFilter::to_global(std::span<double> v) const {
-  for (const Turn& t : turns_) apply(t, true, v.data() + dofs_.begin(t.node));
+  for (const DofTurn& t : turns_) apply(t, true, v.data() + dofs_.begin(t.node));
 }
 
 void DofFilter::clear_fixed(std::span<double> local) const {
@@ -79,18 +67,7 @@ void DofFilter::keep_fixed(std::span<double> local) const {
 }
 
 void DofFilter::rotate_block(int row, int column, const double* in, double* out) const {
-  const int tr = turn_of_node_[at(row)], tc = turn_of_node_[at(column)];
-  const int n = dofs_.size(row), m = dofs_.size(column);
-  std::copy(in, in + n * m, out);
-  if (tc >= 0)
-    for (int i = 0; i < n; ++i) apply(turns_[at(tc)], false, out + m * i);
-  if (tr < 0) return;
-  double v[kMostDofs];
-  for (int j = 0; j < m; ++j) {
-    for (int i = 0; i < n; ++i) v[i] = out[m * i + j];
-    apply(turns_[at(tr)], false, v);
-    for (int i = 0; i < n; ++i) out[m * i + j] = v[i];
-  }
+  turn_block(dofs_.kind(row), turn_of(row), dofs_.kind(column), turn_of(column), in, out);
 }
 
 }  // namespace fascia

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/model/model.hpp"
+#include "core/solver/dof_turn.hpp"
 
 #include <span>
 #include <vector>
@@ -24,18 +25,22 @@ class DofFilter {
   void clear_fixed(std::span<double> local) const;
   void keep_fixed(std::span<double> local) const;  ///< clears the free ones
 
+  /// Axes of a node; null where they are those of the world.
+  const DofTurn* turn_of(int node) const {
+    const int turn = turn_of_node_[at(node)];
+    return turn < 0 ? nullptr : &turns_[at(turn)];
+  }
+  /// Bit k: the degree of freedom k of a node is fixed.
+  unsigned fixed_of(int node) const;
+
   /// The block of a row and a column in constraint axes: T_row K T_colᵀ.
   void rotate_block(int row, int column, const double* in, double* out) const;
 
  private:
-  struct Turn {
-    int node;
-    Mat3d translation, rotation;
-  };
-  void apply(const Turn& turn, bool back, double* v) const;
+  void apply(const DofTurn& turn, bool back, double* v) const;
 
   DofLayout dofs_;
-  std::vector<Turn> turns_;
+  std::vector<DofTurn> turns_;
   std::vector<int> turn_of_node_;  ///< −1: none
   std::vector<bool> fixed_;
   std::vector<std::size_t> fixed_list_;

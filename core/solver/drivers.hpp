@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace fascia {
@@ -20,7 +21,9 @@ struct StepInfo {
 };
 
 /// Called with the state and the system (whose gradient belongs to it); returns false to stop (Ctrl-C).
-using StepObserver = std::function<bool(const StepInfo&, const State&, MechanicalSystem&)>;
+template <class System>
+using ObserverOf = std::function<bool(const StepInfo&, const typename System::Pose&, System&)>;
+using StepObserver = ObserverOf<MechanicalSystem>;
 /// Factors of all schedules at a time [s] (statics: at a load factor).
 using FactorFunction = std::function<std::vector<double>(double)>;
 
@@ -46,8 +49,12 @@ struct StaticsSettings {
 
 /// Equilibrium under loads and boundary motions that grow with the load factor from 0 to 1. A load step that does not
 /// converge is cut in half, down to 1/1024; shorter steps end on the multiples of 1/load_steps too.
-RunReport run_statics(MechanicalSystem& system, State& state, const FactorFunction& factors,
-                      const SolverSettings& settings, const StaticsSettings& statics, const StepObserver& observe);
+///
+/// A system is a MechanicalSystem, or one of the same functions on another processor, with its own kind of state.
+template <class System>
+RunReport run_statics(System& system, typename System::Pose& state, const FactorFunction& factors,
+                      const SolverSettings& settings, const StaticsSettings& statics,
+                      const std::type_identity_t<ObserverOf<System>>& observe);
 
 struct DynamicsSettings {
   TimeScheme scheme = TimeScheme::implicit_euler;
@@ -59,7 +66,14 @@ struct DynamicsSettings {
 ///
 /// The observer sees the state at the end of each step. The system's gradient belongs to the step's equations there,
 /// with inertia; after a midpoint step it is evaluated anew at the end, without inertia and viscous stress.
-RunReport run_implicit(MechanicalSystem& system, State& state, const FactorFunction& factors,
-                       const SolverSettings& settings, const DynamicsSettings& dynamics, const StepObserver& observe);
+template <class System>
+RunReport run_implicit(System& system, typename System::Pose& state, const FactorFunction& factors,
+                       const SolverSettings& settings, const DynamicsSettings& dynamics,
+                       const std::type_identity_t<ObserverOf<System>>& observe);
+
+extern template RunReport run_statics(MechanicalSystem&, State&, const FactorFunction&, const SolverSettings&,
+                                      const StaticsSettings&, const StepObserver&);
+extern template RunReport run_implicit(MechanicalSystem&, State&, const FactorFunction&, const SolverSettings&,
+                                       const DynamicsSettings&, const StepObserver&);
 
 }  // namespace fascia

@@ -7,21 +7,6 @@
 /// Velocities of ExplicitStepper from one half step to the next.
 namespace fascia {
 
-void turn_to_axes(const FrameConstraint& c, FrameKind kind, bool back, double* d) {
-  const Mat3d T = back ? transpose(c.translation_axes) : c.translation_axes;
-  const Mat3d R = back ? transpose(c.rotation_axes) : c.rotation_axes;
-  const auto turn_vector = [](const Mat3d& m, double* x) {
-    const Vec3d y = m * Vec3d{{x[0], x[1], x[2]}};
-    std::copy(y.v, y.v + 3, x);
-  };
-  turn_vector(T, d);
-  if (kind == FrameKind::rigid) turn_vector(R, d + 3);
-  if (kind != FrameKind::affine) return;
-  const Mat3d A = times_transpose(R * frame_variation(kind, d + 3, {}), R);
-  for (int q = 0; q < 3; ++q)
-    for (int i = 0; i < 3; ++i) d[3 + 3 * q + i] = A(i, q);
-}
-
 ExplicitStepper::Velocity ExplicitStepper::kicked(int node, const double* f) const {
   if (constraint_[at(node)] >= 0) return kicked_held(node, f);
   const std::size_t i = at(node);
@@ -72,7 +57,7 @@ ExplicitStepper::Velocity ExplicitStepper::kicked_held(int node, const double* f
     if (kind == FrameKind::rigid) std::copy(w.spin.v, w.spin.v + 3, d + 3);
     if (kind == FrameKind::affine)
       for (int k = 0; k < 9; ++k) d[3 + k] = w.rate(k % 3, k / 3);
-    turn_to_axes(c, kind, false, d);
+    turn_dofs(kind, c.translation_axes, c.rotation_axes, false, d);
   };
   double old[kMostDofs] = {}, local_f[kMostDofs] = {}, next[kMostDofs] = {};
   std::array<double, kMostDofs * kMostDofs> mass{}, local{};
@@ -90,7 +75,7 @@ ExplicitStepper::Velocity ExplicitStepper::kicked_held(int node, const double* f
       const InertiaForce turning = inertia_force(model_.inertia[i], {}, W * W * Q);
       add_node_force(kind, state_.D[i], -turning.force, turning.moment * -1.0, {}, local_f);
     }
-    turn_to_axes(c, kind, false, local_f);
+    turn_dofs(kind, c.translation_axes, c.rotation_axes, false, local_f);
     // z = (1 + a) w₊ − (1 − a) w₋
     double z[kMostDofs] = {};
     for (int k = 0; k < n; ++k)
@@ -107,7 +92,7 @@ ExplicitStepper::Velocity ExplicitStepper::kicked_held(int node, const double* f
       const bool fixed = filter_.is_fixed(at(first + k));
       next[k] = fixed ? increments_[at(first + k)] / dt_ : (z[k] + (1 - a) * old[k]) / (1 + a);
     }
-    turn_to_axes(c, kind, true, next);
+    turn_dofs(kind, c.translation_axes, c.rotation_axes, true, next);
     result.v = Vec3d{{next[0], next[1], next[2]}};
     if (kind == FrameKind::rigid) result.spin = Vec3d{{next[3], next[4], next[5]}};
     if (kind == FrameKind::affine) result.rate = frame_variation(kind, next + 3, {});

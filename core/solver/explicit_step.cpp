@@ -266,7 +266,8 @@ void ExplicitStepper::advance(std::span<const double> factors) {
       velocity_[at(node)] = next;
       if (constraint_[at(node)] < 0) continue;
       // The boundary overcomes the force on what it moves, in the mean of both ends of a step.
-      turn_to_axes(model_.constraints[at(constraint_[at(node)])], model_.kind(node), false, force);
+      const FrameConstraint& held = model_.constraints[at(constraint_[at(node)])];
+      turn_dofs(model_.kind(node), held.translation_axes, held.rotation_axes, false, force);
       for (int k = 0; k < dofs.size(node); ++k) {
         const std::size_t i = at(dofs.begin(node) + k);
         sums.work -= 0.5 * force[k] * (last_increments_[i] + increments_[i]);

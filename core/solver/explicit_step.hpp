@@ -10,9 +10,6 @@
 
 namespace fascia {
 
-/// Degrees of freedom of a held node into its constraint's axes, or back.
-void turn_to_axes(const FrameConstraint& constraint, FrameKind kind, bool back, double* d);
-
 /// Steps a state by central differences, in place: one pass over points for the forces, one over nodes. What it needs
 /// is allocated once. The state's v and Q_dot are read at the start and written by report_velocities().
 class ExplicitStepper {

@@ -1,10 +1,9 @@
 #include "core/solver/mechanical_system.hpp"
 
 #include "core/math/index.hpp"
-#include "core/math/rotation.hpp"
-#include "core/physics/inertia.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/node_force.hpp"
+#include "core/solver/node_load.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +58,7 @@ void MechanicalSystem::rebuild_state() {
   if (state_.D.size() != start_.D.size()) state_.D = start_.D;
   for (std::size_t i = 0; i < start_.u.size(); ++i) {
     state_.u[i] = start_.u[i] + increment_.du[i];
-    state_.D[i] = rigid(i) ? compose_increments(increment_.Ds[i], start_.D[i]) : increment_.Ds[i] + start_.D[i];
+    state_.D[i] = incremented(model_.frame_kind[i], increment_.Ds[i], start_.D[i]);
   }
   if (!dependents_.empty()) place_dependents_of_step();
 }
@@ -69,7 +68,7 @@ void MechanicalSystem::place_dependents_of_step() {
   for (const DependentNode& d : model_.points.dependents) {
     Vec3d du;
     for (std::size_t k = 0; k < d.hosts.size(); ++k) {
-      const PoseMotion host = motion_of(at(d.hosts[k]));
+      const PoseMotion host = node_motion(at(d.hosts[k]));
       du += host.u * d.w[k] + host.Q * d.b[k];
     }
     increment_.du[at(d.node)] = du;
@@ -96,9 +95,8 @@ void MechanicalSystem::start_from_prediction() {
   for (const FrameConstraint& c : model_.constraints) held[at(c.node)] = 1;
   for (std::size_t i = 0; i < start_.u.size(); ++i) {
     if (held[i] != 0) continue;
-    const Vec3d spin = spin_of(start_.Q_dot[i], Mat3d::identity() + start_.D[i]);
     increment_.du[i] = start_.v[i] * form_.reach;
-    increment_.Ds[i] = rigid(i) ? rotation_increment(spin * form_.reach) : start_.Q_dot[i] * form_.reach;
+    increment_.Ds[i] = increment_along(model_.frame_kind[i], start_.D[i], start_.Q_dot[i], form_.reach);
   }
   rebuild_state();
   const Evaluation predicted = evaluate();
@@ -108,9 +106,26 @@ void MechanicalSystem::start_from_prediction() {
     restore();
 }
 
-PoseMotion MechanicalSystem::motion_of(std::size_t i) const {
-  const Mat3d& Ds = increment_.Ds[i];
-  return {increment_.du[i], rigid(i) ? Ds + Ds * start_.D[i] : Ds};
+PoseMotion MechanicalSystem::node_motion(std::size_t i) const {
+  return motion_of(model_.frame_kind[i], increment_.du[i], increment_.Ds[i], start_.D[i]);
+}
+
+StepNode MechanicalSystem::step_node(std::size_t i) const {
+  return {model_.frame_kind[i], model_.inertia[i], start_.D[i], {start_.v[i], start_.Q_dot[i]},
+          increment_.du[i],     increment_.Ds[i],  form_.q[i],  form_.w[i]};
+}
+
+const FrameInertia* MechanicalSystem::damping_of(std::size_t i) const {
+  return model_.mass_damping.empty() ? nullptr : &model_.mass_damping[i];
+}
+
+/// A point mass asks for less.
+StepInertia MechanicalSystem::node_inertia(std::size_t i) const {
+  const FrameInertia* damping = damping_of(i);
+  if (model_.frame_kind[i] == FrameKind::vertex)
+    return step_inertia(form_, model_.inertia[i].mass, damping != nullptr ? damping->mass : 0, increment_.du[i],
+                        form_.q[i].u, form_.w[i].u, start_.v[i]);
+  return step_inertia(form_, step_node(i), damping, model_.points.part_length[at(model_.points.node_part[i])]);
 }
 
 void MechanicalSystem::add_loads() {
@@ -120,8 +135,8 @@ void MechanicalSystem::add_loads() {
     const double s = factors_[at(load.schedule)];
     for (const NodeLoad& n : load.nodes) {
       const Mat3d& D = state_.D[at(n.node)];
-      load_energy_ -= s * (dot(n.force, state_.u[at(n.node)]) + contract(n.couple, D));
-      add(load_, n.node, n.force * s, n.couple * s, n.torque * s);
+      load_energy_ -= s * dead_load_work(n, state_.u[at(n.node)], D);
+      add_dead_load(model_.kind(n.node), n, s, D, load_.data() + model_.points.dofs.begin(n.node));
     }
   }
   for (const FollowerLoad& load : model_.followers)
@@ -132,38 +147,17 @@ void MechanicalSystem::add_loads() {
   load_energy_ += surfaces_.add_forces(state_, factors_, load_);
 }
 
-/// |x − q − h w|² / (2 h²) + α |x − q|² / (2 h), in the pose form of inertia.hpp.
 void MechanicalSystem::add_inertia() {
   std::fill(inertia_.begin(), inertia_.end(), 0.0);
   inertia_energy_ = 0;
   inertia_rounding_.assign(at(model_.points.part_count()), 0.0);
   if (form_.h <= 0) return;
-  const double scale = 1 / (form_.h * form_.h), damping_scale = 1 / form_.h;
   for (int i = 0; i < model_.node_count(); ++i) {
-    if (model_.kind(i) == FrameKind::vertex) {
-      add_vertex_inertia(i);
-      continue;
-    }
-    const PoseMotion x = motion_of(at(i)), rest = form_.deviation(x, at(i));
-    InertiaForce f = inertia_force(model_.inertia[at(i)], rest.u, rest.Q);
-    inertia_energy_ += 0.5 * scale * inertia_product(model_.inertia[at(i)], rest.u, rest.Q);
-    Vec3d force = f.force * scale;
-    Mat3d moment = f.moment * scale;
-    if (!model_.mass_damping.empty()) {
-      const FrameInertia& damping = model_.mass_damping[at(i)];
-      const PoseMotion path = x - form_.q[at(i)];
-      f = inertia_force(damping, path.u, path.Q);
-      inertia_energy_ += 0.5 * damping_scale * inertia_product(damping, path.u, path.Q);
-      force += f.force * damping_scale;
-      moment += f.moment * damping_scale;
-    }
-    add(inertia_, i, force, moment, {});
-    const auto part = at(model_.points.node_part[at(i)]);
-    // The motion and what the old velocity predicts of it cancel.
-    const double cancelled = norm(x.u) + form_.reach * norm(start_.v[at(i)]) +
-                             model_.points.part_length[part] * (norm(x.Q) + form_.reach * norm(start_.Q_dot[at(i)]));
-    const double rounding = scale * model_.inertia[at(i)].mass * cancelled;
-    inertia_rounding_[part] += rounding * rounding;
+    const StepInertia f = node_inertia(at(i));
+    inertia_energy_ += f.energy;
+    inertia_energy_ += f.damping_energy;
+    add(inertia_, i, f.force, f.moment, {});
+    inertia_rounding_[at(model_.points.node_part[at(i)])] += f.cancelled_force * f.cancelled_force;
   }
   for (double& r : inertia_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
 }
@@ -176,59 +170,16 @@ void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) const {
     for (const DeadLoad& load : model_.loads)
       for (const NodeLoad& n : load.nodes)
         if (rigid(at(n.node)))
-          add_rotation_block(
-              lin.node_blocks.data() + dofs.block_begin(n.node),
-              rotation_tangent(times_transpose(n.couple, lin.Q[at(n.node)])) * -factors_[at(load.schedule)]);
+          add_dead_load_block(n, factors_[at(load.schedule)], lin.Q[at(n.node)],
+                              lin.node_blocks.data() + dofs.block_begin(n.node));
     if (turning) dependents_.add_turning(dependent_forces_, lin.node_blocks);
   }
   surfaces_.linearize(state_, factors_, lin);
   for (RankOne& term : lin.low_rank) dependents_.transfer(term.g);
   if (form_.h <= 0) return;
-  const double scale = 1 / (form_.h * form_.h), damping_scale = 1 / form_.h;
-  for (int i = 0; i < model_.node_count(); ++i) {
-    const Mat3d& Q = lin.Q[at(i)];
-    FrameInertia total = model_.inertia[at(i)];
-    InertiaForce f;
-    const PoseMotion x = motion_of(at(i));
-    if (full) {
-      const PoseMotion rest = form_.deviation(x, at(i));
-      f = inertia_force(total, rest.u, rest.Q);
-      f.moment *= scale;
-    }
-    total.mass *= scale;
-    total.first *= scale;
-    total.second *= scale;
-    if (!model_.mass_damping.empty()) {
-      FrameInertia damping = model_.mass_damping[at(i)];
-      const PoseMotion path = x - form_.q[at(i)];
-      if (full) f.moment += inertia_force(damping, path.u, path.Q).moment * damping_scale;
-      damping.mass *= damping_scale;
-      damping.first *= damping_scale;
-      damping.second *= damping_scale;
-      total += damping;
-    }
-    double* block = lin.node_blocks.data() + dofs.block_begin(i);
-    add_inertia_block(dofs.kind(i), total, Q, block);
-    if (full && rigid(at(i))) add_rotation_block(block, rotation_tangent(times_transpose(f.moment, Q)));
-  }
-}
-
-/// The same of a node that is a point mass.
-void MechanicalSystem::add_vertex_inertia(int node) {
-  const auto i = at(node);
-  const double mass = model_.inertia[i].mass, scale = mass / (form_.h * form_.h);
-  const Vec3d &x = increment_.du[i], path = x - form_.q[i].u, rest = path - form_.w[i].u * form_.h;
-  Vec3d force = rest * scale;
-  inertia_energy_ += 0.5 * scale * squared_norm(rest);
-  if (!model_.mass_damping.empty()) {
-    const double damping = model_.mass_damping[i].mass / form_.h;
-    inertia_energy_ += 0.5 * damping * squared_norm(path);
-    force += path * damping;
-  }
-  double* out = inertia_.data() + model_.points.dofs.begin(node);
-  for (int k = 0; k < 3; ++k) out[k] += force[k];
-  const double rounding = scale * (norm(x) + form_.reach * norm(start_.v[i]));
-  inertia_rounding_[at(model_.points.node_part[i])] += rounding * rounding;
+  for (int i = 0; i < model_.node_count(); ++i)
+    add_step_inertia_block(form_, step_node(at(i)), damping_of(at(i)), lin.Q[at(i)], full,
+                           lin.node_blocks.data() + dofs.block_begin(i));
 }
 
 /// Squares of |v| by connected part, torques divided by the part's length, over the free or the prescribed degrees.
@@ -294,14 +245,6 @@ Evaluation MechanicalSystem::evaluate() {
   return e;
 }
 
-/// Angle of a frame's increment; of an affine one, the rotation that has an increment of A of that size.
-double MechanicalSystem::rotation_in(int node, const double* vector) const {
-  const double* d = vector + model_.points.dofs.begin(node) + 3;
-  double squared = 0;
-  for (int k = 0; k < model_.points.dofs.size(node) - 3; ++k) squared += d[k] * d[k];
-  return std::sqrt(rigid(at(node)) ? squared : 0.5 * squared);
-}
-
 DirectionReport MechanicalSystem::direction() {
   executor_.linearize(state_, history_, settings_.tangent, lin_);
   add_node_blocks(lin_);
@@ -321,32 +264,37 @@ DirectionReport MechanicalSystem::direction() {
   report.usable = solved.usable;
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
+  report.linear_residual = solved.residual;
+  report.cg_seconds = solved.cg_seconds;
   filter_.to_global(direction_);
   dependents_.expand(direction_);
   surfaces_.aim(lin_, direction_);
   for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
-  for (int node = 0; node < model_.node_count(); ++node)
-    report.largest_rotation = std::max(report.largest_rotation, rotation_in(node, direction_.data()));
+  report.largest_rotation = largest_rotation_in(direction_);
   return report;
+}
+
+std::vector<double> MechanicalSystem::product(std::span<const double> d) {
+  executor_.linearize(state_, history_, settings_.tangent, lin_);
+  add_node_blocks(lin_);
+  std::vector<double> all(d.begin(), d.end()), y(d.size());
+  dependents_.expand(all);
+  executor_.multiply(lin_, all, y);
+  dependents_.transfer(y);
+  return y;
 }
 
 void MechanicalSystem::apply(double step) {
   surfaces_.approach(step);
   for (int i = 0; i < model_.node_count(); ++i) {
     const double* d = direction_.data() + model_.points.dofs.begin(i);
-    increment_.du[at(i)] += Vec3d{{d[0], d[1], d[2]}} * step;
-    Mat3d& Ds = increment_.Ds[at(i)];
-    if (rigid(at(i)))
-      Ds = compose_increments(rotation_increment(Vec3d{{d[3], d[4], d[5]}} * step), Ds);
-    else
-      Ds += frame_variation(model_.kind(i), d + 3, {}) * step;
+    advance_increment(model_.kind(i), d, step, increment_.du[at(i)], increment_.Ds[at(i)]);
   }
   for (std::size_t k = 0; k < model_.constraints.size(); ++k) {
     const FrameConstraint& c = model_.constraints[k];
     if (!rigid(at(c.node))) continue;
-    const double* d = direction_.data() + model_.points.dofs.begin(c.node) + 3;
-    for (int a = 0; a < c.rotations; ++a)
-      increment_.turned[k][at(a)] += step * dot(c.rotation_axes.row(a), Vec3d{{d[0], d[1], d[2]}});
+    const double* d = direction_.data() + model_.points.dofs.begin(c.node);
+    advance_turned(c, d, step, increment_.turned[k].data());
   }
   rebuild_state();
 }

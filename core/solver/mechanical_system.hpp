@@ -5,6 +5,7 @@
 #include "core/physics/inertia.hpp"
 #include "core/solver/dependents.hpp"
 #include "core/solver/newton.hpp"
+#include "core/solver/node_step.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "core/solver/tangent_solver.hpp"
 #include "core/solver/time_scheme.hpp"
@@ -30,6 +31,9 @@ struct PathDirections {
 /// du and Ds, never from a difference of positions, so that small steps keep their digits.
 class MechanicalSystem {
  public:
+  using Pose = State;
+  using Memory = StepMemory;
+
   MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings);
 
   /// Starts a step of implicit Euler from `start`. @param dt  0: statics
@@ -80,6 +84,27 @@ class MechanicalSystem {
     }
   }
 
+  /// K d at the state of the last evaluation, by degrees of freedom in world axes.
+  std::vector<double> product(std::span<const double> d);
+
+  /// Takes what the same step gave elsewhere, after an evaluation at its state.
+  void adopt(std::span<const double> gradient, std::span<const double> dependent_forces, const InternalEnergy& energy) {
+    gradient_.assign(gradient.begin(), gradient.end());
+    dependent_forces_.assign(dependent_forces.begin(), dependent_forces.end());
+    internal_ = energy;
+  }
+
+  /// After a midpoint step: evaluates the state at its end, at rest, with what accelerated supports carry.
+  /// @param before  the state at its start
+  void look_back(const State& state, const State& before, double dt) {
+    begin_step(state, 0);
+    evaluate();
+    add_support_inertia([&](int node) {
+      const auto i = at(node);
+      return PoseMotion{(state.v[i] - before.v[i]) * (1 / dt), (state.Q_dot[i] - before.Q_dot[i]) * (1 / dt)};
+    });
+  }
+
   /// Largest rotation [rad] by which a boundary motion would turn a frame from its present place.
   double prescribed_rotation() const;
 
@@ -115,19 +140,17 @@ class MechanicalSystem {
   void place_dependents_of_step();
   void add_loads();
   void add_inertia();
-  void add_vertex_inertia(int node);
   void add_squares(std::span<const double> global, std::vector<double>& free, std::vector<double>& fixed);
   void add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N, const Vec3d& torque) const;
-  void predict_node(std::size_t node, const StepMemory& memory);
   void predict_strain(const StepMemory& memory);
   State moved_by_velocity(double time) const;
   void follow_boundaries(State& end, const std::vector<PoseMotion>& before, StepMemory& memory) const;
   void finish_middle(State& end, std::vector<PoseMotion>& motion) const;
-  void finish_middle_of_frame(std::size_t node, const FrameConstraint* held, State& end, PoseMotion& motion) const;
   bool rigid(std::size_t node) const { return model_.frame_kind[node] == FrameKind::rigid; }
-  PoseMotion motion_of(std::size_t node) const;  ///< since the start of the step
-  double rotation_in(int node, const double* vector) const;
-  double largest_angle() const;
+  PoseMotion node_motion(std::size_t node) const;  ///< since the start of the step
+  StepNode step_node(std::size_t node) const;
+  StepInertia node_inertia(std::size_t node) const;
+  const FrameInertia* damping_of(std::size_t node) const;  ///< null: none
   double largest_rotation_in(std::span<const double> vector) const;
   void add_node_blocks(Linearization& lin, bool turning = true) const;
 

@@ -27,7 +27,9 @@ struct DirectionReport {
   double slope = 0;             ///< gradient · direction [J]
   double largest_rotation = 0;  ///< [rad]
   int linear_iterations = 0;
-  std::string trouble;  ///< a sentence, where there was any
+  std::string trouble;         ///< a sentence, where there was any
+  double linear_residual = 0;  ///< |r| / |b| that conjugate gradients left; 0 of a direct solve
+  double cg_seconds = 0;       ///< in conjugate gradients
 };
 
 enum class NewtonStatus { converged, limit, stalled, not_finite, linear_failure };
@@ -36,7 +38,9 @@ struct NewtonReport {
   NewtonStatus status = NewtonStatus::converged;
   int iterations = 0, linear_iterations = 0;
   Evaluation last;
-  std::string trouble;  ///< of the last direction, empty where there was none
+  std::string trouble;         ///< of the last direction, empty where there was none
+  double linear_residual = 0;  ///< of the last direction
+  double cg_seconds = 0;       ///< of all directions
 };
 
 /// Newton's method with a watchdog (Chamberlain et al. 1982): full steps may raise energy and residual for a few
@@ -80,6 +84,8 @@ class Newton {
     ++report_.iterations;
     report_.linear_iterations += d.linear_iterations;
     report_.trouble = d.trouble;
+    report_.linear_residual = d.linear_residual;
+    report_.cg_seconds += d.cg_seconds;
     return d;
   }
 

@@ -32,18 +32,28 @@ struct SpinInertia {
   static constexpr double kSingular = 1e-10;
 };
 
-/// The mass block of a node in constraint axes at I + D = Q; rows and columns of what is held are those of the
-/// identity.
-inline std::array<double, kMostDofs * kMostDofs> free_mass_block(const Model& model, const DofFilter& filter, int node,
-                                                                 const Mat3d& Q) {
-  std::array<double, kMostDofs * kMostDofs> mass{}, local{};
-  const int n = model.points.dofs.size(node), first = model.points.dofs.begin(node);
-  add_inertia_block(model.kind(node), model.inertia[at(node)], Q, mass.data());
-  filter.rotate_block(node, node, mass.data(), local.data());
+/// The mass block of a node (n × n by rows) in constraint axes at I + D = Q; rows and columns of what is held are those
+/// of the identity.
+/// @param turn   null: the axes of the world
+/// @param fixed  bit k: the degree of freedom k is held
+FASCIA_HD inline void free_mass_block(FrameKind kind, const FrameInertia& inertia, const Mat3d& Q, const DofTurn* turn,
+                                      unsigned fixed, double* block) {
+  double mass[kMostDofs * kMostDofs] = {};
+  const int n = dof_count(kind);
+  add_inertia_block(kind, inertia, Q, mass);
+  turn_block(kind, turn, kind, turn, mass, block);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
-      if (filter.is_fixed(at(first + i)) || filter.is_fixed(at(first + j))) local[at(n * i + j)] = i == j ? 1 : 0;
-  return local;
+      if (((fixed >> i | fixed >> j) & 1U) != 0) block[n * i + j] = i == j ? 1 : 0;
+}
+
+/// The same of a node of a model.
+inline std::array<double, kMostDofs * kMostDofs> free_mass_block(const Model& model, const DofFilter& filter, int node,
+                                                                 const Mat3d& Q) {
+  std::array<double, kMostDofs * kMostDofs> block{};
+  free_mass_block(model.kind(node), model.inertia[at(node)], Q, filter.turn_of(node), filter.fixed_of(node),
+                  block.data());
+  return block;
 }
 
 }  // namespace fascia

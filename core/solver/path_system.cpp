@@ -50,7 +50,9 @@ bool TangentSolver::solve_as_is(std::span<const double> prescribed, std::span<co
 
 double MechanicalSystem::largest_rotation_in(std::span<const double> vector) const {
   double largest = 0;
-  for (int node = 0; node < model_.node_count(); ++node) largest = std::max(largest, rotation_in(node, vector.data()));
+  const DofLayout& dofs = model_.points.dofs;
+  for (int node = 0; node < model_.node_count(); ++node)
+    largest = std::max(largest, rotation_in(dofs.kind(node), vector.data() + dofs.begin(node)));
   return largest;
 }
 

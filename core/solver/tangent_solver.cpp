@@ -1,6 +1,7 @@
 #include "core/solver/tangent_solver.hpp"
 
 #include "core/math/index.hpp"
+#include "core/solver/clock.hpp"
 #include "core/solver/positive_inverse.hpp"
 
 #include <algorithm>
@@ -180,6 +181,7 @@ void TangentSolver::build_block_jacobi() {
 }
 
 TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<double> x) {
+  const Clock::time_point start = Clock::now();
   const Preconditioner kind = settings_.preconditioner;
   const auto apply = [&](const std::vector<double>& p, std::vector<double>& Ap) {
     apply_matrix(p, Ap);
@@ -236,9 +238,13 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
     cg = conjugate_gradients(vectors_, apply, precondition, rhs, result, settings_.cg);
   }
   std::copy(result.begin(), result.end(), x.begin());
-  TangentReport report{true, cg.iterations, ""};
+  TangentReport report;
+  report.iterations = cg.iterations;
   if (cg.status == CgStatus::negative_curvature) report.trouble = "CG met negative curvature";
-  if (cg.status == CgStatus::not_finite) report = {false, cg.iterations, "CG met a number that is not finite"};
+  if (cg.status == CgStatus::not_finite) report.trouble = "CG met a number that is not finite";
+  report.usable = cg.status != CgStatus::not_finite;
+  report.residual = cg.relative_norm;
+  report.cg_seconds = seconds_since(start);
   return report;
 }
 

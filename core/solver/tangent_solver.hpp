@@ -18,6 +18,8 @@ struct TangentReport {
   bool usable = true;
   int iterations = 0;
   std::string trouble;
+  double residual = 0;    ///< |r| / |b| that CG left; 0 of a direct solve
+  double cg_seconds = 0;  ///< in conjugate gradients
 };
 
 /// Tangents that are positive definite where the full one is not: without the pull of tethers on turning frames, and

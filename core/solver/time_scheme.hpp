@@ -44,18 +44,36 @@ struct StepMemory {
   AlignedVector<double> E;               ///< E₋, as in StrainHistory; empty where nothing is damped
 };
 
-/// What a step starts from, node by node, in the form above.
-struct StepForm {
+/// The numbers of a step in the form above.
+struct StepConstants {
   TimeScheme scheme = TimeScheme::implicit_euler;
-  double h = 0;      ///< [s]; 0: statics
-  double reach = 0;  ///< time from the start of the step to where its equations hold [s]
-  double step = 0;   ///< dt [s]
-  std::vector<PoseMotion> q, w;
+  double h = 0;            ///< [s]; 0: statics
+  double reach = 0;        ///< time from the start of the step to where its equations hold [s]
+  double step = 0;         ///< dt [s]
+  double step_before = 0;  ///< dt₋ [s]; 0: none
 
-  /// x − q − h w
-  PoseMotion deviation(const PoseMotion& x, std::size_t node) const {
-    return {x.u - q[node].u - w[node].u * h, x.Q - q[node].Q - w[node].Q * h};
+  /// @param dt  0: statics
+  FASCIA_HD static StepConstants of(TimeScheme scheme, double dt, double step_before) {
+    StepConstants c{scheme, dt, dt, dt, step_before};
+    if (scheme == TimeScheme::newmark || scheme == TimeScheme::midpoint) c.h = 0.5 * dt;
+    if (scheme == TimeScheme::midpoint) c.reach = 0.5 * dt;
+    if (scheme == TimeScheme::bdf2) c.h = dt * (step_before + dt) / (step_before + 2 * dt);
+    return c;
   }
+  /// c of bdf2
+  FASCIA_HD double memory_factor() const {
+    const double r = step / step_before;
+    return r * r / (1 + 2 * r);
+  }
+  /// x − q − h w
+  FASCIA_HD PoseMotion deviation(const PoseMotion& x, const PoseMotion& q, const PoseMotion& w) const {
+    return {x.u - q.u - w.u * h, x.Q - q.Q - w.Q * h};
+  }
+};
+
+/// What a step starts from, node by node.
+struct StepForm : StepConstants {
+  std::vector<PoseMotion> q, w;
 };
 
 /// Above this ratio to the step before, BDF2 loses its accuracy (and at 1 + √2 its stability).
@@ -63,7 +81,8 @@ inline constexpr double kLargestStepRatio = 2;
 
 /// The scheme with which a step is taken: BDF2 starts, and grows by more than kLargestStepRatio, with the midpoint
 /// rule.
-inline TimeScheme scheme_of_step(TimeScheme scheme, double dt, const StepMemory& memory) {
+template <class Memory>
+TimeScheme scheme_of_step(TimeScheme scheme, double dt, const Memory& memory) {
   const bool fits = memory.step > 0 && dt <= kLargestStepRatio * (1 + 1e-9) * memory.step;
   return scheme == TimeScheme::bdf2 && !fits ? TimeScheme::midpoint : scheme;
 }

@@ -2,8 +2,7 @@
 #include "core/physics/inertia.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/node_force.hpp"
-#include "core/solver/node_inertia.hpp"
+#include "core/solver/node_finish.hpp"
 #include "core/solver/small_factor.hpp"
 
 #include <algorithm>
@@ -22,75 +21,34 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   increment_.Ds.set_zero();
   increment_.turned = start_.turned;
   surfaces_.begin_step();
-  form_.scheme = scheme;
-  form_.step = form_.reach = form_.h = dt;
-  if (scheme == TimeScheme::newmark || scheme == TimeScheme::midpoint) form_.h = 0.5 * dt;
-  if (scheme == TimeScheme::midpoint) form_.reach = 0.5 * dt;
-  if (scheme == TimeScheme::bdf2) form_.h = dt * (memory.step + dt) / (memory.step + 2 * dt);
+  static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);
   form_.q.assign(n, {});
   form_.w.assign(n, {});
   history_.inverse_step = 0;
   if (dt > 0) {
-    for (std::size_t i = 0; i < n; ++i) predict_node(i, memory);
-    if (scheme == TimeScheme::midpoint) {
-      for (const FrameConstraint& c : model_.constraints) {
-        Vec3d& q = form_.q[at(c.node)].u;
-        for (int a = 0; a < c.translations; ++a) q -= c.translation_axes.row(a) * dot(c.translation_axes.row(a), q);
-      }
+    const auto entry = [](const std::vector<PoseMotion>& of, std::size_t i) {
+      return i < of.size() ? &of[i] : nullptr;
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      StepNode node = step_node(i);
+      predict(form_, {entry(memory.motion, i), entry(memory.velocity, i), entry(memory.acceleration, i)}, node);
+      form_.q[i] = node.q;
+      form_.w[i] = node.w;
     }
+    if (scheme == TimeScheme::midpoint)
+      for (const FrameConstraint& c : model_.constraints) straighten_held(c, form_.q[at(c.node)].u);
     if (model_.points.damped) predict_strain(memory);
   }
   rebuild_state();
-}
-
-/// q and w of a node. A rotation moves along an arc: where the equations hold, its second derivative must be that of
-/// the arc to second order also in directions in which a rotation cannot give way, since they feel the inertia too.
-void MechanicalSystem::predict_node(std::size_t i, const StepMemory& memory) {
-  const double h = form_.h;
-  PoseMotion &q = form_.q[i], &w = form_.w[i];
-  const PoseMotion v{start_.v[i], start_.Q_dot[i]};
-  const Mat3d Q = Mat3d::identity() + start_.D[i];
-  switch (form_.scheme) {
-    case TimeScheme::implicit_euler:
-      w = v;
-      return;
-    case TimeScheme::bdf2: {
-      const double r = form_.step / memory.step, c = r * r / (1 + 2 * r);
-      q = memory.motion[i] * c;
-      w = v + (v - memory.velocity[i]) * c;
-      return;
-    }
-    case TimeScheme::newmark: {
-      const PoseMotion& a = memory.acceleration[i];
-      q = v * h;
-      w = v + a * h;
-      if (!rigid(i)) return;
-      const Mat3d W = skew(spin_of(v.Q, Q)), W_dot = skew(spin_of(a.Q, Q));
-      w.Q -= ((W_dot * W + W * W_dot) * Q) * (h * h);
-      return;
-    }
-    case TimeScheme::midpoint:
-      if (rigid(i)) {
-        // The mass centre goes straight, and the frame's origin around it.
-        const FrameInertia& inertia = model_.inertia[i];
-        const Mat3d W = skew(spin_of(v.Q, Q));
-        q.Q = (W * W * Q) * (-0.5 * h * h);
-        if (inertia.mass > 0) q.u = (q.Q * inertia.first) * (-1 / inertia.mass);
-      }
-      w = v;
-      return;
-  }
 }
 
 /// Where the present velocities lead: rotations along arcs, origins of frames in the midpoint rule as their q says.
 State MechanicalSystem::moved_by_velocity(double time) const {
   State moved = start_;
   for (std::size_t i = 0; i < moved.u.size(); ++i) {
-    moved.u[i] += start_.v[i] * time;
-    if (form_.scheme == TimeScheme::midpoint) moved.u[i] -= form_.q[i].u;
-    const Vec3d spin = spin_of(start_.Q_dot[i], Mat3d::identity() + start_.D[i]);
-    moved.D[i] = rigid(i) ? compose_increments(rotation_increment(spin * time), start_.D[i])
-                          : start_.D[i] + start_.Q_dot[i] * time;
+    const MovedNode node = fascia::moved_by_velocity(form_, step_node(i), time);
+    moved.u[i] += node.du;
+    moved.D[i] = node.D;
   }
   place_dependents(model_.points, moved);
   return moved;
@@ -105,7 +63,7 @@ void MechanicalSystem::predict_strain(const StepMemory& memory) {
   AlignedVector<double>& E = history_.E;
   start_strain_ = E;
   if (form_.scheme == TimeScheme::bdf2) {
-    const double r = form_.step / memory.step, c = r * r / (1 + 2 * r);
+    const double c = form_.memory_factor();
     for (std::size_t k = 0; k < E.size(); ++k) E[k] += c * (E[k] - memory.E[k]);
     return;
   }
@@ -132,22 +90,16 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
   const bool same_step = memory.step == form_.step && memory.motion.size() == n;
   const std::vector<PoseMotion> before = same_step ? std::move(memory.motion) : std::vector<PoseMotion>{};
   memory.motion.resize(n);
-  for (std::size_t i = 0; i < n; ++i) memory.motion[i] = motion_of(i);
+  for (std::size_t i = 0; i < n; ++i) memory.motion[i] = node_motion(i);
   if (form_.scheme == TimeScheme::midpoint) finish_middle(end, memory.motion);
   if (form_.scheme == TimeScheme::newmark) memory.acceleration.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     if (rigid(i)) end.D[i] = orthonormalized_increment(end.D[i]);
     if (form_.h <= 0 || form_.scheme == TimeScheme::midpoint) continue;
-    const PoseMotion &x = memory.motion[i], v = (x - form_.q[i]) * (1 / form_.h);
-    end.v[i] = v.u;
-    end.Q_dot[i] = v.Q;
-    if (form_.scheme != TimeScheme::newmark) continue;
-    PoseMotion& a = memory.acceleration[i];
-    a = form_.deviation(x, i) * (1 / (form_.h * form_.h));
-    if (!rigid(i)) continue;
-    const Mat3d Q = Mat3d::identity() + end.D[i], W = skew(spin_of(v.Q, Q));
-    end.Q_dot[i] = W * Q;
-    a.Q = (skew(spin_of(a.Q, Q)) + W * W) * Q;
+    const EndRates rates = rates_at_end(form_, step_node(i), end.D[i]);
+    end.v[i] = rates.v.u;
+    end.Q_dot[i] = rates.v.Q;
+    if (form_.scheme == TimeScheme::newmark) memory.acceleration[i] = rates.a;
   }
   const bool remembers = form_.h > 0 && form_.scheme != TimeScheme::implicit_euler;
   if (remembers && form_.scheme != TimeScheme::bdf2) follow_boundaries(end, before, memory);
@@ -161,28 +113,17 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
   return end;
 }
 
-/// Velocity and acceleration of what is prescribed, by differences of its motion: those that the scheme would keep ring
-/// for ever after a boundary that starts at once.
 /// @param before  motion in the step before, of the same length; or empty
 void MechanicalSystem::follow_boundaries(State& end, const std::vector<PoseMotion>& before, StepMemory& memory) const {
-  const double dt = form_.step;
+  const bool accelerates = form_.scheme == TimeScheme::newmark;
   for (const FrameConstraint& c : model_.constraints) {
     const std::size_t i = at(c.node);
     const PoseMotion& x = memory.motion[i];
-    const Vec3d last = before.empty() ? x.u : before[i].u;
-    const Vec3d v = (x.u * 1.5 - last * 0.5) * (1 / dt), a = (x.u - last) * (1 / (dt * dt));
-    for (int k = 0; k < c.translations; ++k) {
-      const Vec3d axis = c.translation_axes.row(k);
-      end.v[i] += axis * dot(axis, v - end.v[i]);
-      if (form_.scheme == TimeScheme::newmark) {
-        Vec3d& kept = memory.acceleration[i].u;
-        kept += axis * dot(axis, a - kept);
-      }
-    }
-    if (!rigid(i) || c.rotations < 3) continue;
-    const Mat3d Q = Mat3d::identity() + end.D[i], W = skew(spin_of(x.Q * (1 / dt), Q));
-    end.Q_dot[i] = W * Q;
-    if (form_.scheme == TimeScheme::newmark) memory.acceleration[i].Q = W * W * Q;
+    EndRates rates{{end.v[i], end.Q_dot[i]}, accelerates ? memory.acceleration[i] : PoseMotion{}};
+    follow_boundary(form_, model_.kind(c.node), c, x, before.empty() ? x.u : before[i].u, end.D[i], rates);
+    end.v[i] = rates.v.u;
+    end.Q_dot[i] = rates.v.Q;
+    if (accelerates) memory.acceleration[i] = rates.a;
   }
 }
 
@@ -191,11 +132,10 @@ void MechanicalSystem::finish_middle(State& end, std::vector<PoseMotion>& motion
   std::vector<const FrameConstraint*> constraint(start_.u.size(), nullptr);
   for (const FrameConstraint& c : model_.constraints) constraint[at(c.node)] = &c;
   for (std::size_t i = 0; i < start_.u.size(); ++i) {
-    const PoseMotion x = motion[i];
-    motion[i] = x * 2;
-    end.v[i] = x.u * (2 / form_.h) - start_.v[i];
-    end.Q_dot[i] = x.Q * (2 / form_.h) - start_.Q_dot[i];
-    if (rigid(i)) finish_middle_of_frame(i, constraint[i], end, motion[i]);
+    const MiddleEnd finished = fascia::finish_middle(form_, step_node(i), constraint[i], state_.D[i]);
+    motion[i] = finished.motion;
+    end.v[i] = finished.v.u;
+    end.Q_dot[i] = finished.v.Q;
     end.u[i] = start_.u[i] + motion[i].u;
     end.D[i] = start_.D[i] + motion[i].Q;
   }
@@ -211,49 +151,6 @@ void MechanicalSystem::finish_middle(State& end, std::vector<PoseMotion>& motion
   }
 }
 
-/// Q turns by the same rotation again, and the mass centre goes on straight. The momentum is kept exactly, L₊ = L + dt
-/// τ with the torque in the middle of the step: about the mass centre, or of a held frame about its origin and its free
-/// axes.
-void MechanicalSystem::finish_middle_of_frame(std::size_t i, const FrameConstraint* held, State& end,
-                                              PoseMotion& motion) const {
-  const double h = form_.h;
-  const FrameInertia& inertia = model_.inertia[i];
-  const PoseMotion x = motion_of(i);
-  const Mat3d& Ds = increment_.Ds[i];
-  const Mat3d twice = compose_increments(Ds, Ds), Q = Mat3d::identity() + start_.D[i];
-  motion.Q = twice + twice * start_.D[i];
-  const Mat3d Q_middle = Mat3d::identity() + state_.D[i], Q_end = Q + motion.Q;
-  const PoseMotion rest = form_.deviation(x, i) * (1 / (h * h));
-  const Vec3d spin = spin_of(start_.Q_dot[i], Q);
-  const Vec3d center = inertia.mass > 0 ? inertia.first * (1 / inertia.mass) : Vec3d{};
-  const InertiaForce f = inertia_force(inertia, rest.u, rest.Q);
-  Vec3d spin_end = rotation_vector(Ds) * (2 / h) - spin;
-  if (held == nullptr) {
-    const SpinInertia turning(inertia);
-    const Vec3d torque = axl(Q_middle * transpose(f.moment)) - cross(Q_middle * center, f.force);
-    if (turning.regular) spin_end = turning.spin(Q_end, turning.momentum(Q, spin) + torque * form_.step);
-  } else if (const SpinInertia turning(inertia.second); turning.regular) {
-    const Mat3d& R = held->rotation_axes;
-    const Vec3d torque = axl(Q_middle * transpose(rest.Q * inertia.second));
-    Vec3d momentum = R * (turning.momentum(Q, spin) + torque * form_.step);
-    Mat3d local = times_transpose(R * times_transpose(Q_end * turning.rest, Q_end), R);
-    for (int a = 0; a < held->rotations; ++a) {
-      momentum[a] = dot(R.row(a), spin_end);
-      for (int k = 0; k < 3; ++k) local(a, k) = a == k ? 1 : 0;
-    }
-    spin_end = transpose(R) * (inverse(local) * momentum);
-  }
-  end.Q_dot[i] = skew(spin_end) * Q_end;
-  if (!(inertia.mass > 0)) return;
-  const Vec3d kept = end.v[i];
-  motion.u = (x.u + x.Q * center) * 2 - motion.Q * center;
-  end.v[i] = start_.v[i] + start_.Q_dot[i] * center + f.force * (form_.step / inertia.mass) - end.Q_dot[i] * center;
-  for (int a = 0; held != nullptr && a < held->translations; ++a) {
-    const Vec3d axis = held->translation_axes.row(a);
-    end.v[i] += axis * dot(axis, kept - end.v[i]);
-  }
-}
-
 void MechanicalSystem::start_acceleration(const State& start, double dt, StepMemory& memory) {
   memory.acceleration.assign(start.u.size(), {});
   begin_step(start, dt, TimeScheme::newmark, memory);
@@ -262,14 +159,8 @@ void MechanicalSystem::start_acceleration(const State& start, double dt, StepMem
   std::vector<double>& force = work_;
   for (std::size_t k = 0; k < force.size(); ++k) force[k] = load_[k] - gradient_[k];
   for (int i = 0; i < model_.node_count(); ++i) {
-    const Mat3d Q = Mat3d::identity() + state_.D[at(i)], W = skew(spin_of(start.Q_dot[at(i)], Q));
-    InertiaForce f;
-    if (rigid(at(i))) f = inertia_force(model_.inertia[at(i)], {}, W * W * Q);
-    if (!model_.mass_damping.empty()) {
-      const InertiaForce damping = inertia_force(model_.mass_damping[at(i)], start.v[at(i)], start.Q_dot[at(i)]);
-      f.force += damping.force;
-      f.moment += damping.moment;
-    }
+    const InertiaForce f = inertia_of_velocity(model_.kind(i), model_.inertia[at(i)], damping_of(at(i)),
+                                               state_.D[at(i)], {start.v[at(i)], start.Q_dot[at(i)]});
     add(force, i, -f.force, f.moment * -1.0, {});
   }
   dependents_.transfer(force);
@@ -287,12 +178,8 @@ void MechanicalSystem::start_acceleration(const State& start, double dt, StepMem
   }
   filter_.to_global(force);
   for (int i = 0; i < model_.node_count(); ++i) {
-    const Mat3d Q = Mat3d::identity() + state_.D[at(i)], W = skew(spin_of(start.Q_dot[at(i)], Q));
-    const double* a = force.data() + dofs.begin(i);
-    PoseMotion& out = memory.acceleration[at(i)];
-    out.u = Vec3d{{a[0], a[1], a[2]}};
-    out.Q = frame_variation(model_.kind(i), a + 3, Q);
-    if (rigid(at(i))) out.Q += W * W * Q;
+    memory.acceleration[at(i)] =
+        acceleration_of(model_.kind(i), force.data() + dofs.begin(i), state_.D[at(i)], start.Q_dot[at(i)]);
   }
 }
 

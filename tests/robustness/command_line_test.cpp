@@ -13,6 +13,7 @@ TEST_F(CommandLine, TellsVersionAndHelp) {
   const ProgramResult version = fascia({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_NE(version.out.find("0.1.0"), std::string::npos) << version.out;
+  EXPECT_NE(version.out.find("backends: cpu"), std::string::npos) << version.out;
   EXPECT_EQ(version.err, "");
 
   const ProgramResult help = fascia({"--help"});

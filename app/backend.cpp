@@ -1,0 +1,51 @@
+#include "app/backend.hpp"
+
+#include "app/run_scene.hpp"
+#include "gpu/device.hpp"
+
+#include <fmt/format.h>
+
+namespace fascia::app {
+
+namespace {
+
+/// Below, a step on the processor is over before one on the GPU is (docs/performance.md).
+constexpr int kWorthwhile = 20000;
+
+}  // namespace
+
+std::string not_on_gpu(const Simulation& s) {
+  const Solver& solver = s.scene.solver;
+  if (solver.kind == SolverKind::modes) return "solver.kind = \"modes\"";
+  if (solver.kind == SolverKind::central_differences) return "solver.kind = \"explicit\"";
+  if (solver.control == StaticControl::arc_length) return "solver.control = \"arc-length\"";
+  if (solver.control == StaticControl::displacement) return "solver.control = \"displacement\"";
+  if (solver.linear == LinearKind::cholesky) return "solver.linear.kind = \"cholesky\"";
+  if (solver.preconditioner == PreconditionerKind::cholesky) return "solver.linear.preconditioner = \"cholesky\"";
+  if (!s.model.surfaces.empty()) return "pressure on faces";
+  return "";
+}
+
+Backend choose_backend(const Simulation& s) {
+  const std::string& asked = s.scene.solver.backend;
+  if (asked == "cpu") return Backend::cpu;
+  const std::string missing = not_on_gpu(s);
+  if (asked == "cuda") {
+    try {
+      gpu::require_device();
+    } catch (const gpu::NoDevice& e) {
+      throw BackendError(e.what());
+    }
+    if (!missing.empty())
+      throw BackendError(fmt::format("{}: the GPU does not compute {}; use --backend cpu, or auto",
+                                     s.scene.path.string(), missing));
+    return Backend::cuda;
+  }
+  if (!missing.empty() || s.model.free_dof_count() < kWorthwhile) return Backend::cpu;
+  std::string reason;
+  return gpu::usable_devices(reason).empty() ? Backend::cpu : Backend::cuda;
+}
+
+const char* name_of(Backend backend) { return backend == Backend::cuda ? "cuda" : "cpu"; }
+
+}  // namespace fascia::app

@@ -1,0 +1,120 @@
+#pragma once
+
+#include "app/simulation.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// `fascia bench`: time steps of fixed work, on each backend, as tables.
+namespace fascia::app {
+
+/// A scene that is timed.
+struct BenchmarkCase {
+  std::string name;     ///< of its row and of its scene file
+  std::string body;     ///< what it is, in a word
+  std::string setting;  ///< "paper": as in the publication; "default": the program's own choice
+  int size = 0;         ///< integration points or cells that are asked for
+  std::string scene;    ///< TOML
+  std::optional<double> published_cpu, published_gpu;  ///< a time step in the publication [ms]
+};
+
+struct Benchmark {
+  std::string name, title;
+  std::string notes;     ///< sentences below the table
+  int default_size = 0;  ///< larger cases are timed only where they are asked for
+  std::vector<BenchmarkCase> cases;
+};
+
+/// All of them, in the order of the list that `fascia bench` prints.
+std::vector<Benchmark> all_benchmarks();
+
+// Parts of all_benchmarks, each in a file of its own or beside its like.
+Benchmark table2();    ///< tables.cpp
+Benchmark table3();    ///< tables.cpp
+Benchmark elements();  ///< elements.cpp
+/// Two walls of n × n cells with tissue between them: table 2's coupling at n = 7; elements.cpp.
+/// @param frames, points  about so many of the tissue's own
+std::string coupled_scene(int cells, int frames, int points);
+
+/// Which steps are timed: at least `fewest`, then on until `seconds` have passed or `most` are done.
+struct StepPlan {
+  int warm_up = 2;
+  int fewest = 3, most = 100;
+  double seconds = 1;
+};
+
+/// What a backend measured, one entry a step.
+struct StepTimes {
+  std::vector<double> step_ms, cg_ms;  ///< whole step; in conjugate gradients alone
+  int cg_iterations = 0;               ///< fewest of a step
+  double residual = 0;                 ///< |r| / |b| after the conjugate gradients of the first of these steps
+  std::string trouble;                 ///< a sentence, where the last step met any
+};
+
+/// Something that can take a scene's time steps.
+struct Backend {
+  std::string name;  ///< "cpu", "cuda"
+  int threads = 0;   ///< of the host; 0: not a number that matters
+  std::function<StepTimes(const Simulation&, const StepPlan&)> run;
+
+  std::string label() const;  ///< "cpu, 1 thread"
+};
+
+/// The backends of this build on this machine: the processor with one thread and with `threads` (0: all).
+std::vector<Backend> available_backends(int threads);
+
+/// One case on one backend.
+struct Measurement {
+  std::string name, body, setting;
+  int points = 0, frames = 0, dofs = 0;  ///< frames: nodes of all kinds
+  double neighbours = 0;                 ///< mean number of frames or vertices that move a point
+  std::string backend;
+  int threads = 0, steps = 0;
+  double step_ms = 0, step_p99_ms = 0, step_max_ms = 0, cg_ms = 0;  ///< step and CG: medians
+  int cg_iterations = 0;
+  double residual = 0;
+  std::string trouble;
+  std::optional<double> published_cpu, published_gpu;  ///< [ms]
+};
+
+/// A case that was not timed, and why.
+struct SkippedCase {
+  std::string name, reason;
+};
+
+struct BenchmarkResult {
+  std::string name, title, notes;
+  std::vector<Measurement> rows;  ///< backends of a case beside one another
+  std::vector<SkippedCase> skipped;
+};
+
+struct BenchOptions {
+  std::optional<std::string> name;  ///< none: the list of benchmarks is printed
+  std::vector<double> sizes;        ///< empty: all up to the limit
+  std::optional<double> max_points;
+  std::string settings = "both";  ///< "paper", "default", "both"
+  int repeat = 0;                 ///< steps that are timed; 0: StepPlan's
+  int threads = 0;                ///< 0: all
+  std::optional<std::filesystem::path> output;
+  bool json = false, quiet = false;
+};
+
+/// Cases that the options choose; what is above the limit goes to `skipped`.
+/// @throws InputError  a size that the benchmark does not have
+std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchOptions& options,
+                                        std::vector<SkippedCase>& skipped);
+
+/// Times the cases on the backends. A case that does not fit into memory is skipped, and the result says so.
+/// @param say  is told what is being done
+BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& options,
+                               const std::vector<Backend>& backends,
+                               const std::function<void(const std::string&)>& say);
+
+/// The command. Returns the exit status.
+/// @throws InputError  an unknown benchmark or size; FileError
+int run_bench(const BenchOptions& options);
+
+}  // namespace fascia::app

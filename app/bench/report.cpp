@@ -1,0 +1,193 @@
+#include "app/bench/report.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace fascia::app {
+namespace {
+
+using Row = std::vector<std::string>;
+
+/// A time with three digits or all of its whole milliseconds.
+std::string milliseconds(double ms) { return ms >= 100 ? fmt::format("{:.0f}", ms) : fmt::format("{:#.3g}", ms); }
+
+std::string milliseconds(const std::optional<double>& ms) { return ms ? milliseconds(*ms) : "-"; }
+
+std::string label(const Measurement& m) { return Backend{m.backend, m.threads, {}}.label(); }
+
+/// Backends in the order of their first row.
+std::vector<std::string> labels(const BenchmarkResult& result) {
+  std::vector<std::string> found;
+  for (const Measurement& m : result.rows)
+    if (std::find(found.begin(), found.end(), label(m)) == found.end()) found.push_back(label(m));
+  return found;
+}
+
+/// Rows of the same case, which follow one another.
+std::vector<std::vector<Measurement>> cases_of(const BenchmarkResult& result) {
+  std::vector<std::vector<Measurement>> cases;
+  for (const Measurement& m : result.rows) {
+    if (cases.empty() || cases.back().front().name != m.name) cases.emplace_back();
+    cases.back().push_back(m);
+  }
+  return cases;
+}
+
+/// Columns to the width of their widest entry: text to the left, numbers to the right.
+std::string aligned(const std::vector<Row>& rows, std::size_t left) {
+  std::vector<std::size_t> width(rows.front().size());
+  for (const Row& r : rows)
+    for (std::size_t c = 0; c < r.size(); ++c) width[c] = std::max(width[c], r[c].size());
+  std::string text;
+  for (const Row& r : rows) {
+    std::string line;
+    for (std::size_t c = 0; c < r.size(); ++c)
+      line += c < left ? fmt::format("{:<{}}  ", r[c], width[c]) : fmt::format("{:>{}}  ", r[c], width[c]);
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+/// Both lines above the numbers: what a column belongs to, and what it is.
+std::vector<Row> headings(bool published, const std::vector<std::string>& backends) {
+  Row above{"", "", "", "", "", ""}, below{"body", "setting", "points", "frames", "neighbours", "iterations"};
+  const auto add = [&](const std::string& group, const std::vector<std::string>& columns) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      above.push_back(i == 0 ? group : "");
+      below.push_back(columns[i]);
+    }
+  };
+  if (published) add("paper", {"CPU ms", "GPU ms"});
+  for (const std::string& b : backends) add(b, {"step ms", "CG ms", "|r|/|b|"});
+  add("", {"fastest"});
+  return {above, below};
+}
+
+Row table_row(const std::vector<Measurement>& of_case, bool published, const std::vector<std::string>& backends) {
+  const Measurement& first = of_case.front();
+  const auto by_step = [](const Measurement& a, const Measurement& b) { return a.step_ms < b.step_ms; };
+  const auto by_iterations = [](const Measurement& a, const Measurement& b) {
+    return a.cg_iterations < b.cg_iterations;
+  };
+  const int iterations = std::min_element(of_case.begin(), of_case.end(), by_iterations)->cg_iterations;
+  Row row{first.body,
+          first.setting,
+          fmt::format("{}", first.points),
+          fmt::format("{}", first.frames),
+          fmt::format("{:.3g}", first.neighbours),
+          fmt::format("{}", iterations)};
+  if (published) {
+    row.push_back(milliseconds(first.published_cpu));
+    row.push_back(milliseconds(first.published_gpu));
+  }
+  for (const std::string& b : backends) {
+    const auto m = std::find_if(of_case.begin(), of_case.end(), [&](const Measurement& x) { return label(x) == b; });
+    const bool there = m != of_case.end();
+    row.push_back(there ? milliseconds(m->step_ms) : "-");
+    row.push_back(there ? milliseconds(m->cg_ms) : "-");
+    row.push_back(there ? fmt::format("{:.1e}", m->residual) : "-");
+  }
+  row.push_back(label(*std::min_element(of_case.begin(), of_case.end(), by_step)));
+  return row;
+}
+
+std::string machine_lines(const Machine& m) {
+  std::string text = fmt::format("{}, {} threads, {:.3g} GB; {}\n", m.cpu, m.threads, m.memory / 1e9, m.system);
+  for (const std::string& gpu : m.gpu) text += fmt::format("{}, driver {}\n", gpu, m.driver);
+  text += fmt::format("fascia {} ({}), {}, {}", m.fascia, m.backends, m.compiler, m.build);
+  for (const auto& [name, version] : m.libraries) text += fmt::format(", {} {}", name, version);
+  return text + fmt::format("; {}\n", m.date);
+}
+
+std::string field(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
+
+/// JSON has no NaN, which a run that went astray may leave.
+nlohmann::ordered_json number(double v) {
+  return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json number(const std::optional<double>& v) {
+  return v ? number(*v) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace
+
+std::string result_table(const BenchmarkResult& result, const Machine& machine) {
+  const bool published = std::any_of(result.rows.begin(), result.rows.end(), [](const Measurement& m) {
+    return m.published_cpu.has_value() || m.published_gpu.has_value();
+  });
+  const std::vector<std::string> backends = labels(result);
+  std::vector<Row> rows = headings(published, backends);
+  std::set<std::string> troubles;
+  for (const std::vector<Measurement>& of_case : cases_of(result)) {
+    rows.push_back(table_row(of_case, published, backends));
+    for (const Measurement& m : of_case)
+      if (!m.trouble.empty()) troubles.insert(fmt::format("{}: {}\n", m.name, m.trouble));
+  }
+  constexpr std::size_t kTextColumns = 2;
+  std::string text = fmt::format("{}\n\n{}\n{}\n", result.title, aligned(rows, kTextColumns), result.notes);
+  for (const std::string& t : troubles) text += t;
+  std::map<std::string, std::string> skipped;
+  for (const SkippedCase& s : result.skipped) skipped[s.reason] += " " + s.name;
+  for (const auto& [reason, names] : skipped) text += fmt::format("not timed, {}:{}\n", reason, names);
+  return text + machine_lines(machine);
+}
+
+std::string result_csv(const BenchmarkResult& result) {
+  std::string text =
+      "case,body,setting,points,frames,neighbours,dofs,backend,threads,steps,step_ms,step_p99_ms,step_max_ms,cg_ms,"
+      "cg_iterations,residual,paper_cpu_ms,paper_gpu_ms\n";
+  for (const Measurement& m : result.rows)
+    text += fmt::format("{},\"{}\",{},{},{},{:.4g},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{},{}\n", m.name,
+                        m.body, m.setting, m.points, m.frames, m.neighbours, m.dofs, m.backend, m.threads, m.steps,
+                        m.step_ms, m.step_p99_ms, m.step_max_ms, m.cg_ms, m.cg_iterations, m.residual,
+                        field(m.published_cpu), field(m.published_gpu));
+  return text;
+}
+
+nlohmann::ordered_json result_json(const BenchmarkResult& result, const Machine& machine) {
+  nlohmann::ordered_json j;
+  j["benchmark"] = result.name;
+  j["title"] = result.title;
+  j["notes"] = result.notes;
+  j["date"] = machine.date;
+  j["machine"] = {{"system", machine.system},       {"cpu", machine.cpu}, {"threads", machine.threads},
+                  {"memory_bytes", machine.memory}, {"gpu", machine.gpu}, {"driver", machine.driver}};
+  j["build"] = {{"fascia", machine.fascia},
+                {"backends", machine.backends},
+                {"compiler", machine.compiler},
+                {"type", machine.build}};
+  j["build"]["libraries"] = nlohmann::ordered_json::object();
+  for (const auto& [name, version] : machine.libraries) j["build"]["libraries"][name] = version;
+  j["rows"] = nlohmann::ordered_json::array();
+  for (const Measurement& m : result.rows)
+    j["rows"].push_back({{"case", m.name},
+                         {"body", m.body},
+                         {"setting", m.setting},
+                         {"points", m.points},
+                         {"frames", m.frames},
+                         {"neighbours", number(m.neighbours)},
+                         {"dofs", m.dofs},
+                         {"backend", m.backend},
+                         {"threads", m.threads},
+                         {"steps", m.steps},
+                         {"step_ms", number(m.step_ms)},
+                         {"step_p99_ms", number(m.step_p99_ms)},
+                         {"step_max_ms", number(m.step_max_ms)},
+                         {"cg_ms", number(m.cg_ms)},
+                         {"cg_iterations", m.cg_iterations},
+                         {"residual", number(m.residual)},
+                         {"trouble", m.trouble},
+                         {"paper_cpu_ms", number(m.published_cpu)},
+                         {"paper_gpu_ms", number(m.published_gpu)}});
+  j["skipped"] = nlohmann::ordered_json::array();
+  for (const SkippedCase& s : result.skipped) j["skipped"].push_back({{"case", s.name}, {"reason", s.reason}});
+  return j;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,161 @@
+#include "app/bench/benchmark.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace fascia::app {
+namespace {
+
+/// A beam of soft tissue that sags and swings under its weight, clamped at one end; one Newton iteration of 60 plain CG
+/// iterations a step. Placeholders: title, frames, points, weights, preconditioner.
+constexpr const char* kBeam = R"(title = "{}"
+
+[world]
+gravity = [0, 0, -9.81]
+
+[bodies.beam]
+model = "meshless"
+domain = {{ box = {{ min = [0, 0, 0], max = ["40 cm", "10 cm", "10 cm"] }} }}
+density = 1000
+material = {{ young = "40 kPa", poisson = 0.3 }}
+frames = {{ {} }}
+{}weights = {{ {} }}
+
+[[constraints]]
+body = "beam"
+where = {{ box = {{ min = [-1, -1, -1], max = [0.001, 1, 1] }} }}
+fix = "all"
+
+[solver]
+kind = "implicit-euler"
+time_step = "10 ms"
+steps = 100
+newton = {{ max_iterations = 1, on_limit = "continue" }}
+linear = {{ kind = "cg", preconditioner = "{}", max_iterations = 60, tolerance = 1e-15 }}   # always 60
+)";
+
+constexpr std::array kSettings{"paper", "default"};
+
+/// How many Poisson samples a spacing gives in the beam.
+struct Samples {
+  int count;
+  double spacing;  ///< [mm]
+  int seed;
+};
+
+constexpr std::array kFrames{Samples{72, 55.234, 1},  Samples{144, 41.443, 1},  Samples{160, 39.519, 1},
+                             Samples{288, 30.252, 1}, Samples{500, 24.143, 4},  Samples{520, 23.541, 1},
+                             Samples{792, 20.054, 3}, Samples{1214, 16.971, 1}, Samples{2540, 12.715, 3},
+                             Samples{3242, 11.62, 1}, Samples{3998, 10.777, 1}, Samples{5350, 9.623, 1},
+                             Samples{6922, 8.765, 1}};
+constexpr std::array kPoints{Samples{360, 22.374, 3},  Samples{400, 21.544, 2},  Samples{500, 19.902, 2},
+                             Samples{750, 17.461, 2},  Samples{800, 17.1, 2},    Samples{864, 16.66, 2},
+                             Samples{1470, 13.961, 2}, Samples{2340, 11.967, 2}, Samples{2600, 11.541, 2}};
+
+/// The sampling of so many frames or points, as TOML.
+template <std::size_t N>
+std::string sampling(const std::array<Samples, N>& known, int count) {
+  for (const Samples& s : known)
+    if (s.count == count) return fmt::format("poisson_disk = \"{} mm\", seed = {}", s.spacing, s.seed);
+  return fmt::format("count = {}", count);
+}
+
+std::string preconditioner(const std::string& setting) { return setting == "paper" ? "none" : "auto"; }
+
+/// Scattered frames and points with inverse squared distances, as the publication samples its tissues.
+BenchmarkCase scattered(const std::string& name, int points, int frames, int neighbours, const std::string& setting) {
+  const std::string title = fmt::format("{} points, {} frames, {} neighbours", points, frames, neighbours);
+  const std::string weights = fmt::format("kind = \"shepard\", neighbours = {}{}", neighbours,
+                                          setting == "paper" ? ", blend = \"full\", drilling = 0" : "");
+  BenchmarkCase c{fmt::format("{}_{}", name, setting), "beam", setting, points, "", {}, {}};
+  c.scene =
+      fmt::format(kBeam, title, sampling(kFrames, frames),
+                  fmt::format("points = {{ {} }}\n", sampling(kPoints, points)), weights, preconditioner(setting));
+  return c;
+}
+
+/// Grid frames with linear weights: four neighbours too, at sizes that sampling would take long for.
+BenchmarkCase gridded(const std::string& name, const std::array<int, 3>& cells, const std::string& setting) {
+  const int points = 24 * cells[0] * cells[1] * cells[2];
+  BenchmarkCase c{fmt::format("{}_{}", name, setting), "beam, grid", setting, points, "", {}, {}};
+  c.scene = fmt::format(kBeam, fmt::format("{} points, 4 neighbours, grid", points),
+                        fmt::format("grid = [{}, {}, {}]", cells[0] + 1, cells[1] + 1, cells[2] + 1), "",
+                        setting == "paper" ? "kind = \"linear\", blend = \"full\", drilling = 0" : "kind = \"linear\"",
+                        preconditioner(setting));
+  return c;
+}
+
+}  // namespace
+
+Benchmark table2() {
+  struct Line {
+    int frames, points, neighbours;
+    std::optional<double> ms;
+  };
+  const std::array<Line, 12> lines{{{72, 400, 4, 32.65},
+                                    {72, 400, 6, 45.42},
+                                    {72, 400, 8, 55.15},
+                                    {72, 400, 10, 69.56},
+                                    {144, 500, 4, 39.18},
+                                    {144, 750, 4, {}},
+                                    {144, 864, 4, 43.42},
+                                    {144, 1470, 4, 114.3},
+                                    {144, 2340, 4, 160.53},
+                                    {288, 750, 4, 54.49},
+                                    {500, 750, 4, 56.64},
+                                    {792, 750, 4, 58.5}}};
+  Benchmark b{
+      "table2",
+      "Bosman, Duriez and Cotin 2014, table 2: time steps by frames, points and neighbours",
+      "Paper: one thread of a 2.67 GHz processor of 2009; the line of 750 points and 144 frames is printed there "
+      "without a time of its own. Coupling: two walls of shells and tissue, 53.22 and 69.12 ms there.",
+      10000,
+      {}};
+  for (const char* setting : kSettings) {
+    for (const Line& l : lines) {
+      b.cases.push_back(scattered(fmt::format("table2_{}_{}_{}", l.frames, l.points, l.neighbours), l.points, l.frames,
+                                  l.neighbours, setting));
+      b.cases.back().published_cpu = l.ms;
+    }
+  }
+  b.cases.push_back({"table2_coupling", "coupling", "default", 400, coupled_scene(7, 32, 400), 53.22, {}});
+  return b;
+}
+
+Benchmark table3() {
+  struct Line {
+    int points;
+    double cpu, gpu;  ///< [ms]
+  };
+  const std::array<Line, 9> lines{{{360, 34.84, 14.85},
+                                   {800, 78.42, 15.25},
+                                   {2600, 251.77, 17.11},
+                                   {6070, 595.77, 23.39},
+                                   {12700, 1228.8, 32.29},
+                                   {16210, 1561.8, 39.29},
+                                   {19990, 1990.06, 43.12},
+                                   {26750, 2675.47, 53.09},
+                                   {34610, 3468.54, 66.1}}};
+  constexpr int kPointsPerFrame = 5;  // of table 2's beams; table 3 does not say
+  Benchmark b{"table3",
+              "Bosman, Duriez and Cotin 2014, table 3: time steps by points, 4 neighbours, 60 CG iterations",
+              "Paper: one thread of a 2.67 GHz processor of 2009, and a GTX 570. It does not say how many frames: here "
+              "one for five points. From 100,000 points on: grid frames, with 24 points a cell.",
+              20000,
+              {}};
+  for (const char* setting : kSettings) {
+    for (const Line& l : lines) {
+      b.cases.push_back(
+          scattered(fmt::format("table3_{}", l.points), l.points, l.points / kPointsPerFrame, 4, setting));
+      b.cases.back().published_cpu = l.cpu;
+      b.cases.back().published_gpu = l.gpu;
+    }
+    b.cases.push_back(gridded("table3_1e5", {38, 10, 11}, setting));
+    b.cases.push_back(gridded("table3_1e6", {79, 24, 22}, setting));
+    b.cases.push_back(gridded("table3_1e7", {193, 48, 45}, setting));
+  }
+  return b;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,176 @@
+#pragma once
+
+#include "core/solver/clock.hpp"
+#include "core/solver/drivers.hpp"
+#include "core/solver/path_following.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+/// The bodies of the drivers, for the files that instantiate them.
+namespace fascia {
+
+namespace drivers {
+
+inline void count(RunReport& run, const NewtonReport& newton) {
+  run.newton_iterations += newton.iterations;
+  run.linear_iterations += newton.linear_iterations;
+}
+
+inline bool acceptable(const NewtonReport& newton, const SolverSettings& settings) {
+  if (newton.status == NewtonStatus::converged) return true;
+  const bool usable = newton.status == NewtonStatus::limit || newton.status == NewtonStatus::stalled;
+  return settings.proceed_on_limit && usable && newton.last.finite();
+}
+
+inline void accept(RunReport& run, const NewtonReport& newton, double time) {
+  ++run.steps;
+  run.time = time;
+  run.residual = std::max(run.residual, newton.last.relative);
+  run.steps_at_limit += newton.status != NewtonStatus::converged;
+  run.trouble = newton.trouble;
+  run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor);
+}
+
+inline RunStatus failure_status(const NewtonReport& newton) {
+  return newton.status == NewtonStatus::not_finite ? RunStatus::diverged : RunStatus::not_converged;
+}
+
+}  // namespace drivers
+
+template <class System>
+RunReport run_statics(System& system, typename System::Pose& state, const FactorFunction& factors,
+                      const SolverSettings& settings, const StaticsSettings& statics,
+                      const std::type_identity_t<ObserverOf<System>>& observe) {
+  using namespace drivers;
+  constexpr double kSmallest = 1.0 / 1024;
+  RunReport run;
+  const double longest = statics.load_steps > 0 ? 1.0 / statics.load_steps : 1.0;
+  double reached = 0, increment = longest;
+  state.time = 0;
+  while (reached < 1) {
+    const Clock::time_point start = Clock::now();
+    const double asked = (std::floor(reached / longest + 1e-9) + 1) * longest;  // steps that were cut return to it
+    double target = std::min(reached + increment, asked);
+    if (target > 1 - 1e-9) target = 1;
+    system.begin_step(state, 0);
+    system.set_factors(factors(target));
+    if (const double turn = system.prescribed_rotation(); turn > kRotationPerStep && target - reached > kSmallest) {
+      increment = (target - reached) / std::ceil(turn / kRotationPerStep);
+      target = reached + increment;
+      system.set_factors(factors(target));
+    }
+    Newton newton(system, settings);
+    const NewtonReport report = newton.solve();
+    count(run, report);
+    if (!acceptable(report, settings)) {
+      increment = 0.5 * (target - reached);
+      if (increment >= kSmallest) continue;
+      std::ostringstream message;
+      message << "load step " << run.steps + 1 << " (load factor " << target
+              << "): " << failure_sentence(report, settings);
+      const std::vector<SurfaceLoad>& surfaces = system.model().surfaces;
+      const bool enclosed =
+          std::any_of(surfaces.begin(), surfaces.end(), [](const SurfaceLoad& s) { return s.bulk_modulus > 0; });
+      if (near_limit_point(system, state, factors, reached))
+        message << "; the structure reaches a limit point or a bifurcation just there (its tangent stiffness becomes "
+                   "singular): use "
+                << (enclosed ? "implicit-euler with damping, or a fluid of given pressure with control = \"arc-length\""
+                             : "control = \"arc-length\" to follow it");
+      else
+        message << "; try more load_steps, a stiffer material or smaller loads, or implicit-euler with damping";
+      run.message = message.str();
+      run.status = failure_status(report);
+      run.residual = report.last.finite() ? report.last.relative : 0.0;
+      return run;
+    }
+    state = system.finish_step(target);
+    accept(run, report, target);
+    reached = target;
+    increment = std::min(longest, 2 * increment);
+    if (observe && !observe({run.steps, reached, reached, report, seconds_since(start)}, state, system)) {
+      if (reached < 1) run.status = RunStatus::interrupted;
+      return run;
+    }
+  }
+  return run;
+}
+
+namespace drivers {
+
+/// A dynamic run, and what its scheme keeps.
+template <class System>
+struct Stepper {
+  System& system;
+  const FactorFunction& factors;
+  const SolverSettings& settings;
+  TimeScheme scheme;
+  RunReport& run;
+  typename System::Memory memory;
+
+  /// Advances by dt, in halves where Newton fails or a boundary turns too far at once.
+  NewtonReport advance(typename System::Pose& state, double end, double dt, int depth) {
+    const TimeScheme taken = scheme_of_step(scheme, dt, memory);
+    const double solved_at = taken == TimeScheme::midpoint ? end - 0.5 * dt : end;
+    if (taken == TimeScheme::newmark && memory.acceleration.empty()) {
+      system.set_factors(factors(end - dt));
+      system.start_acceleration(state, dt, memory);
+    }
+    system.begin_step(state, dt, taken, memory);
+    system.set_factors(factors(solved_at));
+    NewtonReport report;
+    if (depth == 0 || system.prescribed_rotation() <= kRotationPerStep) {
+      system.start_from_prediction();
+      Newton newton(system, settings);
+      report = newton.solve();
+      count(run, report);
+      if (acceptable(report, settings)) {
+        if (solved_at < end) system.set_factors(factors(end));
+        state = system.finish_step(end, memory);
+        return report;
+      }
+      if (depth == 0) return report;
+    }
+    report = advance(state, end - 0.5 * dt, 0.5 * dt, depth - 1);
+    if (!acceptable(report, settings)) return report;
+    return advance(state, end, 0.5 * dt, depth - 1);
+  }
+};
+
+}  // namespace drivers
+
+template <class System>
+RunReport run_implicit(System& system, typename System::Pose& state, const FactorFunction& factors,
+                       const SolverSettings& settings, const DynamicsSettings& dynamics,
+                       const std::type_identity_t<ObserverOf<System>>& observe) {
+  using namespace drivers;
+  RunReport run;
+  Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}};
+  for (int step = 1; step <= dynamics.steps; ++step) {
+    const Clock::time_point start = Clock::now();
+    const double end = step * dynamics.time_step;
+    const typename System::Pose before = state;
+    const NewtonReport report = stepper.advance(state, end, dynamics.time_step, 8);
+    if (!acceptable(report, settings)) {
+      state = before;
+      std::ostringstream message;
+      message << "step " << step << " (t = " << end << " s): " << failure_sentence(report, settings)
+              << "; try a smaller time_step, damping, or newton.on_limit = \"continue\"";
+      run.message = message.str();
+      run.status = failure_status(report);
+      run.residual = report.last.finite() ? report.last.relative : 0.0;
+      return run;
+    }
+    accept(run, report, end);
+    if (observe && system.solves_for_middle()) system.look_back(state, before, dynamics.time_step);
+    const double progress = static_cast<double>(step) / dynamics.steps;
+    if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {
+      if (step < dynamics.steps) run.status = RunStatus::interrupted;
+      return run;
+    }
+  }
+  return run;
+}
+
+}  // namespace fascia

@@ -1,0 +1,153 @@
+#pragma once
+
+#include "core/math/index.hpp"
+#include "core/solver/cg.hpp"
+#include "gpu/array.hpp"
+#include "gpu/space.hpp"
+#include "gpu/views.hpp"
+
+#include <cmath>
+
+namespace fascia::gpu {
+
+/// Where a solve stands, in memory of the space.
+struct CgProgress {
+  double rz = 0, rz_start = 0, alpha = 0, beta = 0;
+  double tolerance = 0;
+  int limit = 0, iterations = 0;
+  int done = 0;
+  CgStatus status = CgStatus::converged;
+};
+
+/// Vectors of a solve by degrees of freedom. An operator calls next_direction() for all of them before it uses p, and
+/// gives p · Ap to curvature().
+struct CgView {
+  double *x = nullptr, *r = nullptr, *z = nullptr, *p = nullptr, *Ap = nullptr;
+  CgProgress* progress = nullptr;
+
+  /// p ← z + β p
+  FASCIA_HD void next_direction(int i) const { p[i] = z[i] + progress->beta * p[i]; }
+  FASCIA_HD void curvature(double pAp) const {
+    CgProgress& s = *progress;
+    if (s.done != 0) return;
+    s.alpha = s.rz / pAp;
+    if (pAp > 0 && pAp - pAp == 0) return;
+    s.status = pAp - pAp == 0 ? CgStatus::negative_curvature : CgStatus::not_finite;
+    s.done = 1;
+    s.alpha = s.status == CgStatus::negative_curvature && s.iterations == 0 ? 1.0 : 0.0;  // x = p at the first
+  }
+  /// After x, r and z were updated.
+  FASCIA_HD void residual(double rz) const {
+    CgProgress& s = *progress;
+    if (s.done != 0) {
+      s.alpha = 0;
+      return;
+    }
+    ++s.iterations;
+    s.beta = rz / s.rz;
+    s.rz = rz;
+    s.done = 1;
+    if (rz <= s.tolerance * s.tolerance * s.rz_start)
+      s.status = CgStatus::converged;
+    else if (s.iterations >= s.limit)
+      s.status = CgStatus::limit;
+    else
+      s.done = 0;
+    if (s.done != 0) s.alpha = 0;
+  }
+};
+
+namespace kernels {
+
+/// Σ of r · z of a node with z = M⁻¹ r, after x ← x + α p, r ← r − α Ap.
+struct CgUpdate {
+  NodesView nodes;
+  CgView v;
+  const double* inverse;
+
+  FASCIA_HD void operator()(int node, Sums<1>& sums) const {
+    const CgProgress& s = *v.progress;
+    if (s.done != 0 && s.alpha == 0) return;
+    const int first = nodes.dof[node], n = nodes.size(node);
+    const double* block = inverse + nodes.block[node];
+    double r[kMostDofs];
+    for (int i = 0; i < n; ++i) {
+      v.x[first + i] += s.alpha * v.p[first + i];
+      r[i] = v.r[first + i] -= s.alpha * v.Ap[first + i];
+    }
+    for (int i = 0; i < n; ++i) {
+      double z = 0;
+      for (int j = 0; j < n; ++j) z += block[n * i + j] * r[j];
+      v.z[first + i] = z;
+      sums.v[0] += r[i] * z;
+    }
+  }
+};
+
+/// Puts a new solve in the place of the last.
+struct CgBegin {
+  CgView v;
+  CgProgress fresh;
+  FASCIA_HD void operator()(int) const { *v.progress = fresh; }
+};
+
+/// Ends the first sum: of the right-hand side.
+struct CgStart {
+  CgView v;
+  FASCIA_HD void operator()(const Sums<1>& total) const {
+    CgProgress& s = *v.progress;
+    s.rz = s.rz_start = total.v[0];
+    if (s.rz - s.rz != 0) s.status = CgStatus::not_finite;
+    s.done = !(s.rz > 0) || s.limit <= 0;
+  }
+};
+
+struct CgResidual {
+  CgView v;
+  FASCIA_HD void operator()(const Sums<1>& total) const { v.residual(total.v[0]); }
+};
+
+}  // namespace kernels
+
+/// Preconditioned conjugate gradients as in core/solver/cg.hpp, without the host: scalars stay in the space, and the
+/// operator's loops are recorded once.
+template <class Space>
+class ConjugateGradients {
+ public:
+  explicit ConjugateGradients(std::size_t dofs) : x_(dofs), r_(dofs), z_(dofs), p_(dofs), Ap_(dofs), progress_(1) {}
+
+  /// Right-hand side, to be written before solve(); held entries zero.
+  double* rhs() { return r_.data(); }
+  const double* solution() const { return x_.data(); }
+
+  /// @param inverse  block-diagonal preconditioner, by node
+  /// @param key      of the operator: what its loops were recorded with
+  /// @param apply    apply(view): loops that make Ap of p
+  template <class Apply>
+  CgReport solve(const NodesView& nodes, const double* inverse, const CgOptions& options, std::uint64_t key,
+                 const Apply& apply) {
+    const CgView v{x_.data(), r_.data(), z_.data(), p_.data(), Ap_.data(), progress_.data()};
+    x_.set_zero();
+    p_.set_zero();
+    Ap_.set_zero();
+    const CgProgress fresh{0, 0, 0, 0, options.tolerance, options.max_iterations, 0, 0, CgStatus::converged};
+    Space::for_each(1, kernels::CgBegin{v, fresh});
+    const kernels::CgUpdate update{nodes, v, inverse};
+    Space::template sum<1>(nodes.count, update, kernels::CgStart{v});
+    loop_.run(key, options.max_iterations, &progress_.data()->done, [&] {
+      apply(v);
+      Space::template sum<1>(nodes.count, update, kernels::CgResidual{v});
+    });
+    CgProgress end;
+    progress_.download(std::span(&end, 1));
+    if (end.status == CgStatus::converged && end.rz_start - end.rz_start != 0) end.status = CgStatus::not_finite;
+    return {end.status, end.iterations, end.rz_start > 0 ? std::sqrt(std::max(end.rz, 0.0) / end.rz_start) : 0.0};
+  }
+
+ private:
+  Array<Space, double> x_, r_, z_, p_, Ap_;
+  Array<Space, CgProgress> progress_;
+  typename Space::Loop loop_;
+};
+
+}  // namespace fascia::gpu

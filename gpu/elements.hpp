@@ -1,0 +1,115 @@
+#pragma once
+
+#include "core/model/point_set.hpp"
+#include "core/physics/point_physics.hpp"
+#include "gpu/array.hpp"
+#include "gpu/views.hpp"
+
+#include <vector>
+
+namespace fascia::gpu {
+
+/// One block of elements, in the layout of core/model/element_block.hpp. An element of several points passes what it
+/// has at them through `points_buffer`; a linear tetrahedron keeps it in registers.
+struct ElementBlockView {
+  ElementLaw law = ElementLaw::linear;
+  bool averaged = false, penalised = false, damped = false;
+  int nodes = 4, points = 1, count = 0, batches = 0;
+  const double *gradient = nullptr, *volume = nullptr, *material = nullptr;
+  const double* squared_gradient = nullptr;  ///< (batches × points × 8): Σ |g|² over the nodes [1/m²]
+  const int* node = nullptr;                 ///< (batches × nodes × 8), of the model
+
+  double* corners = nullptr;        ///< (batches × nodes × 3 × 8): force of the last pass on each node
+  double* points_buffer = nullptr;  ///< (batches × points × 9 × 8): H or dH, then v P or v dP
+  double* quantities = nullptr;     ///< (batches × 8 × kQuantities)
+
+  // Of the linearisation. The rotation's third column follows from the others.
+  double* H = nullptr;         ///< (batches × points × 9 × 8), of several points
+  double* turn = nullptr;      ///< (batches × 6 × 8): first columns of R − I, co-rotational
+  double* pressure = nullptr;  ///< (batches × 8): mean of λ θ about the nodes, averaged [Pa]
+
+  // Averages about nodes (core/cpu/element_average.cpp).
+  const int *around_begin = nullptr, *around = nullptr;         ///< 4 · element + corner about each node, ascending
+  const double *node_volume = nullptr, *node_lambda = nullptr;  ///< Σ V/4 [m³], mean λ [Pa]
+  double *theta = nullptr, *node_pressure = nullptr;            ///< V θ/4 of elements, λ times the nodes' mean of θ
+
+  FASCIA_HD bool one_point() const { return nodes == 4; }
+  FASCIA_HD int lanes() const { return batches * kElementLanes; }
+};
+
+/// What all elements gave the nodes of a model.
+struct ElementsView {
+  const int *node_begin = nullptr, *node_corner = nullptr;  ///< place of each corner's force, ascending
+  const double* corners = nullptr;
+
+  /// Adds what the last pass gave a node.
+  FASCIA_HD void add_sums(int node, NodeSums& sums) const {
+    for (int k = node_begin[node]; k < node_begin[node + 1]; ++k) {
+      const double* force = corners + node_corner[k];
+      for (int i = 0; i < 3; ++i) sums.force[i] += force[i * kElementLanes];
+    }
+  }
+};
+
+/// The finite elements of a model on the device: forces on the corners of elements, which nodes then gather.
+template <class Space>
+class Elements {
+ public:
+  explicit Elements(const PointSet& set);
+
+  bool empty() const { return blocks_.empty(); }
+  const ElementsView& view() const { return view_; }
+  /// (blocks: batches × points × 6 × 8), as ElementExecutor has them
+  std::size_t strain_size() const { return strain_size_; }
+
+  /// Connected part of each item of quantities(), −1 in unused lanes: one item a lane.
+  std::vector<int> item_parts(const PointSet& set) const;
+  /// (items × kQuantities), of the last forces with them
+  const double* quantities() const { return quantities_.data(); }
+
+  /// The gradient of the energy at a pose, for add_sums(). @param part_motion  largest motion of each part (parts) [m];
+  /// quantities only where it is given
+  void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
+  /// Keeps what products need of a pose.
+  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent);
+  /// The tangent's product at the linearisation, for add_sums().
+  void product(const DirectionView& direction);
+  /// Adds the tangent's own block of each node, by rows; what add_sums() gives is lost.
+  void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
+  /// @param E  (strain_size())
+  void store_strain(const PoseView& pose, double* E);
+
+ private:
+  struct Block {
+    Array<Space, double> gradient, volume, material, squared_gradient, points_buffer, H, turn, pressure;
+    Array<Space, int> node, around_begin, around;
+    Array<Space, double> node_volume, node_lambda, theta, node_pressure;
+    ElementBlockView view;
+    std::size_t strain_begin = 0;
+  };
+  static Block make_block(const ElementBlock& block, int nodes_of_model);
+  static void prepare_average(const ElementBlock& block, int nodes_of_model, Block& out);
+  void find_corners(const PointSet& set);
+  /// Strains of one block. @param E  of all
+  static HistoryView history_of(const Block& block, const double* E, double inverse_step);
+  HistoryView kept_history(const Block& block) const {
+    return history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
+  }
+  /// Averages θ, or its derivative along dx, into node_pressure.
+  void average(Block& block, const Vec3d* u, const Vec3d* dx);
+
+  std::vector<Block> blocks_;
+  Array<Space, int> node_begin_, node_corner_;
+  Array<Space, double> corners_, quantities_;
+  ElementsView view_;
+  int nodes_ = 0;
+  std::size_t strain_size_ = 0;
+
+  // Of the linearisation.
+  Array<Space, Vec3d> u_;
+  Array<Space, double> E_;
+  double inverse_step_ = 0;
+  Tangent tangent_ = Tangent::full;
+};
+
+}  // namespace fascia::gpu

@@ -1,0 +1,8 @@
+#include "gpu/followers_body.hpp"
+#include "gpu/space.hpp"
+
+namespace fascia::gpu {
+
+template class Followers<HostSpace>;
+
+}  // namespace fascia::gpu

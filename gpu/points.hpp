@@ -1,0 +1,93 @@
+#pragma once
+
+#include "core/model/point_set.hpp"
+#include "core/physics/point_physics.hpp"
+#include "gpu/array.hpp"
+#include "gpu/views.hpp"
+
+#include <vector>
+
+namespace fascia::gpu {
+
+/// The point groups of a PointSet, in the same layout (core/model/point_set.hpp).
+struct PointsView {
+  int groups = 0, slots = 0;
+  const int *slot_begin = nullptr, *slot_node = nullptr, *slot_group = nullptr;
+  const int *node_slot_begin = nullptr, *node_slot = nullptr;
+  const double *shape = nullptr, *material = nullptr, *axes = nullptr;
+  const GroupRule* rule = nullptr;
+  const char* blends = nullptr;     ///< of each group: Y is not zero
+  const double* targets = nullptr;  ///< of tethers
+  double* stress = nullptr;         ///< (groups × 18 × 8): v P, v Y of the last pass
+  double* slot_sums = nullptr;      ///< (slots × 12): Σ v P g, Σ v (P Bᵀ + w Y)
+  double* motion = nullptr;         ///< (groups × 24 × 8): H, Dbar, S of the linearisation
+  double* quantities = nullptr;     ///< (groups × 8 × kQuantities)
+
+  /// Adds what the last pass gave a node: all of it, or what tethers pull.
+  FASCIA_HD void add_sums(int node, NodeSums& sums) const {
+    for (int k = node_slot_begin[node]; k < node_slot_begin[node + 1]; ++k) add_slot(node_slot[k], sums);
+  }
+  FASCIA_HD void add_tether_sums(int node, NodeSums& sums) const {
+    for (int k = node_slot_begin[node]; k < node_slot_begin[node + 1]; ++k)
+      if (rule[slot_group[node_slot[k]]].rule.law == Law::tether) add_slot(node_slot[k], sums);
+  }
+
+ private:
+  FASCIA_HD void add_slot(int slot, NodeSums& sums) const {
+    const double* s = slot_sums + static_cast<std::size_t>(slot) * 12;
+    for (int i = 0; i < 3; ++i) {
+      sums.force[i] += s[i];
+      for (int j = 0; j < 3; ++j) sums.N(i, j) += s[3 + 3 * i + j];
+    }
+  }
+};
+
+/// The point groups of a model on the device: a pass over points, then one over slots.
+template <class Space>
+class Points {
+ public:
+  explicit Points(const PointSet& set);
+
+  bool empty() const { return view_.groups == 0; }
+  const PointsView& view() const { return view_; }
+  /// Where tethers pull to: as CpuExecutor::targets().
+  Array<Space, double>& targets() { return targets_; }
+  std::size_t strain_size() const { return static_cast<std::size_t>(view_.groups) * 6 * kGroupSize; }
+
+  /// Connected part of each item of quantities(): one item a lane.
+  std::vector<int> item_parts(const PointSet& set) const;
+  /// (items × kQuantities), of the last forces with them
+  const double* quantities() const { return quantities_.data(); }
+
+  /// The gradient of the energy at a pose, for add_sums(). @param part_motion  largest motion of each part (parts) [m];
+  /// quantities only where it is given
+  void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
+  /// Keeps what products need of a pose.
+  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent);
+  /// The tangent's product at the linearisation, for add_sums().
+  void product(const DirectionView& direction);
+  /// Adds the tangent's own block of each node, by rows. @param Q  I + D of each node
+  void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
+  /// @param E  (groups × 6 × 8)
+  void store_strain(const PoseView& pose, double* E);
+
+ private:
+  /// Groups of one kind are computed together.
+  struct Kind {
+    PointKind kind;
+    Array<Space, int> groups;
+  };
+  template <class Act>
+  void for_kinds(const Act& act);
+
+  std::vector<Kind> kinds_;
+  Array<Space, int> slot_begin_, slot_node_, slot_group_, node_slot_begin_, node_slot_;
+  Array<Space, double> shape_, material_, axes_, targets_, stress_, slot_sums_, motion_, quantities_;
+  Array<Space, GroupRule> rule_;
+  Array<Space, char> blends_;
+  PointsView view_;
+  double inverse_step_ = 0;  ///< of the linearisation
+  Tangent tangent_ = Tangent::full;
+};
+
+}  // namespace fascia::gpu

@@ -1,0 +1,213 @@
+#pragma once
+
+#include "core/math/index.hpp"
+#include "gpu/point_kernels.hpp"
+
+#include <algorithm>
+
+/// The bodies of Points, for the files that instantiate it.
+namespace fascia::gpu {
+
+template <class Space>
+Points<Space>::Points(const PointSet& set) {
+  const auto upload = [](auto& array, const auto& values) { array.upload(values); };
+  upload(slot_begin_, std::span<const int>(set.slot_begin));
+  upload(slot_node_, std::span<const int>(set.slot_node));
+  upload(node_slot_begin_, std::span<const int>(set.node_slot_begin));
+  upload(node_slot_, std::span<const int>(set.node_slot));
+  upload(shape_, std::span<const double>(set.shape));
+  upload(material_, std::span<const double>(set.material));
+  upload(axes_, std::span<const double>(set.axes));
+  upload(rule_, std::span<const GroupRule>(set.rule));
+  std::vector<int> slot_group(at(set.slot_count()));
+  std::vector<char> blends(at(set.group_count()));
+  std::vector<std::vector<int>> groups;
+  for (int g = 0; g < set.group_count(); ++g) {
+    std::fill(slot_group.begin() + set.slot_begin[at(g)], slot_group.begin() + set.slot_begin[at(g + 1)], g);
+    const PointRule& rule = set.rule[at(g)].rule;
+    blends[at(g)] = rule.stabilization != Stabilization::none;
+    kernels::with_kind(rule, [&]<PointKind Kind>() {
+      std::size_t k = 0;
+      while (k < kinds_.size() &&
+             (kinds_[k].kind.matter != Kind.matter || kinds_[k].kind.stabilization != Kind.stabilization))
+        ++k;
+      if (k == kinds_.size()) {
+        kinds_.push_back({Kind, {}});
+        groups.emplace_back();
+      }
+      groups[k].push_back(g);
+    });
+  }
+  for (std::size_t k = 0; k < kinds_.size(); ++k) kinds_[k].groups.upload(groups[k]);
+  slot_group_.upload(slot_group);
+  blends_.upload(blends);
+  const auto lanes = at(set.group_count()) * kGroupSize;
+  targets_.resize(set.axes.size() / 3);
+  targets_.set_zero();
+  stress_.resize(lanes * 18);
+  stress_.set_zero();
+  slot_sums_.resize(at(set.slot_count()) * 12);
+  motion_.resize(lanes * 24);
+  quantities_.resize(lanes * kQuantities);
+  view_ = {set.group_count(), set.slot_count(),   slot_begin_.data(),
+           slot_node_.data(), slot_group_.data(), node_slot_begin_.data(),
+           node_slot_.data(), shape_.data(),      material_.data(),
+           axes_.data(),      rule_.data(),       blends_.data(),
+           targets_.data(),   stress_.data(),     slot_sums_.data(),
+           motion_.data(),    quantities_.data()};
+}
+
+/// Calls act.operator()<Kind>(groups, count) for each kind.
+template <class Space>
+template <class Act>
+void Points<Space>::for_kinds(const Act& act) {
+  for (Kind& k : kinds_)
+    kernels::with_kind(PointRule{k.kind.matter == PointKind::Matter::solid         ? Law::solid
+                                 : k.kind.matter == PointKind::Matter::neo_hookean ? Law::neo_hookean
+                                                                                   : Law::sheet,
+                                 k.kind.stabilization, false},
+                       [&]<PointKind K>() {
+                         act.template operator()<K>(k.groups.data(), static_cast<int>(k.groups.size()) * kGroupSize);
+                       });
+}
+
+namespace kernels {
+
+struct SlotSums {
+  PointsView set;
+  FASCIA_HD void operator()(int i) const { sum_slot_row(set, i / 3, i % 3); }
+};
+
+template <PointKind Kind>
+struct PointForces {
+  PointsView set;
+  NodesView nodes;
+  PoseView pose;
+  HistoryView history;
+  const double* part_motion;
+  const int* groups;
+
+  FASCIA_HD void operator()(int i) const {
+    constexpr bool kBlend = Kind.stabilization != Stabilization::none;
+    const int group = groups[i / kGroupSize], lane = i % kGroupSize;
+    const PointMotion<double> x = motion_of<kBlend>(set, group, lane, pose.u, pose.D);
+    const auto m = material<Kind.matter>(set, group, lane, history.inverse_step);
+    const Mat3d E_old = old_strain(history, group, lane);
+    const PointStress<double> stress = point_stress<Kind.stabilization>(x, m, E_old);
+    const Mat3d P = stress.P * m.volume;
+    store_stress(set, group, lane, P, stress.Y * m.volume);
+    if (part_motion == nullptr) return;
+    const PointEnergy<double> energy = point_energy<Kind.stabilization>(x, m, E_old);
+    const double motion = part_motion[nodes.part[set.slot_node[set.slot_begin[group]]]];
+    const double g = row(set.material + static_cast<std::size_t>(group) * 6 * kGroupSize, kGradientNorm, lane);
+    const double stiffness = m.volume * (m.lambda + m.mu * 2.0) * (1.0 + m.viscosity);
+    const double strain = is_tether(m) ? 0.0 : contract(x.H, x.H), pull = contract(P, P), moved = g * motion;
+    double* q = set.quantities + (static_cast<std::size_t>(group) * kGroupSize + lane) * kQuantities;
+    q[kElastic] = energy.elastic;
+    q[kStabilizing] = energy.stabilization;
+    q[kViscous] = energy.viscous;
+    q[kRounding] = g * g * (pull + stiffness * stiffness * (strain + moved * moved) * (1.0 + strain));
+    q[kTether] = is_tether(m) ? pull : 0.0;
+  }
+};
+
+template <PointKind Kind>
+struct PointLinearization {
+  PointsView set;
+  PoseView pose;
+  HistoryView history;
+  const int* groups;
+
+  FASCIA_HD void operator()(int i) const {
+    const int group = groups[i / kGroupSize], lane = i % kGroupSize;
+    const PointMotion<double> x = motion_of<true>(set, group, lane, pose.u, pose.D);
+    const auto m = material<Kind.matter>(set, group, lane, history.inverse_step);
+    double* point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
+    store_matrix(point, 0, lane, x.H);
+    store_matrix(point, 9, lane, x.Dbar);
+    store_symmetric(point, 18, lane, point_stress<Stabilization::none>(x, m, old_strain(history, group, lane)).S);
+  }
+};
+
+template <PointKind Kind>
+struct PointProduct {
+  PointsView set;
+  DirectionView direction;
+  double inverse_step;
+  Tangent tangent;
+  const int* groups;
+
+  FASCIA_HD void operator()(int i) const {
+    constexpr bool kBlend = Kind.stabilization != Stabilization::none;
+    const int group = groups[i / kGroupSize], lane = i % kGroupSize;
+    const PointMotion<double> d = motion_of<kBlend>(set, group, lane, direction.dx, direction.dA);
+    const double* point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
+    const PointMotion<double> x{matrix(point, 0, lane), kBlend ? matrix(point, 9, lane) : Mat3d{}};
+    const auto m = material<Kind.matter>(set, group, lane, inverse_step);
+    const auto r =
+        point_stress_differential<Kind.stabilization>(x, symmetric_matrix(point, 18, lane), m, tangent, d.H, d.Dbar);
+    store_stress(set, group, lane, r.dP * m.volume, r.dY * m.volume);
+  }
+};
+
+}  // namespace kernels
+
+template <class Space>
+void Points<Space>::forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history,
+                           const double* part_motion) {
+  for_kinds([&]<PointKind K>(const int* groups, int lanes) {
+    Space::for_each(lanes, kernels::PointForces<K>{view_, nodes, pose, history, part_motion, groups});
+  });
+  Space::for_each(3 * view_.slots, kernels::SlotSums{view_});
+}
+
+template <class Space>
+void Points<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
+  inverse_step_ = history.inverse_step;
+  tangent_ = tangent;
+  for_kinds([&]<PointKind K>(const int* groups, int lanes) {
+    Space::for_each(lanes, kernels::PointLinearization<K>{view_, pose, history, groups});
+  });
+}
+
+template <class Space>
+void Points<Space>::product(const DirectionView& direction) {
+  for_kinds([&]<PointKind K>(const int* groups, int lanes) {
+    Space::for_each(lanes, kernels::PointProduct<K>{view_, direction, inverse_step_, tangent_, groups});
+  });
+  Space::for_each(3 * view_.slots, kernels::SlotSums{view_});
+}
+
+template <class Space>
+void Points<Space>::add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks) {
+  const PointsView set = view_;
+  const double inverse_step = inverse_step_;
+  const Tangent tangent = tangent_;
+  Space::for_each(kMostDofs * nodes.count, [=] FASCIA_HD(int i) {
+    const int node = i / kMostDofs, k = i % kMostDofs, n = nodes.size(node);
+    if (k >= n) return;
+    double column[kMostDofs] = {};
+    for (int s = set.node_slot_begin[node]; s < set.node_slot_begin[node + 1]; ++s)
+      kernels::add_slot_column(set, set.node_slot[s], nodes.kind[node], Q[node], k, inverse_step, tangent, column);
+    for (int r = 0; r < n; ++r) blocks[nodes.block[node] + static_cast<std::size_t>(n * r + k)] += column[r];
+  });
+}
+
+template <class Space>
+std::vector<int> Points<Space>::item_parts(const PointSet& set) const {
+  std::vector<int> parts;
+  for (int g = 0; g < set.group_count(); ++g) parts.insert(parts.end(), kGroupSize, set.part_of_group(g));
+  return parts;
+}
+
+template <class Space>
+void Points<Space>::store_strain(const PoseView& pose, double* E) {
+  const PointsView set = view_;
+  Space::for_each(set.groups * kGroupSize, [set, pose, E] FASCIA_HD(int i) {
+    const int group = i / kGroupSize, lane = i % kGroupSize;
+    const PointMotion<double> x = kernels::motion_of<false>(set, group, lane, pose.u, pose.D);
+    kernels::store_symmetric(E + static_cast<std::size_t>(group) * 6 * kGroupSize, 0, lane, green_strain(x.H));
+  });
+}
+
+}  // namespace fascia::gpu

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "core/model/errors.hpp"
+#include "gpu/incidence.hpp"
+#include "gpu/shell_kernels.hpp"
+
+#include <limits>
+
+/// The bodies of Shells, for the files that instantiate it.
+namespace fascia::gpu {
+
+template <class Space>
+Shells<Space>::Shells(const PointSet& set) : nodes_(set.node_count()) {
+  std::size_t lanes = 0;
+  for (const ShellBlock& shell : set.shells) {
+    Block block;
+    block.constants.upload(shell.constants);
+    block.node.upload(shell.node);
+    block.view = {shell.count, shell.batch_count(), shell.damped, block.constants.data(), block.node.data(), nullptr,
+                  nullptr};
+    block.strain_begin = strain_size_;
+    strain_size_ += at(shell.batch_count()) * 12 * kElementLanes;
+    lanes += at(shell.batch_count()) * kElementLanes;
+    blocks_.push_back(std::move(block));
+  }
+  if (lanes * 18 > at(std::numeric_limits<int>::max()))
+    throw InputError("the model has more triangles than the GPU backend can number; use fewer, or --backend cpu");
+  corners_.resize(lanes * 18);
+  quantities_.resize(lanes * kQuantities);
+  quantities_.set_zero();
+  stiffness_.resize(lanes * kShellStiffness);
+  double *corner = corners_.data(), *quantity = quantities_.data(), *stiffness = stiffness_.data();
+  std::vector<int> dof;
+  for (int node = 0; node < nodes_; ++node) dof.push_back(set.dofs.begin(node));
+  dof_.upload(dof);
+  for (Block& block : blocks_) {
+    block.view.corners = corner;
+    block.view.quantities = quantity;
+    block.view.stiffness = stiffness;
+    corner += at(block.view.batches) * kElementLanes * 18;
+    quantity += at(block.view.batches) * kElementLanes * kQuantities;
+    stiffness += at(block.view.batches) * kElementLanes * kShellStiffness;
+  }
+  find_corners(set);
+}
+
+/// Places of the forces about each node, of all blocks.
+template <class Space>
+void Shells<Space>::find_corners(const PointSet& set) {
+  std::vector<int> begin, corner;
+  const auto for_each_corner = [&](const auto& act) {
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const auto first = static_cast<int>(blocks_[b].view.corners - corners_.data());
+      for (int e = 0; e < set.shells[b].count; ++e)
+        for (int a = 0; a < 3; ++a)
+          act(set.shells[b].element(e)[at(a)],
+              first + (e / kElementLanes * 3 + a) * 6 * kElementLanes + e % kElementLanes);
+    }
+  };
+  list_by_node(nodes_, for_each_corner, begin, corner);
+  node_begin_.upload(begin);
+  node_corner_.upload(corner);
+  view_ = {node_begin_.data(), node_corner_.data(), corners_.data(), stiffness_.data()};
+}
+
+template <class Space>
+std::vector<int> Shells<Space>::item_parts(const PointSet& set) const {
+  std::vector<int> parts;
+  for (const ShellBlock& shell : set.shells) {
+    const std::size_t first = parts.size();
+    for (int e = 0; e < shell.count; ++e) parts.push_back(set.node_part[at(shell.element(e)[0])]);
+    parts.resize(first + at(shell.batch_count()) * kElementLanes, -1);
+  }
+  return parts;
+}
+
+template <class Space>
+void Shells<Space>::forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history,
+                           const double* part_motion) {
+  for (const Block& block : blocks_)
+    Space::for_each(
+        block.view.batches * kElementLanes,
+        kernels::ShellForces{block.view, history_of(block, history.E, history.inverse_step), nodes, pose, part_motion});
+}
+
+template <class Space>
+void Shells<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
+  for (const Block& block : blocks_)
+    Space::for_each(3 * block.view.batches * kElementLanes,
+                    kernels::ShellStiffness{block.view, history_of(block, history.E, history.inverse_step), pose,
+                                            tangent == Tangent::full});
+}
+
+template <class Space>
+void Shells<Space>::product(const DirectionView& direction) {
+  for (const Block& block : blocks_)
+    Space::for_each(block.view.batches * kElementLanes, kernels::ShellProduct{block.view, direction.d, dof_.data()});
+}
+
+template <class Space>
+void Shells<Space>::add_diagonal(const NodesView& nodes, const Mat3d*, double* blocks) {
+  if (!empty()) Space::for_each(6 * nodes_, kernels::ShellDiagonal{view_, nodes, blocks});
+}
+
+template <class Space>
+void Shells<Space>::store_strain(const PoseView& pose, double* E) {
+  for (const Block& block : blocks_)
+    Space::for_each(block.view.batches * kElementLanes,
+                    kernels::ShellStrains{block.view, pose, E + block.strain_begin});
+}
+
+}  // namespace fascia::gpu

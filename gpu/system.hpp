@@ -1,0 +1,133 @@
+#pragma once
+
+#include "core/solver/boundary_motion.hpp"
+#include "core/solver/drivers.hpp"
+#include "gpu/blocks.hpp"
+#include "gpu/cg.hpp"
+#include "gpu/dependents.hpp"
+#include "gpu/device_state.hpp"
+#include "gpu/followers.hpp"
+#include "gpu/model_data.hpp"
+#include "gpu/operator_kernels.hpp"
+#include "gpu/part_sums.hpp"
+#include "gpu/step_kernels.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fascia::gpu {
+
+/// The equilibrium of a model in a load or time step with everything in the memory of a space: the counterpart of
+/// MechanicalSystem, which says what the functions mean. Only a few numbers of each evaluation and solve come back.
+template <class Space>
+class System {
+ public:
+  using Pose = DeviceState<Space>;
+  using Memory = DeviceMemory<Space>;
+
+  /// @throws InputError  what the device does not take, by name
+  System(const Model& model, const SolverSettings& settings);
+
+  void begin_step(const Pose& start, double dt) { begin_step(start, dt, TimeScheme::implicit_euler, {}); }
+  void begin_step(const Pose& start, double dt, TimeScheme scheme, const Memory& memory);
+  void set_factors(std::span<const double> factors);
+  void start_from_prediction();
+  Pose finish_step(double end_time) {
+    Memory unused;
+    return finish_step(end_time, unused);
+  }
+  Pose finish_step(double end_time, Memory& memory);
+  void start_acceleration(const Pose& start, double dt, Memory& memory);
+  void look_back(const Pose& state, const Pose& before, double dt);
+
+  Evaluation evaluate();
+  DirectionReport direction();
+  void apply(double step);
+  void save();
+  void restore();
+  bool has_prescribed_increment() const { return prescribed_left_; }
+  bool conservative() const { return conservative_; }
+  double prescribed_rotation();
+  bool solves_for_middle() const { return step_.scheme == TimeScheme::midpoint; }
+
+  const Model& model() const { return model_; }
+  const SolverSettings& settings() const { return settings_; }
+  InternalEnergy internal_energy() const { return internal_; }
+  double load_energy() const { return load_energy_; }
+  /// By degrees of freedom, as MechanicalSystem::gradient().
+  std::vector<double> gradient() const { return gradient_.downloaded(); }
+  /// As MechanicalSystem::dependent_forces().
+  std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
+  /// K d at the last evaluation, by degrees of freedom in world axes.
+  std::vector<double> product(std::span<const double> d);
+
+ private:
+  kernels::StepView step_view();
+  kernels::ForceView force_view();
+  kernels::ProductView product_view();
+  HistoryView history() const { return {damped_ ? E_.data() : nullptr, damped_ ? inverse_step_ : 0.0}; }
+  PoseView pose() const { return {u_.data(), D_.data()}; }
+  void rebuild_state();
+  void place_dependents();
+  void evaluate_forces();
+  void evaluate_loads();
+  Evaluation judge();
+  double energy_at_start();
+  void predict_strain(const Memory& memory);
+  void find_prescribed();
+  void linearize(Tangent tangent, bool tethers_turn);
+  void apply_tangent(const CgView& v);
+  void multiply(const kernels::ProductView& w);
+  void gather_product(const kernels::ProductView& w);
+  std::uint64_t operator_key() const;
+  CgReport solve(const CgOptions& options);
+  void place_tethers();
+
+  const Model& model_;
+  SolverSettings settings_;
+  DofFilter filter_;
+  ModelData<Space> data_;
+  Blocks<Space> blocks_;
+  Dependents<Space> dependents_;
+  Followers<Space> followers_;
+  PartSums<Space> node_parts_;
+  ConjugateGradients<Space> cg_;
+  bool conservative_, turning_, damped_;
+  MotionSizes motions_;
+
+  Pose start_;
+  StepConstants step_;
+  double inverse_step_ = 0;  ///< of the viscous stress
+  Array<Space, double> E_, start_E_, ahead_E_, behind_E_;
+  Array<Space, Vec3d> du_, saved_du_, u_, moved_u_;
+  Array<Space, Mat3d> Ds_, saved_Ds_, D_, moved_D_;
+  Array<Space, double> turned_, saved_turned_;
+  Array<Space, PoseMotion> q_, w_;
+  Array<Space, PoseMotion> before_;  ///< motion in the step before
+  std::vector<double> factors_, reached_factors_;
+  bool factors_are_placed_ = false;
+
+  Array<Space, double> gradient_, load_, inertia_, node_energy_, report_, part_motion_, new_motion_;
+  Array<Space, double> dependent_forces_;
+  Array<Space, Mat3d> L_, tether_L_;
+  Array<Space, double> prescribed_;  ///< what is still to go, in constraint axes
+  std::vector<double> report_values_;
+
+  Array<Space, Mat3d> Q_, dA_;
+  Array<Space, Vec3d> dx_;
+  Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, direction_, still_, still_Ap_, slope_;
+  Array<Space, CgProgress> idle_;
+  Tangent tangent_ = Tangent::full;
+
+  std::optional<Evaluation> known_;
+  std::optional<std::pair<long, double>> reached_;  ///< a state reached, and its internal energy
+  InternalEnergy internal_;
+  double load_energy_ = 0, inertia_energy_ = 0;
+  bool prescribed_left_ = false;
+  long steps_ = 0;
+};
+
+}  // namespace fascia::gpu

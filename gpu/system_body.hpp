@@ -1,0 +1,208 @@
+#pragma once
+
+#include "core/model/errors.hpp"
+#include "gpu/boundary_kernels.hpp"
+#include "gpu/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+/// The bodies of System, for the files that instantiate it: a step as Newton's method sees it. Its start and end are in
+/// system_step.hpp, its linear solves in system_solve.hpp.
+namespace fascia::gpu {
+
+template <class Space>
+System<Space>::System(const Model& model, const SolverSettings& settings)
+    : model_(model),
+      settings_(settings),
+      filter_(model),
+      data_(model, filter_, zero_factors(model).size()),
+      blocks_(model.points),
+      dependents_(model.points),
+      followers_(model),
+      node_parts_(model.points.node_part, model.points.part_count()),
+      cg_(at(model.dof_count())),
+      conservative_(model.loads_are_conservative()),
+      turning_(model.has_frames()),
+      damped_(model.points.damped),
+      motions_(motion_sizes(model)) {
+  const auto n = at(model.node_count()), dofs = at(model.dof_count()), parts = at(model.points.part_count());
+  const std::size_t frames = turning_ ? n : 0;
+  for (auto* array : {&du_, &saved_du_, &u_}) array->resize(n);
+  for (auto* array : {&Ds_, &saved_Ds_, &D_, &L_, &dA_}) array->resize(frames);
+  Q_.resize(n);
+  dx_.resize(n);
+  q_.resize(n);
+  w_.resize(n);
+  for (auto* array : {&turned_, &saved_turned_}) array->resize(3 * model.constraints.size());
+  for (auto* array : {&gradient_, &load_, &inertia_, &world_d_, &world_y_, &direction_, &prescribed_}) {
+    array->resize(dofs);
+    array->set_zero();
+  }
+  node_energy_.resize(3 * n);
+  dependent_forces_.resize(6 * model.points.dependents.size());
+  for (auto* array : {&part_motion_, &new_motion_}) {
+    array->resize(parts);
+    array->set_zero();
+  }
+  if (!model.tethers.empty()) tether_L_.resize(n);
+  report_.resize(parts * kernels::kNodeQuantities + blocks_.report_size() + 3);
+  report_.set_zero();
+  report_values_.resize(report_.size());
+  node_blocks_.resize(model.points.dofs.block_total());
+  inverse_.resize(node_blocks_.size());
+  slope_.resize(3);
+  idle_.resize(1);
+  factors_ = reached_factors_ = zero_factors(model);
+  data_.set_factors(factors_);
+}
+
+template <class Space>
+kernels::StepView System<Space>::step_view() {
+  return {data_.view(), step_,      start_.u.data(), start_.v.data(), start_.D.data(), start_.Q_dot.data(), du_.data(),
+          u_.data(),    Ds_.data(), D_.data(),       q_.data(),       w_.data(),       turned_.data(),      turning_};
+}
+
+template <class Space>
+kernels::ForceView System<Space>::force_view() {
+  return {gradient_.data(), load_.data(), inertia_.data(), node_energy_.data(), L_.data(), tether_L_.data()};
+}
+
+template <class Space>
+void System<Space>::rebuild_state() {
+  known_.reset();
+  Space::for_each(model_.node_count(), kernels::RebuildState{step_view()});
+  place_dependents();
+}
+
+/// In the present state, and their increments by those of their hosts, which keep the digits of small steps.
+template <class Space>
+void System<Space>::place_dependents() {
+  if (dependents_.empty()) return;
+  dependents_.place_increments(du_.data(), Ds_.data(), start_.D.data());
+  dependents_.place(u_.data(), D_.data());
+  dependents_.turn(D_.data());
+}
+
+/// Everything that acts on the nodes, into gradient_, load_ and inertia_.
+template <class Space>
+void System<Space>::evaluate_forces() {
+  const NodesView& nodes = data_.view().nodes;
+  double *largest = part_motion_.data(), *motion = new_motion_.data();
+  node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, motion);
+  Space::for_each(model_.points.part_count(), kernels::KeepLargest{motion, largest});
+  blocks_.forces(nodes, pose(), history(), largest);
+  const kernels::ForceView f = force_view();
+  Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f});
+  if (!followers_.empty()) followers_.add_forces(nodes, pose(), data_.view().factors, load_.data());
+  Space::for_each(model_.dof_count(), kernels::AddInertiaAndLoads{f});
+  if (!dependents_.empty()) dependents_.transfer(nodes, gradient_.data(), dependent_forces_.data());
+}
+
+/// What the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
+template <class Space>
+void System<Space>::find_prescribed() {
+  double* out = report_.data() + report_.size() - 3;
+  Space::for_each(static_cast<int>(model_.constraints.size()),
+                  kernels::FindPrescribed{step_view(), prescribed_.data()});
+  Space::template sum<0, 3>(model_.node_count(), kernels::PrescribedLeft{step_view(), prescribed_.data()},
+                            kernels::StoreSums<0, 3>{out});
+}
+
+template <class Space>
+Evaluation System<Space>::evaluate() {
+  if (known_) return *std::exchange(known_, std::nullopt);
+  evaluate_forces();
+  node_parts_.template sum<kernels::kNodeQuantities>(kernels::NodeReport{data_.view(), force_view()}, report_.data());
+  blocks_.sum_quantities(report_.data() + at(model_.points.part_count()) * kernels::kNodeQuantities);
+  if (!model_.constraints.empty()) find_prescribed();
+  report_.download(report_values_);
+  return judge();
+}
+
+/// From the numbers of an evaluation, as MechanicalSystem::evaluate().
+template <class Space>
+Evaluation System<Space>::judge() {
+  const std::size_t parts = at(model_.points.part_count());
+  const double* nodes = report_values_.data();
+  const double* blocks = nodes + parts * kernels::kNodeQuantities;
+  const std::size_t block_kinds = blocks_.report_size() / (parts * kQuantities);
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  Evaluation e;
+  internal_ = {};
+  load_energy_ = inertia_energy_ = 0;
+  double total = 0;
+  for (std::size_t p = 0; p < parts; ++p) {
+    const double* q = nodes + p * kernels::kNodeQuantities;
+    double rounding = 0, tethers = 0;
+    for (std::size_t b = 0; b < block_kinds; ++b) {
+      const double* own = blocks + (b * parts + p) * kQuantities;
+      internal_.elastic += own[kElastic];
+      internal_.stabilization += own[kStabilizing];
+      internal_.viscous += own[kViscous];
+      rounding += own[kRounding];
+      tethers += own[kTether];
+    }
+    load_energy_ += q[kernels::kLoadEnergy];
+    inertia_energy_ += q[kernels::kInertiaEnergy];
+    total += q[kernels::kResidual];
+    const double residual = std::sqrt(q[kernels::kResidual]);
+    const double reference =
+        std::sqrt(std::max({q[kernels::kLoad], q[kernels::kInertia], q[kernels::kReaction], tethers}));
+    const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
+    // 4: sums of a few terms of the estimated size in each entry.
+    const double floor = 4 * leverage * kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]);
+    const double allowed = std::max(settings_.tolerance * reference, floor);
+    const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
+    if (excess < e.excess && p > 0) continue;
+    e.excess = excess;
+    const double scale = std::max({reference, floor, 1e-300});
+    e.relative = residual / scale;
+    e.relative_floor = floor / scale;
+  }
+  e.energy = internal_.total() + load_energy_ + inertia_energy_;
+  e.residual = std::sqrt(total);
+  prescribed_left_ = false;
+  if (model_.constraints.empty()) return e;
+  const double* left = report_values_.data() + report_values_.size() - 3;
+  prescribed_left_ = left[1] > 1e-14 * std::max(left[0], motions_.displacement) || left[2] > 1e-14 * motions_.angle;
+  return e;
+}
+
+/// Potentials of loads and inertia at the present state, where the internal energy is known.
+template <class Space>
+void System<Space>::evaluate_loads() {
+  Space::for_each(model_.node_count(), kernels::NodeForces{step_view(), BlocksView{}, force_view()});
+  node_parts_.template sum<kernels::kNodeQuantities>(kernels::NodeReport{data_.view(), force_view()}, report_.data());
+  report_.download(report_values_);
+  load_energy_ = inertia_energy_ = 0;
+  for (std::size_t p = 0; p < at(model_.points.part_count()); ++p) {
+    load_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kLoadEnergy];
+    inertia_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kInertiaEnergy];
+  }
+}
+
+template <class Space>
+void System<Space>::apply(double step) {
+  known_.reset();
+  Space::for_each(model_.node_count(), kernels::Advance{step_view(), direction_.data(), step});
+  place_dependents();
+}
+
+template <class Space>
+void System<Space>::save() {
+  saved_du_.copy_from(du_);
+  saved_Ds_.copy_from(Ds_);
+  saved_turned_.copy_from(turned_);
+}
+
+template <class Space>
+void System<Space>::restore() {
+  du_.copy_from(saved_du_);
+  Ds_.copy_from(saved_Ds_);
+  turned_.copy_from(saved_turned_);
+  rebuild_state();
+}
+
+}  // namespace fascia::gpu

@@ -1,0 +1,139 @@
+#include "gpu/device.hpp"
+#include "app/backend.hpp"
+#include "app/scene/parse.hpp"
+#include "app/simulation.hpp"
+#include "app/solver_settings.hpp"
+#include "gpu/run.hpp"
+#include "tests/support/models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+/// Scenes by what runs on the device, against the processor's own code: in the space of the host always, on the device
+/// where there is one.
+namespace fascia::test {
+namespace {
+
+using app::Simulation;
+
+enum class Where { host, device };
+
+/// Energy, forces and products agree to this; rounding of sums in another order leaves 1e-14 to 1e-13.
+constexpr double kSameState = 1e-12;
+
+Simulation load(const std::string& scene, const std::vector<std::string>& settings = {}) {
+  return app::build_simulation(
+      app::parse_scene_file(std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (scene + ".toml"), settings));
+}
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> d(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) d[i] = a[i] - b[i];
+  return norm(d) / std::max(norm(b), 1e-300);
+}
+
+double difference(double a, double b) { return std::abs(a - b) / std::max(std::abs(b), 1e-300); }
+
+/// A state that deforms every body of a scene by a few per cent of its nodes' spacing.
+State deformed(const Simulation& s) {
+  double spacing = 1e300;
+  for (const double length : s.model.points.part_length) spacing = std::min(spacing, length);
+  State state = random_state(s.model, 0.03 * spacing, 0.03);
+  place_dependents(s.model.points, state);
+  return state;
+}
+
+class Device : public ::testing::TestWithParam<std::tuple<Where, std::string>> {
+ protected:
+  void SetUp() override {
+    std::string reason;
+    if (where() == Where::device && gpu::usable_devices(reason).empty()) GTEST_SKIP() << reason;
+  }
+  static Where where() { return std::get<0>(GetParam()); }
+  static std::string scene() { return std::get<1>(GetParam()); }
+};
+
+using DeviceState = Device;
+
+TEST_P(DeviceState, HasTheProcessorsEnergyForcesAndProduct) {
+  const Simulation s = load(scene());
+  const SolverSettings settings = app::settings_of(s.scene.solver);
+  const State state = deformed(s);
+  const std::vector<double> factors = s.factors(1), d = random_direction(s.model);
+  ThreadPool pool(1);
+  MechanicalSystem system(s.model, pool, settings);
+  system.set_factors(factors);
+  system.begin_step(state, 0);
+  const Evaluation expected = system.evaluate();
+  const auto evaluate = where() == Where::host ? gpu::evaluate_on_host : gpu::evaluate;
+  const gpu::DeviceEvaluation got = evaluate(s.model, state, factors, settings, d);
+  EXPECT_LE(difference(got.judged.energy, expected.energy), kSameState);
+  EXPECT_LE(difference(got.energy.elastic, system.internal_energy().elastic), kSameState);
+  EXPECT_LE(difference(got.judged.residual, expected.residual), kSameState);
+  EXPECT_LE(difference(got.judged.relative, expected.relative), kSameState);
+  EXPECT_LE(difference(got.judged.relative_floor, expected.relative_floor), kSameState);
+  EXPECT_LE(difference(got.gradient, {system.gradient().begin(), system.gradient().end()}), kSameState);
+  EXPECT_LE(difference(got.product, system.product(d)), kSameState);
+}
+
+using DeviceSolution = Device;
+
+TEST_P(DeviceSolution, IsThatOfTheProcessor) {
+  const Simulation s = load(scene(), {"solver.linear.kind=cg", "solver.linear.tolerance=1e-10",
+                                      "solver.linear.max_iterations=100000", "solver.newton.tolerance=1e-10"});
+  ASSERT_EQ(app::not_on_gpu(s), "");
+  const SolverSettings settings = app::settings_of(s.scene.solver);
+  const FactorFunction factors = [&](double t) { return s.factors(t); };
+  ThreadPool pool(0);
+  MechanicalSystem system(s.model, pool, settings);
+  State expected = s.initial, got = s.initial;
+  RunReport on_cpu, there;
+  const auto& solver = s.scene.solver;
+  if (solver.kind == app::SolverKind::statics) {
+    const StaticsSettings statics{solver.load_steps};
+    on_cpu = run_statics(system, expected, factors, settings, statics, {});
+    there = (where() == Where::host ? gpu::run_statics_on_host : gpu::run_statics)(s.model, got, factors, settings,
+                                                                                   statics, {});
+  } else {
+    const DynamicsSettings dynamics{app::scheme_of(solver.kind), solver.time_step, std::min(solver.steps, 20)};
+    on_cpu = run_implicit(system, expected, factors, settings, dynamics, {});
+    there = (where() == Where::host ? gpu::run_implicit_on_host : gpu::run_implicit)(s.model, got, factors, settings,
+                                                                                     dynamics, {});
+  }
+  EXPECT_EQ(there.message, on_cpu.message);
+  EXPECT_EQ(there.steps, on_cpu.steps);
+  double largest = 0, error = 0;
+  for (std::size_t i = 0; i < got.u.size(); ++i) {
+    largest = std::max(largest, norm(expected.u[i]));
+    error = std::max(error, norm(got.u[i] - expected.u[i]));
+  }
+  std::printf("%-30s |du|/|u| %8.1e  Newton %3d %3d  CG %6d %6d\n", scene().c_str(), error / largest,
+              there.newton_iterations, on_cpu.newton_iterations, there.linear_iterations, on_cpu.linear_iterations);
+  EXPECT_LE(error, 1e-7 * largest);
+  EXPECT_LE(std::abs(there.newton_iterations - on_cpu.newton_iterations), 2);
+}
+
+std::string name_of(const ::testing::TestParamInfo<Device::ParamType>& info) {
+  return (std::get<0>(info.param) == Where::host ? "host_" : "device_") + std::get<1>(info.param);
+}
+
+constexpr auto kPlaces = {Where::host, Where::device};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, DeviceState,
+                         ::testing::Combine(::testing::ValuesIn(kPlaces),
+                                            ::testing::Values("soft_cantilever", "affine_beside_rigid",
+                                                              "scattered_cantilever", "paper_sheet", "line_cantilever",
+                                                              "traction_clamped", "breathing_liver", "tumbling_box")),
+                         name_of);
+
+INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
+                         ::testing::Combine(::testing::ValuesIn(kPlaces),
+                                            ::testing::Values("soft_cantilever", "affine_cantilever", "svk_uniaxial",
+                                                              "sheet_bending", "traction_clamped", "settling_beam",
+                                                              "tumbling_box", "midpoint_spin", "free_fall")),
+                         name_of);
+
+}  // namespace
+}  // namespace fascia::test
