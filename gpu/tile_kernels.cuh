@@ -248,8 +248,8 @@ struct VectorArgs {
 
 inline constexpr int kUpdateThreads = 128;
 
-/// α, x, r, z and parts of r · z.
-static __global__ __launch_bounds__(kUpdateThreads) void update_kernel(VectorArgs a) {
+/// α, x, r, z and parts of r · z. Five blocks on each multiprocessor: the registers hold what is on its way.
+static __global__ __launch_bounds__(kUpdateThreads, 5) void update_kernel(VectorArgs a) {
   __shared__ double scratch[33];
   CgState state = *a.in;
   double alpha = 0;
@@ -267,47 +267,27 @@ static __global__ __launch_bounds__(kUpdateThreads) void update_kernel(VectorArg
   }
   if (blockIdx.x == 0 && threadIdx.x == 0) *a.out = state;
   if (alpha == 0) return;
-  // Vectors pass through shared memory, so that threads, which take a frame each, read and write them in one piece.
-  __shared__ __align__(16) double x[kUpdateThreads * kDofs], r[kUpdateThreads * kDofs], p[kUpdateThreads * kDofs];
-  const int tid = static_cast<int>(threadIdx.x), step = static_cast<int>(gridDim.x) * kUpdateThreads;
   double rz = 0;
-  for (int base = static_cast<int>(blockIdx.x) * kUpdateThreads; base < a.frame_count; base += step) {
-    const int count = min(kUpdateThreads, a.frame_count - base), f = base + tid;
-    const std::size_t begin = kDofs * static_cast<std::size_t>(base);
-    const int bytes = count * kDofs * static_cast<int>(sizeof(double));
-    copy_block(x, a.x + begin, bytes);
-    copy_block(r, a.r + begin, bytes);
-    copy_block(p, a.p + begin, bytes);
-    double Ap[kDofs];
-    if (tid < count) {
-      sum_partials(a.partials, a.frame_slot_begin[f], a.frame_slot_begin[f + 1], Ap);
-      clear_held(a.held, static_cast<std::size_t>(f), Ap);
-    }
-    wait_copies();
-    __syncthreads();
-    if (tid < count) {
-      double own_x[kDofs], own_r[kDofs], own_p[kDofs], z[kDofs];
-      load_words<kDofs>(x + kDofs * tid, own_x);
-      load_words<kDofs>(r + kDofs * tid, own_r);
-      load_words<kDofs>(p + kDofs * tid, own_p);
+  const int step = static_cast<int>(gridDim.x * blockDim.x);
+  for (int f = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); f < a.frame_count; f += step) {
+    const auto n = static_cast<std::size_t>(f);
+    double p[kDofs], x[kDofs], r[kDofs], z[kDofs], Ap[kDofs];
+    load_words<kDofs>(a.p + kDofs * n, p);
+    load_words<kDofs>(a.x + kDofs * n, x);
+    load_words<kDofs>(a.r + kDofs * n, r);
+    sum_partials(a.partials, a.frame_slot_begin[f], a.frame_slot_begin[f + 1], Ap);
+    clear_held(a.held, n, Ap);
 #pragma unroll
-      for (int i = 0; i < kDofs; ++i) {
-        own_x[i] += alpha * own_p[i];
-        own_r[i] -= alpha * Ap[i];
-      }
-      precondition(a.inverse, static_cast<std::size_t>(f), static_cast<std::size_t>(a.frame_count), own_r, z);
-      store_words<kDofs>(x + kDofs * tid, own_x);
-      store_words<kDofs>(r + kDofs * tid, own_r);
-      store_words<kDofs>(p + kDofs * tid, z);
-      rz += dot6(own_r, z);
+    for (int i = 0; i < kDofs; ++i) {
+      x[i] += alpha * p[i];
+      r[i] -= alpha * Ap[i];
     }
-    __syncthreads();
-    for (int i = 2 * tid; i < kDofs * count; i += 2 * kUpdateThreads) {
-      *reinterpret_cast<double2*>(a.x + begin + i) = *reinterpret_cast<const double2*>(x + i);
-      *reinterpret_cast<double2*>(a.r + begin + i) = *reinterpret_cast<const double2*>(r + i);
-      *reinterpret_cast<double2*>(a.z + begin + i) = *reinterpret_cast<const double2*>(p + i);
-    }
-    __syncthreads();
+    store_words<kDofs>(a.x + kDofs * n, x);
+    if (state.done != 0) continue;
+    precondition(a.inverse, n, static_cast<std::size_t>(a.frame_count), r, z);
+    store_words<kDofs>(a.r + kDofs * n, r);
+    store_words<kDofs>(a.z + kDofs * n, z);
+    rz += dot6(r, z);
   }
   const double part = block_sum(rz, scratch);
   if (threadIdx.x == 0) a.rz_parts[blockIdx.x] = part;

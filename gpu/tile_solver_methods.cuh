@@ -132,8 +132,10 @@ void Solver<Constant>::choose_kernels(const DeviceLimits& limits) {
   state_ = drilling ? state_kernel<true, Constant> : state_kernel<false, Constant>;
   state_blocks_ = blocks_of(state_);
   jacobi_ = drilling ? jacobi_kernel<true, Constant> : jacobi_kernel<false, Constant>;
-  constexpr int update_blocks_each = 8;
-  update_blocks_ = std::min(frame_blocks(), update_blocks_each * limits.multiprocessors);
+  int updates = 0;
+  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&updates, update_kernel, kUpdateThreads, 0),
+        "asking for residency");
+  update_blocks_ = std::min(frame_blocks(), std::max(1, updates) * limits.multiprocessors);
   if (!resident_) return;
   const ResidentChoice<Constant> chosen = drilling ? choose_resident<true, Constant>(K, P, layout_.most_frames)
                                                    : choose_resident<false, Constant>(K, P, layout_.most_frames);
