@@ -122,7 +122,7 @@ class ConjugateGradients {
 
   /// Right-hand side, to be written before solve(); held entries zero.
   double* rhs() { return r_.data(); }
-  const double* solution() const { return x_.data(); }
+  double* solution() { return x_.data(); }
 
   /// @param inverse  block-diagonal preconditioner, by node
   /// @param key      of the operator: what its loops were recorded with

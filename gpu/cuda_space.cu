@@ -23,7 +23,7 @@ void check(cudaError_t status, const char* doing) {
 cudaStream_t CudaSpace::stream() {
   struct Stream {
     cudaStream_t handle = nullptr;
-    Stream() { check(cudaStreamCreateWithFlags(&handle, cudaStreamNonBlocking), "making a stream"); }
+    Stream() { check(cudaStreamCreate(&handle), "making a stream"); }
     ~Stream() { cudaStreamDestroy(handle); }
   };
   thread_local const Stream stream;

@@ -77,8 +77,9 @@ __global__ void __launch_bounds__(256) sum(int count, Body body, End end, double
 
 }  // namespace kernels
 
-/// The default device; all loops of a thread follow each other on one stream.
+/// The default device; all loops of a thread follow each other on one stream, and what tiles do on the default stream.
 struct CudaSpace {
+  static constexpr bool kHasTiles = true;
   static cudaStream_t stream();
   static void* allocate(std::size_t bytes);
   static void release(void* memory) noexcept;

@@ -32,6 +32,8 @@ struct Sums {
 };
 
 struct HostSpace {
+  static constexpr bool kHasTiles = false;
+
   static void* allocate(std::size_t bytes) { return bytes == 0 ? nullptr : ::operator new(bytes, kAlignment); }
   static void release(void* memory) noexcept { ::operator delete(memory, kAlignment); }
   static void copy_in(void* to, const void* from, std::size_t bytes) { copy(to, from, bytes); }

@@ -12,8 +12,10 @@
 #include "gpu/part_sums.hpp"
 #include "gpu/step_kernels.hpp"
 #include "gpu/surfaces.hpp"
+#include "gpu/tile_solver.hpp"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -89,11 +91,18 @@ class System {
   void predict_strain(const Memory& memory);
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
+  void linearize_tiles(Tangent tangent);
   void apply_tangent(const CgView& v);
   void multiply(const kernels::ProductView& w);
   void gather_product(const kernels::ProductView& w);
+  void make_tiles();
+  /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
+  bool use_tiles() const {
+    return tiles_ != nullptr && (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
+  }
   std::uint64_t operator_key() const;
   CgReport solve(const CgOptions& options);
+  CgReport solve_in_tiles(const CgOptions& options);
   void place_tethers();
 
   const Model& model_;
@@ -106,6 +115,7 @@ class System {
   Surfaces<Space> surfaces_;
   PartSums<Space> node_parts_;
   ConjugateGradients<Space> cg_;
+  std::unique_ptr<TileSolver> tiles_;  ///< of meshless solids alone; none where they cannot hold them
   bool conservative_, turning_, damped_;
   MotionSizes motions_;
 

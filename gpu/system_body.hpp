@@ -57,6 +57,24 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   idle_.resize(1);
   factors_ = reached_factors_ = zero_factors(model);
   data_.set_factors(factors_);
+  if constexpr (Space::kHasTiles) make_tiles();
+}
+
+/// Where the model is solids of rigid frames that move by themselves, held in world axes.
+template <class Space>
+void System<Space>::make_tiles() {
+  const Preconditioner kind = settings_.preconditioner;
+  const bool known =
+      kind == Preconditioner::automatic || kind == Preconditioner::block_jacobi || kind == Preconditioner::none;
+  if (!known || filter_.turns() || !dependents_.empty() || !surfaces_.empty() || !model_.tethers.empty()) return;
+  const TilePointsResult points = tile_points(model_.points, model_.rest_position);
+  if (!points.refusal.empty()) return;
+  ThreadPool pool(0);
+  tiles_ = TileSolver::make(points.points, {}, pool);
+  if (!tiles_) return;
+  std::vector<std::uint8_t> held;
+  for (int i = 0; i < model_.node_count(); ++i) held.push_back(static_cast<std::uint8_t>(filter_.fixed_of(i)));
+  tiles_->set_held(held);
 }
 
 template <class Space>
