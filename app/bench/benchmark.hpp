@@ -14,7 +14,7 @@ namespace fascia::app {
 /// A scene that is timed.
 struct BenchmarkCase {
   std::string name;     ///< of its row and of its scene file
-  std::string body;     ///< what it is, in a word
+  std::string body;     ///< what it is, in a word or two without a comma
   std::string setting;  ///< "paper": as in the publication; "default": the program's own choice
   int size = 0;         ///< integration points or cells that are asked for
   std::string scene;    ///< TOML
