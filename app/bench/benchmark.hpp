@@ -66,6 +66,9 @@ struct Backend {
 /// The backends of this build on this machine: the processor with one thread and with `threads` (0: all).
 std::vector<Backend> available_backends(int threads);
 
+/// Those that the options choose. @throws BackendError  where there are none
+std::vector<Backend> chosen_backends(const BenchOptions& options);
+
 /// One case on one backend.
 struct Measurement {
   std::string name, body, setting;
@@ -95,9 +98,10 @@ struct BenchOptions {
   std::optional<std::string> name;  ///< none: the list of benchmarks is printed
   std::vector<double> sizes;        ///< empty: all up to the limit
   std::optional<double> max_points;
-  std::string settings = "both";  ///< "paper", "default", "both"
-  int repeat = 0;                 ///< steps that are timed; 0: StepPlan's
-  int threads = 0;                ///< 0: all
+  std::string settings = "both";       ///< "paper", "default", "both"
+  int repeat = 0;                      ///< steps that are timed; 0: StepPlan's
+  int threads = 0;                     ///< 0: all
+  std::optional<std::string> backend;  ///< none: all that there are
   std::optional<std::filesystem::path> output;
   bool json = false, quiet = false;
 };
