@@ -66,9 +66,6 @@ struct Backend {
 /// The backends of this build on this machine: the processor with one thread and with `threads` (0: all).
 std::vector<Backend> available_backends(int threads);
 
-/// Those that the options choose. @throws BackendError  where there are none
-std::vector<Backend> chosen_backends(const BenchOptions& options);
-
 /// One case on one backend.
 struct Measurement {
   std::string name, body, setting;
@@ -105,6 +102,9 @@ struct BenchOptions {
   std::optional<std::filesystem::path> output;
   bool json = false, quiet = false;
 };
+
+/// Those that the options choose. @throws BackendError  where there are none
+std::vector<Backend> chosen_backends(const BenchOptions& options);
 
 /// Cases that the options choose; what is above the limit goes to `skipped`.
 /// @throws InputError  a size that the benchmark does not have
