@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gpu/cuda_check.hpp"
 #include "gpu/device.hpp"
 #include "gpu/space.hpp"
 
@@ -8,9 +9,6 @@
 #include <vector>
 
 namespace fascia::gpu {
-
-/// @throws NoDevice, DeviceMemoryError, DeviceLost  by the kind of error. @param doing  what was being done
-void check(cudaError_t status, const char* doing);
 
 namespace kernels {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gpu/cuda_space.cuh"
+#include "gpu/cuda_check.hpp"
 
 #include <cstddef>
 #include <span>
