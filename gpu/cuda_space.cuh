@@ -73,6 +73,19 @@ __global__ void __launch_bounds__(256) sum(int count, Body body, End end, double
   if (threadIdx.x == 0) end(total);
 }
 
+/// Eight neighbouring threads an item.
+template <int K, class Body, class End>
+__global__ void __launch_bounds__(256) sum_lanes(int count, Body body, End end) {
+  const int thread = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const int item = thread / kSpaceLanes, lane = thread % kSpaceLanes;
+  Sums<K> s;
+  if (item < count) body(item, lane, s);
+  for (int k = 0; k < K; ++k)
+    for (int step = kSpaceLanes / 2; step > 0; step >>= 1)
+      s.v[k] += __shfl_down_sync(0xffffffffu, s.v[k], step, kSpaceLanes);
+  if (item < count && lane == 0) end(item, s);
+}
+
 }  // namespace kernels
 
 /// The default device; all loops of a thread follow each other on one stream, and what tiles do on the default stream.
@@ -102,6 +115,14 @@ struct CudaSpace {
     const unsigned grid = std::min(blocks(std::max(count, 1), threads), kMostBlocks);
     const Scratch& s = scratch();
     kernels::sum<K, M><<<grid, threads, 0, stream()>>>(count, body, end, s.partial, s.finished);
+    check(cudaGetLastError(), "starting a sum");
+  }
+
+  template <int K, class Body, class End>
+  static void sum_lanes(int count, const Body& body, const End& end) {
+    if (count == 0) return;
+    constexpr int kThreads = 128;
+    kernels::sum_lanes<K><<<blocks(count, kThreads / kSpaceLanes), kThreads, 0, stream()>>>(count, body, end);
     check(cudaGetLastError(), "starting a sum");
   }
 

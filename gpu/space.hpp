@@ -31,6 +31,9 @@ struct Sums {
   }
 };
 
+/// Lanes of a loop whose items are eight each, as groups of points are.
+inline constexpr int kSpaceLanes = 8;
+
 struct HostSpace {
   static constexpr bool kHasTiles = false;
 
@@ -63,6 +66,16 @@ struct HostSpace {
       total.add(part);
     }
     end(total);
+  }
+
+  /// body(i, lane, sums) for the lanes of each i < count, then end(i, totals).
+  template <int K, class Body, class End>
+  static void sum_lanes(int count, const Body& body, const End& end) {
+    for (int i = 0; i < count; ++i) {
+      Sums<K> total;
+      for (int lane = 0; lane < kSpaceLanes; ++lane) body(i, lane, total);
+      end(i, total);
+    }
   }
 
   /// Repeats a body of loops until one of them sets a flag.
