@@ -139,9 +139,9 @@ struct CudaSpace {
       if (limit <= 0) return;
       const int chunk = limit < kChunk ? limit : kChunk;
       if (graph_ == nullptr || key != key_ || chunk != chunk_ || done != done_) {
-        begin_recording();
+        const Recording recording(*this);
         for (int i = 0; i < chunk; ++i) body();
-        end_recording(done);
+        end_recording();
         key_ = key;
         chunk_ = chunk;
         done_ = done;
@@ -150,9 +150,21 @@ struct CudaSpace {
     }
 
    private:
-    static constexpr int kChunk = 20;
+    static constexpr int kChunk = 10;
+    /// Ends also where a loop could not be started.
+    class Recording {
+     public:
+      explicit Recording(Loop& loop) : loop_(loop) { loop.begin_recording(); }
+      ~Recording() { loop_.drop_recording(); }
+      Recording(const Recording&) = delete;
+      Recording& operator=(const Recording&) = delete;
+
+     private:
+      Loop& loop_;
+    };
     void begin_recording();
-    void end_recording(const int* done);
+    void end_recording();
+    void drop_recording() noexcept;
     void repeat(int times);
 
     cudaGraphExec_t graph_ = nullptr;
@@ -165,6 +177,7 @@ struct CudaSpace {
 
  private:
   static constexpr int kSmall = 100000, kMostSums = 16;
+  static cudaStream_t make_stream();
   static constexpr unsigned kMostBlocks = 1024;
   struct Scratch {
     double* partial = nullptr;

@@ -27,7 +27,7 @@ struct Sums {
   }
   /// A value that is not a number stays.
   FASCIA_HD void note(int k, double value) {
-    if (!(value <= largest[k])) largest[k] = value;
+    if (!(value <= largest[k]) && largest[k] == largest[k]) largest[k] = value;
   }
 };
 

@@ -31,7 +31,7 @@ class System {
   using Pose = DeviceState<Space>;
   using Memory = DeviceMemory<Space>;
 
-  /// @throws InputError  what the device does not take, by name
+  /// Direct solves are those of conjugate gradients here, and a Cholesky preconditioner is block-Jacobi.
   System(const Model& model, const SolverSettings& settings);
 
   void begin_step(const Pose& start, double dt) { begin_step(start, dt, TimeScheme::implicit_euler, {}); }
@@ -115,6 +115,7 @@ class System {
   Surfaces<Space> surfaces_;
   PartSums<Space> node_parts_;
   ConjugateGradients<Space> cg_;
+  std::vector<std::uint8_t> held_;     ///< degrees of freedom that tiles hold, by node
   std::unique_ptr<TileSolver> tiles_;  ///< of meshless solids alone; none where they cannot hold them
   bool conservative_, turning_, damped_;
   MotionSizes motions_;

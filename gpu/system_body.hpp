@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/model/errors.hpp"
 #include "gpu/boundary_kernels.hpp"
+#include "gpu/device.hpp"
 #include "gpu/system.hpp"
 
 #include <algorithm>
@@ -70,11 +70,15 @@ void System<Space>::make_tiles() {
   const TilePointsResult points = tile_points(model_.points, model_.rest_position);
   if (!points.refusal.empty()) return;
   ThreadPool pool(0);
-  tiles_ = TileSolver::make(points.points, {}, pool);
+  try {
+    tiles_ = TileSolver::make(points.points, {}, pool);
+  } catch (const DeviceMemoryError&) {
+    return;  // groups of points need less
+  }
   if (!tiles_) return;
-  std::vector<std::uint8_t> held;
-  for (int i = 0; i < model_.node_count(); ++i) held.push_back(static_cast<std::uint8_t>(filter_.fixed_of(i)));
-  tiles_->set_held(held);
+  for (int i = 0; i < model_.node_count(); ++i) held_.push_back(static_cast<std::uint8_t>(filter_.fixed_of(i)));
+  tiles_->set_held(held_);
+  if (kind == Preconditioner::none) tiles_->clear_preconditioner();
 }
 
 template <class Space>

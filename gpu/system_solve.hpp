@@ -47,10 +47,7 @@ void System<Space>::linearize_tiles(Tangent tangent) {
   blocks_.add_spring_blocks(data_.view().nodes, pose(), tangent, node_blocks_.data());
   tiles_->linearize(u_.data()->v, &(*D_.data())(0, 0), tangent, damped_ ? inverse_step_ : 0.0);
   tiles_->set_node_blocks(node_blocks_.data());
-  if (settings_.preconditioner == Preconditioner::none)
-    tiles_->clear_preconditioner();
-  else
-    tiles_->build_preconditioner();
+  if (settings_.preconditioner != Preconditioner::none) tiles_->build_preconditioner();
 }
 
 /// v.Ap = K v.p in constraint axes, with the next direction in v.p.
@@ -176,6 +173,7 @@ std::vector<double> System<Space>::product(std::span<const double> d) {
     world_d_.upload(d);
     tiles_->set_held({});
     tiles_->multiply(world_d_.data(), world_y_.data());
+    tiles_->set_held(held_);
     return world_y_.downloaded();
   }
   const NodesView& nodes = data_.view().nodes;
