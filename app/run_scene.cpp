@@ -84,10 +84,11 @@ struct Outcome {
   CouplingReports couplings;
 };
 
-/// Statics or implicit dynamics on the GPU. A device that is lost ends the run with what was seen last.
+/// Statics or dynamics on the GPU. A device that is lost ends the run with what was seen last.
+/// @param observed  of explicit dynamics, as in ExplicitSettings
 /// @throws BackendError  where it has too little memory
 RunReport run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                     const gpu::DeviceObserver& observe) {
+                     const gpu::DeviceObserver& observe, const std::function<bool(const StepInfo&)>& observed = {}) {
   const Solver& solver = s.scene.solver;
   RunReport seen;
   const gpu::DeviceObserver watch = [&](const StepInfo& step, gpu::DeviceStep& device) {
@@ -98,13 +99,16 @@ RunReport run_on_gpu(const Simulation& s, State& state, const FactorFunction& fa
   try {
     if (solver.kind == SolverKind::statics)
       return gpu::run_statics(s.model, state, factors, settings, {solver.load_steps}, watch);
+    if (solver.kind == SolverKind::central_differences)
+      return gpu::run_explicit(s.model, state, factors, settings, {solver.time_step, solver.steps, observed}, watch);
     return gpu::run_implicit(s.model, state, factors, settings,
                              {scheme_of(solver.kind), solver.time_step, solver.steps}, watch);
   } catch (const gpu::DeviceLost& e) {
     seen.status = RunStatus::not_converged;
-    seen.message = fmt::format("after step {}: {}; the results end with the last one that was saved; try again, or "
-                               "--backend cpu",
-                               seen.steps, e.what());
+    seen.message = fmt::format(
+        "after step {}: {}; the results end with the last one that was saved; try again, or "
+        "--backend cpu",
+        seen.steps, e.what());
     return seen;
   } catch (const std::runtime_error& e) {
     if (dynamic_cast<const gpu::DeviceMemoryError*>(&e) == nullptr && dynamic_cast<const gpu::NoDevice*>(&e) == nullptr)
@@ -175,12 +179,23 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
         progress.update(step);
         return rule.save(step) || interrupted != 0;
       };
-      out.run = run_explicit(system, state, factors, {s.scene.solver.time_step, s.scene.solver.steps, observed},
-                             [&](const StepInfo& step, const State& at, MechanicalSystem&) {
-                               save(step.time, step.step, at, true);
-                               out.stabilization = system.internal_energy().stabilization;
-                               return interrupted == 0;
-                             });
+      const auto keep = [&](const StepInfo& step, const State& at) {
+        save(step.time, step.step, at, true);
+        out.stabilization = system.internal_energy().stabilization;
+        return interrupted == 0;
+      };
+      if (backend == Backend::cuda)
+        out.run = run_on_gpu(
+            s, state, factors, settings,
+            [&](const StepInfo& step, gpu::DeviceStep& device) {
+              device.show(system, factors(step.time));
+              return keep(step, device.state());
+            },
+            observed);
+      else
+        out.run =
+            run_explicit(system, state, factors, {s.scene.solver.time_step, s.scene.solver.steps, observed},
+                         [&](const StepInfo& step, const State& at, MechanicalSystem&) { return keep(step, at); });
     } else if (backend == Backend::cuda) {
       out.run = run_on_gpu(s, state, factors, settings, observe_on_gpu);
     } else {
@@ -296,8 +311,8 @@ int run_scene(const RunOptions& options) {
   ResultFiles files(s, directory.path(), name);
   const double setup = seconds_since(start);
   std::signal(SIGINT, on_interrupt);
-  Outcome out =
-      s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files) : simulate(s, backend, pool, files, options);
+  Outcome out = s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files)
+                                                         : simulate(s, backend, pool, files, options);
   out.times.setup += setup;
   files.finish();
   if (s.scene.output.picture) make_picture(s, directory.path(), name);
