@@ -84,6 +84,13 @@ struct ExplicitView {
       half_rate[i] = w.rate;
     }
   }
+  /// The velocity half a step later, of what a model's nodes may be.
+  template <bool Frames>
+  FASCIA_HD HalfStepVelocity kick(const ExplicitNode& n, const HalfStepVelocity& old, const double* f) const {
+    if constexpr (Frames) return kicked(n, old, f, dt);
+    if (n.held != nullptr) return kicked_held_vertex(n, old, f, dt);
+    return {kicked_vertex(n.damping, n.inertia->mass, old.v, Vec3d{{f[0], f[1], f[2]}}, dt), {}, {}};
+  }
   template <bool Frames>
   FASCIA_HD PoseMotion given_velocity(int i) const {
     if constexpr (Frames) return {v[i], Q_dot[i]};
@@ -158,7 +165,7 @@ struct KickAndDrift {
     double load[kMostDofs], force[kMostDofs];
     const HalfStepVelocity old = s.velocity<Frames>(i);
     s.forces(node, i, old, load, force);
-    const HalfStepVelocity next = kicked(node, old, force, s.dt);
+    const HalfStepVelocity next = s.kick<Frames>(node, old, force);
     s.set_velocity<Frames>(i, next);
     double* turned = node.held == nullptr ? nullptr : s.turned + 3 * s.m.constraint[i];
     Mat3d D = node.D;
@@ -280,7 +287,7 @@ struct ReportVelocity {
     const HalfStepVelocity old = s.velocity<Frames>(i);
     double load[kMostDofs], force[kMostDofs];
     s.forces(node, i, old, load, force);
-    const HalfStepVelocity next = kicked(node, old, force, s.dt);
+    const HalfStepVelocity next = s.kick<Frames>(node, old, force);
     const PoseMotion v = pose_velocity(node, (old + next) * 0.5);
     if (node.held != nullptr)
       held_acceleration[s.m.constraint[i]] = (pose_velocity(node, next) - pose_velocity(node, old)) * (1 / s.dt);
