@@ -10,14 +10,13 @@ namespace fascia::app {
 namespace {
 
 /// Below, a step on the processor is over before one on the GPU is (docs/performance.md).
-constexpr int kWorthwhile = 20000;
+constexpr int kWorthwhile = 15000;
 
 }  // namespace
 
 std::string not_on_gpu(const Simulation& s) {
   const Solver& solver = s.scene.solver;
   if (solver.kind == SolverKind::modes) return "solver.kind = \"modes\"";
-  if (solver.kind == SolverKind::central_differences) return "solver.kind = \"explicit\"";
   if (solver.control == StaticControl::arc_length) return "solver.control = \"arc-length\"";
   if (solver.control == StaticControl::displacement) return "solver.control = \"displacement\"";
   if (solver.linear == LinearKind::cholesky) return "solver.linear.kind = \"cholesky\"";
@@ -36,8 +35,8 @@ Backend choose_backend(const Simulation& s) {
       throw BackendError(e.what());
     }
     if (!missing.empty())
-      throw BackendError(fmt::format("{}: the GPU does not compute {}; use --backend cpu, or auto",
-                                     s.scene.path.string(), missing));
+      throw BackendError(
+          fmt::format("{}: the GPU does not compute {}; use --backend cpu, or auto", s.scene.path.string(), missing));
     return Backend::cuda;
   }
   if (!missing.empty() || s.model.free_dof_count() < kWorthwhile) return Backend::cpu;

@@ -27,6 +27,12 @@ RunReport run_implicit(const Model&, State&, const FactorFunction&, const Solver
   return {};
 }
 
+RunReport run_explicit(const Model&, State&, const FactorFunction&, const SolverSettings&, const ExplicitSettings&,
+                       const DeviceObserver&) {
+  require_device();
+  return {};
+}
+
 DeviceEvaluation evaluate(const Model&, const State&, std::span<const double>, const SolverSettings&,
                           std::span<const double>) {
   require_device();

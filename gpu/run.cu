@@ -1,4 +1,5 @@
 #include "gpu/cuda_space.cuh"
+#include "gpu/explicit_run.hpp"
 #include "gpu/run_body.hpp"
 
 namespace fascia::gpu {
@@ -11,6 +12,11 @@ RunReport run_statics(const Model& model, State& state, const FactorFunction& fa
 RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
                        const DynamicsSettings& dynamics, const DeviceObserver& observe) {
   return run_implicit_in<CudaSpace>(model, state, factors, settings, dynamics, observe);
+}
+
+RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                       const ExplicitSettings& dynamics, const DeviceObserver& observe) {
+  return run_explicit_in<CudaSpace>(model, state, factors, settings, dynamics, observe);
 }
 
 DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,

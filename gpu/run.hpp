@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/solver/drivers.hpp"
+#include "core/solver/explicit_dynamics.hpp"
 
 #include <functional>
 #include <memory>
@@ -29,6 +29,13 @@ RunReport run_statics(const Model& model, State& state, const FactorFunction& fa
 RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
                        const DynamicsSettings& dynamics, const DeviceObserver& observe);
 
+/// run_explicit() with everything on the device. Steps are queued: whether the motion is sound is looked at every few
+/// of them, so that `observed` may be asked of steps after the one that is not, and the seconds of a step are what the
+/// host waited for.
+/// @throws InputError  where a node has no inertia; and as above
+RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                       const ExplicitSettings& dynamics, const DeviceObserver& observe);
+
 /// What a model has at a state, for comparisons.
 struct DeviceEvaluation {
   Evaluation judged;
@@ -47,6 +54,9 @@ RunReport run_statics_on_host(const Model& model, State& state, const FactorFunc
                               const DeviceObserver& observe);
 RunReport run_implicit_on_host(const Model& model, State& state, const FactorFunction& factors,
                                const SolverSettings& settings, const DynamicsSettings& dynamics,
+                               const DeviceObserver& observe);
+RunReport run_explicit_on_host(const Model& model, State& state, const FactorFunction& factors,
+                               const SolverSettings& settings, const ExplicitSettings& dynamics,
                                const DeviceObserver& observe);
 DeviceEvaluation evaluate_on_host(const Model& model, const State& state, std::span<const double> factors,
                                   const SolverSettings& settings, std::span<const double> direction);

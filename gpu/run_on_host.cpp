@@ -1,3 +1,4 @@
+#include "gpu/explicit_run.hpp"
 #include "gpu/run_body.hpp"
 
 namespace fascia::gpu {
@@ -12,6 +13,12 @@ RunReport run_implicit_on_host(const Model& model, State& state, const FactorFun
                                const SolverSettings& settings, const DynamicsSettings& dynamics,
                                const DeviceObserver& observe) {
   return run_implicit_in<HostSpace>(model, state, factors, settings, dynamics, observe);
+}
+
+RunReport run_explicit_on_host(const Model& model, State& state, const FactorFunction& factors,
+                               const SolverSettings& settings, const ExplicitSettings& dynamics,
+                               const DeviceObserver& observe) {
+  return run_explicit_in<HostSpace>(model, state, factors, settings, dynamics, observe);
 }
 
 DeviceEvaluation evaluate_on_host(const Model& model, const State& state, std::span<const double> factors,

@@ -8,15 +8,6 @@
 
 namespace fascia {
 
-namespace {
-
-Vec3d displacement(const Model& model, int motion, const Vec3d& X, std::span<const double> factors) {
-  const PrescribedMotion& m = model.motions[at(motion)];
-  return m.displacement(X, factors[at(m.schedule)]);
-}
-
-}  // namespace
-
 void prescribed_increments(const Model& model, const DofFilter& filter, const State& state,
                            std::span<const std::array<double, 3>> turned, std::span<const double> factors,
                            std::span<double> local) {
@@ -82,9 +73,7 @@ void move_state(const Model& model, std::span<const double> global, State& state
 
 void place_tethers(const Model& model, std::span<const double> factors, std::span<double> targets) {
   for (const Tether& t : model.tethers) {
-    Vec3d target;
-    if (t.motion >= 0) target = displacement(model, t.motion, t.X + t.arm, factors);
-    if (t.motion >= 0 && squared_norm(t.arm) > 0) target -= displacement(model, t.motion, t.X, factors);
+    const Vec3d target = tether_target(t, model.motions.data(), factors.data());
     const auto first = at(model.points.rule[at(t.group)].axes) * 3 * kGroupSize + at(t.lane);
     for (int k = 0; k < 3; ++k) targets[first + at(k) * kGroupSize] = target[k];
   }

@@ -73,7 +73,14 @@ double prescribed_rotation(const Model& model, std::span<const std::array<double
 /// @param global  in world axes
 void move_state(const Model& model, std::span<const double> global, State& state);
 
-/// Where tethers pull to: as CpuExecutor::targets().
+/// Where a tether pulls to, relative to its place at rest.
+FASCIA_HD inline Vec3d tether_target(const Tether& t, const PrescribedMotion* motions, const double* factors) {
+  if (t.motion < 0) return {};
+  const PrescribedMotion& m = motions[t.motion];
+  const Vec3d target = m.displacement(t.X + t.arm, factors[m.schedule]);
+  return squared_norm(t.arm) > 0 ? target - m.displacement(t.X, factors[m.schedule]) : target;
+}
+/// The same of all: as CpuExecutor::targets().
 void place_tethers(const Model& model, std::span<const double> factors, std::span<double> targets);
 
 }  // namespace fascia

@@ -10,10 +10,16 @@ namespace fascia {
 
 namespace {
 
-/// Every so many steps the state is kept, to return to where the run blows up.
-constexpr int kKeepEvery = 100;
+bool is_finite(const State& state) {
+  double sum = 0;
+  for (std::size_t i = 0; i < state.u.size(); ++i)
+    sum += squared_norm(state.v[i]) + contract(state.Q_dot[i], state.Q_dot[i]);
+  return std::isfinite(sum);
+}
 
-std::string divergence(MechanicalSystem& system, const State& good, int step, double dt) {
+}  // namespace
+
+std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double dt) {
   std::ostringstream out;
   out.precision(4);
   out << "step " << step << " (t = " << step * dt << " s): the motion grows beyond what the loads can do; ";
@@ -27,15 +33,6 @@ std::string divergence(MechanicalSystem& system, const State& good, int step, do
     out << "try a smaller time_step, damping or smaller loads";
   return out.str();
 }
-
-bool is_finite(const State& state) {
-  double sum = 0;
-  for (std::size_t i = 0; i < state.u.size(); ++i)
-    sum += squared_norm(state.v[i]) + contract(state.Q_dot[i], state.Q_dot[i]);
-  return std::isfinite(sum);
-}
-
-}  // namespace
 
 RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunction& factors,
                        const ExplicitSettings& settings, const StepObserver& observe) {
@@ -58,13 +55,13 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
     bool sound = stepper.is_sound();
     const bool last = step == settings.steps;
     const bool seen = sound && (last || (observe && (!settings.observed || settings.observed(info))));
-    if (seen || (sound && step % kKeepEvery == 0)) {
+    if (seen || (sound && step % kExplicitKeepEvery == 0)) {
       stepper.report_velocities(next);
       sound = is_finite(state);
     }
     if (!sound) {
       run.status = RunStatus::diverged;
-      run.message = divergence(system, good, step, dt);
+      run.message = explicit_divergence(system, good, step, dt);
       state = good;
       run.time = state.time;
       run.steps = good_step;
@@ -72,7 +69,7 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
     }
     run.steps = step;
     run.time = time;
-    if (seen || step % kKeepEvery == 0) {
+    if (seen || step % kExplicitKeepEvery == 0) {
       good = state;
       good_step = step;
     }

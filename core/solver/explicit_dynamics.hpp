@@ -3,6 +3,7 @@
 #include "core/solver/drivers.hpp"
 
 #include <functional>
+#include <string>
 
 namespace fascia {
 
@@ -39,6 +40,12 @@ double stable_time_step(MechanicalSystem& system);
 
 /// What is kept of the limit: the material stiffens where it is stretched, and iterations find ω from below.
 inline constexpr double kStableMargin = 0.95;
+
+/// A run keeps its state every so many steps, to return to where it blows up.
+inline constexpr int kExplicitKeepEvery = 100;
+
+/// Why a run stops at a step. @param good  the last state kept
+std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double dt);
 
 /// @throws InputError  where a free motion of a node has no inertia
 void require_inertia(const Model& model, const DofFilter& filter);

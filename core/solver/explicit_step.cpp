@@ -1,6 +1,5 @@
 #include "core/solver/explicit_step.hpp"
 
-#include "core/math/rotation.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/node_force.hpp"
@@ -25,81 +24,22 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       dependents_(system.model().points),
       state_(state),
       dt_(dt),
+      nodes_(system.model(), dt),
       factors_(factors.begin(), factors.end()) {
   require_inertia(model_, filter_);
   const auto n = at(model_.node_count());
   state_.turned.resize(model_.constraints.size());
   held_acceleration_.resize(model_.constraints.size());
   velocity_.resize(n);
-  turning_.resize(n);
-  center_.resize(n);
-  damping_.resize(n);
-  affine_.resize(n);
-  constraint_.assign(n, -1);
-  for (std::size_t k = 0; k < model_.constraints.size(); ++k)
-    constraint_[at(model_.constraints[k].node)] = static_cast<int>(k);
   gradient_.resize(at(model_.dof_count()));
-  const std::vector<DependentNode>& dependents = model_.points.dependents;
-  if (!model_.followers.empty() || !model_.surfaces.empty() || !dependents.empty()) follower_.resize(gradient_.size());
-  if (!dependents.empty()) follows_.assign(n, 0);
-  for (const DependentNode& d : dependents)
-    follows_[at(d.node)] = dependent_dofs(d, model_.points.dofs) == model_.points.dofs.size(d.node) ? 1 : 0;
+  if (!model_.followers.empty() || !model_.surfaces.empty() || !dependents_.empty()) follower_.resize(gradient_.size());
   increments_.resize(gradient_.size());
   last_increments_.resize(gradient_.size());
   chunk_sums_.resize((n + kNodeGrain - 1) / kNodeGrain);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!follows_.empty() && follows_[i] != 0) continue;
-    const FrameInertia& inertia = model_.inertia[i];
-    const bool massive = inertia.mass > 0;  // else its place depends on others, and it turns by itself
-    if (!model_.mass_damping.empty()) {
-      const FrameInertia& damping = model_.mass_damping[i];
-      const double turning = trace(inertia.second);
-      if (massive)
-        damping_[i] = 0.5 * dt * damping.mass / inertia.mass;
-      else if (turning > 0)
-        damping_[i] = 0.5 * dt * trace(damping.second) / turning;
-    }
-    const double still = 1e-10 * model_.points.part_length[at(model_.points.node_part[i])] / dt;
-    rounding_energy_ += inertia.mass * still * still;
-    if (constraint_[i] >= 0) continue;
-    if (model_.frame_kind[i] == FrameKind::rigid) {
-      turning_[i] = SpinInertia(inertia);
-      if (massive) center_[i] = inertia.first * (1 / inertia.mass);
-    }
-    if (model_.frame_kind[i] != FrameKind::affine) continue;
-    std::array<double, 16> mass{}, inverse{};
-    mass[0] = massive ? inertia.mass : 1.0;
-    for (int p = 0; p < 3; ++p) {
-      mass[at(1 + p)] = mass[at(4 + 4 * p)] = inertia.first[p];
-      for (int q = 0; q < 3; ++q) mass[at(5 + 4 * p + q)] = inertia.second(p, q);
-    }
-    SmallFactor factor;
-    factor.factorize(mass.data(), 4);
-    for (std::size_t j = 0; j < 4; ++j) {
-      inverse[5 * j] = 1;
-      factor.solve(inverse.data() + 4 * j);
-    }
-    affine_[i] = static_cast<int>(inverse_mass_.size());
-    inverse_mass_.push_back(inverse);
-  }
-  if (!dependents.empty() && !model_.mass_damping.empty()) find_uneven_damping();
   place_dependents(model_.points, state_);
   place_dependent_rates(model_.points, state_);
   place_loads();
   start_velocities();
-}
-
-void ExplicitStepper::find_uneven_damping() {
-  uneven_damping_.resize(velocity_.size());
-  for (const DependentNode& d : model_.points.dependents)
-    for (const int host : d.hosts) {
-      const std::size_t i = at(host);
-      if (model_.frame_kind[i] == FrameKind::vertex || follows_[i] != 0) continue;
-      const double alpha = 2 * damping_[i] / dt_;
-      const FrameInertia &damping = model_.mass_damping[i], &inertia = model_.inertia[i];
-      uneven_damping_[i] = {damping.mass - alpha * inertia.mass, damping.first - inertia.first * alpha,
-                            damping.second - inertia.second * alpha};
-    }
 }
 
 /// Dead loads by node, and those on dependent nodes.
@@ -133,18 +73,13 @@ void ExplicitStepper::start_velocities() {
   for (int i = 0; i < model_.node_count(); ++i) {
     const PoseMotion given{state_.v[at(i)], state_.Q_dot[at(i)]};
     start_energy_ += 0.5 * inertia_product(model_.inertia[at(i)], given.u, given.Q);
-    if (!follows_.empty() && follows_[at(i)] != 0) continue;
-    const Velocity now = velocity_of(i, given);
+    if (nodes_.skips(i)) continue;
+    const ExplicitNode node = node_at(i);
+    const HalfStepVelocity now = velocity_of(node, given);
     velocity_[at(i)] = now;
     double load[kMostDofs], force[kMostDofs];
     node_force(i, load, force);
-    // Kicked from `now`: ((1 − a) v + dt f/m) / (1 + a), of which the half step back is (1 + a) v − dt f/(2 m).
-    const double a = damping_[at(i)];
-    const Velocity next = kicked(i, force);
-    const auto back = [a](const auto& v, const auto& v_next) {
-      return v * (1 + a) - (v_next * (1 + a) - v * (1 - a)) * 0.5;
-    };
-    velocity_[at(i)] = {back(now.v, next.v), back(now.spin, next.spin), back(now.rate, next.rate)};
+    velocity_[at(i)] = kicked_back(node, now, force, dt_);
   }
 }
 
@@ -186,67 +121,38 @@ void ExplicitStepper::node_force(int node, double* load, double* force) const {
   if (!follower_.empty())
     for (int k = 0; k < n; ++k) load[k] += follower_[first + at(k)];
   for (int k = 0; k < n; ++k) force[k] = load[k] - gradient_[first + at(k)];
-  if (uneven_damping_.empty() || model_.kind(node) == FrameKind::vertex) return;
-  const PoseMotion v = pose_velocity(node, velocity_[at(node)]);
-  const InertiaForce drag = inertia_force(uneven_damping_[at(node)], v.u, v.Q);
-  add_node_force(model_.kind(node), state_.D[at(node)], -drag.force, drag.moment * -1.0, {}, force);
+  if (!nodes_.uneven_damping.empty() && model_.kind(node) != FrameKind::vertex)
+    add_uneven_damping(node_at(node), nodes_.uneven_damping[at(node)], velocity_[at(node)], force);
+}
+
+ExplicitNode ExplicitStepper::node_at(int node) const {
+  const std::size_t i = at(node);
+  ExplicitNode out;
+  out.kind = model_.kind(node);
+  out.damping = nodes_.damping[i];
+  out.inertia = &model_.inertia[i];
+  out.turning = &nodes_.turning[i];
+  if (!nodes_.inverse_mass.empty()) out.inverse_mass = nodes_.inverse_mass[at(nodes_.affine[i])].data();
+  out.center = nodes_.center[i];
+  out.D = state_.D[i];
+  if (nodes_.constraint[i] < 0) return out;
+  out.held = &model_.constraints[at(nodes_.constraint[i])];
+  out.turn = filter_.turn_of(node);
+  out.fixed = filter_.fixed_of(node);
+  out.increments = increments_.data() + model_.points.dofs.begin(node);
+  return out;
 }
 
 /// The whole step of a vertex that nothing holds; false for other nodes.
-bool ExplicitStepper::step_free_vertex(int node, Sums& sums) {
+bool ExplicitStepper::step_free_vertex(int node, ExplicitSums& sums) {
   const std::size_t i = at(node);
-  if (model_.frame_kind[i] != FrameKind::vertex || constraint_[i] >= 0 || !follower_.empty()) return false;
+  if (model_.frame_kind[i] != FrameKind::vertex || nodes_.constraint[i] >= 0 || !follower_.empty()) return false;
   Vec3d load;
   for (int k = load_begin_[i]; k < load_begin_[i + 1]; ++k)
     load += loads_[at(k)].load.force * factors_[at(loads_[at(k)].schedule)];
-  const double* g = gradient_.data() + model_.points.dofs.begin(node);
-  const double a = damping_[i], mass = model_.inertia[i].mass;
-  Vec3d& v = velocity_[i].v;
-  v = v * ((1 - a) / (1 + a)) + (load - Vec3d{{g[0], g[1], g[2]}}) * (dt_ / (1 + a) / mass);
-  state_.u[i] += v * dt_;
-  sums.kinetic += 0.5 * mass * squared_norm(v);
-  sums.work += dot(load, v) * dt_;
+  fascia::step_free_vertex(nodes_.damping[i], model_.inertia[i].mass, load,
+                           gradient_.data() + model_.points.dofs.begin(node), dt_, state_.u[i], velocity_[i].v, sums);
   return true;
-}
-
-void ExplicitStepper::drift(int node, const Velocity& w, const double* load, Sums& sums) {
-  const std::size_t i = at(node);
-  const FrameInertia& inertia = model_.inertia[i];
-  const bool held = constraint_[i] >= 0;
-  Vec3d du = w.v * dt_, rotation;
-  double work = 0;
-  switch (model_.kind(node)) {
-    case FrameKind::vertex:
-      if (!held) sums.kinetic += 0.5 * inertia.mass * squared_norm(w.v);
-      break;
-    case FrameKind::rigid: {
-      Vec3d spin = w.spin;
-      if (!held) {
-        const Mat3d Q = Mat3d::identity() + state_.D[i];
-        const Vec3d first = turning_[i].spin(Q, w.spin);
-        spin = turning_[i].spin(Q + rotation_increment(first * (0.5 * dt_)) * Q, w.spin);
-        sums.kinetic += 0.5 * (inertia.mass * squared_norm(w.v) + dot(w.spin, spin));
-      }
-      rotation = spin * dt_;
-      const Mat3d D = orthonormalized_increment(compose_increments(rotation_increment(rotation), state_.D[i]));
-      if (!held) du -= (D - state_.D[i]) * center_[i];
-      state_.D[i] = D;
-      for (int k = 0; k < 3; ++k) work += load[3 + k] * rotation[k];
-      break;
-    }
-    case FrameKind::affine:
-      if (!held) sums.kinetic += 0.5 * inertia_product(inertia, w.v, w.rate);
-      state_.D[i] += w.rate * dt_;
-      for (int k = 0; k < 9; ++k) work += load[3 + k] * w.rate(k % 3, k / 3) * dt_;
-      break;
-  }
-  state_.u[i] += du;
-  for (int k = 0; k < 3; ++k) work += load[k] * du[k];
-  sums.work += work;
-  if (!held || model_.kind(node) != FrameKind::rigid) return;
-  const FrameConstraint& c = model_.constraints[at(constraint_[i])];
-  for (int k = 0; k < c.rotations; ++k)
-    state_.turned[at(constraint_[i])][at(k)] += dot(c.rotation_axes.row(k), rotation);
 }
 
 void ExplicitStepper::advance(std::span<const double> factors) {
@@ -255,31 +161,25 @@ void ExplicitStepper::advance(std::span<const double> factors) {
   stepped_ = true;
   const DofLayout& dofs = model_.points.dofs;
   executor_.pool().for_ranges(model_.node_count(), kNodeGrain, [&](int begin, int end) {
-    Sums sums;
-    for (int node = begin; node < end; ++node) {
-      if (!follows_.empty() && follows_[at(node)] != 0) continue;
-      if (step_free_vertex(node, sums)) continue;
+    ExplicitSums sums;
+    for (int i = begin; i < end; ++i) {
+      if (nodes_.skips(i) || step_free_vertex(i, sums)) continue;
       double load[kMostDofs], force[kMostDofs];
-      node_force(node, load, force);
-      const Velocity next = kicked(node, force);
-      drift(node, next, load, sums);
-      velocity_[at(node)] = next;
-      if (constraint_[at(node)] < 0) continue;
-      // The boundary overcomes the force on what it moves, in the mean of both ends of a step.
-      const FrameConstraint& held = model_.constraints[at(constraint_[at(node)])];
-      turn_dofs(model_.kind(node), held.translation_axes, held.rotation_axes, false, force);
-      for (int k = 0; k < dofs.size(node); ++k) {
-        const std::size_t i = at(dofs.begin(node) + k);
-        sums.work -= 0.5 * force[k] * (last_increments_[i] + increments_[i]);
-        last_increments_[i] = increments_[i];
-      }
+      node_force(i, load, force);
+      const ExplicitNode node = node_at(i);
+      velocity_[at(i)] = kicked(node, velocity_[at(i)], force, dt_);
+      double* turned = node.held == nullptr ? nullptr : state_.turned[at(nodes_.constraint[at(i)])].data();
+      Mat3d D = node.D;
+      drift(node, velocity_[at(i)], dt_, load, state_.u[at(i)], D, turned, sums);
+      if (node.kind != FrameKind::vertex) state_.D[at(i)] = D;
+      if (node.held != nullptr) add_boundary_work(node, force, last_increments_.data() + dofs.begin(i), sums);
     }
     chunk_sums_[at(begin / kNodeGrain)] = sums;
   });
   place_dependents(model_.points, state_);
   work_ += tether_work(factors);
   kinetic_ = 0;
-  for (const Sums& sums : chunk_sums_) {
+  for (const ExplicitSums& sums : chunk_sums_) {
     kinetic_ += sums.kinetic;
     work_ += sums.work;
   }
@@ -309,45 +209,24 @@ double ExplicitStepper::tether_work(std::span<const double> factors) {
   return work;
 }
 
-PoseMotion ExplicitStepper::pose_velocity(int node, const Velocity& w) const {
-  const std::size_t i = at(node);
-  if (model_.kind(node) != FrameKind::rigid) return {w.v, w.rate};
-  const Mat3d Q = Mat3d::identity() + state_.D[i];
-  if (constraint_[i] >= 0) return {w.v, skew(w.spin) * Q};
-  const Mat3d Q_dot = skew(turning_[i].spin(Q, w.spin)) * Q;
-  return {w.v - Q_dot * center_[i], Q_dot};
-}
-
-ExplicitStepper::Velocity ExplicitStepper::velocity_of(int node, const PoseMotion& motion) const {
-  const std::size_t i = at(node);
-  if (model_.kind(node) != FrameKind::rigid) return {motion.u, {}, motion.Q};
-  const Mat3d Q = Mat3d::identity() + state_.D[i];
-  const Vec3d spin = spin_of(motion.Q, Q);
-  if (constraint_[i] >= 0) return {motion.u, spin, {}};
-  return {motion.u + motion.Q * center_[i], turning_[i].momentum(Q, spin), {}};
-}
-
 void ExplicitStepper::report_velocities(std::span<const double> factors) {
   if (!model_.constraints.empty()) prescribed_increments(model_, filter_, state_, state_.turned, factors, increments_);
-  for (int node = 0; node < model_.node_count(); ++node) {
-    if (!follows_.empty() && follows_[at(node)] != 0) continue;
+  for (int i = 0; i < model_.node_count(); ++i) {
+    if (nodes_.skips(i)) continue;
     double load[kMostDofs], force[kMostDofs];
-    node_force(node, load, force);
-    const Velocity &old = velocity_[at(node)], next = kicked(node, force);
-    const Velocity mean{(old.v + next.v) * 0.5, (old.spin + next.spin) * 0.5, (old.rate + next.rate) * 0.5};
-    const PoseMotion v = pose_velocity(node, mean);
-    if (constraint_[at(node)] >= 0)
-      held_acceleration_[at(constraint_[at(node)])] =
+    node_force(i, load, force);
+    const ExplicitNode node = node_at(i);
+    const HalfStepVelocity &old = velocity_[at(i)], next = kicked(node, old, force, dt_);
+    const PoseMotion v = pose_velocity(node, (old + next) * 0.5);
+    if (node.held != nullptr)
+      held_acceleration_[at(nodes_.constraint[at(i)])] =
           (pose_velocity(node, next) - pose_velocity(node, old)) * (1 / dt_);
-    state_.v[at(node)] = v.u;
-    state_.Q_dot[at(node)] = v.Q;
+    state_.v[at(i)] = v.u;
+    state_.Q_dot[at(i)] = v.Q;
   }
   place_dependent_rates(model_.points, state_);
 }
 
-bool ExplicitStepper::is_sound() const {
-  constexpr double kRoom = 10;
-  return std::isfinite(kinetic_) && kinetic_ <= kRoom * (given_energy() + rounding_energy_);
-}
+bool ExplicitStepper::is_sound() const { return is_sound_energy(kinetic_, given_energy() + nodes_.rounding_energy); }
 
 }  // namespace fascia

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "core/solver/dependents.hpp"
+#include "core/solver/explicit_nodes.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/node_inertia.hpp"
-#include "core/solver/small_factor.hpp"
 
 #include <span>
 #include <vector>
@@ -24,7 +23,7 @@ class ExplicitStepper {
   void report_velocities(std::span<const double> factors);
 
   /// Of a node that is held, at the last call of report_velocities().
-  PoseMotion held_acceleration(int node) const { return held_acceleration_[at(constraint_[at(node)])]; }
+  PoseMotion held_acceleration(int node) const { return held_acceleration_[at(nodes_.constraint[at(node)])]; }
 
   double kinetic_energy() const { return kinetic_; }  ///< of nodes that nothing holds, at the last half step [J]
   /// Energy at the start, and the most that loads, boundaries and tethers have added [J].
@@ -33,15 +32,6 @@ class ExplicitStepper {
   bool is_sound() const;
 
  private:
-  /// Velocities at a half step. Rigid: of the mass centre and the momentum about it; where a constraint holds the
-  /// frame, of its origin and ω. Affine: of the origin and dA/dt.
-  struct Velocity {
-    Vec3d v{}, spin{};
-    Mat3d rate{};
-  };
-  struct Sums {
-    double kinetic = 0, work = 0;
-  };
   struct PlacedLoad {
     int schedule;
     NodeLoad load;
@@ -50,16 +40,10 @@ class ExplicitStepper {
   void place_loads();
   void update_forces();
   void transfer_to_hosts();
-  void find_uneven_damping();
   void start_velocities();
   void node_force(int node, double* load, double* force) const;
-  Velocity kicked(int node, const double* force) const;
-  Velocity kicked_held(int node, const double* force) const;
-  Vec3d kicked_held_vertex(int node, const Vec3d& force) const;
-  bool step_free_vertex(int node, Sums& sums);
-  void drift(int node, const Velocity& velocity, const double* load, Sums& sums);
-  PoseMotion pose_velocity(int node, const Velocity& velocity) const;
-  Velocity velocity_of(int node, const PoseMotion& motion) const;
+  bool step_free_vertex(int node, ExplicitSums& sums);
+  ExplicitNode node_at(int node) const;
   double tether_work(std::span<const double> factors);
 
   MechanicalSystem& system_;
@@ -71,28 +55,20 @@ class ExplicitStepper {
   State& state_;
   double dt_;
 
-  std::vector<Velocity> velocity_;    ///< at the last half step
-  std::vector<SpinInertia> turning_;  ///< of rigid frames
-  std::vector<Vec3d> center_;         ///< c / m of rigid frames [m]
-  std::vector<double> damping_;       ///< α dt / 2
-  /// Mass damping of hosts beyond α times their inertia: what they carry may be damped otherwise. Empty: none.
-  std::vector<FrameInertia> uneven_damping_;
-  std::vector<int> constraint_;                       ///< of each node, −1: none
-  std::vector<std::array<double, 16>> inverse_mass_;  ///< of free affine frames: (origin, axes)²
-  std::vector<int> affine_;                           ///< index into it
-  std::vector<int> load_begin_;                       ///< by node
+  ExplicitNodes nodes_;
+  std::vector<HalfStepVelocity> velocity_;  ///< at the last half step
+  std::vector<int> load_begin_;             ///< by node
   std::vector<PlacedLoad> loads_, dependent_loads_;
-  std::vector<char> follows_;  ///< nodes all of which depends on others; empty: none
   /// The last: of followers, of surface loads, and what comes from dependent nodes.
   std::vector<double> factors_, gradient_, follower_;
   std::vector<double> increments_, last_increments_;  ///< prescribed, in constraint axes
   std::vector<double> old_targets_;
   std::vector<Vec3d> old_forces_;  ///< of tethers
   StrainHistory history_;
-  std::vector<Sums> chunk_sums_;
+  std::vector<ExplicitSums> chunk_sums_;
   std::vector<PoseMotion> held_acceleration_;  ///< of each constraint
   bool stepped_ = false;
-  double kinetic_ = 0, work_ = 0, largest_work_ = 0, start_energy_ = 0, rounding_energy_ = 0;
+  double kinetic_ = 0, work_ = 0, largest_work_ = 0, start_energy_ = 0;
 };
 
 }  // namespace fascia
