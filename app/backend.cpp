@@ -10,7 +10,7 @@ namespace fascia::app {
 namespace {
 
 /// Below, a step on the processor is over before one on the GPU is (docs/performance.md).
-constexpr int kWorthwhile = 20000;
+constexpr int kWorthwhile = 15000;
 
 }  // namespace
 

@@ -11,8 +11,8 @@ enum class Backend { cpu, cuda };
 /// What of a scene the GPU does not compute, in the scene's words; empty where it computes all.
 std::string not_on_gpu(const Simulation& simulation);
 
-/// Where a scene is computed: as it says, or with backend = "auto" on the GPU where there is one, it computes all of the
-/// scene, and the scene is large enough to be faster there.
+/// Where a scene is computed: as it says, or with backend = "auto" on the GPU where there is one, it computes all of
+/// the scene, and the scene is large enough to be faster there.
 /// @throws BackendError  a backend that was asked for and is not there, or does not compute the scene
 Backend choose_backend(const Simulation& simulation);
 

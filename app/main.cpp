@@ -33,6 +33,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
       ->check(CLI::IsMember({"paper", "default", "both"}));
   bench->add_option("--repeat", options.repeat, "steps that are timed; otherwise those of a second, 3 to 100")
       ->check(CLI::PositiveNumber);
+  bench->add_option("--backend", options.backend, "cpu or cuda; otherwise all that there are")
+      ->check(CLI::IsMember({"cpu", "cuda"}));
   bench->add_option("--threads", options.threads, "threads beside the run on one, 0 for all")
       ->check(CLI::NonNegativeNumber);
   bench->add_option("--output", options.output, "directory for the table, CSV, JSON and the scenes");

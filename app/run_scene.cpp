@@ -2,6 +2,7 @@
 
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
+#include "app/gpu_run.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
 #include "app/result_warnings.hpp"
@@ -13,8 +14,6 @@
 #include "core/solver/clock.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
-#include "gpu/device.hpp"
-#include "gpu/run.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -76,6 +75,8 @@ class SaveRule {
 
 struct Outcome {
   RunReport run;
+  Backend backend = Backend::cpu;  ///< that took the steps
+  bool failed = false;             ///< not only steps that were accepted as they were
   std::vector<std::string> warnings;
   RunTimes times;
   std::vector<nlohmann::json> probes;
@@ -84,42 +85,10 @@ struct Outcome {
   CouplingReports couplings;
 };
 
-/// Statics or dynamics on the GPU. A device that is lost ends the run with what was seen last.
-/// @param observed  of explicit dynamics, as in ExplicitSettings
-/// @throws BackendError  where it has too little memory
-RunReport run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                     const gpu::DeviceObserver& observe, const std::function<bool(const StepInfo&)>& observed = {}) {
-  const Solver& solver = s.scene.solver;
-  RunReport seen;
-  const gpu::DeviceObserver watch = [&](const StepInfo& step, gpu::DeviceStep& device) {
-    seen.steps = step.step;
-    seen.time = step.time;
-    return observe(step, device);
-  };
-  try {
-    if (solver.kind == SolverKind::statics)
-      return gpu::run_statics(s.model, state, factors, settings, {solver.load_steps}, watch);
-    if (solver.kind == SolverKind::central_differences)
-      return gpu::run_explicit(s.model, state, factors, settings, {solver.time_step, solver.steps, observed}, watch);
-    return gpu::run_implicit(s.model, state, factors, settings,
-                             {scheme_of(solver.kind), solver.time_step, solver.steps}, watch);
-  } catch (const gpu::DeviceLost& e) {
-    seen.status = RunStatus::not_converged;
-    seen.message = fmt::format(
-        "after step {}: {}; the results end with the last one that was saved; try again, or "
-        "--backend cpu",
-        seen.steps, e.what());
-    return seen;
-  } catch (const std::runtime_error& e) {
-    if (dynamic_cast<const gpu::DeviceMemoryError*>(&e) == nullptr && dynamic_cast<const gpu::NoDevice*>(&e) == nullptr)
-      throw;
-    throw BackendError(e.what());
-  }
-}
-
 Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultFiles& files,
                  const RunOptions& options) {
   Outcome out;
+  out.backend = backend;
   const Clock::time_point setup = Clock::now();
   const SolverSettings settings = settings_of(s.scene.solver);
   const bool statics = s.scene.solver.kind == SolverKind::statics;
@@ -161,13 +130,22 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
       return device.state();
     });
   };
+  // Whether the GPU did it.
+  const auto on_gpu = [&](const gpu::DeviceObserver& look, const std::function<bool(const StepInfo&)>& observed = {}) {
+    if (out.backend != Backend::cuda) return false;
+    std::optional<RunReport> run = run_on_gpu(s, state, factors, settings, look, observed);
+    if (run)
+      out.run = *std::move(run);
+    else
+      out.backend = Backend::cpu;
+    return run.has_value();
+  };
   const Clock::time_point start = Clock::now();
   if (path) {
     out.run = run_path(system, state, factors, settings, path_of(s), observe);
-  } else if (statics && backend == Backend::cuda) {
-    out.run = run_on_gpu(s, state, factors, settings, observe_on_gpu);
   } else if (statics) {
-    out.run = run_statics(system, state, factors, settings, {s.scene.solver.load_steps}, observe);
+    if (!on_gpu(observe_on_gpu))
+      out.run = run_statics(system, state, factors, settings, {s.scene.solver.load_steps}, observe);
   } else {
     system.set_factors(factors(0));
     system.begin_step(state, 0);
@@ -184,21 +162,15 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
         out.stabilization = system.internal_energy().stabilization;
         return interrupted == 0;
       };
-      if (backend == Backend::cuda)
-        out.run = run_on_gpu(
-            s, state, factors, settings,
-            [&](const StepInfo& step, gpu::DeviceStep& device) {
-              device.show(system, factors(step.time));
-              return keep(step, device.state());
-            },
-            observed);
-      else
+      const auto keep_from_gpu = [&](const StepInfo& step, gpu::DeviceStep& device) {
+        device.show(system, factors(step.time));
+        return keep(step, device.state());
+      };
+      if (!on_gpu(keep_from_gpu, observed))
         out.run =
             run_explicit(system, state, factors, {s.scene.solver.time_step, s.scene.solver.steps, observed},
                          [&](const StepInfo& step, const State& at, MechanicalSystem&) { return keep(step, at); });
-    } else if (backend == Backend::cuda) {
-      out.run = run_on_gpu(s, state, factors, settings, observe_on_gpu);
-    } else {
+    } else if (!on_gpu(observe_on_gpu)) {
       out.run = run_implicit(system, state, factors, settings,
                              {scheme_of(s.scene.solver.kind), s.scene.solver.time_step, s.scene.solver.steps}, observe);
     }
@@ -217,6 +189,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
       save(state.time, out.run.steps, state, true);
     }
   }
+  out.failed = out.run.status != RunStatus::converged;
   add_result_warnings(s, state, out.run, out.warnings);
   out.couplings = coupling_report(s, system, state);
   for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
@@ -320,8 +293,8 @@ int run_scene(const RunOptions& options) {
     fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
     s.warnings.push_back(w);
   }
-  const nlohmann::ordered_json j =
-      summary(s, backend, out.run, out.times, pool.size(), out.probes, out.stabilization, out.fluids, out.couplings);
+  const nlohmann::ordered_json j = summary(s, out.backend, out.run, out.times, pool.size(), out.probes,
+                                           out.stabilization, out.fluids, out.couplings);
   io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
   directory.commit();
   if (options.json)
@@ -329,7 +302,7 @@ int run_scene(const RunOptions& options) {
   else if (!options.quiet)
     print_summary(j, s.scene.output.directory);
   if (out.run.status != RunStatus::converged) fmt::print(stderr, "{}: {}\n", options.scene.string(), out.run.message);
-  if (out.run.steps_at_limit > 0) return kDone;  // as asked for
+  if (out.run.steps_at_limit > 0 && !out.failed) return kDone;  // as asked for
   return exit_status(out.run.status);
 }
 

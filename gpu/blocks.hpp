@@ -43,6 +43,9 @@ class Blocks {
   /// @param node_blocks  springs add theirs
   void linearize(const NodesView& nodes, const PoseView& pose, const HistoryView& history, Tangent tangent,
                  double* node_blocks);
+  void add_spring_blocks(const NodesView& nodes, const PoseView& pose, Tangent tangent, double* node_blocks) {
+    if (!springs_.empty()) springs_.add_blocks(nodes, pose, tangent, node_blocks);
+  }
   void product(const DirectionView& direction);
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   void store_strain(const PoseView& pose, double* E);

@@ -41,7 +41,7 @@ void Blocks<Space>::linearize(const NodesView& nodes, const PoseView& pose, cons
   if (!points_.empty()) points_.linearize(pose, history, tangent);
   if (!elements_.empty()) elements_.linearize(pose, part_of(history, elements_begin()), tangent);
   if (!shells_.empty()) shells_.linearize(pose, part_of(history, shells_begin()), tangent);
-  if (!springs_.empty()) springs_.add_blocks(nodes, pose, tangent, node_blocks);
+  add_spring_blocks(nodes, pose, tangent, node_blocks);
 }
 
 template <class Space>

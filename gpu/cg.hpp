@@ -102,7 +102,8 @@ struct CgStart {
     s.rz = s.rz_start = total.v[0];
     s.rr = s.rr_start = total.v[1];
     if (s.rz - s.rz != 0) s.status = CgStatus::not_finite;
-    s.done = !(s.rz > 0) || s.limit <= 0;
+    if (s.limit <= 0) s.status = CgStatus::limit;
+    s.done = !(s.rz > 0) || s.status != CgStatus::converged;
   }
 };
 
@@ -122,7 +123,7 @@ class ConjugateGradients {
 
   /// Right-hand side, to be written before solve(); held entries zero.
   double* rhs() { return r_.data(); }
-  const double* solution() const { return x_.data(); }
+  double* solution() { return x_.data(); }
 
   /// @param inverse  block-diagonal preconditioner, by node
   /// @param key      of the operator: what its loops were recorded with

@@ -7,23 +7,46 @@ namespace fascia::gpu {
 void check(cudaError_t status, const char* doing) {
   if (status == cudaSuccess) return;
   const std::string what = std::string("gpu: ") + doing + ": " + cudaGetErrorString(status);
+  cudaGetLastError();
   switch (status) {
     case cudaErrorMemoryAllocation:
-      throw DeviceMemoryError(what);
+      throw DeviceMemoryError(what + "; use --backend cpu or a smaller scene");
     case cudaErrorNoDevice:
     case cudaErrorInsufficientDriver:
     case cudaErrorNoKernelImageForDevice:
     case cudaErrorInitializationError:
+    case cudaErrorUnsupportedPtxVersion:
       throw NoDevice(what);
-    default:
+    case cudaErrorECCUncorrectable:
+    case cudaErrorHardwareStackError:
+    case cudaErrorLaunchFailure:
+    case cudaErrorLaunchTimeout:
+    case cudaErrorIllegalAddress:
+    case cudaErrorDevicesUnavailable:
+    case cudaErrorNvlinkUncorrectable:
+    case cudaErrorUnknown:
       throw DeviceLost(what);
+    default:
+      throw std::runtime_error(what);
   }
+}
+
+/// Memory that is released stays with the process: a step takes and releases some.
+cudaStream_t CudaSpace::make_stream() {
+  cudaStream_t stream = nullptr;
+  check(cudaStreamCreate(&stream), "making a stream");
+  int device = 0;
+  cudaMemPool_t pool = nullptr;
+  std::uint64_t all = ~std::uint64_t{0};
+  check(cudaGetDevice(&device), "looking at the device");
+  check(cudaDeviceGetDefaultMemPool(&pool, device), "looking at the device's memory");
+  check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "looking at the device's memory");
+  return stream;
 }
 
 cudaStream_t CudaSpace::stream() {
   struct Stream {
-    cudaStream_t handle = nullptr;
-    Stream() { check(cudaStreamCreateWithFlags(&handle, cudaStreamNonBlocking), "making a stream"); }
+    cudaStream_t handle = make_stream();
     ~Stream() { cudaStreamDestroy(handle); }
   };
   thread_local const Stream stream;
@@ -49,7 +72,8 @@ const CudaSpace::Scratch& CudaSpace::scratch() {
 void* CudaSpace::allocate(std::size_t bytes) {
   if (bytes == 0) return nullptr;
   void* memory = nullptr;
-  if (cudaMalloc(&memory, bytes) == cudaErrorMemoryAllocation) {
+  const cudaError_t status = cudaMallocAsync(&memory, bytes, stream());
+  if (status == cudaErrorMemoryAllocation) {
     cudaGetLastError();
     std::size_t available = 0, total = 0;
     cudaMemGetInfo(&available, &total);
@@ -57,11 +81,13 @@ void* CudaSpace::allocate(std::size_t bytes) {
     throw DeviceMemoryError("gpu: out of memory: asked for " + megabytes(bytes) + ", " + megabytes(available) +
                             " free of " + megabytes(total) + "; use --backend cpu or a smaller scene");
   }
-  check(cudaGetLastError(), "taking memory");
+  check(status, "taking memory");
   return memory;
 }
 
-void CudaSpace::release(void* memory) noexcept { cudaFree(memory); }
+void CudaSpace::release(void* memory) noexcept {
+  if (memory != nullptr) cudaFreeAsync(memory, stream());
+}
 
 void CudaSpace::copy_in(void* to, const void* from, std::size_t bytes) {
   if (bytes == 0) return;
@@ -103,7 +129,17 @@ void CudaSpace::Loop::begin_recording() {
   check(cudaStreamBeginCapture(stream(), cudaStreamCaptureModeThreadLocal), "recording a solve");
 }
 
-void CudaSpace::Loop::end_recording(const int*) {
+void CudaSpace::Loop::drop_recording() noexcept {
+  cudaStreamCaptureStatus status = cudaStreamCaptureStatusNone;
+  cudaStreamIsCapturing(stream(), &status);
+  if (status == cudaStreamCaptureStatusNone) return;
+  cudaGraph_t graph = nullptr;
+  cudaStreamEndCapture(stream(), &graph);
+  if (graph != nullptr) cudaGraphDestroy(graph);
+  cudaGetLastError();
+}
+
+void CudaSpace::Loop::end_recording() {
   cudaGraph_t graph = nullptr;
   check(cudaStreamEndCapture(stream(), &graph), "recording a solve");
   const cudaError_t status = cudaGraphInstantiate(&graph_, graph, 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gpu/cuda_check.hpp"
 #include "gpu/device.hpp"
 #include "gpu/space.hpp"
 
@@ -8,9 +9,6 @@
 #include <vector>
 
 namespace fascia::gpu {
-
-/// @throws NoDevice, DeviceMemoryError, DeviceLost  by the kind of error. @param doing  what was being done
-void check(cudaError_t status, const char* doing);
 
 namespace kernels {
 
@@ -75,10 +73,24 @@ __global__ void __launch_bounds__(256) sum(int count, Body body, End end, double
   if (threadIdx.x == 0) end(total);
 }
 
+/// Eight neighbouring threads an item.
+template <int K, class Body, class End>
+__global__ void __launch_bounds__(256) sum_lanes(int count, Body body, End end) {
+  const int thread = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const int item = thread / kSpaceLanes, lane = thread % kSpaceLanes;
+  Sums<K> s;
+  if (item < count) body(item, lane, s);
+  for (int k = 0; k < K; ++k)
+    for (int step = kSpaceLanes / 2; step > 0; step >>= 1)
+      s.v[k] += __shfl_down_sync(0xffffffffu, s.v[k], step, kSpaceLanes);
+  if (item < count && lane == 0) end(item, s);
+}
+
 }  // namespace kernels
 
-/// The default device; all loops of a thread follow each other on one stream.
+/// The default device; all loops of a thread follow each other on one stream, and what tiles do on the default stream.
 struct CudaSpace {
+  static constexpr bool kHasTiles = true;
   static cudaStream_t stream();
   static void* allocate(std::size_t bytes);
   static void release(void* memory) noexcept;
@@ -106,6 +118,14 @@ struct CudaSpace {
     check(cudaGetLastError(), "starting a sum");
   }
 
+  template <int K, class Body, class End>
+  static void sum_lanes(int count, const Body& body, const End& end) {
+    if (count == 0) return;
+    constexpr int kThreads = 128;
+    kernels::sum_lanes<K><<<blocks(count, kThreads / kSpaceLanes), kThreads, 0, stream()>>>(count, body, end);
+    check(cudaGetLastError(), "starting a sum");
+  }
+
   /// Repetitions are recorded once as a graph of a few of them; the host looks at the flag while the next ones run.
   class Loop {
    public:
@@ -119,9 +139,9 @@ struct CudaSpace {
       if (limit <= 0) return;
       const int chunk = limit < kChunk ? limit : kChunk;
       if (graph_ == nullptr || key != key_ || chunk != chunk_ || done != done_) {
-        begin_recording();
+        const Recording recording(*this);
         for (int i = 0; i < chunk; ++i) body();
-        end_recording(done);
+        end_recording();
         key_ = key;
         chunk_ = chunk;
         done_ = done;
@@ -130,9 +150,21 @@ struct CudaSpace {
     }
 
    private:
-    static constexpr int kChunk = 20;
+    static constexpr int kChunk = 10;
+    /// Ends also where a loop could not be started.
+    class Recording {
+     public:
+      explicit Recording(Loop& loop) : loop_(loop) { loop.begin_recording(); }
+      ~Recording() { loop_.drop_recording(); }
+      Recording(const Recording&) = delete;
+      Recording& operator=(const Recording&) = delete;
+
+     private:
+      Loop& loop_;
+    };
     void begin_recording();
-    void end_recording(const int* done);
+    void end_recording();
+    void drop_recording() noexcept;
     void repeat(int times);
 
     cudaGraphExec_t graph_ = nullptr;
@@ -145,6 +177,7 @@ struct CudaSpace {
 
  private:
   static constexpr int kSmall = 100000, kMostSums = 16;
+  static cudaStream_t make_stream();
   static constexpr unsigned kMostBlocks = 1024;
   struct Scratch {
     double* partial = nullptr;

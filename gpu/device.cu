@@ -51,6 +51,7 @@ std::vector<DeviceInfo> usable_devices(std::string& reason) {
     reason = std::string("no device was found (") + cudaGetErrorString(status) + ")";
     return devices;
   }
+  int first = -1;
   for (int i = 0; i < count; ++i) {
     cudaDeviceProp p{};
     if (cudaGetDeviceProperties(&p, i) != cudaSuccess) continue;
@@ -67,8 +68,9 @@ std::vector<DeviceInfo> usable_devices(std::string& reason) {
       continue;
     }
     devices.push_back(d);
+    if (first < 0) first = i;
   }
-  cudaSetDevice(0);
+  cudaSetDevice(first < 0 ? 0 : first);
   return devices;
 }
 

@@ -120,6 +120,16 @@ struct GatherAndFinish {
   }
 };
 
+/// |b − y|² and |b|²
+struct LinearResidual {
+  const double *b, *y;
+  FASCIA_HD void operator()(int i, Sums<2>& sums) const {
+    const double r = b[i] - y[i];
+    sums.v[0] += r * r;
+    sums.v[1] += b[i] * b[i];
+  }
+};
+
 struct TakeCurvature {
   CgView v;
   FASCIA_HD void operator()(const Sums<1>& total) const { v.curvature(total.v[0]); }

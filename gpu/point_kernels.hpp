@@ -75,26 +75,6 @@ FASCIA_HD inline void store_stress(const PointsView& set, int group, int lane, c
   if (set.blends[group] != 0) store_matrix(out, 9, lane, Y);
 }
 
-/// Force i and row i of N of a slot.
-FASCIA_HD inline void sum_slot_row(const PointsView& set, int slot, int i) {
-  const int group = set.slot_group[slot];
-  const double *stress = set.stress + static_cast<std::size_t>(group) * 18 * kGroupSize, *shape = shape_of(set, slot);
-  double force = 0, N[3] = {0, 0, 0};
-  const bool blend = set.blends[group] != 0;
-  for (int lane = 0; lane < kGroupSize; ++lane) {
-    const Vec3d P{{row(stress, 3 * i, lane), row(stress, 3 * i + 1, lane), row(stress, 3 * i + 2, lane)}};
-    const double w = row(shape, 0, lane);
-    for (int k = 0; k < 3; ++k) force += P[k] * row(shape, 1 + k, lane);
-    for (int j = 0; j < 3; ++j) {
-      for (int k = 0; k < 3; ++k) N[j] += P[k] * row(shape, 4 + 3 * j + k, lane);
-      if (blend) N[j] += w * row(stress, 9 + 3 * i + j, lane);
-    }
-  }
-  double* out = set.slot_sums + static_cast<std::size_t>(slot) * 12;
-  out[i] = force;
-  for (int j = 0; j < 3; ++j) out[3 + 3 * i + j] = N[j];
-}
-
 /// The motion of a point for a unit of one degree of freedom of a frame.
 template <bool Blend>
 FASCIA_HD PointMotion<double> unit_motion(FrameKind kind, int dof, const double* shape, int lane, const Mat3d& Q) {

@@ -2,6 +2,7 @@
 
 #include "core/math/index.hpp"
 #include "gpu/point_kernels.hpp"
+#include "gpu/space.hpp"
 
 #include <algorithm>
 
@@ -73,9 +74,28 @@ void Points<Space>::for_kinds(const Act& act) {
 
 namespace kernels {
 
-struct SlotSums {
+/// v P g and v (P Bᵀ + w Y) of a point on a slot of its group.
+struct SlotTerm {
   PointsView set;
-  FASCIA_HD void operator()(int i) const { sum_slot_row(set, i / 3, i % 3); }
+  FASCIA_HD void operator()(int slot, int lane, Sums<12>& sums) const {
+    const int group = set.slot_group[slot];
+    const double *stress = set.stress + static_cast<std::size_t>(group) * 18 * kGroupSize, *shape = shape_of(set, slot);
+    const Mat3d P = matrix(stress, 0, lane);
+    const Vec3d force = P * Vec3d{{row(shape, 1, lane), row(shape, 2, lane), row(shape, 3, lane)}};
+    Mat3d N = times_transpose(P, matrix(shape, 4, lane));
+    if (set.blends[group] != 0) N += matrix(stress, 9, lane) * row(shape, 0, lane);
+    for (int i = 0; i < 3; ++i) {
+      sums.v[i] += force[i];
+      for (int j = 0; j < 3; ++j) sums.v[3 + 3 * i + j] += N(i, j);
+    }
+  }
+};
+struct StoreSlot {
+  double* slot_sums;
+  FASCIA_HD void operator()(int slot, const Sums<12>& sums) const {
+    double* out = slot_sums + static_cast<std::size_t>(slot) * 12;
+    for (int k = 0; k < 12; ++k) out[k] = sums.v[k];
+  }
 };
 
 template <PointKind Kind>
@@ -158,7 +178,7 @@ void Points<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
     Space::for_each(lanes, kernels::PointForces<K>{view_, nodes, pose, history, part_motion, groups});
   });
-  Space::for_each(3 * view_.slots, kernels::SlotSums{view_});
+  Space::template sum_lanes<12>(view_.slots, kernels::SlotTerm{view_}, kernels::StoreSlot{view_.slot_sums});
 }
 
 template <class Space>
@@ -175,7 +195,7 @@ void Points<Space>::product(const DirectionView& direction) {
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
     Space::for_each(lanes, kernels::PointProduct<K>{view_, direction, inverse_step_, tangent_, groups});
   });
-  Space::for_each(3 * view_.slots, kernels::SlotSums{view_});
+  Space::template sum_lanes<12>(view_.slots, kernels::SlotTerm{view_}, kernels::StoreSlot{view_.slot_sums});
 }
 
 template <class Space>

@@ -7,10 +7,14 @@
 /// The bodies of runs, for the files that instantiate them.
 namespace fascia::gpu {
 
+/// Larger models are not worth a factorisation that only makes a message better.
+inline constexpr int kMostOfLimitPoint = 15000;
+
 /// As of a MechanicalSystem, by one of the host.
 template <class Space>
 bool near_limit_point(System<Space>& system, const DeviceState<Space>& pose, const FactorFunction& factors,
                       double reached) {
+  if (system.model().free_dof_count() > kMostOfLimitPoint) return false;
   ThreadPool pool(0);
   MechanicalSystem host(system.model(), pool, system.settings());
   State state = State::at_rest(system.model());
@@ -25,7 +29,10 @@ class ReachedStep : public DeviceStep {
       : system_(system), pose_(pose), state_(state) {}
   InternalEnergy energy() const override { return system_.internal_energy(); }
   const State& state() override {
-    if (!fetched_) pose_.download(state_);
+    if (fetched_) return state_;
+    State fetched = state_;
+    pose_.download(fetched);
+    state_ = std::move(fetched);
     fetched_ = true;
     return state_;
   }

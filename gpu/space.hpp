@@ -27,11 +27,16 @@ struct Sums {
   }
   /// A value that is not a number stays.
   FASCIA_HD void note(int k, double value) {
-    if (!(value <= largest[k])) largest[k] = value;
+    if (!(value <= largest[k]) && largest[k] == largest[k]) largest[k] = value;
   }
 };
 
+/// Lanes of a loop whose items are eight each, as groups of points are.
+inline constexpr int kSpaceLanes = 8;
+
 struct HostSpace {
+  static constexpr bool kHasTiles = false;
+
   static void* allocate(std::size_t bytes) { return bytes == 0 ? nullptr : ::operator new(bytes, kAlignment); }
   static void release(void* memory) noexcept { ::operator delete(memory, kAlignment); }
   static void copy_in(void* to, const void* from, std::size_t bytes) { copy(to, from, bytes); }
@@ -61,6 +66,16 @@ struct HostSpace {
       total.add(part);
     }
     end(total);
+  }
+
+  /// body(i, lane, sums) for the lanes of each i < count, then end(i, totals).
+  template <int K, class Body, class End>
+  static void sum_lanes(int count, const Body& body, const End& end) {
+    for (int i = 0; i < count; ++i) {
+      Sums<K> total;
+      for (int lane = 0; lane < kSpaceLanes; ++lane) body(i, lane, total);
+      end(i, total);
+    }
   }
 
   /// Repeats a body of loops until one of them sets a flag.

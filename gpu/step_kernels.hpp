@@ -197,7 +197,7 @@ struct KeepLargest {
   const double* now;
   double* largest;
   FASCIA_HD void operator()(int p) const {
-    if (!(now[p] <= largest[p])) largest[p] = now[p];
+    if (now[p] > largest[p]) largest[p] = now[p];
   }
 };
 

@@ -12,8 +12,10 @@
 #include "gpu/part_sums.hpp"
 #include "gpu/step_kernels.hpp"
 #include "gpu/surfaces.hpp"
+#include "gpu/tile_solver.hpp"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,7 +31,7 @@ class System {
   using Pose = DeviceState<Space>;
   using Memory = DeviceMemory<Space>;
 
-  /// @throws InputError  what the device does not take, by name
+  /// Direct solves are those of conjugate gradients here, and a Cholesky preconditioner is block-Jacobi.
   System(const Model& model, const SolverSettings& settings);
 
   void begin_step(const Pose& start, double dt) { begin_step(start, dt, TimeScheme::implicit_euler, {}); }
@@ -66,6 +68,9 @@ class System {
   std::vector<double> product(std::span<const double> d);
 
  private:
+  /// Times the usual limit of conjugate gradients that a slender body may take.
+  static constexpr int kPatience = 20;
+
   kernels::StepView step_view();
   kernels::ForceView force_view();
   kernels::ProductView product_view();
@@ -86,11 +91,18 @@ class System {
   void predict_strain(const Memory& memory);
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
+  void linearize_tiles(Tangent tangent);
   void apply_tangent(const CgView& v);
   void multiply(const kernels::ProductView& w);
   void gather_product(const kernels::ProductView& w);
+  void make_tiles();
+  /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
+  bool use_tiles() const {
+    return tiles_ != nullptr && (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
+  }
   std::uint64_t operator_key() const;
   CgReport solve(const CgOptions& options);
+  CgReport solve_in_tiles(const CgOptions& options);
   void place_tethers();
 
   const Model& model_;
@@ -103,6 +115,8 @@ class System {
   Surfaces<Space> surfaces_;
   PartSums<Space> node_parts_;
   ConjugateGradients<Space> cg_;
+  std::vector<std::uint8_t> held_;     ///< degrees of freedom that tiles hold, by node
+  std::unique_ptr<TileSolver> tiles_;  ///< of meshless solids alone; none where they cannot hold them
   bool conservative_, turning_, damped_;
   MotionSizes motions_;
 

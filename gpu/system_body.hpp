@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/model/errors.hpp"
 #include "gpu/boundary_kernels.hpp"
+#include "gpu/device.hpp"
 #include "gpu/system.hpp"
 
 #include <algorithm>
@@ -57,6 +57,28 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   idle_.resize(1);
   factors_ = reached_factors_ = zero_factors(model);
   data_.set_factors(factors_);
+  if constexpr (Space::kHasTiles) make_tiles();
+}
+
+/// Where the model is solids of rigid frames that move by themselves, held in world axes.
+template <class Space>
+void System<Space>::make_tiles() {
+  const Preconditioner kind = settings_.preconditioner;
+  const bool known =
+      kind == Preconditioner::automatic || kind == Preconditioner::block_jacobi || kind == Preconditioner::none;
+  if (!known || filter_.turns() || !dependents_.empty() || !surfaces_.empty() || !model_.tethers.empty()) return;
+  const TilePointsResult points = tile_points(model_.points, model_.rest_position);
+  if (!points.refusal.empty()) return;
+  ThreadPool pool(0);
+  try {
+    tiles_ = TileSolver::make(points.points, {}, pool);
+  } catch (const DeviceMemoryError&) {
+    return;  // groups of points need less
+  }
+  if (!tiles_) return;
+  for (int i = 0; i < model_.node_count(); ++i) held_.push_back(static_cast<std::uint8_t>(filter_.fixed_of(i)));
+  tiles_->set_held(held_);
+  if (kind == Preconditioner::none) tiles_->clear_preconditioner();
 }
 
 template <class Space>

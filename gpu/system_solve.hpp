@@ -22,6 +22,10 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   const Mat3d* taken_off = tethers_turn ? nullptr : tether_L_.data();
   Space::for_each(nodes.count, kernels::NodeBlocks{step_view(), L_.data(), taken_off, Q_.data(), node_blocks_.data(),
                                                    tangent == Tangent::full});
+  if (use_tiles()) {
+    linearize_tiles(tangent);
+    return;
+  }
   blocks_.linearize(nodes, pose(), history(), tangent, node_blocks_.data());
   if (!dependents_.empty() && tangent == Tangent::full && tethers_turn)
     dependents_.add_turning(nodes, dependent_forces_.data(), node_blocks_.data());
@@ -36,6 +40,14 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   if (!dependents_.empty()) dependents_.add_diagonal(nodes, inverse_.data());
   Space::for_each(nodes.count, kernels::InvertBlocks{data_.view(), inverse_.data(), kind == Preconditioner::jacobi,
                                                      kind == Preconditioner::none});
+}
+
+template <class Space>
+void System<Space>::linearize_tiles(Tangent tangent) {
+  blocks_.add_spring_blocks(data_.view().nodes, pose(), tangent, node_blocks_.data());
+  tiles_->linearize(u_.data()->v, &(*D_.data())(0, 0), tangent, damped_ ? inverse_step_ : 0.0);
+  tiles_->set_node_blocks(node_blocks_.data());
+  if (settings_.preconditioner != Preconditioner::none) tiles_->build_preconditioner();
 }
 
 /// v.Ap = K v.p in constraint axes, with the next direction in v.p.
@@ -76,8 +88,22 @@ std::uint64_t System<Space>::operator_key() const {
   return bits * 2 + (tangent_ == Tangent::full ? 1 : 0);
 }
 
+/// What is left of the right-hand side is not what tiles judge by: it takes one more product.
+template <class Space>
+CgReport System<Space>::solve_in_tiles(const CgOptions& options) {
+  CgReport report = tiles_->solve(cg_.rhs(), cg_.solution(), options);
+  tiles_->multiply(cg_.solution(), world_y_.data());
+  Space::template sum<2>(model_.dof_count(), kernels::LinearResidual{cg_.rhs(), world_y_.data()},
+                         kernels::StoreSums<2, 0>{slope_.data()});
+  double squares[3];
+  slope_.download(squares);
+  if (squares[1] > 0) report.relative_norm = std::sqrt(squares[0] / squares[1]);
+  return report;
+}
+
 template <class Space>
 CgReport System<Space>::solve(const CgOptions& options) {
+  if (use_tiles()) return solve_in_tiles(options);
   return cg_.solve(data_.view().nodes, inverse_.data(), options, operator_key(),
                    [&](const CgView& v) { apply_tangent(v); });
 }
@@ -92,7 +118,10 @@ DirectionReport System<Space>::direction() {
     still_Ap_.resize(prescribed_.size());
     still_.set_zero();
     idle_.set_zero();
-    apply_tangent({nullptr, nullptr, prescribed_.data(), still_.data(), still_Ap_.data(), idle_.data()});
+    if (use_tiles())
+      tiles_->multiply(prescribed_.data(), still_Ap_.data());
+    else
+      apply_tangent({nullptr, nullptr, prescribed_.data(), still_.data(), still_Ap_.data(), idle_.data()});
     moved = still_Ap_.data();
   }
   const auto right_hand_side = [&] {
@@ -100,11 +129,16 @@ DirectionReport System<Space>::direction() {
   };
   right_hand_side();
   const Clock::time_point start = Clock::now();
-  CgReport cg = solve(settings_.cg);
+  CgOptions options = settings_.cg;
+  // A limit that nobody set is no reason to stop: there is no direct solver here that could take over.
+  const bool guessed =
+      settings_.linear == LinearMethod::automatic && options.max_iterations == CgOptions{}.max_iterations;
+  if (guessed) options.max_iterations *= kPatience;
+  CgReport cg = solve(options);
   if (cg.status == CgStatus::negative_curvature && !model_.tethers.empty()) {
     linearize(settings_.tangent, false);
     right_hand_side();
-    cg = solve(settings_.cg);
+    cg = solve(options);
   }
   DirectionReport report;
   report.cg_seconds = seconds_since(start);
@@ -135,6 +169,13 @@ DirectionReport System<Space>::direction() {
 template <class Space>
 std::vector<double> System<Space>::product(std::span<const double> d) {
   linearize(settings_.tangent, true);
+  if (use_tiles()) {
+    world_d_.upload(d);
+    tiles_->set_held({});
+    tiles_->multiply(world_d_.data(), world_y_.data());
+    tiles_->set_held(held_);
+    return world_y_.downloaded();
+  }
   const NodesView& nodes = data_.view().nodes;
   world_d_.upload(d);
   const kernels::ProductView w = product_view();

@@ -41,6 +41,7 @@ void System<Space>::predict_strain(const Memory& memory) {
   for (auto* E : {&E_, &start_E_, &ahead_E_, &behind_E_})
     if (E == &E_ || step_.scheme != TimeScheme::implicit_euler) E->resize(blocks_.strain_size());
   blocks_.store_strain({start_.u.data(), start_.D.data()}, E_.data());
+  if (use_tiles()) tiles_->store_strain(start_.u.data()->v, &(*start_.D.data())(0, 0));
   if (step_.scheme == TimeScheme::implicit_euler) return;
   start_E_.copy_from(E_);
   double* E = E_.data();

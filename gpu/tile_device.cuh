@@ -136,8 +136,11 @@ template <bool Drilling, class Constant>
 __device__ inline void gather_list(const double* stress, const Constant* weights, const Constant* places,
                                    const std::uint16_t* list, int begin, int end, int lanes, int first, int step,
                                    FrameSum& sum) {
+  int next = begin + first < end ? list[begin + first] : 0;
   for (int e = begin + first; e < end; e += step) {
-    const int entry = list[e], lane = entry & ((1 << kTileLaneBits) - 1), k = entry >> kTileLaneBits;
+    const int entry = next;
+    next = e + step < end ? list[e + step] : 0;
+    const int lane = entry & ((1 << kTileLaneBits) - 1), k = entry >> kTileLaneBits;
     const Constant* at_k = weights + k * 4 * lanes + lane;
     const double w = at_k[0];
     const Vec3d g{{at_k[lanes], at_k[2 * lanes], at_k[3 * lanes]}};

@@ -2,6 +2,8 @@
 
 #include "gpu/tile_resident.cuh"
 
+#include <algorithm>
+
 /// Which instance of a kernel computes tiles of a size.
 namespace fascia::tile {
 
@@ -22,14 +24,18 @@ struct ResidentChoice {
 };
 
 /// Four threads take a point where tiles are so small that the chain of one would be long.
+/// @param frames  of a tile at most
 template <bool Drilling, class Constant>
-ResidentChoice<Constant> choose_resident(int influences, int tile_size) {
-  constexpr int most_wide = kResidentThreads / 4;
-  if (tile_size <= most_wide) return {resident_kernel<0, 4, 4, Drilling, Constant>, (4 * tile_size + 31) / 32 * 32};
-  const int threads = (tile_size + 31) / 32 * 32;
-  if (influences == 4) return {resident_kernel<4, 1, 2, Drilling, Constant>, threads};
-  if (influences == 8) return {resident_kernel<8, 1, 2, Drilling, Constant>, threads};
-  return {resident_kernel<0, 1, 2, Drilling, Constant>, threads};
+ResidentChoice<Constant> choose_resident(int influences, int tile_size, int frames) {
+  const auto whole_warps = [&](int threads) { return (std::max(threads, frames) + 31) / 32 * 32; };
+  constexpr int wide = resident_threads(4);
+  if (4 * tile_size <= wide && frames <= wide) {
+    if (8 * frames <= wide) return {resident_kernel<0, 4, 8, Drilling, Constant>, wide};
+    return {resident_kernel<0, 4, 4, Drilling, Constant>, whole_warps(4 * tile_size)};
+  }
+  if (influences == 4) return {resident_kernel<4, 1, 2, Drilling, Constant>, whole_warps(tile_size)};
+  if (influences == 8) return {resident_kernel<8, 1, 2, Drilling, Constant>, whole_warps(tile_size)};
+  return {resident_kernel<0, 1, 2, Drilling, Constant>, whole_warps(tile_size)};
 }
 
 }  // namespace fascia::tile

@@ -81,6 +81,8 @@ __device__ inline void copy_lists(const DeviceTiles<Constant>& t, const SharedPl
 /// Blocks of kernels that take tiles of any size have a thread for each lane, in whole warps.
 inline constexpr int kMostTileThreads = 320;
 
+__device__ inline int numbered(const TileFrame& f) { return 2 * f.frame + f.owner; }
+
 /// Threads and residency that kernels are compiled for: 128 registers a thread where the tile size is known, 168 with
 /// drilling.
 constexpr int block_threads(int lanes) { return lanes > 0 ? lanes : kMostTileThreads; }
@@ -116,9 +118,19 @@ __global__ __launch_bounds__(block_threads(Threads),
   if (blockIdx.x == 0 && tid == 0) *a.out = state;
   if (state.done != 0) return;
 
+  // Numbers of the frames of the next tile are on their way while this one is computed.
   double curvature = 0;
+  int ahead = 0;  // 2 × frame + whether this tile owns it
+  int first_ahead = 0, frames_ahead = 0;
+  const auto look_ahead = [&](int tile) {
+    if (tile >= a.tiles.tile_count) return;
+    first_ahead = a.tiles.tile_frame_begin[tile];
+    frames_ahead = a.tiles.tile_frame_begin[tile + 1] - first_ahead;
+    if (tid < frames_ahead) ahead = numbered(a.tiles.tile_frames[first_ahead + tid]);
+  };
+  look_ahead(static_cast<int>(blockIdx.x));
   for (int tile = static_cast<int>(blockIdx.x); tile < a.tiles.tile_count; tile += static_cast<int>(gridDim.x)) {
-    const int first = a.tiles.tile_frame_begin[tile], frames = a.tiles.tile_frame_begin[tile + 1] - first;
+    const int first = first_ahead, frames = frames_ahead;
     copy_constants(a.tiles, a.plan, shared, tile);
     copy_block(point, a.points + static_cast<std::size_t>(tile) * kWords * P, kWords * P * 8);
     copy_lists(a.tiles, a.plan, shared, tile);
@@ -126,19 +138,20 @@ __global__ __launch_bounds__(block_threads(Threads),
     const bool has_point = Threads > 0 || tid < P;
     const int material_number = has_point ? a.tiles.material[static_cast<std::size_t>(tile) * P + tid] : 0;
     for (int f = tid; f < frames; f += threads) {
-      const TileFrame frame = a.tiles.tile_frames[first + f];
-      const auto n = static_cast<std::size_t>(frame.frame);
+      const int number = f < threads ? ahead : numbered(a.tiles.tile_frames[first + f]);
+      const auto n = static_cast<std::size_t>(number / 2);
       double p[kDofs], old[kDofs], pose[kPose];
       load_words<kDofs>(a.z + kDofs * n, p);
       load_words<kDofs>(a.p_old + kDofs * n, old);
       load_words<kPose>(a.pose + kPose * n, pose);
 #pragma unroll
       for (int i = 0; i < kDofs; ++i) p[i] += beta * old[i];
-      if (frame.owner != 0) store_words<kDofs>(a.p_new + kDofs * n, p);
+      if (number % 2 != 0) store_words<kDofs>(a.p_new + kDofs * n, p);
       store_words<kDofs>(directions + kDofs * f, p);
       write_direction(p, pose, head, records + kRecordStride * f);
     }
     const TileMaterial constants = a.tiles.materials[material_number];
+    look_ahead(tile + static_cast<int>(gridDim.x));
     wait_copies();
     __syncthreads();
 
@@ -189,22 +202,31 @@ __device__ inline void precondition(const float* inverse, std::size_t frame, std
 }
 
 /// Clears the degrees of freedom that a bit mask holds.
-__device__ inline void clear_held(const std::uint8_t* held, std::size_t frame, double* v) {
-  const unsigned mask = held == nullptr ? 0U : held[frame];
+__device__ inline void clear_held(unsigned mask, double* v) {
 #pragma unroll
   for (int i = 0; i < kDofs; ++i)
     if ((mask >> i & 1U) != 0) v[i] = 0;
+}
+__device__ inline void clear_held(const std::uint8_t* held, std::size_t frame, double* v) {
+  if (held != nullptr) clear_held(held[frame], v);
 }
 
 /// Σ of a frame's partials, in the order of its tiles.
 __device__ inline void sum_partials(const double* partials, int begin, int end, double* y) {
 #pragma unroll
   for (int i = 0; i < kDofs; ++i) y[i] = 0;
-  for (int slot = begin; slot < end; ++slot) {
-    double part[kDofs];
-    load_words<kDofs>(partials + kDofs * static_cast<std::size_t>(slot), part);
+  constexpr int kAhead = 2;  // on their way at a time
+  for (int first = begin; first < end; first += kAhead) {
+    double part[kAhead][kDofs];
 #pragma unroll
-    for (int i = 0; i < kDofs; ++i) y[i] += part[i];
+    for (int s = 0; s < kAhead; ++s)
+      if (first + s < end) load_words<kDofs>(partials + kDofs * static_cast<std::size_t>(first + s), part[s]);
+#pragma unroll
+    for (int s = 0; s < kAhead; ++s) {
+#pragma unroll
+      for (int i = 0; i < kDofs; ++i)
+        if (first + s < end) y[i] += part[s][i];
+    }
   }
 }
 
@@ -226,8 +248,8 @@ struct VectorArgs {
 
 inline constexpr int kUpdateThreads = 128;
 
-/// α, x, r, z and parts of r · z.
-static __global__ __launch_bounds__(kUpdateThreads) void update_kernel(VectorArgs a) {
+/// α, x, r, z and parts of r · z. Five blocks on each multiprocessor: the registers hold what is on its way.
+static __global__ __launch_bounds__(kUpdateThreads, 5) void update_kernel(VectorArgs a) {
   __shared__ double scratch[33];
   CgState state = *a.in;
   double alpha = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <utility>
 
 namespace fascia {
 
@@ -28,7 +29,21 @@ std::vector<int> number_frames(const TilePoints& points, const TileCut& cut, Til
   return frame_of_node;
 }
 
-/// Frames of each tile, ascending; tiles without points take the frames that no point touches.
+/// Each number once, the most frequent first.
+void sort_by_count(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  std::vector<std::pair<int, int>> counted;  // minus how often, number
+  for (const int n : numbers) {
+    if (counted.empty() || counted.back().second != n) counted.emplace_back(0, n);
+    --counted.back().first;
+  }
+  std::sort(counted.begin(), counted.end());
+  numbers.clear();
+  for (const auto& [count, n] : counted) numbers.push_back(n);
+}
+
+/// Frames of each tile, those of most points first, so that threads that sum side by side have as much to do; tiles
+/// without points take the frames that no point touches.
 std::vector<std::vector<int>> collect_frames(const TilePoints& points, const TileCut& cut,
                                              const std::vector<int>& frame_of_node, int most_frames, ThreadPool& pool) {
   std::vector<std::vector<int>> frames(cut.ranges.size());
@@ -38,13 +53,12 @@ std::vector<std::vector<int>> collect_frames(const TilePoints& points, const Til
       for (std::size_t i = cut.ranges[at(t)].begin; i < cut.ranges[at(t)].end; ++i)
         for (std::size_t k = points.begin[at(cut.order[i])]; k < points.begin[at(cut.order[i]) + 1]; ++k)
           own.push_back(frame_of_node[at(points.node[k])]);
-      std::sort(own.begin(), own.end());
-      own.erase(std::unique(own.begin(), own.end()), own.end());
+      sort_by_count(own);
     }
   });
   int touched = 0;
   for (const std::vector<int>& own : frames)
-    if (!own.empty()) touched = std::max(touched, own.back() + 1);
+    for (const int f : own) touched = std::max(touched, f + 1);
   for (int first = touched; first < points.node_count(); first += most_frames) {
     frames.emplace_back(at(std::min(most_frames, points.node_count() - first)));
     std::iota(frames.back().begin(), frames.back().end(), first);
@@ -85,9 +99,10 @@ class TileFiller {
     const std::size_t P = at(out_.tile_size), K = at(out_.influences);
     const TileRange range = at(tile) < cut_.ranges.size() ? cut_.ranges[at(tile)] : TileRange{};
     set_head(tile, range);
+    index_frames(tile);
     frames_.assign(P * K, 0);
     number_.assign(P * K, -1);
-    for (std::size_t lane = 0; lane < range.end - range.begin; ++lane) gather_influences(tile, range, lane);
+    for (std::size_t lane = 0; lane < range.end - range.begin; ++lane) gather_influences(range, lane);
     spread_influences(frames_, number_, out_.tile_size, out_.influences);
     for (std::size_t lane = 0; lane < range.end - range.begin; ++lane) write_point(tile, range, lane);
     write_lists(tile);
@@ -108,15 +123,21 @@ class TileFiller {
     head.blend = points_.blend[at(cut_.order[range.begin])];
   }
 
-  void gather_influences(int tile, const TileRange& range, std::size_t lane) {
-    const auto first = out_.tile_frames.begin() + out_.tile_frame_begin[at(tile)];
-    const auto last = out_.tile_frames.begin() + out_.tile_frame_begin[at(tile) + 1];
+  void index_frames(int tile) {
+    index_.clear();
+    const int first = out_.tile_frame_begin[at(tile)];
+    for (int i = first; i < out_.tile_frame_begin[at(tile) + 1]; ++i)
+      index_.emplace_back(out_.tile_frames[at(i)].frame, static_cast<std::uint8_t>(i - first));
+    std::sort(index_.begin(), index_.end());
+  }
+
+  void gather_influences(const TileRange& range, std::size_t lane) {
     const int q = cut_.order[range.begin + lane];
     for (std::size_t k = points_.begin[at(q)]; k < points_.begin[at(q) + 1]; ++k) {
       const int frame = frame_of_node_[at(points_.node[k])];
-      const auto own = std::lower_bound(first, last, frame, [](const TileFrame& a, int b) { return a.frame < b; });
+      const auto own = std::lower_bound(index_.begin(), index_.end(), std::pair<int, std::uint8_t>{frame, 0});
       const std::size_t place = lane * at(out_.influences) + (k - points_.begin[at(q)]);
-      frames_[place] = static_cast<std::uint8_t>(own - first);
+      frames_[place] = own->second;
       number_[place] = static_cast<int>(k - points_.begin[at(q)]);
     }
   }
@@ -163,8 +184,9 @@ class TileFiller {
   const TileCut& cut_;
   const std::vector<int>& frame_of_node_;
   TileLayout& out_;
-  std::vector<std::uint8_t> frames_;  ///< (lanes × influences)
-  std::vector<int> number_;           ///< the same: which influence of the point, −1: none
+  std::vector<std::pair<int, std::uint8_t>> index_;  ///< frames of the tile and their places, ascending
+  std::vector<std::uint8_t> frames_;                 ///< (lanes × influences)
+  std::vector<int> number_;                          ///< the same: which influence of the point, −1: none
   std::vector<std::vector<std::uint16_t>> lists_;
 };
 

@@ -48,7 +48,7 @@ struct TileLayout {
   std::vector<int> slot_tile_frame;    ///< (slots) index into `tile_frames`
   std::vector<int> slot_tile;          ///< (slots)
   std::vector<int> tile_frame_begin;   ///< (tiles + 1)
-  std::vector<TileFrame> tile_frames;  ///< ascending in each tile
+  std::vector<TileFrame> tile_frames;  ///< in each tile those of most points first
   std::vector<TileHead> head;          ///< (tiles)
 
   std::vector<double> weights;            ///< (tiles × influences × 4 × lanes): w, g

@@ -1,20 +1,16 @@
 #pragma once
 
-#include <cuda_runtime.h>
+#include "gpu/cuda_check.hpp"
 
 #include <cstddef>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace fascia::tile {
 
-/// Throws with what was being done where a CUDA call failed.
-inline void check(cudaError_t error, const char* what) {
-  if (error != cudaSuccess) throw std::runtime_error(std::string("gpu: ") + what + ": " + cudaGetErrorString(error));
-}
+using gpu::check;
 
 /// An array on the device.
 template <class T>

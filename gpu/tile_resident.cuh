@@ -13,15 +13,16 @@ namespace fascia::tile {
 /// Where the parts of a resident tile stand in shared memory [bytes]. Vectors of frames are (words × frame_stride).
 struct ResidentPlan {
   int frame_stride = 0;
-  int weights = 0, places = 0, stress = 0, records = 0, frames = 0, inverse = 0, blocks = 0, list = 0, list_begin = 0,
-      local = 0, scratch = 0;
+  int weights = 0, places = 0, stress = 0, point = 0, records = 0, frames = 0, inverse = 0, list = 0, list_begin = 0,
+      local = 0, slots = 0, scratch = 0;
   int bytes = 0;
 };
 
 /// Rows of ResidentPlan::frames.
 inline constexpr int kRowR = 0, kRowS = 6, kRowZ = 12, kRowP = 18, kRowX = 24, kRowPose = 30, kFrameRows = 42;
 
-inline constexpr int kResidentThreads = 320;
+/// Threads of a block at most: one for each point and each frame.
+constexpr int resident_threads(int lanes) { return lanes == 1 ? 320 : 256; }
 
 template <class Constant>
 struct ResidentArgs {
@@ -35,7 +36,7 @@ struct ResidentArgs {
   const double* b;   ///< by node
   double* solution;  ///< by node
   double* partials;  ///< (2 × slots × 6), lowest bits set
-  double* dots;      ///< (2 × blocks × 2), lowest bits set
+  double* dots;      ///< (2 × kReplicas × blocks × 2), lowest bits set
   int slot_count;
   CgState state;
   CgState* out;
@@ -59,26 +60,29 @@ __device__ inline bool arrived(const double2& v, unsigned flag) {
   const auto bits = static_cast<unsigned>((__double_as_longlong(v.x) & 1LL) + (__double_as_longlong(v.y) & 1LL));
   return bits == 2 * flag;
 }
-__device__ inline double2 receive(const double* from, unsigned flag) {
-  double2 v = look(from);
-  while (!arrived(v, flag)) v = look(from);
-  return v;
-}
+/// Copies of what blocks send to all, so that not all of them ask for the same words.
+inline constexpr int kReplicas = 8;
 
-/// γ and δ of all blocks, summed alike in each warp.
+/// γ and δ of all blocks, summed by one warp.
 __device__ inline double2 receive_dots(const double* dots, int blocks, unsigned flag) {
   double2 sum = make_double2(0, 0);
   constexpr int kAhead = 5;
   const int lane = static_cast<int>(threadIdx.x) % 32;
   for (int first = lane; first < blocks; first += 32 * kAhead) {
     double2 v[kAhead];
+    bool missing = true;
+    while (missing) {
+      missing = false;
 #pragma unroll
-    for (int i = 0; i < kAhead; ++i)
-      if (first + 32 * i < blocks) v[i] = look(dots + 2 * (first + 32 * i));
+      for (int i = 0; i < kAhead; ++i)
+        if (first + 32 * i < blocks) v[i] = look(dots + 2 * (first + 32 * i));
+#pragma unroll
+      for (int i = 0; i < kAhead; ++i)
+        if (first + 32 * i < blocks) missing = missing || !arrived(v[i], flag);
+    }
 #pragma unroll
     for (int i = 0; i < kAhead; ++i) {
       if (first + 32 * i >= blocks) continue;
-      if (!arrived(v[i], flag)) v[i] = receive(dots + 2 * (first + 32 * i), flag);
       sum.x += v[i].x;
       sum.y += v[i].y;
     }
@@ -91,20 +95,36 @@ __device__ inline double2 receive_dots(const double* dots, int blocks, unsigned 
   return sum;
 }
 
-/// Σ of a frame's partials in the order of its tiles.
+/// Σ of a frame's partials in the order of its tiles. All that are missing are asked for at once: one after the other
+/// each would cost a way to memory and back.
 __device__ inline void receive_partials(const double* partials, int begin, int end, unsigned flag, double* w) {
+  constexpr int kAhead = 4;
 #pragma unroll
   for (int i = 0; i < kDofs; ++i) w[i] = 0;
-  for (int slot = begin; slot < end; ++slot) {
-    const double* from = partials + kDofs * static_cast<std::size_t>(slot);
-    double2 v[kDofs / 2];
+  for (int first = begin; first < end; first += kAhead) {
+    double2 v[kAhead][kDofs / 2];
+    bool missing = true;
+    while (missing) {
+      missing = false;
 #pragma unroll
-    for (int i = 0; i < kDofs / 2; ++i) v[i] = look(from + 2 * i);
+      for (int s = 0; s < kAhead; ++s)
 #pragma unroll
-    for (int i = 0; i < kDofs / 2; ++i) {
-      if (!arrived(v[i], flag)) v[i] = receive(from + 2 * i, flag);
-      w[2 * i] += v[i].x;
-      w[2 * i + 1] += v[i].y;
+        for (int i = 0; i < kDofs / 2; ++i)
+          if (first + s < end) v[s][i] = look(partials + kDofs * (first + s) + 2 * i);
+#pragma unroll
+      for (int s = 0; s < kAhead; ++s)
+#pragma unroll
+        for (int i = 0; i < kDofs / 2; ++i)
+          if (first + s < end) missing = missing || !arrived(v[s][i], flag);
+    }
+#pragma unroll
+    for (int s = 0; s < kAhead; ++s) {
+      if (first + s >= end) continue;
+#pragma unroll
+      for (int i = 0; i < kDofs / 2; ++i) {
+        w[2 * i] += v[s][i].x;
+        w[2 * i + 1] += v[s][i].y;
+      }
     }
   }
 }
@@ -120,10 +140,13 @@ __device__ inline void store_rows(double* rows, int stride, const double* from) 
   for (int i = 0; i < N; ++i) rows[i * stride] = from[i];
 }
 
+/// Where the sums over all blocks stand in the scratch, behind two words of each warp.
+inline constexpr int kSums = 20;
+
 /// @param Lanes   threads of a point
 /// @param Gather  threads of a frame while its list is summed
 template <int K, int Lanes, int Gather, bool Drilling, class Constant>
-__global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentArgs<Constant> a) {
+__global__ __launch_bounds__(resident_threads(Lanes), 1) void resident_kernel(ResidentArgs<Constant> a) {
   extern __shared__ __align__(16) char shared[];
   constexpr int kWords = kPointWords<Drilling>;
   auto* const scratch = reinterpret_cast<double*>(shared + a.plan.scratch);
@@ -133,7 +156,8 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
   auto* const records = reinterpret_cast<double*>(shared + a.plan.records);
   auto* const rows = reinterpret_cast<double*>(shared + a.plan.frames);
   auto* const inverse = reinterpret_cast<float*>(shared + a.plan.inverse);
-  auto* const blocks = reinterpret_cast<double*>(shared + a.plan.blocks);
+  auto* const slots = reinterpret_cast<int*>(shared + a.plan.slots);
+  auto* const owned = slots + a.plan.frame_stride;  // frames whose node block is added here
   auto* const list = reinterpret_cast<const std::uint16_t*>(shared + a.plan.list);
   auto* const list_begin = reinterpret_cast<const std::uint16_t*>(shared + a.plan.list_begin);
   auto* const local = reinterpret_cast<const std::uint8_t*>(shared + a.plan.local);
@@ -142,43 +166,55 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
   const int tile = static_cast<int>(blockIdx.x), stride = a.plan.frame_stride;
   const int first = a.tiles.tile_frame_begin[tile], frames = a.tiles.tile_frame_begin[tile + 1] - first;
   const auto all = static_cast<std::size_t>(a.tiles.frame_count);
-  const TileHead head = a.tiles.head[tile];
+  const TileHead& head = a.tiles.head[tile];
   const SharedPlan copies{a.plan.weights, a.plan.places, 0, 0, 0, a.plan.list, a.plan.list_begin, a.plan.local, 0, 0};
   copy_constants(a.tiles, copies, shared, tile);
   copy_lists(a.tiles, copies, shared, tile);
 
   const int lane = tid / Lanes, sub = tid % Lanes;
   const bool has_point = lane < P;
-  double point[kWords];
-  const auto lane_number = static_cast<std::size_t>(tile) * P + (has_point ? lane : 0);
+  // Where four threads take a point there are registers enough for it.
+  constexpr bool kInRegisters = Lanes > 1;
+  double own_point[kInRegisters ? kWords : 1];
+  const double* const point =
+      kInRegisters ? own_point : reinterpret_cast<double*>(shared + a.plan.point) + (has_point ? lane : 0);
+  const double* const tile_points = a.points + static_cast<std::size_t>(tile) * kWords * P;
+  if constexpr (kInRegisters) {
 #pragma unroll
-  for (int i = 0; i < kWords; ++i)
-    point[i] = a.points[(static_cast<std::size_t>(tile) * kWords + i) * P + (has_point ? lane : 0)];
-  const TileMaterial constants = a.tiles.materials[a.tiles.material[lane_number]];
+    for (int i = 0; i < kWords; ++i) own_point[i] = tile_points[i * P + (has_point ? lane : 0)];
+  } else {
+    copy_block(shared + a.plan.point, tile_points, kWords * P * 8);
+  }
+  const int material_number = a.tiles.material[static_cast<std::size_t>(tile) * P + (has_point ? lane : 0)];
 
+  // Each thread takes one frame of the tile.
   double gamma_part = 0;
-  for (int f = tid; f < frames; f += threads) {
-    const TileFrame frame = a.tiles.tile_frames[first + f];
-    const auto n = static_cast<std::size_t>(frame.frame);
+  const bool has_frame = tid < frames;
+  const TileFrame own = has_frame ? a.tiles.tile_frames[first + tid] : TileFrame{};
+  const int slot_begin = has_frame ? a.tiles.frame_slot_begin[own.frame] : 0;
+  const int slot_end = has_frame ? a.tiles.frame_slot_begin[own.frame + 1] : 0;
+  const unsigned held = has_frame && a.held != nullptr ? a.held[own.frame] : 0U;
+  double* const row = rows + tid;
+  if (has_frame) {
+    const auto n = static_cast<std::size_t>(own.frame);
     double r[kDofs], z[kDofs]{}, pose[kPose];
     load_words<kPose>(a.pose + kPose * n, pose);
-    load_words<kDofs>(a.b + kDofs * static_cast<std::size_t>(a.tiles.frame_node[frame.frame]), r);
-    clear_held(a.held, n, r);
+    load_words<kDofs>(a.b + kDofs * static_cast<std::size_t>(a.tiles.frame_node[own.frame]), r);
+    clear_held(held, r);
 #pragma unroll
-    for (int i = 0; i < kPacked; ++i) {
-      inverse[i * stride + f] = a.inverse[static_cast<std::size_t>(i) * all + n];
-      blocks[i * stride + f] = a.node_blocks != nullptr ? a.node_blocks[static_cast<std::size_t>(i) * all + n] : 0.0;
-    }
-    add_packed(inverse + f, static_cast<std::size_t>(stride), r, z);
+    for (int i = 0; i < kPacked; ++i) inverse[i * stride + tid] = a.inverse[static_cast<std::size_t>(i) * all + n];
+    add_packed(inverse + tid, static_cast<std::size_t>(stride), r, z);
     const double zero[kDofs]{};
-    store_rows<kDofs>(rows + kRowR * stride + f, stride, r);
-    store_rows<kDofs>(rows + kRowZ * stride + f, stride, z);
-    store_rows<kDofs>(rows + kRowS * stride + f, stride, zero);
-    store_rows<kDofs>(rows + kRowP * stride + f, stride, zero);
-    store_rows<kDofs>(rows + kRowX * stride + f, stride, zero);
-    store_rows<kPose>(rows + kRowPose * stride + f, stride, pose);
-    write_direction(z, pose, head, records + kRecordStride * f);
-    if (frame.owner != 0) gamma_part += dot6(r, z);
+    store_rows<kDofs>(row + kRowR * stride, stride, r);
+    store_rows<kDofs>(row + kRowZ * stride, stride, z);
+    store_rows<kDofs>(row + kRowS * stride, stride, zero);
+    store_rows<kDofs>(row + kRowP * stride, stride, zero);
+    store_rows<kDofs>(row + kRowX * stride, stride, zero);
+    store_rows<kPose>(row + kRowPose * stride, stride, pose);
+    write_direction(z, pose, head, records + kRecordStride * tid);
+    slots[tid] = own.slot;
+    owned[tid] = own.owner != 0 && a.node_blocks != nullptr ? own.frame : -1;
+    if (own.owner != 0) gamma_part = dot6(r, z);
   }
   wait_copies();
   __syncthreads();
@@ -188,7 +224,7 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
   for (int iteration = 0;; ++iteration) {
     const unsigned flag = static_cast<unsigned>(iteration) / 2 % 2;
     double* const partials = a.partials + static_cast<std::size_t>(iteration % 2) * kDofs * a.slot_count;
-    double* const dots = a.dots + static_cast<std::size_t>(iteration % 2) * 2 * gridDim.x;
+    double* const dots = a.dots + static_cast<std::size_t>(iteration % 2) * kReplicas * 2 * gridDim.x;
 
     if (lane < (P * Lanes + 31) / 32 * 32 / Lanes) {
       Mat3d tg, wA, dP, dW;
@@ -210,8 +246,8 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
           t += __shfl_xor_sync(0xffffffffU, t, step);
         }
       }
-      const auto material = solid_material(constants, places[3 * P + q], state.inverse_step);
-      stress_of_direction<Drilling>(point, 1, material, state.tangent, tg, wA, head.blend, dP, dW);
+      const auto material = solid_material(a.tiles.materials[material_number], places[3 * P + q], state.inverse_step);
+      stress_of_direction<Drilling>(point, kInRegisters ? 1 : P, material, state.tangent, tg, wA, head.blend, dP, dW);
       if (has_point && sub == 0) {
         store_matrix(stress + lane, P, dP);
         if constexpr (Drilling) store_matrix(stress + 9 * P + lane, P, dW);
@@ -228,13 +264,13 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
                               sum);
       add_neighbours<Gather>(sum);
       if (f < frames && tid % Gather == 0) {
-        const TileFrame frame = a.tiles.tile_frames[first + f];
+        const int slot = slots[f];
         double pose[kPose], y[kDofs], z[kDofs];
         load_rows<kPose>(rows + kRowPose * stride + f, stride, pose);
         load_rows<kDofs>(rows + kRowZ * stride + f, stride, z);
         finish_frame(sum, pose, head, y);
-        if (frame.owner != 0) add_packed(blocks + f, static_cast<std::size_t>(stride), z, y);
-        double* to = partials + kDofs * static_cast<std::size_t>(frame.slot);
+        if (owned[f] >= 0) add_packed(a.node_blocks + owned[f], all, z, y);
+        double* to = partials + kDofs * slot;
 #pragma unroll
         for (int i = 0; i < kDofs; i += 2) send(to + i, y[i], y[i + 1], flag);
         delta_part += dot6(y, z);
@@ -250,16 +286,24 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
       scratch[tid / 16 + 1] = delta_part;
     }
     __syncthreads();
-    if (tid == 0) {
+    if (tid < kReplicas) {
       double gamma = 0, delta = 0;
       for (int w = 0; w < threads / 32; ++w) {
         gamma += scratch[2 * w];
         delta += scratch[2 * w + 1];
       }
-      send(dots + 2 * blockIdx.x, gamma, delta, flag);
+      send(dots + 2 * (static_cast<int>(gridDim.x) * tid + tile), gamma, delta, flag);
     }
+    double w[kDofs];
+    receive_partials(partials, slot_begin, slot_end, flag, w);
+    if (tid / 32 == threads / 32 - 1) {
+      const double* replica = dots + 2 * static_cast<int>(gridDim.x) * (tile % kReplicas);
+      const double2 all_dots = receive_dots(replica, static_cast<int>(gridDim.x), flag);
+      if (tid % 32 == 0) *reinterpret_cast<double2*>(scratch + kSums) = all_dots;
+    }
+    __syncthreads();
     gamma_part = 0;
-    const double2 sums = receive_dots(dots, static_cast<int>(gridDim.x), flag);
+    const double2 sums = *reinterpret_cast<const double2*>(scratch + kSums);
     const double gamma = sums.x;
     state.iterations = iteration;
     state = judged(state, gamma);
@@ -276,26 +320,23 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
     gamma_old = gamma;
     curvature_old = curvature;
 
-    for (int f = tid; f < frames; f += threads) {
-      const TileFrame frame = a.tiles.tile_frames[first + f];
-      double w[kDofs], r[kDofs], z[kDofs], s[kDofs], pose[kPose];
-      receive_partials(partials, a.tiles.frame_slot_begin[frame.frame], a.tiles.frame_slot_begin[frame.frame + 1], flag,
-                       w);
-      clear_held(a.held, static_cast<std::size_t>(frame.frame), w);
-      load_rows<kDofs>(rows + kRowR * stride + f, stride, r);
-      load_rows<kDofs>(rows + kRowS * stride + f, stride, s);
-      load_rows<kDofs>(rows + kRowZ * stride + f, stride, z);
-      if (frame.owner != 0) {
+    if (has_frame) {
+      double r[kDofs], z[kDofs], s[kDofs], pose[kPose];
+      clear_held(held, w);
+      load_rows<kDofs>(row + kRowR * stride, stride, r);
+      load_rows<kDofs>(row + kRowS * stride, stride, s);
+      load_rows<kDofs>(row + kRowZ * stride, stride, z);
+      if (own.owner != 0) {
         double p[kDofs], x[kDofs];
-        load_rows<kDofs>(rows + kRowP * stride + f, stride, p);
-        load_rows<kDofs>(rows + kRowX * stride + f, stride, x);
+        load_rows<kDofs>(row + kRowP * stride, stride, p);
+        load_rows<kDofs>(row + kRowX * stride, stride, x);
 #pragma unroll
         for (int i = 0; i < kDofs; ++i) {
           p[i] = z[i] + beta * p[i];
           x[i] += alpha * p[i];
         }
-        store_rows<kDofs>(rows + kRowP * stride + f, stride, p);
-        store_rows<kDofs>(rows + kRowX * stride + f, stride, x);
+        store_rows<kDofs>(row + kRowP * stride, stride, p);
+        store_rows<kDofs>(row + kRowX * stride, stride, x);
       }
 #pragma unroll
       for (int i = 0; i < kDofs; ++i) {
@@ -303,23 +344,21 @@ __global__ __launch_bounds__(kResidentThreads, 1) void resident_kernel(ResidentA
         r[i] -= alpha * s[i];
         z[i] = 0;
       }
-      add_packed(inverse + f, static_cast<std::size_t>(stride), r, z);
-      store_rows<kDofs>(rows + kRowR * stride + f, stride, r);
-      store_rows<kDofs>(rows + kRowS * stride + f, stride, s);
-      store_rows<kDofs>(rows + kRowZ * stride + f, stride, z);
-      load_rows<kPose>(rows + kRowPose * stride + f, stride, pose);
-      write_direction(z, pose, head, records + kRecordStride * f);
-      if (frame.owner != 0) gamma_part += dot6(r, z);
+      add_packed(inverse + tid, static_cast<std::size_t>(stride), r, z);
+      store_rows<kDofs>(row + kRowR * stride, stride, r);
+      store_rows<kDofs>(row + kRowS * stride, stride, s);
+      store_rows<kDofs>(row + kRowZ * stride, stride, z);
+      load_rows<kPose>(row + kRowPose * stride, stride, pose);
+      write_direction(z, pose, head, records + kRecordStride * tid);
+      if (own.owner != 0) gamma_part = dot6(r, z);
     }
     if (state.done != 0) break;
     __syncthreads();
   }
-  for (int f = tid; f < frames; f += threads) {
-    const TileFrame frame = a.tiles.tile_frames[first + f];
+  if (own.owner != 0) {
     double x[kDofs];
-    load_rows<kDofs>(rows + kRowX * stride + f, stride, x);
-    if (frame.owner != 0)
-      store_words<kDofs>(a.solution + kDofs * static_cast<std::size_t>(a.tiles.frame_node[frame.frame]), x);
+    load_rows<kDofs>(row + kRowX * stride, stride, x);
+    store_words<kDofs>(a.solution + kDofs * static_cast<std::size_t>(a.tiles.frame_node[own.frame]), x);
   }
   if (blockIdx.x == 0 && tid == 0) *a.out = state;
 }

@@ -18,14 +18,14 @@ DeviceLimits DeviceLimits::present() {
 
 namespace {
 
-/// Tiles of small problems have this many points at least; where four threads take a point, at most kWidePoints.
+/// Tiles of small problems have this many points at least.
 constexpr int kLeastResidentPoints = 32;
 
 int whole(int n, int of) { return (n + of - 1) / of * of; }
 
 /// Tiles by which shared memory holds two blocks of 256 threads, or more smaller ones (measured).
 int usual_tile_size(int influences, TileConstants constants, bool drilling) {
-  if (influences <= 4) return 256;
+  if (influences <= 4) return drilling ? 128 : 256;
   if (influences <= 8) return constants == TileConstants::float32 && !drilling ? 256 : 128;
   return influences <= 16 ? 128 : 64;
 }
@@ -41,8 +41,7 @@ std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolv
     for (int size = std::max(kLeastResidentPoints, whole(share, 16)); size <= kMostTileThreads; size += 16) {
       auto layout = make_tiles(points, {size, kMostTileFrames}, pool);
       if (!layout) break;
-      const ResidentPlan plan =
-          resident_plan<Constant>(*layout, points.drilling ? kStressWords<true> : kStressWords<false>);
+      const ResidentPlan plan = resident_plan<Constant>(*layout);
       if (plan.bytes > limits.shared_bytes) break;
       if (layout->tile_count > limits.multiprocessors) continue;
       return std::make_unique<Solver<Constant>>(std::move(*layout), plan, limits);
@@ -54,8 +53,7 @@ std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolv
   for (int size = wanted; size >= 64; size /= 2) {
     auto layout = make_tiles(points, {size, kMostTileFrames}, pool);
     if (!layout) continue;
-    const int words = points.drilling ? kPointWords<true> : kPointWords<false>;
-    if (shared_plan<Constant>(*layout, words).bytes > limits.shared_bytes) continue;
+    if (shared_plan<Constant>(*layout).bytes > limits.shared_bytes) continue;
     return std::make_unique<Solver<Constant>>(std::move(*layout), std::nullopt, limits);
   }
   return nullptr;

@@ -2,8 +2,8 @@
 
 namespace fascia::tile {
 
-template SharedPlan shared_plan<float>(const TileLayout&, int);
-template ResidentPlan resident_plan<float>(const TileLayout&, int);
+template SharedPlan shared_plan<float>(const TileLayout&);
+template ResidentPlan resident_plan<float>(const TileLayout&);
 template class Solver<float>;
 
 }  // namespace fascia::tile

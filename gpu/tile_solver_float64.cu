@@ -2,8 +2,8 @@
 
 namespace fascia::tile {
 
-template SharedPlan shared_plan<double>(const TileLayout&, int);
-template ResidentPlan resident_plan<double>(const TileLayout&, int);
+template SharedPlan shared_plan<double>(const TileLayout&);
+template ResidentPlan resident_plan<double>(const TileLayout&);
 template class Solver<double>;
 
 }  // namespace fascia::tile

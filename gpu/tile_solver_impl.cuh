@@ -32,10 +32,10 @@ class Carver {
 };
 
 template <class Constant>
-SharedPlan shared_plan(const TileLayout& layout, int point_words);
+SharedPlan shared_plan(const TileLayout& layout);
 
 template <class Constant>
-ResidentPlan resident_plan(const TileLayout& layout, int stress_words);
+ResidentPlan resident_plan(const TileLayout& layout);
 
 /// A TileSolver whose constants are of one type.
 template <class Constant>

@@ -9,13 +9,13 @@
 namespace fascia::tile {
 
 template <class Constant>
-SharedPlan shared_plan(const TileLayout& layout, int point_words) {
+SharedPlan shared_plan(const TileLayout& layout) {
   const std::size_t P = at(layout.tile_size), K = at(layout.influences), F = at(layout.most_frames);
   Carver carver;
   SharedPlan plan;
   plan.weights = carver.take(4 * K * P * sizeof(Constant));
   plan.places = carver.take(4 * P * sizeof(Constant));
-  plan.point = carver.take(at(point_words) * P * sizeof(double));
+  plan.point = carver.take(at(layout.drilling ? kPointWords<true> : kPointWords<false>) * P * sizeof(double));
   plan.records = carver.take(F * kRecordStride * sizeof(double));
   plan.directions = carver.take(F * kDofs * sizeof(double));
   plan.list = carver.take(K * P * sizeof(std::uint16_t));
@@ -27,7 +27,7 @@ SharedPlan shared_plan(const TileLayout& layout, int point_words) {
 }
 
 template <class Constant>
-ResidentPlan resident_plan(const TileLayout& layout, int stress_words) {
+ResidentPlan resident_plan(const TileLayout& layout) {
   const std::size_t P = at(layout.tile_size), K = at(layout.influences);
   Carver carver;
   ResidentPlan plan;
@@ -35,14 +35,15 @@ ResidentPlan resident_plan(const TileLayout& layout, int stress_words) {
   const std::size_t F = at(plan.frame_stride);
   plan.weights = carver.take(4 * K * P * sizeof(Constant));
   plan.places = carver.take(4 * P * sizeof(Constant));
-  plan.stress = carver.take(at(stress_words) * P * sizeof(double));
+  plan.stress = carver.take(at(layout.drilling ? kStressWords<true> : kStressWords<false>) * P * sizeof(double));
+  plan.point = carver.take(at(layout.drilling ? kPointWords<true> : kPointWords<false>) * P * sizeof(double));
   plan.records = carver.take(F * kRecordStride * sizeof(double));
   plan.frames = carver.take(F * kFrameRows * sizeof(double));
   plan.inverse = carver.take(F * kPacked * sizeof(float));
-  plan.blocks = carver.take(F * kPacked * sizeof(double));
   plan.list = carver.take(K * P * sizeof(std::uint16_t));
   plan.list_begin = carver.take(at(layout.list_stride()) * sizeof(std::uint16_t));
   plan.local = carver.take(K * P);
+  plan.slots = carver.take(2 * F * sizeof(int));
   plan.scratch = carver.take(33 * sizeof(double));
   plan.bytes = carver.bytes();
   return plan;
@@ -52,7 +53,7 @@ template <class Constant>
 Solver<Constant>::Solver(TileLayout layout, std::optional<ResidentPlan> resident, const DeviceLimits& limits)
     : layout_(std::move(layout)), resident_(resident) {
   if (layout_.materials.empty()) layout_.materials.emplace_back();
-  plan_ = shared_plan<Constant>(layout_, words());
+  plan_ = shared_plan<Constant>(layout_);
   upload();
   choose_kernels(limits);
   const std::size_t n = at(layout_.frame_count) * kDofs, slots = at(layout_.slot_count());
@@ -62,7 +63,7 @@ Solver<Constant>::Solver(TileLayout layout, std::optional<ResidentPlan> resident
   inverse_.resize(at(layout_.frame_count) * kPacked);
   for (Buffer<double>* v : {&x_, &r_, &z_, &p_, &q_}) v->resize(n);
   partials_.resize((resident_ ? 2 : 1) * slots * kDofs);
-  if (resident_) dots_.resize(4 * at(layout_.tile_count));
+  if (resident_) dots_.resize(4 * kReplicas * at(layout_.tile_count));
   rz_parts_.resize(at(update_blocks_));
   curvature_parts_.resize(at(product_blocks_));
   energy_parts_.resize(3 * at(state_blocks_));
@@ -131,11 +132,13 @@ void Solver<Constant>::choose_kernels(const DeviceLimits& limits) {
   state_ = drilling ? state_kernel<true, Constant> : state_kernel<false, Constant>;
   state_blocks_ = blocks_of(state_);
   jacobi_ = drilling ? jacobi_kernel<true, Constant> : jacobi_kernel<false, Constant>;
-  constexpr int update_blocks_each = 8;
-  update_blocks_ = std::min(frame_blocks(), update_blocks_each * limits.multiprocessors);
+  int updates = 0;
+  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&updates, update_kernel, kUpdateThreads, 0),
+        "asking for residency");
+  update_blocks_ = std::min(frame_blocks(), std::max(1, updates) * limits.multiprocessors);
   if (!resident_) return;
-  const ResidentChoice<Constant> chosen =
-      drilling ? choose_resident<true, Constant>(K, P) : choose_resident<false, Constant>(K, P);
+  const ResidentChoice<Constant> chosen = drilling ? choose_resident<true, Constant>(K, P, layout_.most_frames)
+                                                   : choose_resident<false, Constant>(K, P, layout_.most_frames);
   resident_kernel_ = chosen.kernel;
   resident_threads_ = chosen.threads;
   check(cudaFuncSetAttribute(resident_kernel_, cudaFuncAttributeMaxDynamicSharedMemorySize, resident_->bytes),

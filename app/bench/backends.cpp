@@ -1,4 +1,5 @@
 #include "app/bench/benchmark.hpp"
+#include "app/run_scene.hpp"
 #include "app/solver_settings.hpp"
 #include "core/solver/clock.hpp"
 #include "core/solver/drivers.hpp"
@@ -87,6 +88,19 @@ std::vector<Backend> available_backends(int threads) {
   if (all > 1) backends.push_back(cpu(all));
   std::string reason;
   if (!gpu::usable_devices(reason).empty()) backends.push_back({"cuda", 0, run_on_gpu});
+  return backends;
+}
+
+std::vector<Backend> chosen_backends(const BenchOptions& options) {
+  if (options.backend == "cuda") {
+    try {
+      gpu::require_device();
+    } catch (const gpu::NoDevice& e) {
+      throw BackendError(e.what());
+    }
+  }
+  std::vector<Backend> backends = available_backends(options.threads);
+  std::erase_if(backends, [&](const Backend& b) { return options.backend && b.name != *options.backend; });
   return backends;
 }
 

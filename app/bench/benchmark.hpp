@@ -14,7 +14,7 @@ namespace fascia::app {
 /// A scene that is timed.
 struct BenchmarkCase {
   std::string name;     ///< of its row and of its scene file
-  std::string body;     ///< what it is, in a word
+  std::string body;     ///< what it is, in a word or two without a comma
   std::string setting;  ///< "paper": as in the publication; "default": the program's own choice
   int size = 0;         ///< integration points or cells that are asked for
   std::string scene;    ///< TOML
@@ -95,12 +95,16 @@ struct BenchOptions {
   std::optional<std::string> name;  ///< none: the list of benchmarks is printed
   std::vector<double> sizes;        ///< empty: all up to the limit
   std::optional<double> max_points;
-  std::string settings = "both";  ///< "paper", "default", "both"
-  int repeat = 0;                 ///< steps that are timed; 0: StepPlan's
-  int threads = 0;                ///< 0: all
+  std::string settings = "both";       ///< "paper", "default", "both"
+  int repeat = 0;                      ///< steps that are timed; 0: StepPlan's
+  int threads = 0;                     ///< 0: all
+  std::optional<std::string> backend;  ///< none: all that there are
   std::optional<std::filesystem::path> output;
   bool json = false, quiet = false;
 };
+
+/// Those that the options choose. @throws BackendError  where there are none
+std::vector<Backend> chosen_backends(const BenchOptions& options);
 
 /// Cases that the options choose; what is above the limit goes to `skipped`.
 /// @throws InputError  a size that the benchmark does not have

@@ -73,8 +73,8 @@ int run_bench(const BenchOptions& options) {
   const Benchmark& benchmark = find(benchmarks, *options.name);
   if (options.output) io::make_directories(*options.output);
   const Teller say(options.quiet || options.json);
-  const BenchmarkResult result = time_benchmark(benchmark, options, available_backends(options.threads),
-                                                [&](const std::string& what) { say(what); });
+  const BenchmarkResult result =
+      time_benchmark(benchmark, options, chosen_backends(options), [&](const std::string& what) { say(what); });
   say.finish();
   const Machine machine = this_machine();
   if (options.output) write_files(options, benchmark, result, machine);

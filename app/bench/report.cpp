@@ -143,7 +143,7 @@ std::string result_csv(const BenchmarkResult& result) {
       "case,body,setting,points,frames,neighbours,dofs,backend,threads,steps,step_ms,step_p99_ms,step_max_ms,cg_ms,"
       "cg_iterations,residual,paper_cpu_ms,paper_gpu_ms\n";
   for (const Measurement& m : result.rows)
-    text += fmt::format("{},\"{}\",{},{},{},{:.4g},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{},{}\n", m.name,
+    text += fmt::format("{},{},{},{},{},{:.4g},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{},{}\n", m.name,
                         m.body, m.setting, m.points, m.frames, m.neighbours, m.dofs, m.backend, m.threads, m.steps,
                         m.step_ms, m.step_p99_ms, m.step_max_ms, m.cg_ms, m.cg_iterations, m.residual,
                         field(m.published_cpu), field(m.published_gpu));

@@ -7,12 +7,10 @@
 namespace fascia::app {
 namespace {
 
-/// A beam of soft tissue that sags and swings under its weight, clamped at one end; one Newton iteration of 60 plain CG
-/// iterations a step. Placeholders: title, frames, points, weights, preconditioner.
+/// A free beam of soft tissue, pulled at both ends by a hundredth of its stiffness, so that it never comes near to an
+/// instability; one Newton iteration of 60 CG iterations a step. Placeholders: title, frames, points, weights,
+/// preconditioner.
 constexpr const char* kBeam = R"(title = "{}"
-
-[world]
-gravity = [0, 0, -9.81]
 
 [bodies.beam]
 model = "meshless"
@@ -22,10 +20,15 @@ material = {{ young = "40 kPa", poisson = 0.3 }}
 frames = {{ {} }}
 {}weights = {{ {} }}
 
-[[constraints]]
+[[loads]]
 body = "beam"
 where = {{ box = {{ min = [-1, -1, -1], max = [0.001, 1, 1] }} }}
-fix = "all"
+traction = ["-400 Pa", 0, 0]
+
+[[loads]]
+body = "beam"
+where = {{ box = {{ min = [0.399, -1, -1], max = [1, 1, 1] }} }}
+traction = ["400 Pa", 0, 0]
 
 [solver]
 kind = "implicit-euler"
@@ -49,9 +52,11 @@ constexpr std::array kFrames{Samples{72, 55.234, 1},  Samples{144, 41.443, 1},  
                              Samples{792, 20.054, 3}, Samples{1214, 16.971, 1}, Samples{2540, 12.715, 3},
                              Samples{3242, 11.62, 1}, Samples{3998, 10.777, 1}, Samples{5350, 9.623, 1},
                              Samples{6922, 8.765, 1}};
-constexpr std::array kPoints{Samples{360, 22.374, 3},  Samples{400, 21.544, 2},  Samples{500, 19.902, 2},
-                             Samples{750, 17.461, 2},  Samples{800, 17.1, 2},    Samples{864, 16.66, 2},
-                             Samples{1470, 13.961, 2}, Samples{2340, 11.967, 2}, Samples{2600, 11.541, 2}};
+constexpr std::array kPoints{Samples{360, 22.374, 3},      Samples{400, 21.544, 2},      Samples{500, 19.902, 2},
+                             Samples{750, 17.461, 2},      Samples{800, 17.1, 2},        Samples{864, 16.66, 2},
+                             Samples{1470, 13.961, 2},     Samples{2340, 11.967, 2},     Samples{2600, 11.541, 2},
+                             Samples{6070, 8.70155, 3},    Samples{12700, 6.8009793, 2}, Samples{16210, 6.2667417, 2},
+                             Samples{19990, 5.8398577, 3}, Samples{26750, 5.2970931, 3}, Samples{34610, 4.8576133, 3}};
 
 /// The sampling of so many frames or points, as TOML.
 template <std::size_t N>
@@ -78,7 +83,7 @@ BenchmarkCase scattered(const std::string& name, int points, int frames, int nei
 /// Grid frames with linear weights: four neighbours too, at sizes that sampling would take long for.
 BenchmarkCase gridded(const std::string& name, const std::array<int, 3>& cells, const std::string& setting) {
   const int points = 24 * cells[0] * cells[1] * cells[2];
-  BenchmarkCase c{fmt::format("{}_{}", name, setting), "beam, grid", setting, points, "", {}, {}};
+  BenchmarkCase c{fmt::format("{}_{}", name, setting), "grid beam", setting, points, "", {}, {}};
   c.scene = fmt::format(kBeam, fmt::format("{} points, 4 neighbours, grid", points),
                         fmt::format("grid = [{}, {}, {}]", cells[0] + 1, cells[1] + 1, cells[2] + 1), "",
                         setting == "paper" ? "kind = \"linear\", blend = \"full\", drilling = 0" : "kind = \"linear\"",
