@@ -78,7 +78,7 @@ void ExplicitStepper::start_velocities() {
     const HalfStepVelocity now = velocity_of(node, given);
     velocity_[at(i)] = now;
     double load[kMostDofs], force[kMostDofs];
-    node_force(i, load, force);
+    node_force(node, i, load, force);
     velocity_[at(i)] = kicked_back(node, now, force, dt_);
   }
 }
@@ -109,7 +109,7 @@ void ExplicitStepper::transfer_to_hosts() {
 }
 
 /// What loads do on a node, and all that acts on it.
-void ExplicitStepper::node_force(int node, double* load, double* force) const {
+void ExplicitStepper::node_force(const ExplicitNode& at_node, int node, double* load, double* force) const {
   const int n = model_.points.dofs.size(node);
   const auto first = at(model_.points.dofs.begin(node));
   std::fill_n(load, n, 0.0);
@@ -122,7 +122,7 @@ void ExplicitStepper::node_force(int node, double* load, double* force) const {
     for (int k = 0; k < n; ++k) load[k] += follower_[first + at(k)];
   for (int k = 0; k < n; ++k) force[k] = load[k] - gradient_[first + at(k)];
   if (!nodes_.uneven_damping.empty() && model_.kind(node) != FrameKind::vertex)
-    add_uneven_damping(node_at(node), nodes_.uneven_damping[at(node)], velocity_[at(node)], force);
+    add_uneven_damping(at_node, nodes_.uneven_damping[at(node)], velocity_[at(node)], force);
 }
 
 ExplicitNode ExplicitStepper::node_at(int node) const {
@@ -165,8 +165,8 @@ void ExplicitStepper::advance(std::span<const double> factors) {
     for (int i = begin; i < end; ++i) {
       if (nodes_.skips(i) || step_free_vertex(i, sums)) continue;
       double load[kMostDofs], force[kMostDofs];
-      node_force(i, load, force);
       const ExplicitNode node = node_at(i);
+      node_force(node, i, load, force);
       velocity_[at(i)] = kicked(node, velocity_[at(i)], force, dt_);
       double* turned = node.held == nullptr ? nullptr : state_.turned[at(nodes_.constraint[at(i)])].data();
       Mat3d D = node.D;
@@ -214,8 +214,8 @@ void ExplicitStepper::report_velocities(std::span<const double> factors) {
   for (int i = 0; i < model_.node_count(); ++i) {
     if (nodes_.skips(i)) continue;
     double load[kMostDofs], force[kMostDofs];
-    node_force(i, load, force);
     const ExplicitNode node = node_at(i);
+    node_force(node, i, load, force);
     const HalfStepVelocity &old = velocity_[at(i)], next = kicked(node, old, force, dt_);
     const PoseMotion v = pose_velocity(node, (old + next) * 0.5);
     if (node.held != nullptr)

@@ -41,7 +41,7 @@ class ExplicitStepper {
   void update_forces();
   void transfer_to_hosts();
   void start_velocities();
-  void node_force(int node, double* load, double* force) const;
+  void node_force(const ExplicitNode& at_node, int node, double* load, double* force) const;
   bool step_free_vertex(int node, ExplicitSums& sums);
   ExplicitNode node_at(int node) const;
   double tether_work(std::span<const double> factors);
