@@ -6,6 +6,7 @@
 #include "gpu/run.hpp"
 
 #include <cmath>
+#include <utility>
 
 /// The body of explicit runs, for the files that instantiate it.
 namespace fascia::gpu {
@@ -17,7 +18,10 @@ class ReachedExplicitStep : public DeviceStep {
   ReachedExplicitStep(ExplicitSystem<Space>& system, State& state) : system_(system), state_(state) {}
   InternalEnergy energy() const override { return system_.energy(); }
   const State& state() override {
-    if (!fetched_) system_.pose().download(state_);
+    if (fetched_) return state_;
+    State fetched = state_;
+    system_.pose().download(fetched);
+    state_ = std::move(fetched);
     fetched_ = true;
     return state_;
   }

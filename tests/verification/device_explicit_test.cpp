@@ -197,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, DeviceWatch,
 INSTANTIATE_TEST_SUITE_P(Scenes, ExplicitEnergies,
                          ::testing::Values("breathing_liver", "scattered_stretch", "rigid_turn", "filled_ball",
                                            "uterus_bladder", "shell_spin", "explicit_cantilever", "affine_cantilever"),
-                         [](const auto& param) { return param.param; });
+                         [](const auto& param) { return "host_" + param.param; });
 
 }  // namespace
 }  // namespace fascia::test
