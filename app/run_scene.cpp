@@ -133,12 +133,13 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
   // Whether the GPU did it.
   const auto on_gpu = [&](const gpu::DeviceObserver& look, const std::function<bool(const StepInfo&)>& observed = {}) {
     if (out.backend != Backend::cuda) return false;
-    std::optional<RunReport> run = run_on_gpu(s, state, factors, settings, look, observed);
-    if (run)
-      out.run = *std::move(run);
-    else
+    const std::optional<RunReport> run = run_on_gpu(s, state, factors, settings, look, observed);
+    if (!run) {
       out.backend = Backend::cpu;
-    return run.has_value();
+      return false;
+    }
+    out.run = *run;
+    return true;
   };
   const Clock::time_point start = Clock::now();
   if (path) {
