@@ -102,9 +102,10 @@ RunReport run_on_gpu(const Simulation& s, State& state, const FactorFunction& fa
                              {scheme_of(solver.kind), solver.time_step, solver.steps}, watch);
   } catch (const gpu::DeviceLost& e) {
     seen.status = RunStatus::not_converged;
-    seen.message = fmt::format("after step {}: {}; the results end with the last one that was saved; try again, or "
-                               "--backend cpu",
-                               seen.steps, e.what());
+    seen.message = fmt::format(
+        "after step {}: {}; the results end with the last one that was saved; try again, or "
+        "--backend cpu",
+        seen.steps, e.what());
     return seen;
   } catch (const std::runtime_error& e) {
     if (dynamic_cast<const gpu::DeviceMemoryError*>(&e) == nullptr && dynamic_cast<const gpu::NoDevice*>(&e) == nullptr)
@@ -290,14 +291,18 @@ int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   Simulation s = load(options);
   const Backend backend = choose_backend(s);
+  if (const std::string lost = lost_precision(s, backend); !lost.empty()) {
+    fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), lost);
+    s.warnings.push_back(lost);
+  }
   io::ResultDirectory directory(s.scene.output.directory);
   ThreadPool pool(s.scene.solver.threads);
   const std::string name = s.scene.path.stem().string();
   ResultFiles files(s, directory.path(), name);
   const double setup = seconds_since(start);
   std::signal(SIGINT, on_interrupt);
-  Outcome out =
-      s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files) : simulate(s, backend, pool, files, options);
+  Outcome out = s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files)
+                                                         : simulate(s, backend, pool, files, options);
   out.times.setup += setup;
   files.finish();
   if (s.scene.output.picture) make_picture(s, directory.path(), name);
