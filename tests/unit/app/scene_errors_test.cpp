@@ -110,7 +110,7 @@ TEST(SceneErrors, PrecisionOfTheGpuAlone) {
   EXPECT_EQ(errors_of_beam("[solver]\nkind = \"modes\"\nprecision = \"mixed\"\n"),
             "a.toml:12:13: solver.precision: \"mixed\" is not used by kind = \"modes\"; must be \"double\"");
   EXPECT_EQ(errors_of_beam("[solver]\nprecision = \"half\"\n"),
-            "a.toml:11:13: solver.precision: \"half\" is unknown; must be \"double\", \"mixed\" or \"single\"");
+            "a.toml:11:13: solver.precision: \"half\" is no known value; must be \"double\", \"mixed\" or \"single\"");
 }
 
 TEST(SceneErrors, ValuesThatExcludeOneAnother) {
