@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, DeviceState,
 const auto kSolutions = ::testing::Values(
     "soft_cantilever", "affine_cantilever", "svk_uniaxial", "sheet_bending", "traction_clamped", "settling_beam",
     "tumbling_box", "midpoint_spin", "free_fall", "rigid_turn", "bone_plate", "riding_surface", "ligament_springs",
-    "soft_cantilever_tetrahedra", "shell_spin", "struck_beam", "roll_up", "line_swing", "hanging_column");
+    "soft_cantilever_tetrahedra", "shell_spin", "struck_beam", "roll_up", "line_swing", "hanging_column", "shell_roof");
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
                          ::testing::Combine(::testing::Values(Where::host, Where::device), kSolutions), name_of);
