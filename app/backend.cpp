@@ -26,7 +26,13 @@ std::string not_on_gpu(const Simulation& s) {
 
 Backend choose_backend(const Simulation& s) {
   const std::string& asked = s.scene.solver.backend;
-  if (asked == "cpu") return Backend::cpu;
+  const bool in_double = s.scene.solver.precision == "double";
+  if (asked == "cpu") {
+    if (in_double) return Backend::cpu;
+    throw BackendError(
+        fmt::format("{}: solver.precision = \"{}\" needs the GPU; use precision = \"double\", or --backend auto",
+                    s.scene.path.string(), s.scene.solver.precision));
+  }
   const std::string missing = not_on_gpu(s);
   if (asked == "cuda") {
     try {
@@ -39,9 +45,21 @@ Backend choose_backend(const Simulation& s) {
           fmt::format("{}: the GPU does not compute {}; use --backend cpu, or auto", s.scene.path.string(), missing));
     return Backend::cuda;
   }
-  if (!missing.empty() || s.model.free_dof_count() < kWorthwhile) return Backend::cpu;
+  if (!missing.empty() || (in_double && s.model.free_dof_count() < kWorthwhile)) return Backend::cpu;
   std::string reason;
   return gpu::usable_devices(reason).empty() ? Backend::cpu : Backend::cuda;
+}
+
+std::string precision_of(const Simulation& s, Backend backend) {
+  return backend == Backend::cuda ? s.scene.solver.precision : "double";
+}
+
+std::string lost_precision(const Simulation& s, Backend backend) {
+  const std::string& asked = s.scene.solver.precision;
+  if (precision_of(s, backend) == asked) return "";
+  const std::string missing = not_on_gpu(s);
+  return fmt::format("precision = \"{}\" needs the GPU, {}: computed in double on the processor", asked,
+                     missing.empty() ? "and there is none" : "which does not compute " + missing);
 }
 
 const char* name_of(Backend backend) { return backend == Backend::cuda ? "cuda" : "cpu"; }

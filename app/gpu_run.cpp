@@ -46,7 +46,8 @@ std::optional<RunReport> run_on_gpu(const Simulation& s, State& state, const Fac
   } catch (const gpu::DeviceMemoryError& e) {
     if (seen.steps > 0) return broken_off(seen, e.what());
     if (solver.backend != "auto") throw BackendError(e.what());
-    fmt::print(stderr, "{}: warning: {}; the processor goes on\n", s.scene.path.string(), e.what());
+    fmt::print(stderr, "{}: warning: {}; the processor goes on{}\n", s.scene.path.string(), e.what(),
+               solver.precision == "double" ? "" : ", in double precision");
     return std::nullopt;
   } catch (const gpu::NoDevice& e) {
     throw BackendError(e.what());

@@ -279,6 +279,10 @@ int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   Simulation s = load(options);
   const Backend backend = choose_backend(s);
+  if (const std::string lost = lost_precision(s, backend); !lost.empty()) {
+    fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), lost);
+    s.warnings.push_back(lost);
+  }
   io::ResultDirectory directory(s.scene.output.directory);
   ThreadPool pool(s.scene.solver.threads);
   const std::string name = s.scene.path.stem().string();

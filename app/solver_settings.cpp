@@ -29,6 +29,8 @@ SolverSettings settings_of(const Solver& solver) {
   }
   s.cg.max_iterations = solver.linear_max_iterations;
   s.cg.tolerance = solver.linear_tolerance;
+  if (solver.precision == "mixed") s.precision = Precision::mixed;
+  if (solver.precision == "single") s.precision = Precision::single;
   s.tangent = solver.full_tangent ? Tangent::full : Tangent::material;
   return s;
 }

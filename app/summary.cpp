@@ -50,7 +50,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, const RunRe
   j["status"] = status_name(run.status);
   j["message"] = run.message;
   j["backend"] = name_of(backend);
-  j["precision"] = "double";
+  j["precision"] = precision_of(s, backend);
   j["threads"] = threads;
   j["bodies"] = nlohmann::ordered_json::object();
   for (const SimulatedBody& b : s.bodies) {

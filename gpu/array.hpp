@@ -43,6 +43,16 @@ class Array {
     resize(values.size());
     Space::copy_in(data_, values.data(), size_ * sizeof(T));
   }
+  /// The nearest values.
+  template <class S>
+  void upload_rounded(std::span<const S> values) {
+    if constexpr (std::is_same_v<T, S>) {
+      upload(values);
+    } else {
+      const std::vector<T> nearest(values.begin(), values.end());
+      upload(nearest);
+    }
+  }
   /// @param values  of the same size
   void download(std::span<T> values) const { Space::copy_out(values.data(), data_, size_ * sizeof(T)); }
   std::vector<T> downloaded() const {

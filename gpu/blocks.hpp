@@ -10,11 +10,12 @@
 
 namespace fascia::gpu {
 
-/// What a node gathers from all blocks.
-struct BlocksView {
-  PointsView points;
-  ElementsView elements;
-  ShellsView shells;
+/// What a node gathers from all blocks, of a scalar T.
+template <class T>
+struct BlocksOf {
+  PointsOf<T> points;
+  ElementsOf<T> elements;
+  ShellsOf<T> shells;
   SpringsView springs;
   bool has_points = false, has_elements = false, has_shells = false, has_springs = false;
 
@@ -26,13 +27,18 @@ struct BlocksView {
   }
 };
 
+using BlocksView = BlocksOf<double>;
+
 /// Everything elastic of a model: blocks of one interface, each with its own strains in one array.
 template <class Space>
 class Blocks {
  public:
-  explicit Blocks(const PointSet& set);
+  explicit Blocks(const PointSet& set, Precision precision = Precision::full);
 
-  BlocksView view() const;
+  BlocksView view() const { return view_of<double>(); }
+  /// After a product: with the scalar of products.
+  template <class T>
+  BlocksOf<T> view_of() const;
   Points<Space>& points() { return points_; }
   /// As CpuExecutor has them: points, elements, shells.
   std::size_t strain_size() const { return points_.strain_size() + elements_.strain_size() + shells_.strain_size(); }
@@ -46,7 +52,9 @@ class Blocks {
   void add_spring_blocks(const NodesView& nodes, const PoseView& pose, Tangent tangent, double* node_blocks) {
     if (!springs_.empty()) springs_.add_blocks(nodes, pose, tangent, node_blocks);
   }
-  void product(const DirectionView& direction);
+  /// @tparam T  of the precision
+  template <class T, class V>
+  void product(const DirectionOf<T, V>& direction);
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   void store_strain(const PoseView& pose, double* E);
 

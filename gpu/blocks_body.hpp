@@ -6,8 +6,12 @@
 namespace fascia::gpu {
 
 template <class Space>
-Blocks<Space>::Blocks(const PointSet& set)
-    : points_(set), elements_(set), shells_(set), springs_(set), parts_(set.part_count()) {
+Blocks<Space>::Blocks(const PointSet& set, Precision precision)
+    : points_(set, precision),
+      elements_(set, precision),
+      shells_(set, precision),
+      springs_(set),
+      parts_(set.part_count()) {
   sum_kind(points_, set);
   sum_kind(elements_, set);
   sum_kind(shells_, set);
@@ -21,9 +25,16 @@ void Blocks<Space>::sum_kind(const Kind& kind, const PointSet& set) {
 }
 
 template <class Space>
-BlocksView Blocks<Space>::view() const {
-  return {points_.view(),   elements_.view(),   shells_.view(),   springs_.view(),
-          !points_.empty(), !elements_.empty(), !shells_.empty(), !springs_.empty()};
+template <class T>
+BlocksOf<T> Blocks<Space>::view_of() const {
+  return {points_.template view_of<T>(),
+          elements_.template view_of<T>(),
+          shells_.template view_of<T>(),
+          springs_.view(),
+          !points_.empty(),
+          !elements_.empty(),
+          !shells_.empty(),
+          !springs_.empty()};
 }
 
 template <class Space>
@@ -45,7 +56,8 @@ void Blocks<Space>::linearize(const NodesView& nodes, const PoseView& pose, cons
 }
 
 template <class Space>
-void Blocks<Space>::product(const DirectionView& direction) {
+template <class T, class V>
+void Blocks<Space>::product(const DirectionOf<T, V>& direction) {
   if (!points_.empty()) points_.product(direction);
   if (!elements_.empty()) elements_.product(direction);
   if (!shells_.empty()) shells_.product(direction);

@@ -49,14 +49,17 @@ struct Advance {
 
 /// The solution of a solve with what is prescribed, in world axes. Sums: its slope along the gradient; the largest
 /// rotation of a frame and the largest entry.
+template <class V>
 struct TakeDirection {
   ModelView m;
-  const double *x, *prescribed, *gradient;
+  const V* x;
+  const double *prescribed, *gradient;
   double* direction;
   FASCIA_HD void operator()(int i, Sums<1, 2>& sums) const {
     const int first = m.nodes.dof[i], n = m.nodes.size(i);
     double d[kMostDofs];
-    for (int k = 0; k < n; ++k) d[k] = prescribed != nullptr && m.is_fixed(i, k) ? prescribed[first + k] : x[first + k];
+    for (int k = 0; k < n; ++k)
+      d[k] = prescribed != nullptr && m.is_fixed(i, k) ? prescribed[first + k] : static_cast<double>(x[first + k]);
     m.to_global(i, d);
     for (int k = 0; k < n; ++k) {
       direction[first + k] = d[k];

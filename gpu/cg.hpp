@@ -21,13 +21,14 @@ struct CgProgress {
 };
 
 /// Vectors of a solve by degrees of freedom. An operator calls next_direction() for all of them before it uses p, and
-/// gives p · Ap to curvature().
+/// gives p · Ap to curvature(). Numbers of all degrees of freedom are of 64 bits whatever the vectors' scalar V is.
+template <class V>
 struct CgView {
-  double *x = nullptr, *r = nullptr, *z = nullptr, *p = nullptr, *Ap = nullptr;
+  V *x = nullptr, *r = nullptr, *z = nullptr, *p = nullptr, *Ap = nullptr;
   CgProgress* progress = nullptr;
 
   /// p ← z + β p
-  FASCIA_HD void next_direction(int i) const { p[i] = z[i] + progress->beta * p[i]; }
+  FASCIA_HD void next_direction(int i) const { p[i] = static_cast<V>(z[i] + progress->beta * p[i]); }
   FASCIA_HD void curvature(double pAp) const {
     CgProgress& s = *progress;
     if (s.done != 0) return;
@@ -62,25 +63,26 @@ struct CgView {
 namespace kernels {
 
 /// r · z and r · r of a node with z = M⁻¹ r, after x ← x + α p, r ← r − α Ap.
+template <class V>
 struct CgUpdate {
   NodesView nodes;
-  CgView v;
-  const double* inverse;
+  CgView<V> v;
+  const V* inverse;
 
   FASCIA_HD void operator()(int node, Sums<2>& sums) const {
     const CgProgress& s = *v.progress;
     if (s.done != 0 && s.alpha == 0) return;
     const int first = nodes.dof[node], n = nodes.size(node);
-    const double* block = inverse + nodes.block[node];
+    const V* block = inverse + nodes.block[node];
     double r[kMostDofs];
     for (int i = 0; i < n; ++i) {
-      v.x[first + i] += s.alpha * v.p[first + i];
-      r[i] = v.r[first + i] -= s.alpha * v.Ap[first + i];
+      v.x[first + i] = static_cast<V>(v.x[first + i] + s.alpha * v.p[first + i]);
+      r[i] = v.r[first + i] = static_cast<V>(v.r[first + i] - s.alpha * v.Ap[first + i]);
     }
     for (int i = 0; i < n; ++i) {
       double z = 0;
       for (int j = 0; j < n; ++j) z += block[n * i + j] * r[j];
-      v.z[first + i] = z;
+      v.z[first + i] = static_cast<V>(z);
       sums.v[0] += r[i] * z;
       sums.v[1] += r[i] * r[i];
     }
@@ -88,15 +90,17 @@ struct CgUpdate {
 };
 
 /// Puts a new solve in the place of the last.
+template <class V>
 struct CgBegin {
-  CgView v;
+  CgView<V> v;
   CgProgress fresh;
   FASCIA_HD void operator()(int) const { *v.progress = fresh; }
 };
 
 /// Ends the first sum: of the right-hand side.
+template <class V>
 struct CgStart {
-  CgView v;
+  CgView<V> v;
   FASCIA_HD void operator()(const Sums<2>& total) const {
     CgProgress& s = *v.progress;
     s.rz = s.rz_start = total.v[0];
@@ -107,43 +111,44 @@ struct CgStart {
   }
 };
 
+template <class V>
 struct CgResidual {
-  CgView v;
+  CgView<V> v;
   FASCIA_HD void operator()(const Sums<2>& total) const { v.residual(total.v[0], total.v[1]); }
 };
 
 }  // namespace kernels
 
 /// Preconditioned conjugate gradients as in core/solver/cg.hpp, without the host: scalars stay in the space, and the
-/// operator's loops are recorded once.
-template <class Space>
+/// operator's loops are recorded once. @tparam V  scalar of vectors
+template <class Space, class V>
 class ConjugateGradients {
  public:
   explicit ConjugateGradients(std::size_t dofs) : x_(dofs), r_(dofs), z_(dofs), p_(dofs), Ap_(dofs), progress_(1) {}
 
   /// Right-hand side, to be written before solve(); held entries zero.
-  double* rhs() { return r_.data(); }
-  double* solution() { return x_.data(); }
+  V* rhs() { return r_.data(); }
+  V* solution() { return x_.data(); }
 
   /// @param inverse  block-diagonal preconditioner, by node
   /// @param key      of the operator: what its loops were recorded with
   /// @param apply    apply(view): loops that make Ap of p
   template <class Apply>
-  CgReport solve(const NodesView& nodes, const double* inverse, const CgOptions& options, std::uint64_t key,
+  CgReport solve(const NodesView& nodes, const V* inverse, const CgOptions& options, std::uint64_t key,
                  const Apply& apply) {
-    const CgView v{x_.data(), r_.data(), z_.data(), p_.data(), Ap_.data(), progress_.data()};
+    const CgView<V> v{x_.data(), r_.data(), z_.data(), p_.data(), Ap_.data(), progress_.data()};
     x_.set_zero();
     p_.set_zero();
     Ap_.set_zero();
     CgProgress fresh;
     fresh.tolerance = options.tolerance;
     fresh.limit = options.max_iterations;
-    Space::for_each(1, kernels::CgBegin{v, fresh});
-    const kernels::CgUpdate update{nodes, v, inverse};
-    Space::template sum<2>(nodes.count, update, kernels::CgStart{v});
+    Space::for_each(1, kernels::CgBegin<V>{v, fresh});
+    const kernels::CgUpdate<V> update{nodes, v, inverse};
+    Space::template sum<2>(nodes.count, update, kernels::CgStart<V>{v});
     loop_.run(key, options.max_iterations, &progress_.data()->done, [&] {
       apply(v);
-      Space::template sum<2>(nodes.count, update, kernels::CgResidual{v});
+      Space::template sum<2>(nodes.count, update, kernels::CgResidual<V>{v});
     });
     CgProgress end;
     progress_.download(std::span(&end, 1));
@@ -153,7 +158,7 @@ class ConjugateGradients {
   }
 
  private:
-  Array<Space, double> x_, r_, z_, p_, Ap_;
+  Array<Space, V> x_, r_, z_, p_, Ap_;
   Array<Space, CgProgress> progress_;
   typename Space::Loop loop_;
 };

@@ -6,48 +6,52 @@
 namespace fascia::gpu::kernels {
 
 /// V θ/4 of each element, or its derivative along dx.
-template <ElementLaw L>
+template <ElementLaw L, class T, class V>
 struct ThetaPass {
-  ElementBlockView block;
-  const Vec3d *u, *dx;
+  ElementBlockOf<T> block;
+  const Vec3d* u;
+  const Vec3<V>* dx;
 
   FASCIA_HD void operator()(int e) const {
-    const ElementPoints<4> x(block, e, {});
-    const Mat3d H = x.gradient_of_nodes(u);
-    const double theta =
+    const ElementPoints<4, T> x(block, e, {});
+    const Mat3<T> H = x.gradient_of_nodes(u);
+    const T theta =
         dx == nullptr ? volumetric_strain<L>(H) : contract(volumetric_gradient<L>(H), x.gradient_of_nodes(dx));
-    block.theta[e] = theta * x.v(0) * 0.25;
+    block.theta[e] = theta * x.v(0) * T(0.25);
   }
 };
 
 /// λ times the mean about each node.
+template <class T>
 struct NodeAveragePass {
-  ElementBlockView block;
+  ElementBlockOf<T> block;
 
   FASCIA_HD void operator()(int node) const {
     double sum = 0;
     for (int k = block.around_begin[node]; k < block.around_begin[node + 1]; ++k)
       sum += block.theta[block.around[k] / 4];
-    block.node_pressure[node] = sum == 0 ? 0.0 : block.node_lambda[node] * sum / block.node_volume[node];
+    block.node_pressure[node] =
+        sum == 0 ? T(0) : static_cast<T>(block.node_lambda[node] * sum / block.node_volume[node]);
   }
 };
 
 /// V/4 ∂θ/∂x of each corner.
-template <ElementLaw L>
+template <ElementLaw L, class T>
 struct ThetaGradientPass {
-  ElementBlockView block;
+  ElementBlockOf<T> block;
   const Vec3d* u;
 
   FASCIA_HD void operator()(int e) const {
-    const ElementPoints<4> x(block, e, {});
-    x.store_forces(volumetric_gradient<L>(x.gradient_of_nodes(u)) * (x.v(0) * 0.25));
+    const ElementPoints<4, T> x(block, e, {});
+    x.store_forces(volumetric_gradient<L>(x.gradient_of_nodes(u)) * (x.v(0) * T(0.25)));
   }
 };
 
 /// The node's own block of Σ λ_a V_a G_a G_aᵀ, G_a = ∂θ_a/∂x, after ThetaGradientPass: over the nodes a of the elements
 /// about it.
+template <class T>
 struct AverageDiagonalPass {
-  ElementBlockView block;
+  ElementBlockOf<T> block;
   NodesView nodes;
   double* blocks;
 
@@ -81,13 +85,14 @@ struct AverageDiagonalPass {
   }
   FASCIA_HD Vec3d corner_gradient(int k) const {
     const int e = block.around[k] / 4, corner = block.around[k] % 4;
-    return gradient(block.corners + at(e / kLanes) * 12 * kLanes, corner, e % kLanes);
+    return rounded<double>(gradient(block.corners + at(e / kLanes) * 12 * kLanes, corner, e % kLanes));
   }
 };
 
 /// The next column of each node's own block: what unit motions left on the corners.
+template <class T>
 struct DiagonalColumn {
-  ElementsView set;
+  ElementsOf<T> set;
   NodesView nodes;
   double* blocks;
   int axis;

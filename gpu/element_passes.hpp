@@ -7,19 +7,30 @@
 /// is in points_buffer.
 namespace fascia::gpu::kernels {
 
-/// Σ u gᵀ of a point.
-FASCIA_HD inline Mat3d point_gradient(const ElementBlockView& block, int batch, int q, int lane, const Vec3d* values) {
-  const double* g = gradient_of(block, batch, q);
-  Mat3d H;
-  for (int a = 0; a < block.nodes; ++a) H += outer(values[node_of(block, batch, a, lane)], gradient(g, a, lane));
+/// Σ u gᵀ of a point. Of 32 bits, u counts from the first node's, as Σ g = 0.
+template <class T, class V>
+FASCIA_HD Mat3<T> point_gradient(const ElementBlockOf<T>& block, int batch, int q, int lane, const Vec3<V>* values) {
+  const T* g = gradient_of(block, batch, q);
+  [[maybe_unused]] Vec3<V> first;
+  if constexpr (!std::is_same_v<T, double>) first = values[node_of(block, batch, 0, lane)];
+  Mat3<T> H;
+  for (int a = 0; a < block.nodes; ++a) {
+    Vec3<T> u;
+    if constexpr (std::is_same_v<T, double>)
+      u = values[node_of(block, batch, a, lane)];
+    else
+      u = rounded<T>(values[node_of(block, batch, a, lane)] - first);
+    H += outer(u, gradient(g, a, lane));
+  }
   return H;
 }
 
 /// Displacement gradients at the points of elements. @param values  by node of the model
+template <class T, class V>
 struct GradientPass {
-  ElementBlockView block;
-  const Vec3d* values;
-  double* out;  ///< (batches × points × 9 × 8)
+  ElementBlockOf<T> block;
+  const Vec3<V>* values;
+  T* out;  ///< (batches × points × 9 × 8)
 
   FASCIA_HD int count() const { return block.lanes() * block.points; }
   FASCIA_HD void operator()(int i) const {
@@ -29,13 +40,14 @@ struct GradientPass {
 };
 
 /// Forces on corners: Σ v P g over the points.
+template <class T>
 struct CornerPass {
-  ElementBlockView block;
+  ElementBlockOf<T> block;
 
   FASCIA_HD int count() const { return block.lanes() * block.nodes; }
   FASCIA_HD void operator()(int i) const {
     const int lane = i % kLanes, a = i / kLanes % block.nodes, batch = i / kLanes / block.nodes;
-    Vec3d force;
+    Vec3<T> force;
     for (int q = 0; q < block.points; ++q)
       force += matrix(point_rows(block.points_buffer, block, batch, q), 0, lane) *
                gradient(gradient_of(block, batch, q), a, lane);
@@ -52,20 +64,20 @@ FASCIA_HD inline double rounding_of(const Mat3d& H, const Mat3d& P, const Elemen
 }
 
 /// One thread has a whole element, or one of its points where these do not need each other.
-template <ElementLaw L, int N>
+template <ElementLaw L, int N, class T>
 struct ElementPass {
-  ElementBlockView block;
+  ElementBlockOf<T> block;
   HistoryView history;
   bool split = false;  ///< by points
 
   /// @param whole  even where points do not need each other
-  ElementPass(const ElementBlockView& b, const HistoryView& past, bool whole)
+  ElementPass(const ElementBlockOf<T>& b, const HistoryView& past, bool whole)
       : block(b), history(past), split(N == 0 && !whole && L != ElementLaw::corotational && !b.penalised) {}
   FASCIA_HD int count() const { return block.lanes() * (split ? block.points : 1); }
   /// @param u  displacements of the model's nodes, H  of points: used where the element has one point, or several
-  FASCIA_HD ElementPoints<N> points_of(int i, const Vec3d* u, const double* H) const {
+  FASCIA_HD ElementPoints<N, T> points_of(int i, const Vec3d* u, const T* H) const {
     if constexpr (N == 4) {
-      ElementPoints<4> x(block, i, history);
+      ElementPoints<4, T> x(block, i, history);
       x.gradient_at_state = x.gradient_of_nodes(u);
       return x;
     } else {
@@ -78,41 +90,41 @@ struct ElementPass {
 };
 
 /// The rotation of an element's mean. @param kept  that of the linearisation
-template <ElementLaw L, int N>
-FASCIA_HD ElementTurn turn_of(const ElementPoints<N>& x, bool kept) {
-  ElementTurn turn;
+template <ElementLaw L, int N, class T>
+FASCIA_HD ElementTurn<T> turn_of(const ElementPoints<N, T>& x, bool kept) {
+  ElementTurn<T> turn;
   if constexpr (L == ElementLaw::corotational) {
     turn.H = mean_gradient(x);
     if (!kept) {
-      turn.D = nearest_rotation_increment(turn.H);
+      turn.D = rounded<T>(nearest_rotation_increment(rounded<double>(turn.H)));
       return turn;
     }
-    const double* rows = x.block.turn + at(x.batch) * 6 * kLanes;
-    Vec3d d[2], e[2];
+    const T* rows = x.block.turn + at(x.batch) * 6 * kLanes;
+    Vec3<T> d[2], e[2];
     for (int k = 0; k < 2; ++k) {
       d[k] = gradient(rows, k, x.lane);
       e[k][k] = 1;
     }
     // (e₁ + d₁) × (e₂ + d₂) − e₃
-    turn.D = Mat3d::from_columns(d[0], d[1], cross(e[0], d[1]) + cross(d[0], e[1]) + cross(d[0], d[1]));
+    turn.D = Mat3<T>::from_columns(d[0], d[1], cross(e[0], d[1]) + cross(d[0], e[1]) + cross(d[0], d[1]));
   }
   return turn;
 }
 
 template <ElementLaw L, int N>
-struct ForcesPass : ElementPass<L, N> {
-  using ElementPass<L, N>::block;
-  using ElementPass<L, N>::history;
+struct ForcesPass : ElementPass<L, N, double> {
+  using ElementPass<L, N, double>::block;
+  using ElementPass<L, N, double>::history;
   NodesView nodes;
   const Vec3d* u;
   const double* part_motion;
 
   FASCIA_HD void operator()(int i) const {
-    const ElementPoints<N> x = this->points_of(i, u, block.points_buffer);
+    const ElementPoints<N, double> x = this->points_of(i, u, block.points_buffer);
     if (x.batch * kLanes + x.lane >= block.count) return;
     const auto m = element_material(block, x.batch, x.lane, history.inverse_step);
     const double pressure = block.averaged ? mean_of_nodes(block, x.batch, x.lane) : 0.0;
-    const ElementAt<L, N> element(x, m, turn_of<L, N>(x, false), pressure, true);
+    const ElementAt<L, N, double> element(x, m, turn_of<L>(x, false), pressure, true);
     double elastic = 0, viscous = 0, rounding = 0, motion = 0;
     if (part_motion != nullptr) motion = part_motion[nodes.part[node_of(block, x.batch, 0, x.lane)]];
     for (int q = x.begin(); q < x.end(); ++q) {
@@ -137,7 +149,7 @@ struct ForcesPass : ElementPass<L, N> {
 
  private:
   /// The element's share of λ V θ²/2 of its nodes.
-  FASCIA_HD static double averaged_energy(const ElementPoints<N>& x) {
+  FASCIA_HD static double averaged_energy(const ElementPoints<N, double>& x) {
     const ElementBlockView& block = x.block;
     if (!block.averaged) return 0;
     double energy = 0;
@@ -151,17 +163,17 @@ struct ForcesPass : ElementPass<L, N> {
 };
 
 /// Keeps rotations and mean pressures.
-template <ElementLaw L, int N>
-struct LinearizePass : ElementPass<L, N> {
-  using ElementPass<L, N>::block;
+template <ElementLaw L, int N, class T>
+struct LinearizePass : ElementPass<L, N, T> {
+  using ElementPass<L, N, T>::block;
   const Vec3d* u;
 
   FASCIA_HD void operator()(int i) const {
-    const ElementPoints<N> x = this->points_of(i, u, block.H);
+    const ElementPoints<N, T> x = this->points_of(i, u, block.H);
     if (block.averaged) block.pressure[i] = mean_of_nodes(block, x.batch, x.lane);
     if constexpr (L == ElementLaw::corotational) {
-      const Mat3d D = turn_of<L, N>(x, false).D;
-      double* rows = block.turn + at(x.batch) * 6 * kLanes;
+      const Mat3<T> D = turn_of<L>(x, false).D;
+      T* rows = block.turn + at(x.batch) * 6 * kLanes;
       for (int k = 0; k < 2; ++k)
         for (int r = 0; r < 3; ++r) rows[(3 * k + r) * kLanes + x.lane] = D(r, k);
     }
@@ -169,21 +181,22 @@ struct LinearizePass : ElementPass<L, N> {
 };
 
 /// Where a point is computed alone, the gradient of dx needs no pass of its own.
-template <ElementLaw L, int N, bool Plain>
-struct ProductPass : ElementPass<L, N> {
-  using ElementPass<L, N>::block;
-  using ElementPass<L, N>::history;
-  const Vec3d *u, *dx;
+template <ElementLaw L, int N, class T, class V, bool Plain>
+struct ProductPass : ElementPass<L, N, T> {
+  using ElementPass<L, N, T>::block;
+  using ElementPass<L, N, T>::history;
+  const Vec3d* u;
+  const Vec3<V>* dx;
   bool full;
 
   FASCIA_HD void operator()(int i) const {
-    const ElementPoints<N> x = this->points_of(i, u, block.H);
+    const ElementPoints<N, T> x = this->points_of(i, u, block.H);
     const auto m = element_material(block, x.batch, x.lane, history.inverse_step);
-    ElementAt<L, N, Plain> element(x, m, turn_of<L, N>(x, true), block.averaged ? block.pressure[i] : 0.0, full);
+    ElementAt<L, N, T, Plain> element(x, m, turn_of<L>(x, true), block.averaged ? block.pressure[i] : T(0), full);
     if constexpr (N == 4) {
-      const Mat3d dF = x.gradient_of_nodes(dx);
+      const Mat3<T> dF = x.gradient_of_nodes(dx);
       element.begin_direction([&](int) { return dF; });
-      Mat3d dP = element.differential(0, dF);
+      Mat3<T> dP = element.differential(0, dF);
       if constexpr (L != ElementLaw::corotational)
         if (block.averaged) dP += volumetric_gradient<L>(x.H(0)) * mean_of_nodes(block, x.batch, x.lane);
       x.store_forces(dP * x.v(0));
@@ -201,10 +214,10 @@ struct ProductPass : ElementPass<L, N> {
 };
 
 /// Force on a node for a unit motion of its own along `axis`: a thread for each corner of an element.
-template <ElementLaw L, int N>
-struct DiagonalPass : ElementPass<L, N> {
-  using ElementPass<L, N>::block;
-  using ElementPass<L, N>::history;
+template <ElementLaw L, int N, class T>
+struct DiagonalPass : ElementPass<L, N, T> {
+  using ElementPass<L, N, T>::block;
+  using ElementPass<L, N, T>::history;
   const Vec3d* u;
   bool full;
   int axis;
@@ -213,31 +226,32 @@ struct DiagonalPass : ElementPass<L, N> {
   FASCIA_HD void operator()(int i) const {
     const int lane = i % kLanes, corner = i / kLanes % block.nodes, batch = i / kLanes / block.nodes;
     const int e = batch * kLanes + lane;
-    const ElementPoints<N> x = this->points_of(e, u, block.H);
+    const ElementPoints<N, T> x = this->points_of(e, u, block.H);
     const auto m = element_material(block, batch, lane, history.inverse_step);
-    ElementAt<L, N> element(x, m, turn_of<L, N>(x, true), block.averaged ? block.pressure[e] : 0.0, full);
+    ElementAt<L, N, T> element(x, m, turn_of<L>(x, true), block.averaged ? block.pressure[e] : T(0), full);
     const auto gradient_at = [&](int q) { return gradient(gradient_of(block, batch, q), corner, lane); };
     const auto dF = [&](int q) {
-      Vec3d unit;
+      Vec3<T> unit;
       unit[axis] = 1;
       return outer(unit, gradient_at(q));
     };
     element.begin_direction(dF);
-    Vec3d force;
+    Vec3<T> force;
     for (int q = x.begin(); q < x.end(); ++q) force += element.differential(q, dF(q)) * gradient_at(q) * x.v(q);
     store_corner(block, batch, corner, lane, force);
   }
 };
 
 template <ElementLaw L, int N>
-struct StrainPass : ElementPass<L, N> {
-  using ElementPass<L, N>::block;
+struct StrainPass : ElementPass<L, N, double> {
+  using ElementPass<L, N, double>::block;
   const Vec3d* u;
   double* E;
 
   FASCIA_HD void operator()(int i) const {
-    const ElementPoints<N> x = this->points_of(i, u, block.points_buffer);
-    const ElementAt<L, N> element(x, element_material(block, x.batch, x.lane, 0), turn_of<L, N>(x, false), 0, true);
+    const ElementPoints<N, double> x = this->points_of(i, u, block.points_buffer);
+    const ElementAt<L, N, double> element(x, element_material(block, x.batch, x.lane, 0), turn_of<L>(x, false), 0,
+                                          true);
     for (int q = x.begin(); q < x.end(); ++q)
       store_symmetric(E + (at(x.batch) * at(block.points) + at(q)) * 6 * kLanes, 0, x.lane, element.strain(q));
   }

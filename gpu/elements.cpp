@@ -4,5 +4,8 @@
 namespace fascia::gpu {
 
 template class Elements<HostSpace>;
+template void Elements<HostSpace>::product(const DirectionOf<double, double>&);
+template void Elements<HostSpace>::product(const DirectionOf<float, double>&);
+template void Elements<HostSpace>::product(const DirectionOf<float, float>&);
 
 }  // namespace fascia::gpu

@@ -15,26 +15,26 @@ void run(const Pass& pass) {
 
 template <class Space>
 HistoryView Elements<Space>::history_of(const Block& block, const double* E, double inverse_step) {
-  return {E == nullptr || !block.view.damped ? nullptr : E + block.strain_begin, inverse_step};
+  return {E == nullptr || !block.view().damped ? nullptr : E + block.strain_begin, inverse_step};
 }
 
 template <class Space>
-void Elements<Space>::average(Block& block, const Vec3d* u, const Vec3d* dx) {
-  const ElementBlockView& view = block.view;
+template <class T, class V>
+void Elements<Space>::average(const ElementBlockOf<T>& view, const Vec3d* u, const Vec3<V>* dx) {
   kernels::with_kind(view, [&]<ElementLaw L, int N>() {
     if constexpr (N == 4 && L != ElementLaw::corotational)
-      Space::for_each(view.lanes(), kernels::ThetaPass<L>{view, u, dx});
+      Space::for_each(view.lanes(), kernels::ThetaPass<L, T, V>{view, u, dx});
   });
-  Space::for_each(nodes_, kernels::NodeAveragePass{view});
+  Space::for_each(nodes_, kernels::NodeAveragePass<T>{view});
 }
 
 template <class Space>
 void Elements<Space>::forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history,
                              const double* part_motion) {
   for (Block& block : blocks_) {
-    const ElementBlockView& view = block.view;
-    if (view.averaged) average(block, pose.u, nullptr);
-    if (!view.one_point()) run<Space>(kernels::GradientPass{view, pose.u, view.points_buffer});
+    const ElementBlockView& view = block.view();
+    if (view.averaged) average<double, double>(view, pose.u, nullptr);
+    if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
     kernels::with_kind(view, [&]<ElementLaw L, int N>() {
       run<Space>(
           kernels::ForcesPass<L, N>{{view, history_of(block, history.E, history.inverse_step), part_motion != nullptr},
@@ -42,7 +42,7 @@ void Elements<Space>::forces(const NodesView& nodes, const PoseView& pose, const
                                     pose.u,
                                     part_motion});
     });
-    if (!view.one_point()) run<Space>(kernels::CornerPass{view});
+    if (!view.one_point()) run<Space>(kernels::CornerPass<double>{view});
   }
 }
 
@@ -55,61 +55,75 @@ void Elements<Space>::linearize(const PoseView& pose, const HistoryView& history
   Space::copy(u_.data(), pose.u, u_.size() * sizeof(Vec3d));
   E_.resize(history.E == nullptr ? 0 : strain_size_);
   if (history.E != nullptr) Space::copy(E_.data(), history.E, E_.size() * sizeof(double));
+  is_narrow_ ? linearize_as<float>() : linearize_as<double>();
+}
+
+template <class Space>
+template <class T>
+void Elements<Space>::linearize_as() {
   for (Block& block : blocks_) {
-    const ElementBlockView& view = block.view;
-    if (view.averaged) average(block, u_.data(), nullptr);
-    if (!view.one_point()) run<Space>(kernels::GradientPass{view, u_.data(), view.H});
+    const ElementBlockOf<T>& view = block.template view_of<T>();
+    if (view.averaged) average<T, double>(view, u_.data(), nullptr);
+    if (!view.one_point()) run<Space>(kernels::GradientPass<T, double>{view, u_.data(), view.H});
     if (!view.averaged && view.law != ElementLaw::corotational) continue;
     kernels::with_kind(view, [&]<ElementLaw L, int N>() {
-      run<Space>(kernels::LinearizePass<L, N>{{view, {}, true}, u_.data()});
+      run<Space>(kernels::LinearizePass<L, N, T>{{view, {}, true}, u_.data()});
     });
   }
 }
 
 template <class Space>
-void Elements<Space>::product(const DirectionView& direction) {
+template <class T, class V>
+void Elements<Space>::product(const DirectionOf<T, V>& direction) {
   for (Block& block : blocks_) {
-    const ElementBlockView& view = block.view;
-    if (view.averaged) average(block, u_.data(), direction.dx);
+    const ElementBlockOf<T>& view = block.template view_of<T>();
+    if (view.averaged) average<T, V>(view, u_.data(), direction.dx);
     kernels::with_kind(view, [&]<ElementLaw L, int N>() {
-      const kernels::ElementPass<L, N> pass(view, kept_history(block), false);
-      if (N == 0 && !pass.split) run<Space>(kernels::GradientPass{view, direction.dx, view.points_buffer});
+      const kernels::ElementPass<L, N, T> pass(view, kept_history(block), false);
+      if (N == 0 && !pass.split) run<Space>(kernels::GradientPass<T, V>{view, direction.dx, view.points_buffer});
       const bool full = tangent_ == Tangent::full;
       if (view.penalised || view.damped)
-        run<Space>(kernels::ProductPass<L, N, false>{pass, u_.data(), direction.dx, full});
+        run<Space>(kernels::ProductPass<L, N, T, V, false>{pass, u_.data(), direction.dx, full});
       else
-        run<Space>(kernels::ProductPass<L, N, true>{pass, u_.data(), direction.dx, full});
+        run<Space>(kernels::ProductPass<L, N, T, V, true>{pass, u_.data(), direction.dx, full});
     });
-    if (!view.one_point()) run<Space>(kernels::CornerPass{view});
+    if (!view.one_point()) run<Space>(kernels::CornerPass<T>{view});
   }
 }
 
 template <class Space>
 void Elements<Space>::add_diagonal(const NodesView& nodes, const Mat3d*, double* blocks) {
   if (empty()) return;
+  is_narrow_ ? add_diagonal_as<float>(nodes, blocks) : add_diagonal_as<double>(nodes, blocks);
+}
+
+template <class Space>
+template <class T>
+void Elements<Space>::add_diagonal_as(const NodesView& nodes, double* blocks) {
   for (int axis = 0; axis < 3; ++axis) {
     for (Block& block : blocks_)
-      kernels::with_kind(block.view, [&]<ElementLaw L, int N>() {
-        run<Space>(kernels::DiagonalPass<L, N>{
-            {block.view, kept_history(block), true}, u_.data(), tangent_ == Tangent::full, axis});
+      kernels::with_kind(block.view(), [&]<ElementLaw L, int N>() {
+        run<Space>(kernels::DiagonalPass<L, N, T>{
+            {block.template view_of<T>(), kept_history(block), true}, u_.data(), tangent_ == Tangent::full, axis});
       });
-    Space::for_each(nodes_, kernels::DiagonalColumn{view_, nodes, blocks, axis});
+    Space::for_each(nodes_, kernels::DiagonalColumn<T>{view_of<T>(), nodes, blocks, axis});
   }
   for (Block& block : blocks_) {
-    if (!block.view.averaged) continue;
-    kernels::with_kind(block.view, [&]<ElementLaw L, int N>() {
+    const ElementBlockOf<T>& view = block.template view_of<T>();
+    if (!view.averaged) continue;
+    kernels::with_kind(view, [&]<ElementLaw L, int N>() {
       if constexpr (N == 4 && L != ElementLaw::corotational)
-        Space::for_each(block.view.lanes(), kernels::ThetaGradientPass<L>{block.view, u_.data()});
+        Space::for_each(view.lanes(), kernels::ThetaGradientPass<L, T>{view, u_.data()});
     });
-    Space::for_each(nodes_, kernels::AverageDiagonalPass{block.view, nodes, blocks});
+    Space::for_each(nodes_, kernels::AverageDiagonalPass<T>{view, nodes, blocks});
   }
 }
 
 template <class Space>
 void Elements<Space>::store_strain(const PoseView& pose, double* E) {
   for (Block& block : blocks_) {
-    const ElementBlockView& view = block.view;
-    if (!view.one_point()) run<Space>(kernels::GradientPass{view, pose.u, view.points_buffer});
+    const ElementBlockView& view = block.view();
+    if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
     kernels::with_kind(view, [&]<ElementLaw L, int N>() {
       run<Space>(kernels::StrainPass<L, N>{{view, {}, false}, pose.u, E + block.strain_begin});
     });

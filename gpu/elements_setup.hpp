@@ -12,10 +12,11 @@
 namespace fascia::gpu {
 
 template <class Space>
-Elements<Space>::Elements(const PointSet& set) : nodes_(set.node_count()) {
+Elements<Space>::Elements(const PointSet& set, Precision precision)
+    : nodes_(set.node_count()), is_narrow_(precision != Precision::full) {
   std::size_t corners = 0, lanes = 0;
   for (const ElementBlock& block : set.blocks) {
-    blocks_.push_back(make_block(block, nodes_));
+    blocks_.push_back(make_block(block, nodes_, is_narrow_));
     blocks_.back().strain_begin = strain_size_;
     const auto count = at(block.batch_count()) * kElementLanes;
     strain_size_ += count * at(block.points) * 6;
@@ -27,17 +28,28 @@ Elements<Space>::Elements(const PointSet& set) : nodes_(set.node_count()) {
   }
   if (corners > at(std::numeric_limits<int>::max()))
     throw InputError("the model has more elements than the GPU backend can number; use fewer, or --backend cpu");
-  corners_.resize(corners);
   quantities_.resize(lanes * kQuantities);
   quantities_.set_zero();
-  double *corner = corners_.data(), *quantity = quantities_.data();
+  double* quantity = quantities_.data();
   for (Block& block : blocks_) {
-    block.view.corners = corner;
-    block.view.quantities = quantity;
-    corner += at(block.view.lanes()) * at(block.view.nodes) * 3;
-    quantity += at(block.view.lanes()) * kQuantities;
+    block.wide.view.quantities = quantity;
+    quantity += at(block.view().lanes()) * kQuantities;
   }
+  place_corners(corners_, corners, &Block::wide);
+  if (is_narrow_) place_corners(narrow_corners_, corners, &Block::narrow);
   find_corners(set);
+}
+
+/// Gives each block its part of the forces on corners.
+template <class Space>
+template <class T>
+void Elements<Space>::place_corners(Array<Space, T>& corners, std::size_t size, Rows<T> Block::*rows) {
+  corners.resize(size);
+  T* corner = corners.data();
+  for (Block& block : blocks_) {
+    (block.*rows).view.corners = corner;
+    corner += at(block.view().lanes()) * at(block.view().nodes) * 3;
+  }
 }
 
 /// Nodes of the model (batches × nodes × 8).
@@ -64,14 +76,25 @@ inline std::vector<double> squared_gradients(const ElementBlock& block) {
 }
 
 template <class Space>
-auto Elements<Space>::make_block(const ElementBlock& block, int nodes_of_model) -> Block {
+auto Elements<Space>::make_block(const ElementBlock& block, int nodes_of_model, bool narrow) -> Block {
   Block out;
-  const auto lanes = at(block.batch_count()) * kElementLanes;
-  out.gradient.upload(block.gradient);
-  out.volume.upload(block.volume);
-  out.material.upload(block.material);
   out.node.upload(nodes_of_lanes(block));
-  ElementBlockView& view = out.view;
+  if (block.nodes != 4) out.squared_gradient.upload(squared_gradients(block));
+  fill_rows(block, !narrow, out, out.wide);
+  if (narrow) fill_rows(block, true, out, out.narrow);
+  if (block.averaged) prepare_average(block, nodes_of_model, narrow, out);
+  return out;
+}
+
+/// @param products  what a linearisation keeps is there too
+template <class Space>
+template <class T>
+void Elements<Space>::fill_rows(const ElementBlock& block, bool products, const Block& out, Rows<T>& rows) {
+  const auto lanes = at(block.batch_count()) * kElementLanes;
+  rows.gradient.upload_rounded(std::span<const double>(block.gradient));
+  rows.volume.upload_rounded(std::span<const double>(block.volume));
+  rows.material.upload_rounded(std::span<const double>(block.material));
+  ElementBlockOf<T>& view = rows.view;
   view.law = block.law;
   view.averaged = block.averaged;
   view.penalised = block.penalised;
@@ -80,28 +103,25 @@ auto Elements<Space>::make_block(const ElementBlock& block, int nodes_of_model) 
   view.points = block.points;
   view.count = block.count;
   view.batches = block.batch_count();
-  view.gradient = out.gradient.data();
-  view.volume = out.volume.data();
-  view.material = out.material.data();
+  view.gradient = rows.gradient.data();
+  view.volume = rows.volume.data();
+  view.material = rows.material.data();
   view.node = out.node.data();
   if (!view.one_point()) {
-    out.squared_gradient.upload(squared_gradients(block));
-    out.points_buffer.resize(block.volume.size() * 9);
-    out.H.resize(block.volume.size() * 9);
+    rows.points_buffer.resize(block.volume.size() * 9);
+    if (products) rows.H.resize(block.volume.size() * 9);
     view.squared_gradient = out.squared_gradient.data();
-    view.points_buffer = out.points_buffer.data();
-    view.H = out.H.data();
+    view.points_buffer = rows.points_buffer.data();
+    view.H = rows.H.data();
   }
-  if (block.law == ElementLaw::corotational) {
-    out.turn.resize(lanes * 6);
-    view.turn = out.turn.data();
+  if (products && block.law == ElementLaw::corotational) {
+    rows.turn.resize(lanes * 6);
+    view.turn = rows.turn.data();
   }
-  if (block.averaged) prepare_average(block, nodes_of_model, out);
-  return out;
 }
 
 template <class Space>
-void Elements<Space>::prepare_average(const ElementBlock& block, int nodes_of_model, Block& out) {
+void Elements<Space>::prepare_average(const ElementBlock& block, int nodes_of_model, bool narrow, Block& out) {
   std::vector<int> begin, around;
   const auto for_each_corner = [&](const auto& act) {
     int corner = 0;
@@ -123,20 +143,23 @@ void Elements<Space>::prepare_average(const ElementBlock& block, int nodes_of_mo
   }
   out.around_begin.upload(begin);
   out.around.upload(around);
-  out.node_volume.upload(node_volume);
-  out.node_lambda.upload(node_lambda);
   const auto lanes = at(block.batch_count()) * kElementLanes;
-  out.pressure.resize(lanes);
-  out.theta.resize(lanes);
-  out.node_pressure.resize(at(nodes_of_model));
-  ElementBlockView& view = out.view;
-  view.around_begin = out.around_begin.data();
-  view.around = out.around.data();
-  view.node_volume = out.node_volume.data();
-  view.node_lambda = out.node_lambda.data();
-  view.pressure = out.pressure.data();
-  view.theta = out.theta.data();
-  view.node_pressure = out.node_pressure.data();
+  const auto fill = [&](auto& rows) {
+    rows.node_volume.upload_rounded(std::span<const double>(node_volume));
+    rows.node_lambda.upload_rounded(std::span<const double>(node_lambda));
+    rows.pressure.resize(lanes);
+    rows.theta.resize(lanes);
+    rows.node_pressure.resize(at(nodes_of_model));
+    rows.view.around_begin = out.around_begin.data();
+    rows.view.around = out.around.data();
+    rows.view.node_volume = rows.node_volume.data();
+    rows.view.node_lambda = rows.node_lambda.data();
+    rows.view.pressure = rows.pressure.data();
+    rows.view.theta = rows.theta.data();
+    rows.view.node_pressure = rows.node_pressure.data();
+  };
+  fill(out.wide);
+  if (narrow) fill(out.narrow);
 }
 
 /// Places of the forces about each node, of all blocks.
@@ -145,7 +168,7 @@ void Elements<Space>::find_corners(const PointSet& set) {
   std::vector<int> begin, corner;
   const auto for_each_corner = [&](const auto& act) {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const auto first = static_cast<int>(blocks_[b].view.corners - corners_.data());
+      const auto first = static_cast<int>(blocks_[b].view().corners - corners_.data());
       int e = 0;
       set.blocks[b].for_each_element([&](std::span<const int> element) {
         const int batch = e / kElementLanes * set.blocks[b].nodes;
@@ -159,6 +182,7 @@ void Elements<Space>::find_corners(const PointSet& set) {
   node_begin_.upload(begin);
   node_corner_.upload(corner);
   view_ = {node_begin_.data(), node_corner_.data(), corners_.data()};
+  narrow_view_ = {node_begin_.data(), node_corner_.data(), narrow_corners_.data()};
 }
 
 template <class Space>

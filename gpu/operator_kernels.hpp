@@ -2,25 +2,37 @@
 
 #include "gpu/blocks.hpp"
 #include "gpu/cg.hpp"
+#include "gpu/lanes.hpp"
 #include "gpu/model_data.hpp"
 
 /// Loops over nodes of a product with the tangent.
 namespace fascia::gpu::kernels {
 
-/// Vectors of a product in world axes.
+/// Vectors of a product in world axes. @tparam T, V  as of DirectionOf
+template <class T, class V>
 struct ProductView {
   ModelView m;
   const Mat3d* Q = nullptr;
-  const double* node_blocks = nullptr;
-  double *d = nullptr, *y = nullptr;  ///< (degrees of freedom): direction and product
-  Vec3d* dx = nullptr;
-  Mat3d* dA = nullptr;
+  const V* node_blocks = nullptr;
+  V* d = nullptr;       ///< (degrees of freedom): direction
+  double* y = nullptr;  ///< (degrees of freedom): product
+  Vec3<V>* dx = nullptr;
+  Mat3<T>* dA = nullptr;
+
+  DirectionOf<T, V> direction() const { return {d, dx, dA}; }
+  /// Takes a direction of a node.
+  FASCIA_HD void split(int i, const double* own) const {
+    dx[i] = rounded<V>(Vec3d{{own[0], own[1], own[2]}});
+    if (dA != nullptr) dA[i] = rounded<T>(frame_variation(m.nodes.kind[i], own + 3, Q[i]));
+  }
 };
 
 /// The next direction of a solve, turned into world axes.
+/// @tparam C  scalar of the solve's vectors
+template <class T, class V, class C>
 struct NextDirection {
-  ProductView w;
-  CgView v;
+  ProductView<T, V> w;
+  CgView<C> v;
   FASCIA_HD void operator()(int i) const {
     const int first = w.m.nodes.dof[i], n = w.m.nodes.size(i);
     double d[kMostDofs];
@@ -29,41 +41,60 @@ struct NextDirection {
       d[k] = v.p[first + k];
     }
     w.m.to_global(i, d);
-    for (int k = 0; k < n; ++k) w.d[first + k] = d[k];
-    w.dx[i] = {{d[0], d[1], d[2]}};
-    if (w.dA != nullptr) w.dA[i] = frame_variation(w.m.nodes.kind[i], d + 3, w.Q[i]);
+    for (int k = 0; k < n; ++k) w.d[first + k] = static_cast<V>(d[k]);
+    w.split(i, d);
   }
 };
 
 /// (dx, dA) of a direction in world axes.
 struct SplitDirection {
-  ProductView w;
+  ProductView<double, double> w;
+  FASCIA_HD void operator()(int i) const { w.split(i, w.d + w.m.nodes.dof[i]); }
+};
+
+/// A direction with the scalars of products and vectors.
+template <class T, class V>
+struct RoundDirection {
+  ProductView<double, double> from;
+  ProductView<T, V> to;
   FASCIA_HD void operator()(int i) const {
-    const double* d = w.d + w.m.nodes.dof[i];
-    w.dx[i] = {{d[0], d[1], d[2]}};
-    if (w.dA != nullptr) w.dA[i] = frame_variation(w.m.nodes.kind[i], d + 3, w.Q[i]);
+    if (to.dA != nullptr) to.dA[i] = rounded<T>(from.dA[i]);
+    if constexpr (!std::is_same_v<V, double>) {
+      to.dx[i] = rounded<V>(from.dx[i]);
+      for (int k = from.m.nodes.dof[i]; k < from.m.nodes.dof[i + 1]; ++k) to.d[k] = static_cast<V>(from.d[k]);
+    }
   }
 };
 
+/// Values of another scalar.
+template <class V>
+struct Round {
+  const double* from;
+  V* to;
+  FASCIA_HD void operator()(std::size_t i) const { to[i] = static_cast<V>(from[i]); }
+};
+
 /// −gradient − what prescribed motion does, in constraint axes on the free degrees of freedom.
+template <class V>
 struct RightHandSide {
   ModelView m;
   const double *gradient, *moved;  ///< moved: none where nothing is prescribed
-  double* rhs;
+  V* rhs;
   FASCIA_HD void operator()(int i) const {
     const int first = m.nodes.dof[i], n = m.nodes.size(i);
     double g[kMostDofs];
     for (int k = 0; k < n; ++k) g[k] = -gradient[first + k];
     m.to_local(i, g);
     for (int k = 0; k < n; ++k)
-      rhs[first + k] = m.is_fixed(i, k) ? 0.0 : g[k] - (moved == nullptr ? 0.0 : moved[first + k]);
+      rhs[first + k] = static_cast<V>(m.is_fixed(i, k) ? 0.0 : g[k] - (moved == nullptr ? 0.0 : moved[first + k]));
   }
 };
 
 /// y = K d of a node in world axes, from what blocks left.
+template <class T, class V>
 struct GatherProduct {
-  ProductView w;
-  BlocksView blocks;
+  ProductView<T, V> w;
+  BlocksOf<T> blocks;
 
   FASCIA_HD void operator()(int i) const {
     double y[kMostDofs];
@@ -74,12 +105,12 @@ struct GatherProduct {
   FASCIA_HD void product_of(int i, double* y) const {
     const FrameKind kind = w.m.nodes.kind[i];
     const int first = w.m.nodes.dof[i], n = w.m.nodes.size(i);
-    const double* block = w.node_blocks + w.m.nodes.block[i];
+    const V* block = w.node_blocks + w.m.nodes.block[i];
     NodeSums sums;
     blocks.add_sums(i, sums);
     for (int r = 0; r < n; ++r) {
       double sum = r < 3 ? sums.force[r] : 0;
-      for (int c = 0; c < n; ++c) sum += block[n * r + c] * w.d[first + c];
+      for (int c = 0; c < n; ++c) sum += static_cast<double>(block[n * r + c]) * w.d[first + c];
       y[r] = sum;
     }
     add_moment(kind, sums.N, w.Q[i], y + 3);
@@ -89,30 +120,33 @@ struct GatherProduct {
 };
 
 /// y in constraint axes as the solve's Ap, without what is held; Σ p · Ap.
+template <class V>
 struct FinishProduct {
-  ProductView w;
-  CgView v;
+  ModelView m;
+  CgView<V> v;
+  const double* product;
   FASCIA_HD void operator()(int i, Sums<1>& sums) const {
     double y[kMostDofs];
-    const int first = w.m.nodes.dof[i];
-    for (int k = 0; k < w.m.nodes.size(i); ++k) y[k] = w.y[first + k];
+    const int first = m.nodes.dof[i];
+    for (int k = 0; k < m.nodes.size(i); ++k) y[k] = product[first + k];
     finish(i, y, sums);
   }
   FASCIA_HD void finish(int i, double* y, Sums<1>& sums) const {
-    const int first = w.m.nodes.dof[i];
-    w.m.to_local(i, y);
-    for (int k = 0; k < w.m.nodes.size(i); ++k) {
-      const double value = w.m.is_fixed(i, k) ? 0.0 : y[k];
-      v.Ap[first + k] = value;
+    const int first = m.nodes.dof[i];
+    m.to_local(i, y);
+    for (int k = 0; k < m.nodes.size(i); ++k) {
+      const double value = m.is_fixed(i, k) ? 0.0 : y[k];
+      v.Ap[first + k] = static_cast<V>(value);
       sums.v[0] += v.p[first + k] * value;
     }
   }
 };
 
 /// Both in one, where nothing else adds to y.
+template <class T, class V, class C>
 struct GatherAndFinish {
-  GatherProduct gather;
-  FinishProduct end;
+  GatherProduct<T, V> gather;
+  FinishProduct<C> end;
   FASCIA_HD void operator()(int i, Sums<1>& sums) const {
     double y[kMostDofs];
     gather.product_of(i, y);
@@ -130,8 +164,9 @@ struct LinearResidual {
   }
 };
 
+template <class V>
 struct TakeCurvature {
-  CgView v;
+  CgView<V> v;
   FASCIA_HD void operator()(const Sums<1>& total) const { v.curvature(total.v[0]); }
 };
 

@@ -7,28 +7,28 @@
 /// One point of a group at a time, in the layout of core/cpu/group_kernels.hpp.
 namespace fascia::gpu::kernels {
 
-template <PointKind::Matter>
+template <PointKind::Matter, class T>
 struct MaterialOf {
-  using Type = SolidMaterial<double>;
+  using Type = SolidMaterial<T>;
 };
-template <>
-struct MaterialOf<PointKind::Matter::neo_hookean> {
-  using Type = NeoHookeanMaterial<double>;
+template <class T>
+struct MaterialOf<PointKind::Matter::neo_hookean, T> {
+  using Type = NeoHookeanMaterial<T>;
 };
-template <>
-struct MaterialOf<PointKind::Matter::thin> {
-  using Type = ThinMaterial<double>;
+template <class T>
+struct MaterialOf<PointKind::Matter::thin, T> {
+  using Type = ThinMaterial<T>;
 };
 
-template <PointKind::Matter Matter>
-FASCIA_HD auto material(const PointsView& set, int group, int lane, double inverse_step) {
-  const double* base = set.material + static_cast<std::size_t>(group) * 6 * kGroupSize;
-  typename MaterialOf<Matter>::Type m;
+template <PointKind::Matter Matter, class T>
+FASCIA_HD auto material(const PointsOf<T>& set, int group, int lane, double inverse_step) {
+  const T* base = set.material + static_cast<std::size_t>(group) * 6 * kGroupSize;
+  typename MaterialOf<Matter, T>::Type m;
   m.volume = row(base, kVolume, lane);
   m.lambda = row(base, kLambda, lane);
   m.mu = row(base, kMu, lane);
   m.stabilization = row(base, kStabilization, lane);
-  m.viscosity = row(base, kStiffnessDamping, lane) * inverse_step;
+  m.viscosity = row(base, kStiffnessDamping, lane) * static_cast<T>(inverse_step);
   if constexpr (Matter == PointKind::Matter::thin) {
     const GroupRule& rule = set.rule[group];
     const auto index = static_cast<std::size_t>(rule.axes);
@@ -36,30 +36,41 @@ FASCIA_HD auto material(const PointsView& set, int group, int lane, double inver
     m.transverse = rule.rule.transverse;
     m.axes = matrix(set.axes + index * 9 * kGroupSize, 0, lane);
     if (m.law == Law::tether)
-      for (int k = 0; k < 3; ++k) m.target[k] = row(set.targets + index * 3 * kGroupSize, k, lane);
+      for (int k = 0; k < 3; ++k) m.target[k] = static_cast<T>(row(set.targets + index * 3 * kGroupSize, k, lane));
   }
   return m;
 }
 
-FASCIA_HD inline const double* shape_of(const PointsView& set, int slot) {
+template <class T>
+FASCIA_HD const T* shape_of(const PointsOf<T>& set, int slot) {
   return set.shape + static_cast<std::size_t>(slot) * 13 * kGroupSize;
 }
 
 /// H += u gᵀ + D B, Dbar += w D of one slot.
-template <bool Blend>
-FASCIA_HD void add_slot(const double* shape, int lane, const Vec3d& u, const Mat3d& D, PointMotion<double>& x) {
-  const Vec3d g{{row(shape, 1, lane), row(shape, 2, lane), row(shape, 3, lane)}};
+template <bool Blend, class T>
+FASCIA_HD void add_slot(const T* shape, int lane, const Vec3<T>& u, const Mat3<T>& D, PointMotion<T>& x) {
+  const Vec3<T> g{{row(shape, 1, lane), row(shape, 2, lane), row(shape, 3, lane)}};
   x.H += outer(u, g) + D * matrix(shape, 4, lane);
   if constexpr (Blend) x.Dbar += D * row(shape, 0, lane);
 }
 
-/// Motion of a point. @param u, D  of the nodes; D may be missing
-template <bool Blend>
-FASCIA_HD PointMotion<double> motion_of(const PointsView& set, int group, int lane, const Vec3d* u, const Mat3d* D) {
-  PointMotion<double> x;
-  for (int slot = set.slot_begin[group]; slot < set.slot_begin[group + 1]; ++slot) {
+/// Motion of a point. Of 32 bits, displacements count from the first node's where a translation leaves the point at
+/// rest: Σ g = 0 but for a tether. @param u, D  of the nodes; D may be missing
+template <bool Blend, class T, class V>
+FASCIA_HD PointMotion<T> motion_of(const PointsOf<T>& set, int group, int lane, const Vec3<V>* u, const Mat3<T>* D) {
+  PointMotion<T> x;
+  const int begin = set.slot_begin[group], end = set.slot_begin[group + 1];
+  [[maybe_unused]] Vec3<V> origin;
+  if constexpr (!std::is_same_v<T, double>)
+    if (set.rule[group].rule.law != Law::tether) origin = u[set.slot_node[begin]];
+  for (int slot = begin; slot < end; ++slot) {
     const int node = set.slot_node[slot];
-    add_slot<Blend>(shape_of(set, slot), lane, u[node], D == nullptr ? Mat3d{} : D[node], x);
+    Vec3<T> moved;
+    if constexpr (std::is_same_v<T, double>)
+      moved = u[node];
+    else
+      moved = rounded<T>(u[node] - origin);
+    add_slot<Blend>(shape_of(set, slot), lane, moved, D == nullptr ? Mat3<T>{} : D[node], x);
   }
   return x;
 }
@@ -69,23 +80,24 @@ FASCIA_HD inline Mat3d old_strain(const HistoryView& history, int group, int lan
   return symmetric_matrix(history.E + static_cast<std::size_t>(group) * 6 * kGroupSize, 0, lane);
 }
 
-FASCIA_HD inline void store_stress(const PointsView& set, int group, int lane, const Mat3d& P, const Mat3d& Y) {
-  double* out = set.stress + static_cast<std::size_t>(group) * 18 * kGroupSize;
+template <class T>
+FASCIA_HD void store_stress(const PointsOf<T>& set, int group, int lane, const Mat3<T>& P, const Mat3<T>& Y) {
+  T* out = set.stress + static_cast<std::size_t>(group) * 18 * kGroupSize;
   store_matrix(out, 0, lane, P);
   if (set.blends[group] != 0) store_matrix(out, 9, lane, Y);
 }
 
 /// The motion of a point for a unit of one degree of freedom of a frame.
-template <bool Blend>
-FASCIA_HD PointMotion<double> unit_motion(FrameKind kind, int dof, const double* shape, int lane, const Mat3d& Q) {
-  PointMotion<double> d;
+template <bool Blend, class T>
+FASCIA_HD PointMotion<T> unit_motion(FrameKind kind, int dof, const T* shape, int lane, const Mat3<T>& Q) {
+  PointMotion<T> d;
   if (dof < 3) {
     for (int j = 0; j < 3; ++j) d.H(dof, j) = row(shape, 1 + j, lane);
     return d;
   }
-  Mat3d dA;
+  Mat3<T> dA;
   if (kind == FrameKind::rigid) {
-    Vec3d e;
+    Vec3<T> e;
     e[dof - 3] = 1;
     dA = skew(e) * Q;
   } else {
@@ -96,26 +108,26 @@ FASCIA_HD PointMotion<double> unit_motion(FrameKind kind, int dof, const double*
 }
 
 /// Adds what dP and dY are on a frame to a column of its block.
-template <bool Blend>
-FASCIA_HD void add_column(FrameKind kind, const double* shape, int lane, const Mat3d& Q, const Mat3d& dP,
-                          const Mat3d& dY, double* column) {
-  const Vec3d g{{row(shape, 1, lane), row(shape, 2, lane), row(shape, 3, lane)}}, force = dP * g;
+template <bool Blend, class T>
+FASCIA_HD void add_column(FrameKind kind, const T* shape, int lane, const Mat3d& Q, const Mat3<T>& dP,
+                          const Mat3<T>& dY, double* column) {
+  const Vec3<T> g{{row(shape, 1, lane), row(shape, 2, lane), row(shape, 3, lane)}}, force = dP * g;
   for (int i = 0; i < 3; ++i) column[i] += force[i];
-  Mat3d N = times_transpose(dP, matrix(shape, 4, lane));
+  Mat3<T> N = times_transpose(dP, matrix(shape, 4, lane));
   if constexpr (Blend) N += dY * row(shape, 0, lane);
-  add_moment(kind, N, Q, column + 3);
+  add_moment(kind, rounded<double>(N), Q, column + 3);
 }
 
-template <PointKind Kind>
-FASCIA_HD void add_slot_column(const PointsView& set, int slot, FrameKind kind, const Mat3d& Q, int k,
+template <PointKind Kind, class T>
+FASCIA_HD void add_slot_column(const PointsOf<T>& set, int slot, FrameKind kind, const Mat3d& Q, int k,
                                double inverse_step, Tangent tangent, double* column) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const int group = set.slot_group[slot];
-  const double *point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize, *shape = shape_of(set, slot);
+  const T *point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize, *shape = shape_of(set, slot);
   for (int lane = 0; lane < kGroupSize; ++lane) {
     const auto m = material<Kind.matter>(set, group, lane, inverse_step);
-    const PointMotion<double> x{matrix(point, 0, lane), matrix(point, 9, lane)},
-        unit = unit_motion<kBlend>(kind, k, shape, lane, Q);
+    const PointMotion<T> x{matrix(point, 0, lane), matrix(point, 9, lane)},
+        unit = unit_motion<kBlend>(kind, k, shape, lane, rounded<T>(Q));
     const auto d = point_stress_differential<Kind.stabilization>(x, symmetric_matrix(point, 18, lane), m, tangent,
                                                                  unit.H, unit.Dbar);
     add_column<kBlend>(kind, shape, lane, Q, d.dP * m.volume, d.dY * m.volume, column);
@@ -145,8 +157,9 @@ FASCIA_HD void with_kind(const PointRule& rule, const Act& act) {
   }
 }
 
-FASCIA_HD inline void add_slot_column(const PointsView& set, int slot, FrameKind kind, const Mat3d& Q, int k,
-                                      double inverse_step, Tangent tangent, double* column) {
+template <class T>
+FASCIA_HD void add_slot_column(const PointsOf<T>& set, int slot, FrameKind kind, const Mat3d& Q, int k,
+                               double inverse_step, Tangent tangent, double* column) {
   with_kind(set.rule[set.slot_group[slot]].rule,
             [&]<PointKind Kind>() { add_slot_column<Kind>(set, slot, kind, Q, k, inverse_step, tangent, column); });
 }

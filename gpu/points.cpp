@@ -4,5 +4,8 @@
 namespace fascia::gpu {
 
 template class Points<HostSpace>;
+template void Points<HostSpace>::product(const DirectionOf<double, double>&);
+template void Points<HostSpace>::product(const DirectionOf<float, double>&);
+template void Points<HostSpace>::product(const DirectionOf<float, float>&);
 
 }  // namespace fascia::gpu

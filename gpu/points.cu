@@ -4,5 +4,8 @@
 namespace fascia::gpu {
 
 template class Points<CudaSpace>;
+template void Points<CudaSpace>::product(const DirectionOf<double, double>&);
+template void Points<CudaSpace>::product(const DirectionOf<float, double>&);
+template void Points<CudaSpace>::product(const DirectionOf<float, float>&);
 
 }  // namespace fascia::gpu

@@ -10,16 +10,12 @@
 namespace fascia::gpu {
 
 template <class Space>
-Points<Space>::Points(const PointSet& set) {
-  const auto upload = [](auto& array, const auto& values) { array.upload(values); };
-  upload(slot_begin_, std::span<const int>(set.slot_begin));
-  upload(slot_node_, std::span<const int>(set.slot_node));
-  upload(node_slot_begin_, std::span<const int>(set.node_slot_begin));
-  upload(node_slot_, std::span<const int>(set.node_slot));
-  upload(shape_, std::span<const double>(set.shape));
-  upload(material_, std::span<const double>(set.material));
-  upload(axes_, std::span<const double>(set.axes));
-  upload(rule_, std::span<const GroupRule>(set.rule));
+Points<Space>::Points(const PointSet& set, Precision precision) : is_narrow_(precision != Precision::full) {
+  slot_begin_.upload(set.slot_begin);
+  slot_node_.upload(set.slot_node);
+  node_slot_begin_.upload(set.node_slot_begin);
+  node_slot_.upload(set.node_slot);
+  rule_.upload(set.rule);
   std::vector<int> slot_group(at(set.slot_count()));
   std::vector<char> blends(at(set.group_count()));
   std::vector<std::vector<int>> groups;
@@ -42,20 +38,30 @@ Points<Space>::Points(const PointSet& set) {
   for (std::size_t k = 0; k < kinds_.size(); ++k) kinds_[k].groups.upload(groups[k]);
   slot_group_.upload(slot_group);
   blends_.upload(blends);
-  const auto lanes = at(set.group_count()) * kGroupSize;
   targets_.resize(set.axes.size() / 3);
   targets_.set_zero();
-  stress_.resize(lanes * 18);
-  stress_.set_zero();
-  slot_sums_.resize(at(set.slot_count()) * 12);
-  motion_.resize(lanes * 24);
-  quantities_.resize(lanes * kQuantities);
-  view_ = {set.group_count(), set.slot_count(),   slot_begin_.data(),
-           slot_node_.data(), slot_group_.data(), node_slot_begin_.data(),
-           node_slot_.data(), shape_.data(),      material_.data(),
-           axes_.data(),      rule_.data(),       blends_.data(),
-           targets_.data(),   stress_.data(),     slot_sums_.data(),
-           motion_.data(),    quantities_.data()};
+  quantities_.resize(at(set.group_count()) * kGroupSize * kQuantities);
+  upload<double>(set);
+  if (is_narrow_) upload<float>(set);
+}
+
+template <class Space>
+template <class T>
+void Points<Space>::upload(const PointSet& set) {
+  Rows<T>& r = rows<T>();
+  const auto lanes = at(set.group_count()) * kGroupSize;
+  r.shape.upload_rounded(std::span<const double>(set.shape));
+  r.material.upload_rounded(std::span<const double>(set.material));
+  r.axes.upload_rounded(std::span<const double>(set.axes));
+  r.stress.resize(lanes * 18);
+  r.stress.set_zero();
+  r.slot_sums.resize(at(set.slot_count()) * 12);
+  if (is_narrow_ != std::is_same_v<T, double>) r.motion.resize(lanes * 24);
+  r.view = {set.group_count(),  set.slot_count(),        slot_begin_.data(), slot_node_.data(),
+            slot_group_.data(), node_slot_begin_.data(), node_slot_.data(),  r.shape.data(),
+            r.material.data(),  r.axes.data(),           rule_.data(),       blends_.data(),
+            targets_.data(),    r.stress.data(),         r.slot_sums.data(), r.motion.data(),
+            quantities_.data()};
 }
 
 /// Calls act.operator()<Kind>(groups, count) for each kind.
@@ -75,14 +81,15 @@ void Points<Space>::for_kinds(const Act& act) {
 namespace kernels {
 
 /// v P g and v (P Bᵀ + w Y) of a point on a slot of its group.
+template <class T>
 struct SlotTerm {
-  PointsView set;
+  PointsOf<T> set;
   FASCIA_HD void operator()(int slot, int lane, Sums<12>& sums) const {
     const int group = set.slot_group[slot];
-    const double *stress = set.stress + static_cast<std::size_t>(group) * 18 * kGroupSize, *shape = shape_of(set, slot);
-    const Mat3d P = matrix(stress, 0, lane);
-    const Vec3d force = P * Vec3d{{row(shape, 1, lane), row(shape, 2, lane), row(shape, 3, lane)}};
-    Mat3d N = times_transpose(P, matrix(shape, 4, lane));
+    const T *stress = set.stress + static_cast<std::size_t>(group) * 18 * kGroupSize, *shape = shape_of(set, slot);
+    const Mat3<T> P = matrix(stress, 0, lane);
+    const Vec3<T> force = P * Vec3<T>{{row(shape, 1, lane), row(shape, 2, lane), row(shape, 3, lane)}};
+    Mat3<T> N = times_transpose(P, matrix(shape, 4, lane));
     if (set.blends[group] != 0) N += matrix(stress, 9, lane) * row(shape, 0, lane);
     for (int i = 0; i < 3; ++i) {
       sums.v[i] += force[i];
@@ -90,11 +97,12 @@ struct SlotTerm {
     }
   }
 };
+template <class T>
 struct StoreSlot {
-  double* slot_sums;
+  T* slot_sums;
   FASCIA_HD void operator()(int slot, const Sums<12>& sums) const {
-    double* out = slot_sums + static_cast<std::size_t>(slot) * 12;
-    for (int k = 0; k < 12; ++k) out[k] = sums.v[k];
+    T* out = slot_sums + static_cast<std::size_t>(slot) * 12;
+    for (int k = 0; k < 12; ++k) out[k] = static_cast<T>(sums.v[k]);
   }
 };
 
@@ -131,28 +139,29 @@ struct PointForces {
   }
 };
 
-template <PointKind Kind>
+template <PointKind Kind, class T>
 struct PointLinearization {
   PointsView set;
   PoseView pose;
   HistoryView history;
   const int* groups;
+  T* motion;  ///< as PointsOf has it
 
   FASCIA_HD void operator()(int i) const {
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<double> x = motion_of<true>(set, group, lane, pose.u, pose.D);
     const auto m = material<Kind.matter>(set, group, lane, history.inverse_step);
-    double* point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
+    T* point = motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
     store_matrix(point, 0, lane, x.H);
     store_matrix(point, 9, lane, x.Dbar);
     store_symmetric(point, 18, lane, point_stress<Stabilization::none>(x, m, old_strain(history, group, lane)).S);
   }
 };
 
-template <PointKind Kind>
+template <PointKind Kind, class T, class V>
 struct PointProduct {
-  PointsView set;
-  DirectionView direction;
+  PointsOf<T> set;
+  DirectionOf<T, V> direction;
   double inverse_step;
   Tangent tangent;
   const int* groups;
@@ -160,13 +169,33 @@ struct PointProduct {
   FASCIA_HD void operator()(int i) const {
     constexpr bool kBlend = Kind.stabilization != Stabilization::none;
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
-    const PointMotion<double> d = motion_of<kBlend>(set, group, lane, direction.dx, direction.dA);
-    const double* point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
-    const PointMotion<double> x{matrix(point, 0, lane), kBlend ? matrix(point, 9, lane) : Mat3d{}};
+    const PointMotion<T> d = motion_of<kBlend>(set, group, lane, direction.dx, direction.dA);
+    const T* point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
+    const PointMotion<T> x{matrix(point, 0, lane), kBlend ? matrix(point, 9, lane) : Mat3<T>{}};
     const auto m = material<Kind.matter>(set, group, lane, inverse_step);
     const auto r =
         point_stress_differential<Kind.stabilization>(x, symmetric_matrix(point, 18, lane), m, tangent, d.H, d.Dbar);
     store_stress(set, group, lane, r.dP * m.volume, r.dY * m.volume);
+  }
+};
+
+/// A column of a node's own block.
+template <class T>
+struct PointDiagonal {
+  PointsOf<T> set;
+  NodesView nodes;
+  const Mat3d* Q;
+  double inverse_step;
+  Tangent tangent;
+  double* blocks;
+
+  FASCIA_HD void operator()(int i) const {
+    const int node = i / kMostDofs, k = i % kMostDofs, n = nodes.size(node);
+    if (k >= n) return;
+    double column[kMostDofs] = {};
+    for (int s = set.node_slot_begin[node]; s < set.node_slot_begin[node + 1]; ++s)
+      add_slot_column(set, set.node_slot[s], nodes.kind[node], Q[node], k, inverse_step, tangent, column);
+    for (int r = 0; r < n; ++r) blocks[nodes.block[node] + static_cast<std::size_t>(n * r + k)] += column[r];
   }
 };
 
@@ -176,41 +205,48 @@ template <class Space>
 void Points<Space>::forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history,
                            const double* part_motion) {
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
-    Space::for_each(lanes, kernels::PointForces<K>{view_, nodes, pose, history, part_motion, groups});
+    Space::for_each(lanes, kernels::PointForces<K>{view(), nodes, pose, history, part_motion, groups});
   });
-  Space::template sum_lanes<12>(view_.slots, kernels::SlotTerm{view_}, kernels::StoreSlot{view_.slot_sums});
+  Space::template sum_lanes<12>(view().slots, kernels::SlotTerm<double>{view()},
+                                kernels::StoreSlot<double>{view().slot_sums});
 }
 
 template <class Space>
 void Points<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
   inverse_step_ = history.inverse_step;
   tangent_ = tangent;
+  is_narrow_ ? linearize_as<float>(pose, history) : linearize_as<double>(pose, history);
+}
+
+template <class Space>
+template <class T>
+void Points<Space>::linearize_as(const PoseView& pose, const HistoryView& history) {
+  T* motion = rows<T>().motion.data();
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
-    Space::for_each(lanes, kernels::PointLinearization<K>{view_, pose, history, groups});
+    Space::for_each(lanes, kernels::PointLinearization<K, T>{view(), pose, history, groups, motion});
   });
 }
 
 template <class Space>
-void Points<Space>::product(const DirectionView& direction) {
+template <class T, class V>
+void Points<Space>::product(const DirectionOf<T, V>& direction) {
+  const PointsOf<T>& set = view_of<T>();
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
-    Space::for_each(lanes, kernels::PointProduct<K>{view_, direction, inverse_step_, tangent_, groups});
+    Space::for_each(lanes, kernels::PointProduct<K, T, V>{set, direction, inverse_step_, tangent_, groups});
   });
-  Space::template sum_lanes<12>(view_.slots, kernels::SlotTerm{view_}, kernels::StoreSlot{view_.slot_sums});
+  Space::template sum_lanes<12>(set.slots, kernels::SlotTerm<T>{set}, kernels::StoreSlot<T>{set.slot_sums});
 }
 
 template <class Space>
 void Points<Space>::add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks) {
-  const PointsView set = view_;
-  const double inverse_step = inverse_step_;
-  const Tangent tangent = tangent_;
-  Space::for_each(kMostDofs * nodes.count, [=] FASCIA_HD(int i) {
-    const int node = i / kMostDofs, k = i % kMostDofs, n = nodes.size(node);
-    if (k >= n) return;
-    double column[kMostDofs] = {};
-    for (int s = set.node_slot_begin[node]; s < set.node_slot_begin[node + 1]; ++s)
-      kernels::add_slot_column(set, set.node_slot[s], nodes.kind[node], Q[node], k, inverse_step, tangent, column);
-    for (int r = 0; r < n; ++r) blocks[nodes.block[node] + static_cast<std::size_t>(n * r + k)] += column[r];
-  });
+  is_narrow_ ? add_diagonal_as<float>(nodes, Q, blocks) : add_diagonal_as<double>(nodes, Q, blocks);
+}
+
+template <class Space>
+template <class T>
+void Points<Space>::add_diagonal_as(const NodesView& nodes, const Mat3d* Q, double* blocks) {
+  Space::for_each(kMostDofs * nodes.count,
+                  kernels::PointDiagonal<T>{view_of<T>(), nodes, Q, inverse_step_, tangent_, blocks});
 }
 
 template <class Space>
@@ -222,7 +258,7 @@ std::vector<int> Points<Space>::item_parts(const PointSet& set) const {
 
 template <class Space>
 void Points<Space>::store_strain(const PoseView& pose, double* E) {
-  const PointsView set = view_;
+  const PointsView set = view();
   Space::for_each(set.groups * kGroupSize, [set, pose, E] FASCIA_HD(int i) {
     const int group = i / kGroupSize, lane = i % kGroupSize;
     const PointMotion<double> x = kernels::motion_of<false>(set, group, lane, pose.u, pose.D);

@@ -19,7 +19,8 @@ struct ShellLane {
   Vec3d u[3];
   Mat3d D[3];
 
-  FASCIA_HD ShellLane(const ShellBlockView& block, int element, const PoseView& pose, double inverse_step) {
+  template <class T>
+  FASCIA_HD ShellLane(const ShellBlockOf<T>& block, int element, const PoseView& pose, double inverse_step) {
     const int batch = element / kLanes, lane = element % kLanes;
     const double* rows = block.constants + at(batch) * ShellBlock::kRows * kLanes;
     for (int a = 0; a < 3; ++a)
@@ -62,9 +63,10 @@ FASCIA_HD inline Mat3d present_axes(const ShellLane& shell, const ShellTriangle<
   return shell.axes + shell.axes * triangle.turned();
 }
 
-FASCIA_HD inline void store_shell_corner(const ShellBlockView& block, int element, int corner, const Vec3d& force,
-                                         const Vec3d& torque) {
-  double* out = block.corners + (at(element / kLanes) * 3 + at(corner)) * 6 * kLanes + element % kLanes;
+template <class T>
+FASCIA_HD void store_shell_corner(const ShellBlockOf<T>& block, int element, int corner, const Vec3<T>& force,
+                                  const Vec3<T>& torque) {
+  T* out = block.corners + (at(element / kLanes) * 3 + at(corner)) * 6 * kLanes + element % kLanes;
   for (int i = 0; i < 3; ++i) {
     out[i * kLanes] = force[i];
     out[(3 + i) * kLanes] = torque[i];
@@ -116,8 +118,9 @@ struct ShellForces {
 FASCIA_HD constexpr int stiffness_row(int i, int j) { return i * (i + 1) / 2 + j; }
 
 /// Columns of a triangle's tangent for the freedoms of one corner, which a thread computes: rows below the diagonal.
+template <class T>
 struct ShellStiffness {
-  ShellBlockView block;
+  ShellBlockOf<T> block;
   HistoryView history;
   PoseView pose;
   bool full;
@@ -128,7 +131,7 @@ struct ShellStiffness {
     ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
     triangle.prepare_products(total_stress(shell, triangle.strain(), old_strain(history, element)));
     const Mat3d axes = present_axes(shell, triangle);
-    double* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
+    T* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
     for (int k = 0; k < 6; ++k) {
       const Vec3d unit = axes.row(k % 3);
       ShellNodes<double> motion;
@@ -139,47 +142,56 @@ struct ShellStiffness {
         if (a < b) continue;
         const Vec3d force = axes * f.x[a], torque = axes * f.r[a];
         for (int r = 0; r < 6; ++r)
-          if (a > b || r >= k) rows[stiffness_row(6 * a + r, 6 * b + k) * kLanes] = r < 3 ? force[r] : torque[r - 3];
+          if (a > b || r >= k)
+            rows[stiffness_row(6 * a + r, 6 * b + k) * kLanes] = static_cast<T>(r < 3 ? force[r] : torque[r - 3]);
       }
     }
   }
 };
 
 /// y ← y + K x with what a row and its mirror image have; R is a constant so that x and y stay in registers.
-template <int R>
-FASCIA_HD void multiply_row(const double* rows, const double* x, double* y) {
+template <int R, class T>
+FASCIA_HD void multiply_row(const T* rows, const T* x, T* y) {
   for (int c = 0; c < R; ++c) {
-    const double K = rows[stiffness_row(R, c) * kLanes];
+    const T K = rows[stiffness_row(R, c) * kLanes];
     y[R] += K * x[c];
     y[c] += K * x[R];
   }
   y[R] += rows[stiffness_row(R, R) * kLanes] * x[R];
 }
 
+/// Of 32 bits, what a translation costs is left out on both sides: displacements count from the first corner's, whose
+/// force balances the others'.
+template <class T, class V>
 struct ShellProduct {
-  ShellBlockView block;
-  const double* d;
+  static constexpr bool kExact = std::is_same_v<T, double>;
+  ShellBlockOf<T> block;
+  const V* d;
   const int* dof;
 
   FASCIA_HD void operator()(int i) const {
     const int batch = i / kLanes, lane = i % kLanes;
-    const double* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
-    double x[18], y[18] = {};
+    const T* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
+    T x[18], y[18] = {};
+    [[maybe_unused]] const V* first = d + dof[block.node[at(batch) * 3 * kLanes + at(lane)]];
     for (int a = 0; a < 3; ++a) {
-      const double* own = d + dof[block.node[(at(batch) * 3 + at(a)) * kLanes + at(lane)]];
-      for (int k = 0; k < 6; ++k) x[6 * a + k] = own[k];
+      const V* own = d + dof[block.node[(at(batch) * 3 + at(a)) * kLanes + at(lane)]];
+      for (int k = 0; k < 6; ++k) x[6 * a + k] = static_cast<T>(kExact || k >= 3 ? own[k] : own[k] - first[k]);
     }
     const auto multiply = [&]<int... R>(std::integer_sequence<int, R...>) { (multiply_row<R>(rows, x, y), ...); };
     multiply(std::make_integer_sequence<int, 18>{});
+    if constexpr (!kExact)
+      for (int k = 0; k < 3; ++k) y[k] = -(y[6 + k] + y[12 + k]);
     for (int a = 0; a < 3; ++a)
-      store_shell_corner(block, i, a, {{y[6 * a], y[6 * a + 1], y[6 * a + 2]}},
-                         {{y[6 * a + 3], y[6 * a + 4], y[6 * a + 5]}});
+      store_shell_corner(block, i, a, Vec3<T>{{y[6 * a], y[6 * a + 1], y[6 * a + 2]}},
+                         Vec3<T>{{y[6 * a + 3], y[6 * a + 4], y[6 * a + 5]}});
   }
 };
 
 /// A row of each frame's own block.
+template <class T>
 struct ShellDiagonal {
-  ShellsView set;
+  ShellsOf<T> set;
   NodesView nodes;
   double* blocks;
 
@@ -187,7 +199,7 @@ struct ShellDiagonal {
     const int node = i / 6, r = i % 6;
     for (int k = set.node_begin[node]; k < set.node_begin[node + 1]; ++k) {
       const int place = set.node_corner[k], a = place / (6 * kLanes) % 3;
-      const double* rows = set.stiffness + at(place / (18 * kLanes)) * kShellStiffness * kLanes + place % kLanes;
+      const T* rows = set.stiffness + at(place / (18 * kLanes)) * kShellStiffness * kLanes + place % kLanes;
       double* out = blocks + nodes.block[node] + 6 * r;
       for (int c = 0; c < 6; ++c)
         out[c] += rows[(c <= r ? stiffness_row(6 * a + r, 6 * a + c) : stiffness_row(6 * a + c, 6 * a + r)) * kLanes];

@@ -4,5 +4,8 @@
 namespace fascia::gpu {
 
 template class Shells<CudaSpace>;
+template void Shells<CudaSpace>::product(const DirectionOf<double, double>&);
+template void Shells<CudaSpace>::product(const DirectionOf<float, double>&);
+template void Shells<CudaSpace>::product(const DirectionOf<float, float>&);
 
 }  // namespace fascia::gpu

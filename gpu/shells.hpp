@@ -2,9 +2,12 @@
 
 #include "core/model/point_set.hpp"
 #include "core/physics/point_physics.hpp"
+#include "core/solver/settings.hpp"
 #include "gpu/array.hpp"
 #include "gpu/views.hpp"
 
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace fascia::gpu {
@@ -12,26 +15,30 @@ namespace fascia::gpu {
 /// Entries of a triangle's symmetric tangent (18 × 18), on and below the diagonal by rows.
 inline constexpr int kShellStiffness = 171;
 
-/// One block of triangles, in the layout of core/model/shell_block.hpp.
-struct ShellBlockView {
+/// One block of triangles, in the layout of core/model/shell_block.hpp, with what passes leave of a scalar T.
+template <class T>
+struct ShellBlockOf {
   int count = 0, batches = 0;
   bool damped = false;
   const double* constants = nullptr;  ///< (batches × ShellBlock::kRows × 8)
   const int* node = nullptr;          ///< (batches × 3 × 8)
-  double* corners = nullptr;          ///< (batches × 3 × 6 × 8): force and torque of the last pass on each node
+  T* corners = nullptr;               ///< (batches × 3 × 6 × 8): force and torque of the last pass on each node
   double* quantities = nullptr;       ///< (batches × 8 × kQuantities)
-  double* stiffness = nullptr;        ///< (batches × kShellStiffness × 8), of the linearisation
+  T* stiffness = nullptr;             ///< (batches × kShellStiffness × 8), of the linearisation
 };
 
+using ShellBlockView = ShellBlockOf<double>;
+
 /// What all triangles gave the nodes of a model.
-struct ShellsView {
+template <class T>
+struct ShellsOf {
   const int *node_begin = nullptr, *node_corner = nullptr;  ///< place of each corner's force, ascending
-  const double *corners = nullptr, *stiffness = nullptr;
+  const T *corners = nullptr, *stiffness = nullptr;
 
   /// Adds what the last pass gave a node.
   FASCIA_HD void add_sums(int node, NodeSums& sums) const {
     for (int k = node_begin[node]; k < node_begin[node + 1]; ++k) {
-      const double* force = corners + node_corner[k];
+      const T* force = corners + node_corner[k];
       for (int i = 0; i < 3; ++i) {
         sums.force[i] += force[i * kElementLanes];
         sums.torque[i] += force[(3 + i) * kElementLanes];
@@ -40,15 +47,22 @@ struct ShellsView {
   }
 };
 
+using ShellsView = ShellsOf<double>;
+
 /// The triangles of shells of a model on the device: forces and torques on their corners, which frames then gather.
 /// A linearisation keeps the tangent of each triangle: as many bytes as all that a product would recompute it from.
 template <class Space>
 class Shells {
  public:
-  explicit Shells(const PointSet& set);
+  explicit Shells(const PointSet& set, Precision precision = Precision::full);
 
   bool empty() const { return blocks_.empty(); }
-  const ShellsView& view() const { return view_; }
+  const ShellsView& view() const { return view_of<double>(); }
+  /// After a product: with the scalar of products.
+  template <class T>
+  const ShellsOf<T>& view_of() const {
+    return rows<T>().view;
+  }
   /// (blocks: batches × 12 × 8), as ShellExecutor has them
   std::size_t strain_size() const { return strain_size_; }
 
@@ -62,8 +76,9 @@ class Shells {
   void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
   /// Keeps the tangents at a pose.
   void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent);
-  /// The tangent's product at the linearisation, for add_sums().
-  void product(const DirectionView& direction);
+  /// The tangent's product at the linearisation, for add_sums() of view_of<T>(). @tparam T  of the precision
+  template <class T, class V>
+  void product(const DirectionOf<T, V>& direction);
   /// Adds the tangent's own block of each node, by rows.
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   /// @param E  (strain_size())
@@ -74,8 +89,34 @@ class Shells {
     Array<Space, double> constants;
     Array<Space, int> node;
     ShellBlockView view;
+    ShellBlockOf<float> narrow;
     std::size_t strain_begin = 0;
+
+    template <class T>
+    const ShellBlockOf<T>& view_of() const {
+      if constexpr (std::is_same_v<T, double>)
+        return view;
+      else
+        return narrow;
+    }
   };
+  /// What passes leave. Of 32 bits, it is there for products beside that for forces.
+  template <class T>
+  struct Rows {
+    Array<Space, T> corners, stiffness;
+    ShellsOf<T> view;
+  };
+  template <class T>
+  const Rows<T>& rows() const {
+    if constexpr (std::is_same_v<T, double>)
+      return wide_;
+    else
+      return narrow_;
+  }
+  template <class T>
+  void place_rows(std::size_t lanes, bool products, Rows<T>& rows, ShellBlockOf<T> Block::*view);
+  template <class T>
+  void linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent);
   void find_corners(const PointSet& set);
   /// Strains of one block. @param E  of all
   static HistoryView history_of(const Block& block, const double* E, double inverse_step) {
@@ -84,9 +125,11 @@ class Shells {
 
   std::vector<Block> blocks_;
   Array<Space, int> node_begin_, node_corner_, dof_;
-  Array<Space, double> corners_, quantities_, stiffness_;
-  ShellsView view_;
+  Array<Space, double> quantities_;
+  Rows<double> wide_;
+  Rows<float> narrow_;
   int nodes_ = 0;
+  bool is_narrow_;  ///< products have 32 bits
   std::size_t strain_size_ = 0;
 };
 

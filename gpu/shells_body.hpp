@@ -10,14 +10,15 @@
 namespace fascia::gpu {
 
 template <class Space>
-Shells<Space>::Shells(const PointSet& set) : nodes_(set.node_count()) {
+Shells<Space>::Shells(const PointSet& set, Precision precision)
+    : nodes_(set.node_count()), is_narrow_(precision != Precision::full) {
   std::size_t lanes = 0;
   for (const ShellBlock& shell : set.shells) {
     Block block;
     block.constants.upload(shell.constants);
     block.node.upload(shell.node);
-    block.view = {shell.count, shell.batch_count(), shell.damped, block.constants.data(), block.node.data(), nullptr,
-                  nullptr};
+    block.view = {shell.count, shell.batch_count(), shell.damped, block.constants.data(), block.node.data()};
+    block.narrow = {shell.count, shell.batch_count(), shell.damped, block.constants.data(), block.node.data()};
     block.strain_begin = strain_size_;
     strain_size_ += at(shell.batch_count()) * 12 * kElementLanes;
     lanes += at(shell.batch_count()) * kElementLanes;
@@ -25,23 +26,35 @@ Shells<Space>::Shells(const PointSet& set) : nodes_(set.node_count()) {
   }
   if (lanes * 18 > at(std::numeric_limits<int>::max()))
     throw InputError("the model has more triangles than the GPU backend can number; use fewer, or --backend cpu");
-  corners_.resize(lanes * 18);
   quantities_.resize(lanes * kQuantities);
   quantities_.set_zero();
-  stiffness_.resize(lanes * kShellStiffness);
-  double *corner = corners_.data(), *quantity = quantities_.data(), *stiffness = stiffness_.data();
+  double* quantity = quantities_.data();
+  for (Block& block : blocks_) {
+    block.view.quantities = quantity;
+    quantity += at(block.view.batches) * kElementLanes * kQuantities;
+  }
+  place_rows(lanes, !is_narrow_, wide_, &Block::view);
+  if (is_narrow_) place_rows(lanes, true, narrow_, &Block::narrow);
   std::vector<int> dof;
   for (int node = 0; node < nodes_; ++node) dof.push_back(set.dofs.begin(node));
   dof_.upload(dof);
+  find_corners(set);
+}
+
+/// @param products  what a linearisation keeps is there too
+template <class Space>
+template <class T>
+void Shells<Space>::place_rows(std::size_t lanes, bool products, Rows<T>& rows, ShellBlockOf<T> Block::*view) {
+  rows.corners.resize(lanes * 18);
+  if (products) rows.stiffness.resize(lanes * kShellStiffness);
+  T *corner = rows.corners.data(), *stiffness = rows.stiffness.data();
   for (Block& block : blocks_) {
-    block.view.corners = corner;
-    block.view.quantities = quantity;
-    block.view.stiffness = stiffness;
+    (block.*view).corners = corner;
     corner += at(block.view.batches) * kElementLanes * 18;
-    quantity += at(block.view.batches) * kElementLanes * kQuantities;
+    if (!products) continue;
+    (block.*view).stiffness = stiffness;
     stiffness += at(block.view.batches) * kElementLanes * kShellStiffness;
   }
-  find_corners(set);
 }
 
 /// Places of the forces about each node, of all blocks.
@@ -50,7 +63,7 @@ void Shells<Space>::find_corners(const PointSet& set) {
   std::vector<int> begin, corner;
   const auto for_each_corner = [&](const auto& act) {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const auto first = static_cast<int>(blocks_[b].view.corners - corners_.data());
+      const auto first = static_cast<int>(blocks_[b].view.corners - wide_.corners.data());
       for (int e = 0; e < set.shells[b].count; ++e)
         for (int a = 0; a < 3; ++a)
           act(set.shells[b].element(e)[at(a)],
@@ -60,7 +73,8 @@ void Shells<Space>::find_corners(const PointSet& set) {
   list_by_node(nodes_, for_each_corner, begin, corner);
   node_begin_.upload(begin);
   node_corner_.upload(corner);
-  view_ = {node_begin_.data(), node_corner_.data(), corners_.data(), stiffness_.data()};
+  wide_.view = {node_begin_.data(), node_corner_.data(), wide_.corners.data(), wide_.stiffness.data()};
+  narrow_.view = {node_begin_.data(), node_corner_.data(), narrow_.corners.data(), narrow_.stiffness.data()};
 }
 
 template <class Space>
@@ -85,21 +99,34 @@ void Shells<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
 
 template <class Space>
 void Shells<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
-  for (const Block& block : blocks_)
-    Space::for_each(3 * block.view.batches * kElementLanes,
-                    kernels::ShellStiffness{block.view, history_of(block, history.E, history.inverse_step), pose,
-                                            tangent == Tangent::full});
+  is_narrow_ ? linearize_as<float>(pose, history, tangent) : linearize_as<double>(pose, history, tangent);
 }
 
 template <class Space>
-void Shells<Space>::product(const DirectionView& direction) {
+template <class T>
+void Shells<Space>::linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent) {
   for (const Block& block : blocks_)
-    Space::for_each(block.view.batches * kElementLanes, kernels::ShellProduct{block.view, direction.d, dof_.data()});
+    Space::for_each(
+        3 * block.view.batches * kElementLanes,
+        kernels::ShellStiffness<T>{block.template view_of<T>(), history_of(block, history.E, history.inverse_step),
+                                   pose, tangent == Tangent::full});
+}
+
+template <class Space>
+template <class T, class V>
+void Shells<Space>::product(const DirectionOf<T, V>& direction) {
+  for (const Block& block : blocks_)
+    Space::for_each(block.view.batches * kElementLanes,
+                    kernels::ShellProduct<T, V>{block.template view_of<T>(), direction.d, dof_.data()});
 }
 
 template <class Space>
 void Shells<Space>::add_diagonal(const NodesView& nodes, const Mat3d*, double* blocks) {
-  if (!empty()) Space::for_each(6 * nodes_, kernels::ShellDiagonal{view_, nodes, blocks});
+  if (empty()) return;
+  if (is_narrow_)
+    Space::for_each(6 * nodes_, kernels::ShellDiagonal<float>{view_of<float>(), nodes, blocks});
+  else
+    Space::for_each(6 * nodes_, kernels::ShellDiagonal<double>{view(), nodes, blocks});
 }
 
 template <class Space>

@@ -7,6 +7,7 @@
 namespace fascia::gpu {
 
 template class Blocks<HostSpace>;
+template BlocksOf<double> Blocks<HostSpace>::view_of() const;
 template class System<HostSpace>;
 
 }  // namespace fascia::gpu

@@ -7,6 +7,7 @@
 namespace fascia::gpu {
 
 template class Blocks<CudaSpace>;
+template BlocksOf<double> Blocks<CudaSpace>::view_of() const;
 template class System<CudaSpace>;
 
 }  // namespace fascia::gpu

@@ -73,7 +73,15 @@ class System {
 
   kernels::StepView step_view();
   kernels::ForceView force_view();
-  kernels::ProductView product_view();
+  /// Calls act.operator()<T, V>() with the scalars of products and of the vectors of solves.
+  template <class Act>
+  decltype(auto) with_scalars(const Act& act) {
+    if (settings_.precision == Precision::single) return act.template operator()<float, float>();
+    if (settings_.precision == Precision::mixed) return act.template operator()<float, double>();
+    return act.template operator()<double, double>();
+  }
+  template <class T, class V>
+  kernels::ProductView<T, V> product_view();
   HistoryView history() const { return {damped_ ? E_.data() : nullptr, damped_ ? inverse_step_ : 0.0}; }
   PoseView pose() const { return {u_.data(), D_.data()}; }
   void rebuild_state();
@@ -92,15 +100,25 @@ class System {
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
   void linearize_tiles(Tangent tangent);
-  void apply_tangent(const CgView& v);
-  void multiply(const kernels::ProductView& w);
-  void gather_product(const kernels::ProductView& w);
+  template <class T, class V>
+  void apply_tangent(const CgView<V>& v);
+  template <class T, class V>
+  void multiply(const kernels::ProductView<T, V>& w);
+  template <class T, class V>
+  void gather_product(const kernels::ProductView<T, V>& w);
   void make_tiles();
   /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
   bool use_tiles() const {
     return tiles_ != nullptr && (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
   }
   std::uint64_t operator_key() const;
+  template <class V>
+  auto& solver() {
+    if constexpr (std::is_same_v<V, double>)
+      return cg_;
+    else
+      return narrow_cg_;
+  }
   CgReport solve(const CgOptions& options);
   CgReport solve_in_tiles(const CgOptions& options);
   void place_tethers();
@@ -114,7 +132,8 @@ class System {
   Followers<Space> followers_;
   Surfaces<Space> surfaces_;
   PartSums<Space> node_parts_;
-  ConjugateGradients<Space> cg_;
+  ConjugateGradients<Space, double> cg_;
+  ConjugateGradients<Space, float> narrow_cg_;
   std::vector<std::uint8_t> held_;     ///< degrees of freedom that tiles hold, by node
   std::unique_ptr<TileSolver> tiles_;  ///< of meshless solids alone; none where they cannot hold them
   bool conservative_, turning_, damped_;
@@ -141,6 +160,9 @@ class System {
   Array<Space, Mat3d> Q_, dA_;
   Array<Space, Vec3d> dx_;
   Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, direction_, still_, still_Ap_, slope_;
+  Array<Space, float> narrow_blocks_, narrow_inverse_, narrow_d_;
+  Array<Space, Vec3<float>> narrow_dx_;
+  Array<Space, Mat3<float>> narrow_dA_;
   Array<Space, CgProgress> idle_;
   Tangent tangent_ = Tangent::full;
 

@@ -18,12 +18,13 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
       settings_(settings),
       filter_(model),
       data_(model, filter_, zero_factors(model).size()),
-      blocks_(model.points),
+      blocks_(model.points, settings.precision),
       dependents_(model.points),
       followers_(model),
       surfaces_(model),
       node_parts_(model.points.node_part, model.points.part_count()),
-      cg_(at(model.dof_count())),
+      cg_(settings.precision == Precision::single ? 0 : at(model.dof_count())),
+      narrow_cg_(settings.precision == Precision::single ? at(model.dof_count()) : 0),
       conservative_(model.loads_are_conservative()),
       turning_(model.has_frames()),
       damped_(model.points.damped),
@@ -53,6 +54,13 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   report_values_.resize(report_.size());
   node_blocks_.resize(model.points.dofs.block_total());
   inverse_.resize(node_blocks_.size());
+  if (settings.precision != Precision::full) narrow_dA_.resize(frames);
+  if (settings.precision == Precision::single) {
+    narrow_blocks_.resize(node_blocks_.size());
+    narrow_inverse_.resize(node_blocks_.size());
+    narrow_d_.resize(dofs);
+    narrow_dx_.resize(n);
+  }
   slope_.resize(3);
   idle_.resize(1);
   factors_ = reached_factors_ = zero_factors(model);
@@ -60,18 +68,21 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   if constexpr (Space::kHasTiles) make_tiles();
 }
 
-/// Where the model is solids of rigid frames that move by themselves, held in world axes.
+/// Where the model is solids of rigid frames that move by themselves, held in world axes. Their vectors are of 64 bits.
 template <class Space>
 void System<Space>::make_tiles() {
   const Preconditioner kind = settings_.preconditioner;
   const bool known =
       kind == Preconditioner::automatic || kind == Preconditioner::block_jacobi || kind == Preconditioner::none;
+  if (settings_.precision == Precision::single) return;
   if (!known || filter_.turns() || !dependents_.empty() || !surfaces_.empty() || !model_.tethers.empty()) return;
   const TilePointsResult points = tile_points(model_.points, model_.rest_position);
   if (!points.refusal.empty()) return;
+  TileSolverSettings settings;
+  if (settings_.precision == Precision::mixed) settings.constants = TileConstants::float32;
   ThreadPool pool(0);
   try {
-    tiles_ = TileSolver::make(points.points, {}, pool);
+    tiles_ = TileSolver::make(points.points, settings, pool);
   } catch (const DeviceMemoryError&) {
     return;  // groups of points need less
   }

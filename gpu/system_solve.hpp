@@ -11,8 +11,26 @@
 namespace fascia::gpu {
 
 template <class Space>
-kernels::ProductView System<Space>::product_view() {
-  return {data_.view(), Q_.data(), node_blocks_.data(), world_d_.data(), world_y_.data(), dx_.data(), dA_.data()};
+template <class T, class V>
+kernels::ProductView<T, V> System<Space>::product_view() {
+  kernels::ProductView<T, V> w;
+  w.m = data_.view();
+  w.Q = Q_.data();
+  w.y = world_y_.data();
+  if constexpr (std::is_same_v<V, double>) {
+    w.node_blocks = node_blocks_.data();
+    w.d = world_d_.data();
+    w.dx = dx_.data();
+  } else {
+    w.node_blocks = narrow_blocks_.data();
+    w.d = narrow_d_.data();
+    w.dx = narrow_dx_.data();
+  }
+  if constexpr (std::is_same_v<T, double>)
+    w.dA = dA_.data();
+  else
+    w.dA = narrow_dA_.data();
+  return w;
 }
 
 template <class Space>
@@ -40,6 +58,10 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   if (!dependents_.empty()) dependents_.add_diagonal(nodes, inverse_.data());
   Space::for_each(nodes.count, kernels::InvertBlocks{data_.view(), inverse_.data(), kind == Preconditioner::jacobi,
                                                      kind == Preconditioner::none});
+  if (settings_.precision != Precision::single) return;
+  const int entries = static_cast<int>(node_blocks_.size());
+  Space::for_each(entries, kernels::Round<float>{node_blocks_.data(), narrow_blocks_.data()});
+  Space::for_each(entries, kernels::Round<float>{inverse_.data(), narrow_inverse_.data()});
 }
 
 template <class Space>
@@ -52,32 +74,42 @@ void System<Space>::linearize_tiles(Tangent tangent) {
 
 /// v.Ap = K v.p in constraint axes, with the next direction in v.p.
 template <class Space>
-void System<Space>::apply_tangent(const CgView& v) {
-  const kernels::ProductView w = product_view();
-  Space::for_each(w.m.nodes.count, kernels::NextDirection{w, v});
-  multiply(w);
+template <class T, class V>
+void System<Space>::apply_tangent(const CgView<V>& v) {
+  const kernels::ProductView<T, V> w = product_view<T, V>();
+  const int n = w.m.nodes.count;
+  const kernels::FinishProduct<V> finish{w.m, v, w.y};
   if (dependents_.empty() && surfaces_.empty()) {
-    const kernels::GatherProduct gather{w, blocks_.view()};
-    Space::template sum<1>(w.m.nodes.count, kernels::GatherAndFinish{gather, {w, v}}, kernels::TakeCurvature{v});
+    Space::for_each(n, kernels::NextDirection<T, V, V>{w, v});
+    blocks_.template product<T, V>(w.direction());
+    const kernels::GatherProduct<T, V> gather{w, blocks_.template view_of<T>()};
+    Space::template sum<1>(n, kernels::GatherAndFinish<T, V, V>{gather, finish}, kernels::TakeCurvature<V>{v});
     return;
   }
+  Space::for_each(n, kernels::NextDirection<double, double, V>{product_view<double, double>(), v});
+  multiply(w);
   gather_product(w);
-  Space::template sum<1>(w.m.nodes.count, kernels::FinishProduct{w, v}, kernels::TakeCurvature{v});
+  Space::template sum<1>(n, finish, kernels::TakeCurvature<V>{v});
 }
 
-/// What blocks make of the direction in world axes, with what depends on it.
+/// What blocks make of the direction in world axes, of 64 bits, with what depends on it.
 template <class Space>
-void System<Space>::multiply(const kernels::ProductView& w) {
-  if (!dependents_.empty()) dependents_.expand(w.m.nodes, w.d, w.dx, w.dA, w.Q);
-  blocks_.product({w.d, w.dx, w.dA});
+template <class T, class V>
+void System<Space>::multiply(const kernels::ProductView<T, V>& w) {
+  const kernels::ProductView<double, double> from = product_view<double, double>();
+  if (!dependents_.empty()) dependents_.expand(w.m.nodes, from.d, from.dx, from.dA, w.Q);
+  if constexpr (!std::is_same_v<T, double>) Space::for_each(w.m.nodes.count, kernels::RoundDirection<T, V>{from, w});
+  blocks_.template product<T, V>(w.direction());
 }
 
 template <class Space>
-void System<Space>::gather_product(const kernels::ProductView& w) {
-  Space::for_each(w.m.nodes.count, kernels::GatherProduct{w, blocks_.view()});
-  if (!surfaces_.empty()) surfaces_.add_product(w.m.nodes, w.Q, {w.d, w.dx, w.dA}, w.y);
+template <class T, class V>
+void System<Space>::gather_product(const kernels::ProductView<T, V>& w) {
+  const DirectionView direction = product_view<double, double>().direction();
+  Space::for_each(w.m.nodes.count, kernels::GatherProduct<T, V>{w, blocks_.template view_of<T>()});
+  if (!surfaces_.empty()) surfaces_.add_product(w.m.nodes, w.Q, direction, w.y);
   if (!dependents_.empty()) dependents_.transfer(w.m.nodes, w.y, nullptr);
-  if (!surfaces_.empty()) surfaces_.add_volume_product(w.d, w.y);
+  if (!surfaces_.empty()) surfaces_.add_volume_product(direction.d, w.y);
 }
 
 /// Of what the loops of a product have been recorded with.
@@ -104,8 +136,15 @@ CgReport System<Space>::solve_in_tiles(const CgOptions& options) {
 template <class Space>
 CgReport System<Space>::solve(const CgOptions& options) {
   if (use_tiles()) return solve_in_tiles(options);
-  return cg_.solve(data_.view().nodes, inverse_.data(), options, operator_key(),
-                   [&](const CgView& v) { apply_tangent(v); });
+  return with_scalars([&]<class T, class V>() {
+    const V* inverse = nullptr;
+    if constexpr (std::is_same_v<V, double>)
+      inverse = inverse_.data();
+    else
+      inverse = narrow_inverse_.data();
+    return solver<V>().solve(data_.view().nodes, inverse, options, operator_key(),
+                             [&](const CgView<V>& v) { apply_tangent<T, V>(v); });
+  });
 }
 
 template <class Space>
@@ -118,14 +157,19 @@ DirectionReport System<Space>::direction() {
     still_Ap_.resize(prescribed_.size());
     still_.set_zero();
     idle_.set_zero();
+    const CgView<double> v{nullptr, nullptr, prescribed_.data(), still_.data(), still_Ap_.data(), idle_.data()};
     if (use_tiles())
       tiles_->multiply(prescribed_.data(), still_Ap_.data());
+    else if (settings_.precision == Precision::full)
+      apply_tangent<double, double>(v);
     else
-      apply_tangent({nullptr, nullptr, prescribed_.data(), still_.data(), still_Ap_.data(), idle_.data()});
+      apply_tangent<float, double>(v);
     moved = still_Ap_.data();
   }
   const auto right_hand_side = [&] {
-    Space::for_each(n, kernels::RightHandSide{data_.view(), gradient_.data(), moved, cg_.rhs()});
+    with_scalars([&]<class T, class V>() {
+      Space::for_each(n, kernels::RightHandSide<V>{data_.view(), gradient_.data(), moved, solver<V>().rhs()});
+    });
   };
   right_hand_side();
   const Clock::time_point start = Clock::now();
@@ -150,11 +194,13 @@ DirectionReport System<Space>::direction() {
     report.trouble = "CG met a number that is not finite";
     return report;
   }
-  Space::template sum<1, 2>(
-      n,
-      kernels::TakeDirection{data_.view(), cg_.solution(), prescribed_left_ ? prescribed_.data() : nullptr,
-                             gradient_.data(), direction_.data()},
-      kernels::StoreSums<1, 2>{slope_.data()});
+  with_scalars([&]<class T, class V>() {
+    const double* prescribed = prescribed_left_ ? prescribed_.data() : nullptr;
+    Space::template sum<1, 2>(n,
+                              kernels::TakeDirection<V>{data_.view(), solver<V>().solution(), prescribed,
+                                                        gradient_.data(), direction_.data()},
+                              kernels::StoreSums<1, 2>{slope_.data()});
+  });
   if (!dependents_.empty()) dependents_.expand(data_.view().nodes, direction_.data(), nullptr, nullptr, Q_.data());
   if (!surfaces_.empty()) surfaces_.aim(direction_.data());
   double values[3];
@@ -178,10 +224,12 @@ std::vector<double> System<Space>::product(std::span<const double> d) {
   }
   const NodesView& nodes = data_.view().nodes;
   world_d_.upload(d);
-  const kernels::ProductView w = product_view();
-  Space::for_each(nodes.count, kernels::SplitDirection{w});
-  multiply(w);
-  gather_product(w);
+  Space::for_each(nodes.count, kernels::SplitDirection{product_view<double, double>()});
+  with_scalars([&]<class T, class V>() {
+    const kernels::ProductView<T, V> w = product_view<T, V>();
+    multiply(w);
+    gather_product(w);
+  });
   return world_y_.downloaded();
 }
 

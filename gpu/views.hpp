@@ -28,11 +28,14 @@ struct PoseView {
 };
 
 /// A small motion of all nodes: by degrees of freedom, and as (dx, dA) of each node.
-struct DirectionView {
-  const double* d = nullptr;  ///< (degrees of freedom)
-  const Vec3d* dx = nullptr;  ///< (nodes)
-  const Mat3d* dA = nullptr;  ///< (nodes); none where no node turns
+/// @tparam T  scalar of products, V  of vectors (core/solver/settings.hpp, Precision)
+template <class T, class V>
+struct DirectionOf {
+  const V* d = nullptr;         ///< (degrees of freedom)
+  const Vec3<V>* dx = nullptr;  ///< (nodes)
+  const Mat3<T>* dA = nullptr;  ///< (nodes); none where no node turns
 };
+using DirectionView = DirectionOf<double, double>;
 
 /// Strains of one block at the start of a step, and 1/dt of viscous stress; no strains where nothing is damped.
 struct HistoryView {

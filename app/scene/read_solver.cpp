@@ -103,6 +103,20 @@ void read_control(const TableReader& table, const std::vector<std::string>& bodi
     table.error("tangent", fmt::format("\"material\" {}, which needs the geometric stiffness; must be \"full\"", with));
 }
 
+/// Products of 32 bits are the GPU's, of solvers with Newton's directions.
+void read_precision(const TableReader& table, Solver& solver) {
+  solver.precision = table.text("precision").value_or("double");
+  if (solver.precision == "double") return;
+  const std::string asked = fmt::format("\"{}\"", solver.precision);
+  if (solver.kind == SolverKind::central_differences || solver.kind == SolverKind::modes)
+    return table.error("precision", fmt::format("{} is not used by kind = \"{}\"; must be \"double\"", asked,
+                                                table.text("kind").value_or("static")));
+  if (solver.backend == "cpu")
+    table.error("precision", fmt::format("{} needs the GPU, and backend = \"cpu\" has \"double\" alone; must be "
+                                         "\"double\", or backend \"auto\" or \"cuda\"",
+                                         asked));
+}
+
 /// Keys that only some kinds use.
 void check_kind(const TableReader& table, const Solver& solver) {
   const std::string unused = fmt::format("is not used by kind = \"{}\"", table.text("kind").value_or("static"));
@@ -150,6 +164,7 @@ Solver read_solver(const TableReader& scene, const std::vector<std::string>& bod
   read_linear(table.table("linear"), solver);
   solver.full_tangent = table.text("tangent").value_or("full") == "full";
   solver.backend = table.text("backend").value_or("auto");
+  read_precision(table, solver);
   solver.threads = table.integer("threads").value_or(0);
   return solver;
 }

@@ -296,7 +296,8 @@ struct Solver {
   int linear_max_iterations = 1000;
   double linear_tolerance = 1e-6;
   bool full_tangent = true;
-  std::string backend = "auto";  ///< "auto", "cpu", "cuda"
+  std::string precision = "double";  ///< "double", "mixed", "single"
+  std::string backend = "auto";      ///< "auto", "cpu", "cuda"
   int threads = 0;
 };
 

@@ -101,8 +101,12 @@ Key solver_schema() {
            key("tangent", choice({{"full", "With the geometric stiffness."}, {"material", "Without it."}}),
                "Stiffness of Newton's method; not of `kind = \"explicit\"`.")
                .defaults("\"full\""),
-           key("precision", choice({{"double", "64 bits."}, {"single", "32 bits.", false}, {"mixed", "Both.", false}}),
-               "Arithmetic.")
+           key("precision",
+               choice({{"double", "64 bits."},
+                       {"mixed", "Products with the stiffness of 32 bits."},
+                       {"single", "Vectors of conjugate gradients of 32 bits too."}}),
+               "Arithmetic of Newton's directions; residuals and states are of 64 bits always. Other than `\"double\"` "
+               "needs the GPU; not of `kind = \"explicit\"` and `\"modes\"`.")
                .defaults("\"double\""),
            key("backend",
                choice({{"auto", "The best there is."}, {"cpu", "The processor."}, {"cuda", "An NVIDIA GPU."}}),

@@ -66,6 +66,7 @@ Batch<W> where_positive(const Batch<W>& condition, const Batch<W>& a, const Batc
 }
 
 FASCIA_HD inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
+FASCIA_HD inline float where_positive(float condition, float a, float b) { return condition > 0 ? a : b; }
 
 template <int W>
 Batch<W> abs(const Batch<W>& a) {

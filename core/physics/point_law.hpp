@@ -53,7 +53,7 @@ FASCIA_HD constexpr Lame thin_lame(Law law, const Lame& m) {
 template <class T>
 FASCIA_HD Mat3<T> second_piola(const ThinMaterial<T>& m, const Mat3<T>& E) {
   const int tangents = m.law == Law::sheet ? 2 : 1;
-  const T shear(m.law == Law::sheet ? kSheetShear : 1.0), across(m.transverse ? 1.0 : 0.0);
+  const T shear = m.law == Law::sheet ? T(kSheetShear) : T(1.0), across = m.transverse ? T(1.0) : T(0.0);
   const Mat3<T> local = transpose_times(m.axes, E * m.axes);
   Mat3<T> S;
   T stretch = local(0, 0);

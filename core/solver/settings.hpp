@@ -8,6 +8,11 @@ namespace fascia {
 enum class LinearMethod { automatic, cg, cholesky };
 enum class Preconditioner { automatic, none, jacobi, block_jacobi, cholesky };
 
+/// Arithmetic of Newton's directions; residuals, states and energies are of 64 bits always, and so what a converged run
+/// is judged by. mixed: products with the tangent of 32 bits; single: vectors of conjugate gradients too. Sums over
+/// nodes are of 64 bits. Of the GPU's solver; the processor's has 64 bits.
+enum class Precision { full, mixed, single };
+
 struct SolverSettings {
   int max_iterations = 50;        ///< Newton iterations of a load or time step
   double tolerance = 1e-8;        ///< residual relative to the largest of load, inertia and reactions
@@ -16,6 +21,7 @@ struct SolverSettings {
   Preconditioner preconditioner = Preconditioner::automatic;
   CgOptions cg;
   Tangent tangent = Tangent::full;
+  Precision precision = Precision::full;
 };
 
 }  // namespace fascia

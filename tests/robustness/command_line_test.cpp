@@ -141,6 +141,24 @@ TEST_F(CommandLine, SaysThatABackendIsNotThere) {
   EXPECT_EQ(fascia({"run", "scene.toml", "--backend", "auto"}).status, 0);
 }
 
+TEST_F(CommandLine, SaysThatAPrecisionNeedsTheGpu) {
+  write("scene.toml", kCantilever);
+  const ProgramResult refused =
+      fascia({"run", "scene.toml", "--set", "solver.precision=mixed", "--backend", "cpu", "--output", "refused"});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_NE(refused.err.find("solver.precision = \"mixed\" needs the GPU"), std::string::npos) << refused.err;
+  const ProgramResult result = fascia({"run", "scene.toml", "--set", "solver.precision=mixed", "--output", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json summary = this->summary("out");
+  if (summary.at("backend") == "cuda") {
+    EXPECT_EQ(summary.at("precision"), "mixed");
+    return;
+  }
+  EXPECT_EQ(summary.at("precision"), "double");
+  EXPECT_NE(result.err.find("precision = \"mixed\" needs the GPU, and there is none"), std::string::npos) << result.err;
+  EXPECT_EQ(summary.at("warnings").size(), 1u);
+}
+
 TEST_F(CommandLine, SaysWhichFileCannotBeRead) {
   std::filesystem::create_directory(folder_ / "folder.toml");
   for (const char* name : {"absent.toml", "folder.toml"}) {

@@ -101,9 +101,16 @@ TEST(SceneErrors, WrongTypes) {
             "acceleration in m/s2");
 }
 
-TEST(SceneErrors, NotSupportedYet) {
-  EXPECT_EQ(errors_of_beam("[solver]\nkind = \"static\"\nprecision = \"single\"\n"),
-            "a.toml:12:13: solver.precision: \"single\" is not supported yet; must be \"double\"");
+TEST(SceneErrors, PrecisionOfTheGpuAlone) {
+  EXPECT_EQ(errors_of_beam("[solver]\nprecision = \"single\"\nbackend = \"cpu\"\n"),
+            "a.toml:11:13: solver.precision: \"single\" needs the GPU, and backend = \"cpu\" has \"double\" alone; "
+            "must be \"double\", or backend \"auto\" or \"cuda\"");
+  EXPECT_EQ(errors_of_beam("[solver]\nkind = \"explicit\"\ntime_step = 1e-4\nsteps = 1\nprecision = \"mixed\"\n"),
+            "a.toml:14:13: solver.precision: \"mixed\" is not used by kind = \"explicit\"; must be \"double\"");
+  EXPECT_EQ(errors_of_beam("[solver]\nkind = \"modes\"\nprecision = \"mixed\"\n"),
+            "a.toml:12:13: solver.precision: \"mixed\" is not used by kind = \"modes\"; must be \"double\"");
+  EXPECT_EQ(errors_of_beam("[solver]\nprecision = \"half\"\n"),
+            "a.toml:11:13: solver.precision: \"half\" is no known value; must be \"double\", \"mixed\" or \"single\"");
 }
 
 TEST(SceneErrors, ValuesThatExcludeOneAnother) {
