@@ -7,10 +7,10 @@ namespace fascia::app {
 /// The program and its backends, for --version:
 ///
 ///     fascia 0.1.0
-///     backends: cpu, cuda (toolkit 13.0, for 80-virtual, 90-real)
+///     backends: cpu, cuda (toolkit 13.0, for 90-real)
 std::string version_text();
 
-/// Its second half: "cpu, cuda (toolkit 13.0, for 80-virtual, 90-real)".
+/// Its second half: "cpu, cuda (toolkit 13.0, for 90-real)".
 std::string backend_list();
 
 }  // namespace fascia::app

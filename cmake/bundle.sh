@@ -14,7 +14,8 @@ usage: cmake/bundle.sh [--build DIR] [--leave-out GLOB]... OUT [PROGRAM...]
 
 The bundle holds the programs, stripped, every library that they load with the C library and its loader, the units
 database and the scenes. Run OUT/bin/PROGRAM, from anywhere. GPU drivers are the other machine's own. A build tuned for
-this processor (FASCIA_NATIVE=ON) needs one that knows the same instructions.
+this processor (FASCIA_NATIVE=ON) needs one that knows the same instructions. Configure the build with the other machine's
+FASCIA_CUDA_ARCHITECTURES, for example 90-real: otherwise its driver translates each kernel when it first runs.
 TEXT
 }
 

@@ -2,7 +2,7 @@
 # language, FASCIA_HAS_NCCL, and FASCIA_CUDA_STATE, one line that says what was found.
 set(FASCIA_CUDA AUTO CACHE STRING "CUDA backend: AUTO (where there is a toolkit), ON or OFF")
 set_property(CACHE FASCIA_CUDA PROPERTY STRINGS AUTO ON OFF)
-set(FASCIA_CUDA_ARCHITECTURES "" CACHE STRING "GPU architectures, as in CMAKE_CUDA_ARCHITECTURES; this machine's GPUs, or 80-virtual;90-real, where empty")
+set(FASCIA_CUDA_ARCHITECTURES "" CACHE STRING "GPU architectures, as in CMAKE_CUDA_ARCHITECTURES; this machine's GPUs, or 80-virtual, where empty")
 set(FASCIA_CUDA_OLDEST 12.0)
 set(FASCIA_HAS_CUDA OFF)
 set(FASCIA_HAS_NCCL OFF)
@@ -27,7 +27,7 @@ function(find_nvcc)
 endfunction()
 
 # Into `result`: the architectures of this machine's GPUs; where there are none, or the compiler is older than they are,
-# machine code for Hopper and an intermediate one that the driver translates for GPUs since Ampere.
+# an intermediate code that the driver translates for GPUs since Ampere: machine code takes half of the compiler's time.
 function(default_cuda_architectures result)
   set(chosen "")
   execute_process(COMMAND nvidia-smi --query-gpu=compute_cap --format=csv,noheader OUTPUT_VARIABLE text ERROR_QUIET
@@ -49,7 +49,7 @@ function(default_cuda_architectures result)
     list(REMOVE_DUPLICATES chosen)
   endif()
   if(NOT chosen)
-    set(chosen 80-virtual 90-real)
+    set(chosen 80-virtual)
   endif()
   set(${result} "${chosen}" PARENT_SCOPE)
 endfunction()
