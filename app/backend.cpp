@@ -9,7 +9,8 @@ namespace fascia::app {
 
 namespace {
 
-/// Below, a step on the processor is over before one on the GPU is (docs/performance.md).
+/// Unknowns below which the processor solves directly, which slender bodies want, and a run is over before the GPU has
+/// started (docs/performance.md).
 constexpr int kWorthwhile = 15000;
 
 }  // namespace
@@ -47,7 +48,7 @@ Backend choose_backend(const Simulation& s) {
   }
   if (!missing.empty() || (in_double && s.model.free_dof_count() < kWorthwhile)) return Backend::cpu;
   std::string reason;
-  return gpu::usable_devices(reason).empty() ? Backend::cpu : Backend::cuda;
+  return gpu::find_device(reason) ? Backend::cuda : Backend::cpu;
 }
 
 std::string precision_of(const Simulation& s, Backend backend) {

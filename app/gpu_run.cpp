@@ -2,6 +2,7 @@
 
 #include "app/run_scene.hpp"
 #include "app/solver_settings.hpp"
+#include "core/model/errors.hpp"
 #include "gpu/device.hpp"
 
 #include <fmt/format.h>
@@ -48,6 +49,10 @@ std::optional<RunReport> run_on_gpu(const Simulation& s, State& state, const Fac
     if (solver.backend != "auto") throw BackendError(e.what());
     fmt::print(stderr, "{}: warning: {}; the processor goes on{}\n", s.scene.path.string(), e.what(),
                solver.precision == "double" ? "" : ", in double precision");
+    return std::nullopt;
+  } catch (const InputError& e) {  // more of something than the GPU's code can number
+    if (seen.steps > 0 || solver.backend != "auto") throw;
+    fmt::print(stderr, "{}: warning: {}; the processor goes on\n", s.scene.path.string(), e.what());
     return std::nullopt;
   } catch (const gpu::NoDevice& e) {
     throw BackendError(e.what());

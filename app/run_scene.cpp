@@ -323,6 +323,7 @@ std::string describe(const SimulatedBody& b) {
 
 int check_scene(const RunOptions& options) {
   const Simulation s = load(options);
+  const Backend backend = choose_backend(s);
   for (const SimulatedBody& b : s.bodies)
     fmt::print("body {}: {}, {}, {}{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
                counted(at(b.body->node_count()), b.node_word()), counted(b.body->points().size(), "integration point"),
@@ -348,6 +349,7 @@ int check_scene(const RunOptions& options) {
       fmt::print("body {}: {} {} limits the time step\n", b.name,
                  b.body->cells().type == CellType::triangle ? "triangle" : "element", b.body->fastest_cell());
   fmt::print("memory: about {:.3g} MB\n", model_memory(s) / 1e6);
+  if (backend == Backend::cuda) fmt::print("computed on the GPU\n");
   fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
              s.warnings.size() == 1 ? "" : "s");
   return kDone;

@@ -29,56 +29,43 @@ bool runs() {
 
 }  // namespace
 
-bool built_with_cuda() { return true; }
-
-std::vector<DeviceInfo> usable_devices(std::string& reason) {
-  std::vector<DeviceInfo> devices;
+bool find_device(std::string& reason) {
   int driver = 0, runtime = 0, count = 0;
   cudaDriverGetVersion(&driver);
   cudaRuntimeGetVersion(&runtime);
   if (driver == 0) {
     reason = "no NVIDIA driver is installed";
-    return devices;
+    return false;
   }
   const cudaError_t status = cudaGetDeviceCount(&count);
   cudaGetLastError();
   if (status == cudaErrorInsufficientDriver) {
     reason =
         "the driver serves CUDA " + version(driver) + ", this build needs " + version(runtime) + ": update the driver";
-    return devices;
+    return false;
   }
   if (status != cudaSuccess || count == 0) {
     reason = std::string("no device was found (") + cudaGetErrorString(status) + ")";
-    return devices;
+    return false;
   }
-  int first = -1;
   for (int i = 0; i < count; ++i) {
     cudaDeviceProp p{};
     if (cudaGetDeviceProperties(&p, i) != cudaSuccess) continue;
-    DeviceInfo d{p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem, 0, driver, runtime};
     if (10 * p.major + p.minor < kOldest) {
-      reason = d.name + " has compute capability " + std::to_string(p.major) + "." + std::to_string(p.minor) +
-               ", at least 8.0 is needed";
+      reason = std::string(p.name) + " has compute capability " + std::to_string(p.major) + "." +
+               std::to_string(p.minor) + ", at least 8.0 is needed";
       continue;
     }
-    std::size_t total = 0;
     cudaSetDevice(i);
-    if (cudaMemGetInfo(&d.free_memory, &total) != cudaSuccess || !runs()) {
-      reason = d.name + " does not run this build's code";
-      continue;
-    }
-    devices.push_back(d);
-    if (first < 0) first = i;
+    if (runs()) return true;
+    reason = std::string(p.name) + " does not run this build's code";
   }
-  cudaSetDevice(first < 0 ? 0 : first);
-  return devices;
+  return false;
 }
 
-DeviceInfo require_device() {
+void require_device() {
   std::string reason;
-  const std::vector<DeviceInfo> devices = usable_devices(reason);
-  if (devices.empty()) throw NoDevice(reason + "; use --backend cpu");
-  return devices.front();
+  if (!find_device(reason)) throw NoDevice(reason + "; use --backend cpu");
 }
 
 }  // namespace fascia::gpu

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace fascia::gpu {
 
@@ -20,23 +18,11 @@ struct DeviceLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A graphics processor of this machine.
-struct DeviceInfo {
-  std::string name;
-  int major = 0, minor = 0;  ///< compute capability
-  int multiprocessors = 0;
-  std::size_t memory = 0, free_memory = 0;  ///< [bytes]
-  int driver = 0, runtime = 0;              ///< 1000 · major + 10 · minor
-};
+/// Takes the first device that this build can use; the others are left alone. False where there is none.
+/// @param reason  why: a sentence
+bool find_device(std::string& reason);
 
-/// The build has a CUDA backend.
-bool built_with_cuda();
-
-/// Devices that this build can use, the default one first; empty where there are none.
-/// @param reason  why there are none: a sentence
-std::vector<DeviceInfo> usable_devices(std::string& reason);
-
-/// The default device. @throws NoDevice  with the reason and a remedy
-DeviceInfo require_device();
+/// The same. @throws NoDevice  with the reason and a remedy
+void require_device();
 
 }  // namespace fascia::gpu

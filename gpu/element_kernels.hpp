@@ -125,25 +125,4 @@ struct ElementPoints<0, T> {
   FASCIA_HD std::size_t point(int q) const { return at(batch) * at(block.points) + at(q); }
 };
 
-/// Calls act.operator()<L, N>() for a block's law and size.
-template <class T, class Act>
-void with_kind(const ElementBlockOf<T>& block, const Act& act) {
-  const auto with_law = [&]<int N>() {
-    switch (block.law) {
-      case ElementLaw::linear:
-        return act.template operator()<ElementLaw::linear, N>();
-      case ElementLaw::corotational:
-        return act.template operator()<ElementLaw::corotational, N>();
-      case ElementLaw::st_venant_kirchhoff:
-        return act.template operator()<ElementLaw::st_venant_kirchhoff, N>();
-      case ElementLaw::neo_hookean:
-        return act.template operator()<ElementLaw::neo_hookean, N>();
-    }
-  };
-  if (block.one_point())
-    with_law.template operator()<4>();
-  else
-    with_law.template operator()<0>();
-}
-
 }  // namespace fascia::gpu::kernels

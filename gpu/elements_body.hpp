@@ -21,7 +21,7 @@ HistoryView Elements<Space>::history_of(const Block& block, const double* E, dou
 template <class Space>
 template <class T, class V>
 void Elements<Space>::average(const ElementBlockOf<T>& view, const Vec3d* u, const Vec3<V>* dx) {
-  kernels::with_kind(view, [&]<ElementLaw L, int N>() {
+  with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
     if constexpr (N == 4 && L != ElementLaw::corotational)
       Space::for_each(view.lanes(), kernels::ThetaPass<L, T, V>{view, u, dx});
   });
@@ -35,7 +35,7 @@ void Elements<Space>::forces(const NodesView& nodes, const PoseView& pose, const
     const ElementBlockView& view = block.view();
     if (view.averaged) average<double, double>(view, pose.u, nullptr);
     if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
-    kernels::with_kind(view, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
       run<Space>(
           kernels::ForcesPass<L, N>{{view, history_of(block, history.E, history.inverse_step), part_motion != nullptr},
                                     nodes,
@@ -66,7 +66,7 @@ void Elements<Space>::linearize_as() {
     if (view.averaged) average<T, double>(view, u_.data(), nullptr);
     if (!view.one_point()) run<Space>(kernels::GradientPass<T, double>{view, u_.data(), view.H});
     if (!view.averaged && view.law != ElementLaw::corotational) continue;
-    kernels::with_kind(view, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
       run<Space>(kernels::LinearizePass<L, N, T>{{view, {}, true}, u_.data()});
     });
   }
@@ -78,7 +78,7 @@ void Elements<Space>::product(const DirectionOf<T, V>& direction) {
   for (Block& block : blocks_) {
     const ElementBlockOf<T>& view = block.template view_of<T>();
     if (view.averaged) average<T, V>(view, u_.data(), direction.dx);
-    kernels::with_kind(view, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
       const kernels::ElementPass<L, N, T> pass(view, kept_history(block), false);
       if (N == 0 && !pass.split) run<Space>(kernels::GradientPass<T, V>{view, direction.dx, view.points_buffer});
       const bool full = tangent_ == Tangent::full;
@@ -102,7 +102,7 @@ template <class T>
 void Elements<Space>::add_diagonal_as(const NodesView& nodes, double* blocks) {
   for (int axis = 0; axis < 3; ++axis) {
     for (Block& block : blocks_)
-      kernels::with_kind(block.view(), [&]<ElementLaw L, int N>() {
+      with_element_kind(block.view().law, block.view().nodes, [&]<ElementLaw L, int N>() {
         run<Space>(kernels::DiagonalPass<L, N, T>{
             {block.template view_of<T>(), kept_history(block), true}, u_.data(), tangent_ == Tangent::full, axis});
       });
@@ -111,7 +111,7 @@ void Elements<Space>::add_diagonal_as(const NodesView& nodes, double* blocks) {
   for (Block& block : blocks_) {
     const ElementBlockOf<T>& view = block.template view_of<T>();
     if (!view.averaged) continue;
-    kernels::with_kind(view, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
       if constexpr (N == 4 && L != ElementLaw::corotational)
         Space::for_each(view.lanes(), kernels::ThetaGradientPass<L, T>{view, u_.data()});
     });
@@ -124,7 +124,7 @@ void Elements<Space>::store_strain(const PoseView& pose, double* E) {
   for (Block& block : blocks_) {
     const ElementBlockView& view = block.view();
     if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
-    kernels::with_kind(view, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
       run<Space>(kernels::StrainPass<L, N>{{view, {}, false}, pose.u, E + block.strain_begin});
     });
   }

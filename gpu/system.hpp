@@ -59,7 +59,6 @@ class System {
   const Model& model() const { return model_; }
   const SolverSettings& settings() const { return settings_; }
   InternalEnergy internal_energy() const { return internal_; }
-  double load_energy() const { return load_energy_; }
   /// By degrees of freedom, as MechanicalSystem::gradient().
   std::vector<double> gradient() const { return gradient_.downloaded(); }
   /// As MechanicalSystem::dependent_forces().

@@ -87,7 +87,7 @@ std::vector<Backend> available_backends(int threads) {
   std::vector<Backend> backends{cpu(1)};
   if (all > 1) backends.push_back(cpu(all));
   std::string reason;
-  if (!gpu::usable_devices(reason).empty()) backends.push_back({"cuda", 0, run_on_gpu});
+  if (gpu::find_device(reason)) backends.push_back({"cuda", 0, run_on_gpu});
   return backends;
 }
 

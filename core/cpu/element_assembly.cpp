@@ -152,7 +152,7 @@ void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
 void ElementExecutor::assemble(const At& state, BlockMatrix& matrix) {
   if (pair_slot_.empty()) find_pair_slots(matrix);
   if (block_.averaged) average(state);
-  with_kind([&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     for (std::size_t c = 0; c + 1 < block_.color_begin.size(); ++c) {
       const int first = block_.color_begin[c];
       pool_.for_ranges(block_.color_begin[c + 1] - first, 1,

@@ -65,7 +65,7 @@ void ElementExecutor::average_of(const At& state, std::span<const Vec3d> dx, std
 }
 
 void ElementExecutor::average(const At& state) {
-  with_kind([&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     if constexpr (N == 4 && L != ElementLaw::corotational)
       average_of(state, {}, node_pressure_,
                  [](const Mat3<Lanes>& H, const Mat3<Lanes>&) { return volumetric_strain<L>(H); });
@@ -74,7 +74,7 @@ void ElementExecutor::average(const At& state) {
 
 void ElementExecutor::average_direction(const At& state, std::span<const Vec3d> dx) {
   average(state);
-  with_kind([&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     if constexpr (N == 4 && L != ElementLaw::corotational)
       average_of(state, dx, node_theta_,
                  [](const Mat3<Lanes>& H, const Mat3<Lanes>& dH) { return contract(volumetric_gradient<L>(H), dH); });
@@ -91,7 +91,7 @@ double ElementExecutor::average_energy() const {
 /// Σ λ_a V_a G_a G_aᵀ with G_a = ∂θ_a/∂x, which reaches all nodes of the elements around a.
 void ElementExecutor::assemble_average(const At& state, BlockMatrix& matrix) {
   std::vector<Vec3d> element_gradient(at(block_.count) * 4);  // V/4 ∂θ/∂x of each element
-  with_kind([&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     if constexpr (N == 4 && L != ElementLaw::corotational) {
       for (int patch = 0; patch < block_.patch_count(); ++patch) {
         gather_patch(state.u, patch, slot_u_);

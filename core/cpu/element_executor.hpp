@@ -64,9 +64,6 @@ class ElementExecutor {
   void strain_of_patch(int patch, std::span<double> E) const;
   void gather_patch(std::span<const Vec3d> values, int patch, std::vector<Vec3d>& out) const;
   void find_pair_slots(const BlockMatrix& matrix);
-  /// Calls act.operator()<L, N>() for the block's law and size.
-  template <class Act>
-  void with_kind(const Act& act) const;
 
   int part_of_patch(int patch) const { return set_.node_part[at(block_.nodes_of_patch(patch)[0])]; }
 
@@ -92,25 +89,5 @@ class ElementExecutor {
   std::vector<double> slot_theta_;                  ///< Σ V θ/4 by patch
   std::vector<double> node_pressure_, node_theta_;  ///< λ times the mean of θ, and of its derivative [Pa]
 };
-
-template <class Act>
-void ElementExecutor::with_kind(const Act& act) const {
-  const auto with_law = [&]<int N>() {
-    switch (block_.law) {
-      case ElementLaw::linear:
-        return act.template operator()<ElementLaw::linear, N>();
-      case ElementLaw::corotational:
-        return act.template operator()<ElementLaw::corotational, N>();
-      case ElementLaw::st_venant_kirchhoff:
-        return act.template operator()<ElementLaw::st_venant_kirchhoff, N>();
-      case ElementLaw::neo_hookean:
-        return act.template operator()<ElementLaw::neo_hookean, N>();
-    }
-  };
-  if (block_.nodes == 4)
-    with_law.template operator()<4>();
-  else
-    with_law.template operator()<0>();
-}
 
 }  // namespace fascia

@@ -113,7 +113,7 @@ template <ElementLaw L, int N>
 
 void ElementExecutor::compute_forces(const At& state, bool energies, std::span<const double> part_motion) {
   if (block_.averaged) average(state);
-  with_kind([&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
       const double motion = energies ? part_motion[at(part_of_patch(patch))] : 0.0;
       forces_of_patch<L, N>(state, patch, energies, motion);
@@ -155,7 +155,7 @@ void ElementExecutor::strain_of_patch(int patch, std::span<double> E) const {
 }
 
 void ElementExecutor::store_strain(std::span<const Vec3d> u, std::span<double> E) {
-  with_kind([&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
       gather_patch(u, patch, slot_u_);
       strain_of_patch<L, N>(patch, E);

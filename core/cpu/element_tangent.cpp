@@ -39,7 +39,7 @@ template <ElementLaw L, int N>
 void ElementExecutor::compute_product(const At& state, std::span<const Vec3d> dx) {
   slot_d_.resize(slot_u_.size());
   if (block_.averaged) average_direction(state, dx);
-  with_kind([&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) { product_of_patch<L, N>(state, patch, dx); });
   });
 }

@@ -33,6 +33,27 @@ struct ElementMaterial {
   T penalty;     ///< of the cell's volume [Pa]
 };
 
+/// Calls act.operator()<L, N>() for a law and a number of nodes; N is 4 or, of others, 0.
+template <class Act>
+void with_element_kind(ElementLaw law, int nodes, const Act& act) {
+  const auto with_law = [&]<int N>() {
+    switch (law) {
+      case ElementLaw::linear:
+        return act.template operator()<ElementLaw::linear, N>();
+      case ElementLaw::corotational:
+        return act.template operator()<ElementLaw::corotational, N>();
+      case ElementLaw::st_venant_kirchhoff:
+        return act.template operator()<ElementLaw::st_venant_kirchhoff, N>();
+      case ElementLaw::neo_hookean:
+        return act.template operator()<ElementLaw::neo_hookean, N>();
+    }
+  };
+  if (nodes == 4)
+    with_law.template operator()<4>();
+  else
+    with_law.template operator()<0>();
+}
+
 /// Strain that the law and its damping see: small strain, or Green-Lagrange.
 template <ElementLaw L, class T>
 FASCIA_HD Mat3<T> element_strain(const Mat3<T>& H) {

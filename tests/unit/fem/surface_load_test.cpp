@@ -2,7 +2,7 @@
 #include "core/model/body_surface.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "tests/support/derivatives.hpp"
-#include "tests/unit/fem/element_models.hpp"
+#include "tests/unit/fem/surface_models.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,6 @@ namespace {
 
 using namespace test;
 
-/// A model with one surface load on all faces of its body, or on those without the face of the lowest x.
-struct Loaded {
-  Model model;
-  std::shared_ptr<ModelBody> body;
-};
-
 enum class Kind { pressure, bulk, weight, all };
 
 struct Case {
@@ -27,26 +21,6 @@ struct Case {
   std::function<Loaded()> build;
   Kind kind = Kind::all;
 };
-
-Loaded elements(ElementShape shape) {
-  ElementOptions o;
-  o.shape = shape;
-  ElementModel built = element_model(o);
-  return {std::move(built.model), std::shared_ptr<ModelBody>(std::move(built.body))};
-}
-
-Loaded frames(bool affine) {
-  BlockOptions o;
-  o.grid = {3, 2, 2};
-  o.affine = affine;
-  GridSpec spec = block_spec(o);
-  spec.domain.surface = box_surface({}, o.size, 2, 1, 1);
-  Loaded built;
-  PointSetBuilder points;
-  built.body = std::make_shared<GridBody>(spec, built.model, points);
-  built.model.points = std::move(points).finish(built.model.frame_kind);
-  return built;
-}
 
 void add_load(Loaded& built, Kind kind, const std::vector<BodyFace>& faces) {
   SurfaceLoad load = surface_of(*built.body, faces);
@@ -193,8 +167,13 @@ std::vector<Case> cases() {
           {"tet10", [] { return elements(ElementShape::tet10); }},
           {"hex8", [] { return elements(ElementShape::hex8); }},
           {"hex20", [] { return elements(ElementShape::hex20); }},
-          {"rigid_frames", [] { return frames(false); }},
-          {"affine_frames", [] { return frames(true); }}};
+          {"rigid_frames",
+           [] {
+             return frames(false, {2, 1, 1});
+           }},
+          {"affine_frames", [] {
+             return frames(true, {2, 1, 1});
+           }}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Surfaces, SurfaceLoadTest, testing::ValuesIn(cases()),

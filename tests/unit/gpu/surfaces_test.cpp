@@ -2,7 +2,7 @@
 
 #include "core/model/body_surface.hpp"
 #include "core/solver/surface_loads.hpp"
-#include "tests/unit/fem/element_models.hpp"
+#include "tests/unit/fem/surface_models.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 
 #include <gtest/gtest.h>
@@ -15,31 +15,6 @@ namespace fascia {
 namespace {
 
 using namespace test;
-
-struct Loaded {
-  Model model;
-  std::shared_ptr<ModelBody> body;
-};
-
-Loaded elements(ElementShape shape) {
-  ElementOptions o;
-  o.shape = shape;
-  ElementModel built = element_model(o);
-  return {std::move(built.model), std::shared_ptr<ModelBody>(std::move(built.body))};
-}
-
-Loaded frames(bool affine) {
-  BlockOptions o;
-  o.grid = {3, 2, 2};
-  o.affine = affine;
-  GridSpec spec = block_spec(o);
-  spec.domain.surface = box_surface({}, o.size, 6, 5, 5);
-  Loaded built;
-  PointSetBuilder points;
-  built.body = std::make_shared<GridBody>(spec, built.model, points);
-  built.model.points = std::move(points).finish(built.model.frame_kind);
-  return built;
-}
 
 /// A closed surface that is full of something heavy, one that is only pressed on, one with a hole, and a second volume.
 void add_loads(Loaded& built) {
@@ -191,10 +166,12 @@ TEST_P(SurfacesTest, PressuresOfNewton) {
 }
 
 std::vector<Case> cases() {
-  return {
-      {"tet4", [] { return elements(ElementShape::tet4); }}, {"tet10", [] { return elements(ElementShape::tet10); }},
-      {"hex8", [] { return elements(ElementShape::hex8); }}, {"hex20", [] { return elements(ElementShape::hex20); }},
-      {"rigid_frames", [] { return frames(false); }},        {"affine_frames", [] { return frames(true); }}};
+  return {{"tet4", [] { return elements(ElementShape::tet4); }},
+          {"tet10", [] { return elements(ElementShape::tet10); }},
+          {"hex8", [] { return elements(ElementShape::hex8); }},
+          {"hex20", [] { return elements(ElementShape::hex20); }},
+          {"rigid_frames", [] { return frames(false, {6, 5, 5}); }},
+          {"affine_frames", [] { return frames(true, {6, 5, 5}); }}};
 }
 
 INSTANTIATE_TEST_SUITE_P(, SurfacesTest, testing::ValuesIn(cases()),

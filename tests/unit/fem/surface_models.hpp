@@ -1,0 +1,38 @@
+#pragma once
+
+#include "tests/unit/fem/element_models.hpp"
+
+#include <array>
+#include <memory>
+
+/// Bodies with surfaces for tests of surface loads.
+namespace fascia::test {
+
+/// A model of one body.
+struct Loaded {
+  Model model;
+  std::shared_ptr<ModelBody> body;
+};
+
+inline Loaded elements(ElementShape shape) {
+  ElementOptions o;
+  o.shape = shape;
+  ElementModel built = element_model(o);
+  return {std::move(built.model), std::shared_ptr<ModelBody>(std::move(built.body))};
+}
+
+/// @param cells  of the surface along x, y, z
+inline Loaded frames(bool affine, const std::array<int, 3>& cells) {
+  BlockOptions o;
+  o.grid = {3, 2, 2};
+  o.affine = affine;
+  GridSpec spec = block_spec(o);
+  spec.domain.surface = box_surface({}, o.size, cells[0], cells[1], cells[2]);
+  Loaded built;
+  PointSetBuilder points;
+  built.body = std::make_shared<GridBody>(spec, built.model, points);
+  built.model.points = std::move(points).finish(built.model.frame_kind);
+  return built;
+}
+
+}  // namespace fascia::test
