@@ -28,7 +28,11 @@ std::string not_on_gpu(const Simulation& s) {
 Backend choose_backend(const Simulation& s) {
   const std::string& asked = s.scene.solver.backend;
   const bool in_double = s.scene.solver.precision == "double";
+  const int gpus = s.scene.solver.gpus;
   if (asked == "cpu") {
+    if (gpus > 1)
+      throw BackendError(
+          fmt::format("{}: solver.gpus = {} needs GPUs; use gpus = 1, or --backend auto", s.scene.path.string(), gpus));
     if (in_double) return Backend::cpu;
     throw BackendError(
         fmt::format("{}: solver.precision = \"{}\" needs the GPU; use precision = \"double\", or --backend auto",
@@ -46,7 +50,7 @@ Backend choose_backend(const Simulation& s) {
           fmt::format("{}: the GPU does not compute {}; use --backend cpu, or auto", s.scene.path.string(), missing));
     return Backend::cuda;
   }
-  if (!missing.empty() || (in_double && s.model.free_dof_count() < kWorthwhile)) return Backend::cpu;
+  if (!missing.empty() || (in_double && gpus == 1 && s.model.free_dof_count() < kWorthwhile)) return Backend::cpu;
   std::string reason;
   return gpu::find_device(reason) ? Backend::cuda : Backend::cpu;
 }
@@ -55,11 +59,14 @@ std::string precision_of(const Simulation& s, Backend backend) {
   return backend == Backend::cuda ? s.scene.solver.precision : "double";
 }
 
-std::string lost_precision(const Simulation& s, Backend backend) {
-  const std::string& asked = s.scene.solver.precision;
-  if (precision_of(s, backend) == asked) return "";
+std::string not_as_asked(const Simulation& s, Backend backend) {
+  const Solver& solver = s.scene.solver;
+  const bool in_double = solver.precision == "double";
+  if (backend == Backend::cuda || (in_double && solver.gpus == 1)) return "";
   const std::string missing = not_on_gpu(s);
-  return fmt::format("precision = \"{}\" needs the GPU, {}: computed in double on the processor", asked,
+  const std::string asked =
+      in_double ? fmt::format("gpus = {}", solver.gpus) : fmt::format("precision = \"{}\"", solver.precision);
+  return fmt::format("{} needs the GPU, {}: computed in double on the processor", asked,
                      missing.empty() ? "and there is none" : "which does not compute " + missing);
 }
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace fascia::app {
 
 namespace {
@@ -20,12 +22,44 @@ RunReport broken_off(RunReport seen, const std::string& why) {
   return seen;
 }
 
+void warn(const Simulation& s, const std::string& text) {
+  fmt::print(stderr, "{}: warning: {}\n", s.scene.path.string(), text);
+}
+
+/// GPUs that share the run. @throws BackendError  fewer than were asked for
+std::vector<int> devices_of(const Simulation& s) {
+  const Solver& solver = s.scene.solver;
+  if (solver.gpus == 1) return {};
+  std::string reason;
+  std::vector<int> devices = gpu::find_devices(solver.gpus, reason);
+  const int found = static_cast<int>(devices.size());
+  if (found == solver.gpus) return devices;
+  if (solver.backend != "auto") throw BackendError(fmt::format("gpus = {}, but {}", solver.gpus, reason));
+  warn(s, fmt::format("gpus = {}, but {}; {} compute{}", solver.gpus, reason, found, found == 1 ? "s" : ""));
+  return devices;
+}
+
+/// Calls the kind of run that the scene asks for.
+RunReport run_kind(const Simulation& s, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                   const gpu::DeviceObserver& watch, const std::function<bool(const StepInfo&)>& observed) {
+  const Solver& solver = s.scene.solver;
+  if (solver.kind == SolverKind::statics)
+    return gpu::run_statics(s.model, state, factors, settings, {solver.load_steps}, watch);
+  if (solver.kind == SolverKind::central_differences)
+    return gpu::run_explicit(s.model, state, factors, settings, {solver.time_step, solver.steps, observed}, watch);
+  return gpu::run_implicit(s.model, state, factors, settings, {scheme_of(solver.kind), solver.time_step, solver.steps},
+                           watch);
+}
+
 }  // namespace
 
-std::optional<RunReport> run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors,
-                                    const SolverSettings& settings, const gpu::DeviceObserver& observe,
-                                    const std::function<bool(const StepInfo&)>& observed) {
+std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors,
+                                 const SolverSettings& asked, const gpu::DeviceObserver& observe,
+                                 const std::function<bool(const StepInfo&)>& observed) {
   const Solver& solver = s.scene.solver;
+  const bool may_choose = solver.backend == "auto";
+  SolverSettings settings = asked;
+  settings.devices = devices_of(s);
   RunReport seen;
   const gpu::DeviceObserver watch = [&](const StepInfo& step, gpu::DeviceStep& device) {
     seen.steps = step.step;
@@ -35,24 +69,28 @@ std::optional<RunReport> run_on_gpu(const Simulation& s, State& state, const Fac
     seen.residual = std::max(seen.residual, step.newton.last.relative);
     return observe(step, device);
   };
+  const auto gpus = [&] { return std::max(1, static_cast<int>(settings.devices.size())); };
+  const auto run = [&] { return GpuRun{run_kind(s, state, factors, settings, watch, observed), gpus()}; };
   try {
-    if (solver.kind == SolverKind::statics)
-      return gpu::run_statics(s.model, state, factors, settings, {solver.load_steps}, watch);
-    if (solver.kind == SolverKind::central_differences)
-      return gpu::run_explicit(s.model, state, factors, settings, {solver.time_step, solver.steps, observed}, watch);
-    return gpu::run_implicit(s.model, state, factors, settings,
-                             {scheme_of(solver.kind), solver.time_step, solver.steps}, watch);
+    try {
+      return run();
+    } catch (const gpu::NotShared& e) {
+      if (!may_choose) throw BackendError(fmt::format("{}; use gpus = 1", e.what()));
+      warn(s, fmt::format("{}; one computes", e.what()));
+      settings.devices.clear();
+      return run();
+    }
   } catch (const gpu::DeviceLost& e) {
-    return broken_off(seen, e.what());
+    return GpuRun{broken_off(seen, e.what()), gpus()};
   } catch (const gpu::DeviceMemoryError& e) {
-    if (seen.steps > 0) return broken_off(seen, e.what());
-    if (solver.backend != "auto") throw BackendError(e.what());
-    fmt::print(stderr, "{}: warning: {}; the processor goes on{}\n", s.scene.path.string(), e.what(),
-               solver.precision == "double" ? "" : ", in double precision");
+    if (seen.steps > 0) return GpuRun{broken_off(seen, e.what()), gpus()};
+    if (!may_choose) throw BackendError(e.what());
+    warn(s, fmt::format("{}; the processor goes on{}", e.what(),
+                        solver.precision == "double" ? "" : ", in double precision"));
     return std::nullopt;
   } catch (const InputError& e) {  // more of something than the GPU's code can number
-    if (seen.steps > 0 || solver.backend != "auto") throw;
-    fmt::print(stderr, "{}: warning: {}; the processor goes on\n", s.scene.path.string(), e.what());
+    if (seen.steps > 0 || !may_choose) throw;
+    warn(s, fmt::format("{}; the processor goes on", e.what()));
     return std::nullopt;
   } catch (const gpu::NoDevice& e) {
     throw BackendError(e.what());

@@ -3,6 +3,7 @@
 #include "app/scene/errors.hpp"
 #include "app/version.hpp"
 #include "core/model/errors.hpp"
+#include "core/solver/settings.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -20,6 +21,8 @@ void add_scene_options(CLI::App& command, RunOptions& options) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--backend", options.backend, "cpu, cuda or auto")->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+  command.add_option("--gpus", options.gpus, "GPUs that share the points of meshless solids")
+      ->check(CLI::Range(1, fascia::kMostDevices));
 }
 
 CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
@@ -37,6 +40,9 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
       ->check(CLI::IsMember({"cpu", "cuda"}));
   bench->add_option("--threads", options.threads, "threads beside the run on one, 0 for all")
       ->check(CLI::NonNegativeNumber);
+  bench->add_option("--gpus", options.gpus, "numbers of GPUs that share a run, beside one another: --gpus 1,2,4")
+      ->delimiter(',')
+      ->check(CLI::Range(1, fascia::kMostDevices));
   bench->add_option("--output", options.output, "directory for the table, CSV, JSON and the scenes");
   bench->add_flag("--json", options.json, "print JSON, and nothing else, on standard output");
   bench->add_flag("--quiet", options.quiet, "do not say what is being timed");

@@ -51,8 +51,8 @@ struct RunTimes {
 /// summary.json. Modes put a list into the probes of quantity frequency.
 /// @param fluids  of Simulation::fluids at the end; none of modes
 /// @param couplings  see coupling_report()
-nlohmann::ordered_json summary(const Simulation& s, Backend backend, const RunReport& run, const RunTimes& times,
-                               int threads, const std::vector<nlohmann::json>& probe_values,
+nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, const RunReport& run,
+                               const RunTimes& times, int threads, const std::vector<nlohmann::json>& probe_values,
                                double stabilization_energy, const std::vector<FluidState>& fluids,
                                const CouplingReports& couplings);
 

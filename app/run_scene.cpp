@@ -39,6 +39,7 @@ Simulation load(const RunOptions& options) {
   if (options.output) scene.output.directory = *options.output;
   if (options.backend) scene.solver.backend = *options.backend;
   if (options.threads) scene.solver.threads = *options.threads;
+  if (options.gpus) scene.solver.gpus = *options.gpus;
   Simulation s = build_simulation(std::move(scene));
   if (s.scene.solver.kind == SolverKind::central_differences) {
     ThreadPool pool(s.scene.solver.threads);
@@ -76,7 +77,8 @@ class SaveRule {
 struct Outcome {
   RunReport run;
   Backend backend = Backend::cpu;  ///< that took the steps
-  bool failed = false;             ///< not only steps that were accepted as they were
+  int gpus = 0;
+  bool failed = false;  ///< not only steps that were accepted as they were
   std::vector<std::string> warnings;
   RunTimes times;
   std::vector<nlohmann::json> probes;
@@ -133,12 +135,13 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
   // Whether the GPU did it.
   const auto on_gpu = [&](const gpu::DeviceObserver& look, const std::function<bool(const StepInfo&)>& observed = {}) {
     if (out.backend != Backend::cuda) return false;
-    const std::optional<RunReport> run = run_on_gpu(s, state, factors, settings, look, observed);
+    const std::optional<GpuRun> run = run_on_gpu(s, state, factors, settings, look, observed);
     if (!run) {
       out.backend = Backend::cpu;
       return false;
     }
-    out.run = *run;
+    out.run = run->report;
+    out.gpus = run->gpus;
     return true;
   };
   const Clock::time_point start = Clock::now();
@@ -279,7 +282,7 @@ int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   Simulation s = load(options);
   const Backend backend = choose_backend(s);
-  if (const std::string lost = lost_precision(s, backend); !lost.empty()) {
+  if (const std::string lost = not_as_asked(s, backend); !lost.empty()) {
     fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), lost);
     s.warnings.push_back(lost);
   }
@@ -298,7 +301,7 @@ int run_scene(const RunOptions& options) {
     fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
     s.warnings.push_back(w);
   }
-  const nlohmann::ordered_json j = summary(s, out.backend, out.run, out.times, pool.size(), out.probes,
+  const nlohmann::ordered_json j = summary(s, out.backend, out.gpus, out.run, out.times, pool.size(), out.probes,
                                            out.stabilization, out.fluids, out.couplings);
   io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
   directory.commit();

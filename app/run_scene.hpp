@@ -13,7 +13,7 @@ struct RunOptions {
   std::vector<std::string> overrides;
   std::optional<std::filesystem::path> output;
   std::optional<std::string> backend;
-  std::optional<int> threads;
+  std::optional<int> threads, gpus;
   bool quiet = false, json = false, verbose = false;
 };
 

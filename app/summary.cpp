@@ -39,8 +39,8 @@ double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
 }  // namespace
 
-nlohmann::ordered_json summary(const Simulation& s, Backend backend, const RunReport& run, const RunTimes& times,
-                               int threads, const std::vector<nlohmann::json>& probe_values,
+nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, const RunReport& run,
+                               const RunTimes& times, int threads, const std::vector<nlohmann::json>& probe_values,
                                double stabilization_energy, const std::vector<FluidState>& fluids,
                                const CouplingReports& couplings) {
   nlohmann::ordered_json j;
@@ -50,6 +50,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, const RunRe
   j["status"] = status_name(run.status);
   j["message"] = run.message;
   j["backend"] = name_of(backend);
+  j["gpus"] = gpus;
   j["precision"] = precision_of(s, backend);
   j["threads"] = threads;
   j["bodies"] = nlohmann::ordered_json::object();

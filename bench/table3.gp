@@ -15,7 +15,7 @@ set title "Bosman, Duriez and Cotin 2014, table 3"
 
 # Columns of the CSV: 3 setting, 4 points, 8 backend, 9 threads, 11 step_ms, 17 and 18 the paper's.
 ours(backend, several, value) = strcol(3) eq setting && strcol(8) eq backend && \
-  (backend ne "cpu" || (several ? column(9) > 1 : column(9) == 1)) ? value : NaN
+  (backend eq "cuda" ? column(19) == 1 : several ? column(9) > 1 : column(9) == 1) ? value : NaN
 there(backend) = int(system(sprintf("grep -c ',%s,' '%s'; true", backend, csv))) > 0
 plot csv using 4:(ours("cpu", 0, column(17))) with linespoints lc rgb "#999999" pt 6 dt 2 title "paper, one thread", \
   csv using 4:(ours("cpu", 0, column(18))) with linespoints lc rgb "#999999" pt 4 dt 3 title "paper, GTX 570", \

@@ -12,8 +12,9 @@
 #include <string>
 
 /// Time of 60 CG iterations on tiles, after checks of products, forces, residuals and repeatability.
-///   tile_benchmark [points:influences:bits:drilling:tile:resident ...]
+///   tile_benchmark [points:influences:bits:drilling:tile:resident:gpus ...]
 /// bits: 64 or 32 of the constants; drilling: 0 or 1; tile: 0 as usual, 64, 128 or 256; resident: 0 or 1.
+/// gpus: shares of as many of them as there are.
 namespace fascia::bench {
 namespace {
 
@@ -22,7 +23,7 @@ constexpr int kMostChecked = 1'100'000;  // points
 constexpr int kMostSolved = 40'000;      // points, by the processor too
 
 struct Case {
-  int points = 0, influences = 4, bits = 64, drilling = 0, tile = 0, resident = 1;
+  int points = 0, influences = 4, bits = 64, drilling = 0, tile = 0, resident = 1, gpus = 1;
 };
 
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -119,10 +120,13 @@ void check_residuals(TileSolver& solver, const TileReference& reference, const T
 }
 
 void run(const Case& c, const TileProblem& problem, ThreadPool& pool) {
-  std::printf("case %d points, K = %d, fp%d constants, drilling %d, tile %d, resident %d\n", c.points, c.influences,
-              c.bits, c.drilling, c.tile, c.resident);
-  const auto solver = TileSolver::make(
-      problem.points, {c.bits == 32 ? TileConstants::float32 : TileConstants::float64, c.resident != 0, c.tile}, pool);
+  std::printf("case %d points, K = %d, fp%d constants, drilling %d, tile %d, resident %d, GPUs %d\n", c.points,
+              c.influences, c.bits, c.drilling, c.tile, c.resident, c.gpus);
+  TileSolverSettings settings{c.bits == 32 ? TileConstants::float32 : TileConstants::float64, c.resident != 0, c.tile};
+  int devices = 0;
+  tile::check(cudaGetDeviceCount(&devices), "counting GPUs");
+  for (int i = 0; i < c.gpus && c.gpus > 1; ++i) settings.devices.push_back(i % devices);
+  const auto solver = TileSolver::make(problem.points, settings, pool);
   if (solver == nullptr) {
     std::printf("  refused\n");
     return;
@@ -166,16 +170,17 @@ void run(const Case& c, const TileProblem& problem, ThreadPool& pool) {
               std::pow(report.relative_residual, 2), std::pow(better.relative_residual, 2), report.iterations,
               better.iterations);
   std::printf(
-      "RESULT %d K%d fp%d drill%d tile%d %s: 60 its %.3f ms, block-Jacobi %.3f; product %.4f, forces %.4f, "
+      "RESULT %d K%d fp%d drill%d tile%d %s GPUs %d: 60 its %.3f ms, block-Jacobi %.3f; product %.4f, forces %.4f, "
       "linearize %.4f, build block-Jacobi %.4f\n",
-      c.points, c.influences, c.bits, c.drilling, layout.tile_size, solver->resident() ? "one" : "two", plain,
+      c.points, c.influences, c.bits, c.drilling, layout.tile_size, solver->resident() ? "one" : "two", c.gpus, plain,
       preconditioned, product, forces, linearize, jacobi);
   std::fflush(stdout);
 }
 
 Case parse(const char* text) {
   Case c;
-  std::sscanf(text, "%d:%d:%d:%d:%d:%d", &c.points, &c.influences, &c.bits, &c.drilling, &c.tile, &c.resident);
+  std::sscanf(text, "%d:%d:%d:%d:%d:%d:%d", &c.points, &c.influences, &c.bits, &c.drilling, &c.tile, &c.resident,
+              &c.gpus);
   return c;
 }
 

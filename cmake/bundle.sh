@@ -10,7 +10,7 @@ usage: cmake/bundle.sh [--build DIR] [--leave-out GLOB]... OUT [PROGRAM...]
   OUT              a folder that is made anew, with OUT.tar.gz beside it
   PROGRAM...       programs of the build; default: fascia
   --build DIR      default: build/release
-  --leave-out GLOB a library that the other machine has, for example 'libnccl*'
+  --leave-out GLOB a library that the other machine has, for example 'libvtk*'
 
 The bundle holds the programs, stripped, every library that they load with the C library and its loader, the units
 database and the scenes. Run OUT/bin/PROGRAM, from anywhere. GPU drivers are the other machine's own. A build tuned for

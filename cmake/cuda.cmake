@@ -1,11 +1,10 @@
 # The CUDA backend: in the build where there is a toolkit of version 12 or later. Sets FASCIA_HAS_CUDA, which enables the
-# language, FASCIA_HAS_NCCL, and FASCIA_CUDA_STATE, one line that says what was found.
+# language, and FASCIA_CUDA_STATE, one line that says what was found.
 set(FASCIA_CUDA AUTO CACHE STRING "CUDA backend: AUTO (where there is a toolkit), ON or OFF")
 set_property(CACHE FASCIA_CUDA PROPERTY STRINGS AUTO ON OFF)
 set(FASCIA_CUDA_ARCHITECTURES "" CACHE STRING "GPU architectures, as in CMAKE_CUDA_ARCHITECTURES; this machine's GPUs, or 80-virtual, where empty")
 set(FASCIA_CUDA_OLDEST 12.0)
 set(FASCIA_HAS_CUDA OFF)
-set(FASCIA_HAS_NCCL OFF)
 
 # The toolkit's compiler: the one named, on the PATH, or in the usual places. Sets FASCIA_NVCC and FASCIA_NVCC_VERSION.
 function(find_nvcc)
@@ -104,17 +103,7 @@ if(FASCIA_HAS_CUDA)
     set(CMAKE_CUDA_COMPILER_LAUNCHER ${CCACHE})
   endif()
 
-  get_filename_component(FASCIA_CUDA_ROOT ${CMAKE_CUDA_COMPILER} REALPATH)
-  get_filename_component(FASCIA_CUDA_ROOT ${FASCIA_CUDA_ROOT}/../.. ABSOLUTE)
-  find_path(NCCL_INCLUDE nccl.h HINTS ${FASCIA_CUDA_ROOT} ENV NCCL_ROOT PATH_SUFFIXES include)
-  find_library(NCCL_LIBRARY nccl HINTS ${FASCIA_CUDA_ROOT} ENV NCCL_ROOT PATH_SUFFIXES lib64 lib)
-  if(NCCL_INCLUDE AND NCCL_LIBRARY)
-    set(FASCIA_HAS_NCCL ON)
-    add_library(nccl INTERFACE)
-    target_include_directories(nccl SYSTEM INTERFACE ${NCCL_INCLUDE})
-    target_link_libraries(nccl INTERFACE ${NCCL_LIBRARY})
-  endif()
   string(REPLACE ";" ", " FASCIA_CUDA_STATE "${CMAKE_CUDA_ARCHITECTURES}")
   set(FASCIA_CUDA_STATE "toolkit ${FASCIA_NVCC_VERSION}, for ${FASCIA_CUDA_STATE}")
 endif()
-message(STATUS "CUDA backend: ${FASCIA_CUDA_STATE}; several GPUs (NCCL): ${FASCIA_HAS_NCCL}")
+message(STATUS "CUDA backend: ${FASCIA_CUDA_STATE}")

@@ -29,26 +29,27 @@ bool runs() {
 
 }  // namespace
 
-bool find_device(std::string& reason) {
+std::vector<int> find_devices(int wanted, std::string& reason) {
+  std::vector<int> found;
   int driver = 0, runtime = 0, count = 0;
   cudaDriverGetVersion(&driver);
   cudaRuntimeGetVersion(&runtime);
   if (driver == 0) {
     reason = "no NVIDIA driver is installed";
-    return false;
+    return found;
   }
   const cudaError_t status = cudaGetDeviceCount(&count);
   cudaGetLastError();
   if (status == cudaErrorInsufficientDriver) {
     reason =
         "the driver serves CUDA " + version(driver) + ", this build needs " + version(runtime) + ": update the driver";
-    return false;
+    return found;
   }
   if (status != cudaSuccess || count == 0) {
     reason = std::string("no device was found (") + cudaGetErrorString(status) + ")";
-    return false;
+    return found;
   }
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < count && static_cast<int>(found.size()) < wanted; ++i) {
     cudaDeviceProp p{};
     if (cudaGetDeviceProperties(&p, i) != cudaSuccess) continue;
     if (10 * p.major + p.minor < kOldest) {
@@ -57,11 +58,18 @@ bool find_device(std::string& reason) {
       continue;
     }
     cudaSetDevice(i);
-    if (runs()) return true;
-    reason = std::string(p.name) + " does not run this build's code";
+    if (runs())
+      found.push_back(i);
+    else
+      reason = std::string(p.name) + " does not run this build's code";
   }
-  return false;
+  if (!found.empty()) cudaSetDevice(found.front());
+  if (reason.empty() && static_cast<int>(found.size()) < wanted)
+    reason = "this machine has " + std::to_string(count) + (count == 1 ? " GPU" : " GPUs");
+  return found;
 }
+
+bool find_device(std::string& reason) { return !find_devices(1, reason).empty(); }
 
 void require_device() {
   std::string reason;

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace fascia::gpu {
 
@@ -17,6 +18,15 @@ struct DeviceMemoryError : std::runtime_error {
 struct DeviceLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// What several devices do not compute together; one may.
+struct NotShared : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The first devices that this build can use, `count` at most, the first of which is taken.
+/// @param reason  why there are not as many: a sentence
+std::vector<int> find_devices(int count, std::string& reason);
 
 /// Takes the first device that this build can use; the others are left alone. False where there is none.
 /// @param reason  why: a sentence

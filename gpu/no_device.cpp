@@ -4,6 +4,11 @@
 /// A build without the CUDA toolkit.
 namespace fascia::gpu {
 
+std::vector<int> find_devices(int, std::string& reason) {
+  reason = "this build has no CUDA backend";
+  return {};
+}
+
 bool find_device(std::string& reason) {
   reason = "this build has no CUDA backend";
   return false;

@@ -23,7 +23,7 @@ using DeviceObserver = std::function<bool(const StepInfo&, DeviceStep&)>;
 
 /// run_statics() and run_implicit() with everything on the device. The state that was reached is copied back, also
 /// where a step did not converge; where an error was thrown, it is the last one that was looked at.
-/// @throws NoDevice, DeviceMemoryError, DeviceLost
+/// @throws NoDevice, DeviceMemoryError, DeviceLost, NotShared
 RunReport run_statics(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
                       const StaticsSettings& statics, const DeviceObserver& observe);
 RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,

@@ -105,6 +105,8 @@ class System {
   void multiply(const kernels::ProductView<T, V>& w);
   template <class T, class V>
   void gather_product(const kernels::ProductView<T, V>& w);
+  std::string not_in_tiles() const;
+  /// @throws NotShared
   void make_tiles();
   /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
   bool use_tiles() const {

@@ -68,28 +68,48 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   if constexpr (Space::kHasTiles) make_tiles();
 }
 
-/// Where the model is solids of rigid frames that move by themselves, held in world axes. Their vectors are of 64 bits.
+/// Why tiles do not compute the model, whatever its points are; empty where they may. They hold solids of rigid frames
+/// that move by themselves, in world axes, and vectors of 64 bits.
+template <class Space>
+std::string System<Space>::not_in_tiles() const {
+  const Preconditioner kind = settings_.preconditioner;
+  if (const std::string refusal = not_for_tiles(model_.points); !refusal.empty()) return refusal;
+  if (settings_.precision == Precision::single) return "precision is single";
+  if (kind != Preconditioner::automatic && kind != Preconditioner::block_jacobi && kind != Preconditioner::none)
+    return "the preconditioner is not block-Jacobi";
+  if (filter_.turns()) return "a constraint has axes of its own";
+  if (!dependents_.empty()) return "the model has nodes that depend on others";
+  if (!surfaces_.empty()) return "a load acts on a surface that moves";
+  if (!model_.tethers.empty()) return "a boundary is held by springs";
+  return "";
+}
+
 template <class Space>
 void System<Space>::make_tiles() {
-  const Preconditioner kind = settings_.preconditioner;
-  const bool known =
-      kind == Preconditioner::automatic || kind == Preconditioner::block_jacobi || kind == Preconditioner::none;
-  if (settings_.precision == Precision::single) return;
-  if (!known || filter_.turns() || !dependents_.empty() || !surfaces_.empty() || !model_.tethers.empty()) return;
-  const TilePointsResult points = tile_points(model_.points, model_.rest_position);
-  if (!points.refusal.empty()) return;
-  TileSolverSettings settings;
-  if (settings_.precision == Precision::mixed) settings.constants = TileConstants::float32;
-  ThreadPool pool(0);
-  try {
-    tiles_ = TileSolver::make(points.points, settings, pool);
-  } catch (const DeviceMemoryError&) {
-    return;  // groups of points need less
+  const bool shared = settings_.devices.size() > 1;
+  std::string refusal = not_in_tiles();
+  TilePointsResult points;
+  if (refusal.empty()) {
+    points = tile_points(model_.points, model_.rest_position);
+    refusal = points.refusal;
   }
+  if (refusal.empty()) {
+    TileSolverSettings settings;
+    if (settings_.precision == Precision::mixed) settings.constants = TileConstants::float32;
+    settings.devices = settings_.devices;
+    ThreadPool pool(0);
+    try {
+      tiles_ = TileSolver::make(points.points, settings, pool);
+      if (!tiles_) refusal = "a point has too many frames, or this build has no tiles (they need CUDA 13)";
+    } catch (const DeviceMemoryError&) {
+      if (shared) throw;  // otherwise groups of points need less
+    }
+  }
+  if (shared && !tiles_) throw NotShared("several GPUs share meshless solids alone, and " + refusal);
   if (!tiles_) return;
   for (int i = 0; i < model_.node_count(); ++i) held_.push_back(static_cast<std::uint8_t>(filter_.fixed_of(i)));
   tiles_->set_held(held_);
-  if (kind == Preconditioner::none) tiles_->clear_preconditioner();
+  if (settings_.preconditioner == Preconditioner::none) tiles_->clear_preconditioner();
 }
 
 template <class Space>

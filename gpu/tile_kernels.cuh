@@ -81,7 +81,7 @@ __device__ inline void copy_lists(const DeviceTiles<Constant>& t, const SharedPl
 /// Blocks of kernels that take tiles of any size have a thread for each lane, in whole warps.
 inline constexpr int kMostTileThreads = 320;
 
-__device__ inline int numbered(const TileFrame& f) { return 2 * f.frame + f.owner; }
+__device__ inline int numbered(const TileFrame& f) { return 2 * f.frame + f.writer; }
 
 /// Threads and residency that kernels are compiled for: 128 registers a thread where the tile size is known, 168 with
 /// drilling.
@@ -120,7 +120,7 @@ __global__ __launch_bounds__(block_threads(Threads),
 
   // Numbers of the frames of the next tile are on their way while this one is computed.
   double curvature = 0;
-  int ahead = 0;  // 2 × frame + whether this tile owns it
+  int ahead = 0;  // 2 × frame + whether this tile writes it
   int first_ahead = 0, frames_ahead = 0;
   const auto look_ahead = [&](int tile) {
     if (tile >= a.tiles.tile_count) return;
@@ -232,6 +232,7 @@ __device__ inline void sum_partials(const double* partials, int begin, int end, 
 
 struct VectorArgs {
   int frame_count;
+  int owned;  ///< the first frames; the others belong to other devices
   const int* frame_slot_begin;
   const int* frame_node;
   const std::uint8_t* held;  ///< (frames) bits of held degrees of freedom, or null
@@ -287,7 +288,7 @@ static __global__ __launch_bounds__(kUpdateThreads, 5) void update_kernel(Vector
     precondition(a.inverse, n, static_cast<std::size_t>(a.frame_count), r, z);
     store_words<kDofs>(a.r + kDofs * n, r);
     store_words<kDofs>(a.z + kDofs * n, z);
-    rz += dot6(r, z);
+    if (f < a.owned) rz += dot6(r, z);
   }
   const double part = block_sum(rz, scratch);
   if (threadIdx.x == 0) a.rz_parts[blockIdx.x] = part;
@@ -312,7 +313,7 @@ static __global__ __launch_bounds__(kUpdateThreads) void start_kernel(VectorArgs
     store_words<kDofs>(p + kDofs * n, zero);
     store_words<kDofs>(a.r + kDofs * n, r);
     store_words<kDofs>(a.z + kDofs * n, z);
-    rz += dot6(r, z);
+    if (f < a.owned) rz += dot6(r, z);
   }
   const double part = block_sum(rz, scratch);
   if (threadIdx.x == 0) a.rz_parts[blockIdx.x] = part;
@@ -327,12 +328,13 @@ static __global__ void decide_kernel(const double* rz_parts, int count, const Cg
 }
 
 /// The solution by node, and the state at the end.
-static __global__ __launch_bounds__(kUpdateThreads) void finish_kernel(VectorArgs a, int rz_count, double* solution) {
+static __global__ __launch_bounds__(kUpdateThreads) void finish_kernel(VectorArgs a, const double* rz_parts,
+                                                                       int rz_count, double* solution) {
   __shared__ double scratch[33];
-  const CgState s = judged(*a.in, sum_of_blocks(a.rz_parts, rz_count, scratch));
+  const CgState s = judged(*a.in, sum_of_blocks(rz_parts, rz_count, scratch));
   if (blockIdx.x == 0 && threadIdx.x == 0) *a.out = s;
   const int step = static_cast<int>(gridDim.x * blockDim.x);
-  for (int f = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); f < a.frame_count; f += step) {
+  for (int f = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); f < a.owned; f += step) {
     double x[kDofs];
     load_words<kDofs>(a.x + kDofs * static_cast<std::size_t>(f), x);
     store_words<kDofs>(solution + kDofs * static_cast<std::size_t>(a.frame_node[f]), x);
@@ -342,7 +344,7 @@ static __global__ __launch_bounds__(kUpdateThreads) void finish_kernel(VectorArg
 /// y = Σ partials without what is held, by node.
 static __global__ __launch_bounds__(kUpdateThreads) void gather_kernel(VectorArgs a, double* y) {
   const int f = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (f >= a.frame_count) return;
+  if (f >= a.owned) return;
   double sum[kDofs];
   sum_partials(a.partials, a.frame_slot_begin[f], a.frame_slot_begin[f + 1], sum);
   clear_held(a.held, static_cast<std::size_t>(f), sum);

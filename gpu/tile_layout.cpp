@@ -85,7 +85,8 @@ void place_partials(const std::vector<std::vector<int>>& frames, TileLayout& out
       const int slot = next[at(f)]++;
       out.slot_tile[at(slot)] = static_cast<int>(t);
       out.slot_tile_frame[at(slot)] = static_cast<int>(out.tile_frames.size());
-      out.tile_frames.push_back({f, slot, slot == out.frame_slot_begin[at(f)] ? 1 : 0, 0});
+      const int first = slot == out.frame_slot_begin[at(f)] ? 1 : 0;
+      out.tile_frames.push_back({f, slot, first, first});
     }
   }
 }

@@ -18,10 +18,10 @@ inline constexpr int kTileLaneBits = 11;
 
 /// A frame of a tile.
 struct TileFrame {
-  int frame = 0;     ///< running number, by first touching tile
-  int slot = 0;      ///< of its partial sums
-  int owner = 0;     ///< 1 in the one tile that writes the frame's own vectors
-  int reserved = 0;  ///< makes it 16 bytes
+  int frame = 0;   ///< running number, by first touching tile
+  int slot = 0;    ///< of its partial sums
+  int owner = 0;   ///< 1 in the one tile that adds what acts on the frame alone
+  int writer = 0;  ///< 1 in the one tile of a device that writes the frame's vectors
 };
 
 /// What all points of a tile share.

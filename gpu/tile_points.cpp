@@ -64,7 +64,9 @@ bool fits(const Lane& l, double c, const Vec3d& d) {
   return norm(l.B - expected) <= kConsistent * size;
 }
 
-std::string refusal_of(const PointSet& set) {
+}  // namespace
+
+std::string not_for_tiles(const PointSet& set) {
   if (!set.blocks.empty() || !set.shells.empty()) return "the model has finite elements or shells";
   if (!set.dependents.empty()) return "the model has nodes that depend on others";
   for (int node = 0; node < set.node_count(); ++node)
@@ -75,8 +77,6 @@ std::string refusal_of(const PointSet& set) {
   return {};
 }
 
-}  // namespace
-
 int TilePoints::most_influences() const {
   int most = 0;
   for (int q = 0; q < point_count(); ++q) most = std::max(most, influence_count(q));
@@ -85,7 +85,7 @@ int TilePoints::most_influences() const {
 
 TilePointsResult tile_points(const PointSet& set, std::span<const Vec3d> rest_position) {
   TilePointsResult result;
-  result.refusal = refusal_of(set);
+  result.refusal = not_for_tiles(set);
   if (!result.refusal.empty()) return result;
   TilePoints& out = result.points;
   out.rest_position.assign(rest_position.begin(), rest_position.end());

@@ -49,6 +49,9 @@ struct TilePointsResult {
   std::string refusal;  ///< empty: the points are complete
 };
 
+/// Why tiles cannot compute a set whatever its points are; empty where they may.
+std::string not_for_tiles(const PointSet& set);
+
 /// Reads the points of a set that holds nothing but St Venant-Kirchhoff solids on rigid frames (springs apart, which
 /// act on single nodes). Positions and blend factors follow from the influences and are checked against all of them.
 ///

@@ -1,4 +1,4 @@
-#include "gpu/tile_solver_impl.cuh"
+#include "gpu/tile_team_solver.cuh"
 
 #include <algorithm>
 
@@ -36,7 +36,8 @@ std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolv
   const DeviceLimits limits = DeviceLimits::present();
   const int n = points.point_count();
   if (n == 0) return nullptr;
-  if (settings.resident && n <= limits.multiprocessors * kMostTileThreads) {
+  const bool team = settings.devices.size() > 1;
+  if (settings.resident && !team && n <= limits.multiprocessors * kMostTileThreads) {
     const int share = (n + limits.multiprocessors - 1) / limits.multiprocessors;
     for (int size = std::max(kLeastResidentPoints, whole(share, 16)); size <= kMostTileThreads; size += 16) {
       auto layout = make_tiles(points, {size, kMostTileFrames}, pool);
@@ -44,7 +45,7 @@ std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolv
       const ResidentPlan plan = resident_plan<Constant>(*layout);
       if (plan.bytes > limits.shared_bytes) break;
       if (layout->tile_count > limits.multiprocessors) continue;
-      return std::make_unique<Solver<Constant>>(std::move(*layout), plan, limits);
+      return std::make_unique<Solver<Constant>>(whole_share(std::move(*layout)), plan, limits);
     }
   }
   const int wanted = settings.tile_size > 0
@@ -54,7 +55,8 @@ std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolv
     auto layout = make_tiles(points, {size, kMostTileFrames}, pool);
     if (!layout) continue;
     if (shared_plan<Constant>(*layout).bytes > limits.shared_bytes) continue;
-    return std::make_unique<Solver<Constant>>(std::move(*layout), std::nullopt, limits);
+    if (team) return std::make_unique<TeamSolver<Constant>>(std::move(*layout), settings.devices);
+    return std::make_unique<Solver<Constant>>(whole_share(std::move(*layout)), std::nullopt, limits);
   }
   return nullptr;
 }

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace fascia {
 
@@ -23,6 +24,8 @@ struct TileSolverSettings {
   TileConstants constants = TileConstants::float64;
   bool resident = true;  ///< small problems are solved in one launch
   int tile_size = 0;     ///< of large problems: 64, 128 or 256; 0: by experience
+  /// GPUs that share the points, none in one launch; the first holds the vectors. Empty: the present one.
+  std::vector<int> devices{};
 };
 
 /// Solids of rigid frames on a GPU: energies, forces and the tangent of a tiled point set, and CG that never waits for
@@ -32,6 +35,7 @@ struct TileSolverSettings {
 class TileSolver {
  public:
   /// Null where tiles cannot hold the points (make_tiles()).
+  /// @throws gpu::NoDevice  devices that cannot read each other's memory
   static std::unique_ptr<TileSolver> make(const TilePoints& points, const TileSolverSettings& settings,
                                           ThreadPool& pool);
   virtual ~TileSolver() = default;

@@ -21,9 +21,10 @@ CgState Solver<Constant>::options_state(const CgOptions& options) const {
 template <class Constant>
 void Solver<Constant>::multiply(const double* x, double* y) {
   VectorArgs vectors = vector_args();
-  order_kernel<<<frame_blocks(), kUpdateThreads>>>(vectors, x, z_.get());
+  order_kernel<<<frame_blocks(), kUpdateThreads, 0, stream_>>>(vectors, x, z_.get());
   const CgState state = options_state({});
-  check(cudaMemcpyAsync(cg_.get() + kForProduct, &state, sizeof(CgState), cudaMemcpyHostToDevice), "copying settings");
+  check(cudaMemcpyAsync(cg_.get() + kForProduct, &state, sizeof(CgState), cudaMemcpyHostToDevice, stream_),
+        "copying settings");
   ProductArgs<Constant> args = product_args();
   args.z = args.p_old = z_.get();
   args.p_new = p_.get();
@@ -31,8 +32,9 @@ void Solver<Constant>::multiply(const double* x, double* y) {
   args.curvature_parts = curvature_parts_.get();
   args.in = cg_.get() + kForProduct;
   args.out = cg_.get() + kAtEnd;
-  launch_product(args, nullptr);
-  gather_kernel<<<frame_blocks(), kUpdateThreads>>>(vectors, y);
+  launch_product(args, stream_);
+  meet(partial_rows(), {}, stream_);
+  gather_kernel<<<frame_blocks(), kUpdateThreads, 0, stream_>>>(vectors, y);
   check(cudaGetLastError(), "summing a product");
 }
 
@@ -45,25 +47,27 @@ void Solver<Constant>::launch_iterations(cudaStream_t stream, cudaGraphCondition
     product.p_old = i % 2 == 0 ? p_.get() : q_.get();
     product.p_new = i % 2 == 0 ? q_.get() : p_.get();
     product.partials = partials_.get();
-    product.rz_parts = rz_parts_.get();
-    product.rz_count = update_blocks_;
+    product.rz_parts = residual_sums();
+    product.rz_count = residual_count();
     product.curvature_parts = curvature_parts_.get();
     product.in = cg_.get();
     product.out = cg_.get() + 1;
     launch_product(product, stream);
+    meet(partial_rows(), {curvature_parts_.get(), product_blocks_, sums_.get()}, stream);
     VectorArgs update = vector_args();
     update.x = x_.get();
     update.r = r_.get();
     update.z = z_.get();
     update.p = product.p_new;
     update.rz_parts = rz_parts_.get();
-    update.curvature_parts = curvature_parts_.get();
-    update.curvature_count = product_blocks_;
+    update.curvature_parts = curvature_sums();
+    update.curvature_count = curvature_count();
     update.in = cg_.get() + 1;
     update.out = cg_.get();
     update_kernel<<<update_blocks_, kUpdateThreads, 0, stream>>>(update);
+    meet({}, {rz_parts_.get(), update_blocks_, sums_.get() + 1}, stream);
   }
-  decide_kernel<<<1, kUpdateThreads, 0, stream>>>(rz_parts_.get(), update_blocks_, cg_.get(), loop);
+  decide_kernel<<<1, kUpdateThreads, 0, stream>>>(residual_sums(), residual_count(), cg_.get(), loop);
   check(cudaGetLastError(), "recording iterations");
 }
 
@@ -91,6 +95,7 @@ void Solver<Constant>::build_graph() {
   check(cudaStreamEndCapture(stream, &body), "recording iterations");
   check(cudaStreamDestroy(stream), "closing a stream");
   check(cudaGraphInstantiate(&graph_, graph, 0), "preparing a graph");
+  check(cudaGraphUpload(graph_, stream_), "preparing a graph");
   check(cudaGraphDestroy(graph), "closing a graph");
 }
 
@@ -104,8 +109,8 @@ template <class Constant>
 void Solver<Constant>::start_solve(const double* b, double* x, const CgOptions& options) {
   const CgState state = options_state(options);
   if (resident_) {
-    check(cudaMemsetAsync(partials_.get(), 0xff, partials_.size() * sizeof(double)), "clearing sums");
-    check(cudaMemsetAsync(dots_.get(), 0xff, dots_.size() * sizeof(double)), "clearing sums");
+    check(cudaMemsetAsync(partials_.get(), 0xff, partials_.size() * sizeof(double), stream_), "clearing sums");
+    check(cudaMemsetAsync(dots_.get(), 0xff, dots_.size() * sizeof(double), stream_), "clearing sums");
     ResidentArgs<Constant> args{tiles_,
                                 *resident_,
                                 pose_.get(),
@@ -122,7 +127,7 @@ void Solver<Constant>::start_solve(const double* b, double* x, const CgOptions& 
                                 cg_.get() + kAtEnd};
     void* parameters[] = {&args};
     check(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(resident_kernel_), dim3(at(layout_.tile_count)),
-                                      dim3(at(resident_threads_)), parameters, at(resident_->bytes), nullptr),
+                                      dim3(at(resident_threads_)), parameters, at(resident_->bytes), stream_),
           "solving on chip");
     return;
   }
@@ -133,19 +138,21 @@ void Solver<Constant>::start_solve(const double* b, double* x, const CgOptions& 
   vectors.z = z_.get();
   vectors.rz_parts = rz_parts_.get();
   vectors.out = cg_.get();
-  start_kernel<<<update_blocks_, kUpdateThreads>>>(vectors, b, p_.get(), state);
+  start_kernel<<<update_blocks_, kUpdateThreads, 0, stream_>>>(vectors, b, p_.get(), state);
   check(cudaGetLastError(), "starting CG");
-  check(cudaGraphLaunch(graph_, nullptr), "running CG");
+  meet({}, {rz_parts_.get(), update_blocks_, sums_.get() + 1}, stream_);
+  check(cudaGraphLaunch(graph_, stream_), "running CG");
   vectors.in = cg_.get();
   vectors.out = cg_.get() + kAtEnd;
-  finish_kernel<<<update_blocks_, kUpdateThreads>>>(vectors, update_blocks_, x);
+  finish_kernel<<<update_blocks_, kUpdateThreads, 0, stream_>>>(vectors, residual_sums(), residual_count(), x);
   check(cudaGetLastError(), "ending CG");
 }
 
 template <class Constant>
 CgReport Solver<Constant>::finish_solve() {
   CgState state;
-  check(cudaMemcpy(&state, cg_.get() + kAtEnd, sizeof(CgState), cudaMemcpyDeviceToHost), "solving");
+  check(cudaMemcpyAsync(&state, cg_.get() + kAtEnd, sizeof(CgState), cudaMemcpyDeviceToHost, stream_), "solving");
+  check(cudaStreamSynchronize(stream_), "solving");
   CgReport report;
   report.status = static_cast<CgStatus>(state.status);
   report.iterations = state.iterations;

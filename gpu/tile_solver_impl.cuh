@@ -4,6 +4,7 @@
 #include "gpu/tile_resident.cuh"
 #include "gpu/tile_solver.hpp"
 #include "gpu/tile_state_kernels.cuh"
+#include "gpu/tile_team.cuh"
 
 #include <optional>
 
@@ -41,8 +42,9 @@ ResidentPlan resident_plan(const TileLayout& layout);
 template <class Constant>
 class Solver final : public TileSolver {
  public:
-  /// @param resident  the plan of a layout whose tiles stay on chip
-  Solver(TileLayout layout, std::optional<ResidentPlan> resident, const DeviceLimits& limits);
+  /// On the present device. @param resident  the plan of a layout whose tiles stay on chip
+  Solver(TileShare share, std::optional<ResidentPlan> resident, const DeviceLimits& limits,
+         cudaStream_t stream = nullptr);
   ~Solver() override;
 
   void store_strain(const double* u, const double* D) override;
@@ -61,6 +63,14 @@ class Solver final : public TileSolver {
   const TileLayout& layout() const override { return layout_; }
   bool resident() const override { return resident_.has_value(); }
 
+  /// Makes it one of several that compute a problem: `team[rank]`. Each has a stream of its own.
+  void join(std::span<const std::unique_ptr<Solver>> team, int rank);
+  /// What must not happen while another device waits for this one.
+  void prepare_solve() { build_graph(); }
+  void start_gradient(const double* u, const double* D, double inverse_step, double* gradient, double* moments);
+  TileEnergy finish_gradient();
+  void prepare_forces() { gradient_partials_.resize(at(layout_.slot_count()) * kGradient); }
+
  private:
   using ProductKernel = void (*)(ProductArgs<Constant>);
   using StateKernel = void (*)(StateArgs<Constant>);
@@ -77,10 +87,25 @@ class Solver final : public TileSolver {
   void launch_iterations(cudaStream_t stream, cudaGraphConditionalHandle loop);
   void build_graph();
   void drop_graph();
+  /// Rows go to the others of the team and a sum to all of them; nothing where it is alone.
+  void meet(const RowsArgs& rows, const SumArgs& sum, cudaStream_t stream);
+  RowsArgs rows_of(const Buffer<TileExport>& exports, int words, Buffer<double> Solver::*rows) const;
+  RowsArgs partial_rows() const { return rows_of(partial_exports_, kDofs, &Solver::partials_); }
+  bool alone() const { return team_.size == 1; }
+  /// Where sums over all frames stand, and in how many parts.
+  const double* residual_sums() const { return alone() ? rz_parts_.get() : sums_.get() + 1; }
+  int residual_count() const { return alone() ? update_blocks_ : 1; }
+  const double* curvature_sums() const { return alone() ? curvature_parts_.get() : sums_.get(); }
+  int curvature_count() const { return alone() ? product_blocks_ : 1; }
+  /// Copies of the host were made on the default stream.
+  void wait_for_copies() const;
+  void sum_forces(double* gradient, double* moments);
   int frame_blocks() const { return (layout_.frame_count + kUpdateThreads - 1) / kUpdateThreads; }
   int words() const { return layout_.drilling ? kPointWords<true> : kPointWords<false>; }
 
-  TileLayout layout_;
+  TileShare share_;
+  TileLayout& layout_ = share_.layout;
+  cudaStream_t stream_;
   std::optional<ResidentPlan> resident_;
   SharedPlan plan_;
   DeviceTiles<Constant> tiles_{};
@@ -91,7 +116,7 @@ class Solver final : public TileSolver {
   ProductKernel product_ = nullptr;
   StateKernel state_ = nullptr;
   ResidentKernel resident_kernel_ = nullptr;
-  void (*jacobi_)(ProductArgs<Constant>, const std::uint8_t*, Tangent, double, float*) = nullptr;
+  void (*jacobi_)(ProductArgs<Constant>, JacobiArgs) = nullptr;
   int threads_ = 0, resident_threads_ = 0, product_blocks_ = 0, state_blocks_ = 0, update_blocks_ = 0;
 
   Buffer<Constant> weights_, places_;
@@ -108,6 +133,16 @@ class Solver final : public TileSolver {
   Buffer<double> partials_, gradient_partials_, rz_parts_, curvature_parts_, energy_parts_, dots_;
   Buffer<CgState> cg_;  ///< two for CG in turn, one for products, one for the end
   cudaGraphExec_t graph_ = nullptr;
+
+  TeamView team_{};
+  std::vector<Solver*> members_;  ///< of the team, by rank
+  Buffer<TileExport> partial_exports_, block_exports_;
+  Buffer<int> shared_place_;  ///< (frames) where a frame's own block goes, or −1; empty where alone
+  Buffer<int> shared_, shared_block_begin_;
+  Buffer<double> blocks_;  ///< own blocks of shared frames, of each share that touches them
+  Buffer<double> sums_;    ///< p · K p and r · z of all devices
+  Buffer<std::uint64_t> words_;
+  Buffer<unsigned> meetings_, arrived_;
 };
 
 }  // namespace fascia::tile

@@ -50,8 +50,9 @@ ResidentPlan resident_plan(const TileLayout& layout) {
 }
 
 template <class Constant>
-Solver<Constant>::Solver(TileLayout layout, std::optional<ResidentPlan> resident, const DeviceLimits& limits)
-    : layout_(std::move(layout)), resident_(resident) {
+Solver<Constant>::Solver(TileShare share, std::optional<ResidentPlan> resident, const DeviceLimits& limits,
+                         cudaStream_t stream)
+    : share_(std::move(share)), stream_(stream), resident_(resident) {
   if (layout_.materials.empty()) layout_.materials.emplace_back();
   plan_ = shared_plan<Constant>(layout_);
   upload();
@@ -68,7 +69,7 @@ Solver<Constant>::Solver(TileLayout layout, std::optional<ResidentPlan> resident
   curvature_parts_.resize(at(product_blocks_));
   energy_parts_.resize(3 * at(state_blocks_));
   cg_.upload(std::vector<CgState>(4));
-  clear_preconditioner();
+  clear_preconditioner();  // waits for all copies
 }
 
 template <class Constant>
@@ -115,6 +116,11 @@ void Solver<Constant>::upload() {
 }
 
 template <class Constant>
+void Solver<Constant>::wait_for_copies() const {
+  if (stream_ != nullptr) check(cudaStreamSynchronize(cudaStreamLegacy), "copying to the device");
+}
+
+template <class Constant>
 void Solver<Constant>::choose_kernels(const DeviceLimits& limits) {
   const bool drilling = layout_.drilling;
   const int P = layout_.tile_size, K = layout_.influences;
@@ -158,10 +164,10 @@ StateArgs<Constant> Solver<Constant>::state_args(double inverse_step) const {
 
 template <class Constant>
 void Solver<Constant>::run_state(const double* u, const double* D, StateArgs<Constant> args) {
-  pose_kernel<<<frame_blocks(), kUpdateThreads>>>(layout_.frame_count, frame_node_.get(), rest_.get(), u, D,
-                                                  motion_.get(), pose_.get());
+  pose_kernel<<<frame_blocks(), kUpdateThreads, 0, stream_>>>(layout_.frame_count, frame_node_.get(), rest_.get(), u, D,
+                                                              motion_.get(), pose_.get());
   check(cudaGetLastError(), "ordering poses");
-  state_<<<state_blocks_, threads_, at(plan_.bytes)>>>(args);
+  state_<<<state_blocks_, threads_, at(plan_.bytes), stream_>>>(args);
   check(cudaGetLastError(), "computing points");
 }
 
@@ -176,26 +182,36 @@ void Solver<Constant>::store_strain(const double* u, const double* D) {
 template <class Constant>
 void Solver<Constant>::forces(const double* u, const double* D, double inverse_step, double* gradient,
                               double* moments) {
-  gradient_partials_.resize(at(layout_.slot_count()) * kGradient);
+  prepare_forces();
   StateArgs<Constant> args = state_args(inverse_step);
   args.partials = gradient_partials_.get();
   run_state(u, D, args);
-  gradient_kernel<<<frame_blocks(), kUpdateThreads>>>(layout_.frame_count, frame_node_.get(), frame_slot_begin_.get(),
-                                                      gradient_partials_.get(), pose_.get(), gradient, moments);
+  sum_forces(gradient, moments);
+}
+
+template <class Constant>
+void Solver<Constant>::sum_forces(double* gradient, double* moments) {
+  meet(rows_of(partial_exports_, kGradient, &Solver::gradient_partials_), {}, stream_);
+  gradient_kernel<<<frame_blocks(), kUpdateThreads, 0, stream_>>>(share_.owned, frame_node_.get(),
+                                                                  frame_slot_begin_.get(), gradient_partials_.get(),
+                                                                  pose_.get(), gradient, moments);
   check(cudaGetLastError(), "summing forces");
 }
 
 template <class Constant>
-TileEnergy Solver<Constant>::gradient(const double* u, const double* D, double inverse_step, double* gradient,
+void Solver<Constant>::start_gradient(const double* u, const double* D, double inverse_step, double* gradient,
                                       double* moments) {
-  gradient_partials_.resize(at(layout_.slot_count()) * kGradient);
+  prepare_forces();
   StateArgs<Constant> args = state_args(inverse_step);
   args.partials = gradient_partials_.get();
   args.energy_parts = energy_parts_.get();
   run_state(u, D, args);
-  gradient_kernel<<<frame_blocks(), kUpdateThreads>>>(layout_.frame_count, frame_node_.get(), frame_slot_begin_.get(),
-                                                      gradient_partials_.get(), pose_.get(), gradient, moments);
-  check(cudaGetLastError(), "summing forces");
+  sum_forces(gradient, moments);
+}
+
+template <class Constant>
+TileEnergy Solver<Constant>::finish_gradient() {
+  check(cudaStreamSynchronize(stream_), "waiting for forces");
   const std::vector<double> parts = energy_parts_.download();
   const auto sum = [&](int term) {
     double total = 0;
@@ -203,6 +219,13 @@ TileEnergy Solver<Constant>::gradient(const double* u, const double* D, double i
     return total;
   };
   return {sum(0), sum(1), sum(2)};
+}
+
+template <class Constant>
+TileEnergy Solver<Constant>::gradient(const double* u, const double* D, double inverse_step, double* gradient,
+                                      double* moments) {
+  start_gradient(u, D, inverse_step, gradient, moments);
+  return finish_gradient();
 }
 
 template <class Constant>
@@ -221,8 +244,8 @@ void Solver<Constant>::set_node_blocks(const double* blocks) {
   if (before != has_node_blocks_) drop_graph();
   if (!has_node_blocks_) return;
   node_blocks_.resize(at(layout_.frame_count) * kPacked);
-  pack_blocks_kernel<<<frame_blocks(), kUpdateThreads>>>(layout_.frame_count, frame_node_.get(), blocks,
-                                                         node_blocks_.get());
+  pack_blocks_kernel<<<frame_blocks(), kUpdateThreads, 0, stream_>>>(layout_.frame_count, frame_node_.get(), blocks,
+                                                                     node_blocks_.get());
   check(cudaGetLastError(), "packing node blocks");
 }
 
@@ -233,14 +256,25 @@ void Solver<Constant>::set_held(std::span<const std::uint8_t> held) {
   std::vector<std::uint8_t> by_frame;
   for (const int node : layout_.frame_node)
     if (has_held_) by_frame.push_back(held[at(node)]);
+  check(cudaStreamSynchronize(stream_), "waiting for the last solve");
   held_.upload(by_frame);
+  wait_for_copies();
 }
 
 template <class Constant>
 void Solver<Constant>::build_preconditioner() {
   const int blocks = (layout_.frame_count + kJacobiFrames - 1) / kJacobiFrames;
-  jacobi_<<<blocks, kJacobiFrames * kJacobiLanes>>>(product_args(), has_held_ ? held_.get() : nullptr, tangent_,
-                                                    inverse_step_, inverse_.get());
+  const JacobiArgs args{
+      has_held_ ? held_.get() : nullptr,       tangent_,     inverse_step_, share_.owned, inverse_.get(),
+      alone() ? nullptr : shared_place_.get(), blocks_.get()};
+  jacobi_<<<blocks, kJacobiFrames * kJacobiLanes, 0, stream_>>>(product_args(), args);
+  check(cudaGetLastError(), "building the preconditioner");
+  if (alone()) return;
+  meet(rows_of(block_exports_, kBlock, &Solver::blocks_), {}, stream_);
+  const int count = static_cast<int>(share_.shared.size());
+  if (count == 0) return;
+  shared_jacobi_kernel<<<(count + kUpdateThreads - 1) / kUpdateThreads, kUpdateThreads, 0, stream_>>>(
+      count, shared_.get(), shared_block_begin_.get(), layout_.frame_count, args);
   check(cudaGetLastError(), "building the preconditioner");
 }
 
@@ -250,7 +284,9 @@ void Solver<Constant>::clear_preconditioner() {
   std::vector<float> identity(frames * kPacked, 0.0F);
   for (int i = 0, n = 0; i < kDofs; n += kDofs - i, ++i)
     std::fill_n(identity.begin() + static_cast<std::ptrdiff_t>(at(n) * frames), frames, 1.0F);
+  check(cudaStreamSynchronize(stream_), "waiting for the last solve");
   inverse_.upload(identity);
+  wait_for_copies();
 }
 
 template <class Constant>
@@ -268,6 +304,7 @@ template <class Constant>
 VectorArgs Solver<Constant>::vector_args() const {
   VectorArgs args{};
   args.frame_count = layout_.frame_count;
+  args.owned = share_.owned;
   args.frame_slot_begin = frame_slot_begin_.get();
   args.frame_node = frame_node_.get();
   args.held = has_held_ ? held_.get() : nullptr;

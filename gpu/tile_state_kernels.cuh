@@ -215,11 +215,37 @@ __device__ inline void invert_positive(double (&a)[kDofs][kDofs], const Write& w
 inline constexpr int kJacobiLanes = 8;  // six of them take one column of a frame's block each
 inline constexpr int kJacobiFrames = 16;
 
+inline constexpr int kBlock = kDofs * kDofs;
+
+struct JacobiArgs {
+  const std::uint8_t* held;  ///< (frames) bits, or null
+  Tangent tangent;
+  double inverse_step;
+  int owned;                ///< frames whose node blocks are added
+  float* inverse;           ///< (21 × frames)
+  const int* shared_place;  ///< (frames) row of `blocks` that takes a frame's own block, −1: none; or null: of none
+  double* blocks;           ///< (rows × 36) of frames that other devices compute too
+};
+
+/// The inverse of a block whose held rows and columns are those of the identity, packed.
+__device__ inline void write_inverse(double (&block)[kDofs][kDofs], int frame, std::size_t frames,
+                                     const JacobiArgs& args) {
+  const unsigned mask = args.held == nullptr ? 0U : args.held[frame];
+#pragma unroll
+  for (int i = 0; i < kDofs; ++i) {
+#pragma unroll
+    for (int j = 0; j < kDofs; ++j)
+      if ((mask >> i & 1U) != 0 || (mask >> j & 1U) != 0) block[i][j] = i == j ? 1.0 : 0.0;
+  }
+  invert_positive(block, [&](int i, int j, double value) {
+    const int n = i * kDofs - i * (i - 1) / 2 + (j - i);
+    args.inverse[static_cast<std::size_t>(n) * frames + static_cast<std::size_t>(frame)] = static_cast<float>(value);
+  });
+}
+
 /// Inverse of each frame's own block, packed. Points are read straight from memory: their tiles are not kept on chip.
 template <bool Drilling, class Constant>
-__global__ __launch_bounds__(kJacobiLanes* kJacobiFrames) void jacobi_kernel(ProductArgs<Constant> a,
-                                                                             const std::uint8_t* held, Tangent tangent,
-                                                                             double inverse_step, float* inverse) {
+__global__ __launch_bounds__(kJacobiLanes* kJacobiFrames) void jacobi_kernel(ProductArgs<Constant> a, JacobiArgs args) {
   __shared__ double blocks[kJacobiFrames][kDofs][kDofs + 1];
   constexpr int kWords = kPointWords<Drilling>;
   const int column = static_cast<int>(threadIdx.x) % kJacobiLanes, own = static_cast<int>(threadIdx.x) / kJacobiLanes;
@@ -231,6 +257,7 @@ __global__ __launch_bounds__(kJacobiLanes* kJacobiFrames) void jacobi_kernel(Pro
     for (int i = 0; i < kDofs; ++i) direction[i] = i == column ? 1.0 : 0.0;
     for (int slot = a.tiles.frame_slot_begin[f]; slot < a.tiles.frame_slot_begin[f + 1]; ++slot) {
       const int tile = a.tiles.slot_tile[slot];
+      if (tile < 0) continue;  // another device's
       const int local = a.tiles.slot_tile_frame[slot] - a.tiles.tile_frame_begin[tile];
       const auto t = static_cast<std::size_t>(tile);
       const TileHead head = a.tiles.head[tile];
@@ -251,9 +278,9 @@ __global__ __launch_bounds__(kJacobiLanes* kJacobiFrames) void jacobi_kernel(Pro
           motion[i] = record[i] + dot(A.row(i), X);
         }
         const auto material =
-            solid_material(a.tiles.materials[a.tiles.material[t * P + lane]], places[3 * P], inverse_step);
-        stress_of_direction<Drilling>(a.points + t * kWords * P + lane, P, material, tangent, outer(motion, g), A * w,
-                                      head.blend, dP, dW);
+            solid_material(a.tiles.materials[a.tiles.material[t * P + lane]], places[3 * P], args.inverse_step);
+        stress_of_direction<Drilling>(a.points + t * kWords * P + lane, P, material, args.tangent, outer(motion, g),
+                                      A * w, head.blend, dP, dW);
         const Vec3d h = dP * g;
         sum.f += h;
         sum.M += outer(h, X) + (Drilling ? dW : dP) * w;
@@ -262,25 +289,40 @@ __global__ __launch_bounds__(kJacobiLanes* kJacobiFrames) void jacobi_kernel(Pro
       finish_frame(sum, pose, head, part);
       for (int i = 0; i < kDofs; ++i) y[i] += part[i];
     }
-    if (a.node_blocks != nullptr) add_packed(a.node_blocks + f, frames, direction, y);
+    if (a.node_blocks != nullptr && f < args.owned) add_packed(a.node_blocks + f, frames, direction, y);
     for (int i = 0; i < kDofs; ++i) blocks[own][i][column] = y[i];
   }
   __syncthreads();
   if (f >= a.tiles.frame_count || column != 0) return;
+  const int place = args.shared_place == nullptr ? -1 : args.shared_place[f];
   double block[kDofs][kDofs];
-  const unsigned mask = held == nullptr ? 0U : held[f];
 #pragma unroll
   for (int i = 0; i < kDofs; ++i) {
 #pragma unroll
-    for (int j = 0; j < kDofs; ++j) {
-      const bool fixed = (mask >> i & 1U) != 0 || (mask >> j & 1U) != 0;
-      block[i][j] = fixed ? (i == j ? 1.0 : 0.0) : blocks[own][i][j];
-    }
+    for (int j = 0; j < kDofs; ++j) block[i][j] = blocks[own][i][j];
   }
-  invert_positive(block, [&](int i, int j, double value) {
-    const int n = i * kDofs - i * (i - 1) / 2 + (j - i);
-    inverse[static_cast<std::size_t>(n) * frames + static_cast<std::size_t>(f)] = static_cast<float>(value);
-  });
+  if (place < 0) {
+    write_inverse(block, f, frames, args);
+    return;
+  }
+  for (int i = 0; i < kBlock; ++i)
+    args.blocks[static_cast<std::size_t>(kBlock) * place + i] = block[i / kDofs][i % kDofs];
+}
+
+/// The same of frames of several devices, from the parts of each.
+/// @param block_begin  (count + 1) rows of a frame, by rank
+static __global__ __launch_bounds__(kUpdateThreads) void shared_jacobi_kernel(int count, const int* shared,
+                                                                              const int* block_begin, int frames,
+                                                                              JacobiArgs args) {
+  const int s = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (s >= count) return;
+  double block[kDofs][kDofs]{};
+  for (int row = block_begin[s]; row < block_begin[s + 1]; ++row) {
+    const double* part = args.blocks + static_cast<std::size_t>(kBlock) * row;
+#pragma unroll
+    for (int i = 0; i < kBlock; ++i) block[i / kDofs][i % kDofs] += part[i];
+  }
+  write_inverse(block, shared[s], static_cast<std::size_t>(frames), args);
 }
 
 }  // namespace fascia::tile

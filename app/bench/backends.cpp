@@ -62,11 +62,13 @@ StepTimes run_on_cpu(const Simulation& s, const StepPlan& plan, int threads) {
   return std::move(watch).times(report);
 }
 
-StepTimes run_on_gpu(const Simulation& s, const StepPlan& plan) {
+StepTimes run_on_gpu(const Simulation& s, const StepPlan& plan, const std::vector<int>& devices) {
   State state = s.initial;
+  SolverSettings settings = settings_of(s.scene.solver);
+  settings.devices = devices;
   StepWatch watch(plan);
   const RunReport report = gpu::run_implicit(
-      s.model, state, [&](double t) { return s.factors(t); }, settings_of(s.scene.solver), dynamics_of(s, plan),
+      s.model, state, [&](double t) { return s.factors(t); }, settings, dynamics_of(s, plan),
       [&](const StepInfo& step, gpu::DeviceStep&) { return watch.see(step); });
   return std::move(watch).times(report);
 }
@@ -79,15 +81,25 @@ Backend cpu(int threads) {
 }  // namespace
 
 std::string Backend::label() const {
+  if (gpus > 1) return fmt::format("{}, {} GPUs", name, gpus);
   return threads == 0 ? name : fmt::format("{}, {} thread{}", name, threads, threads == 1 ? "" : "s");
 }
 
-std::vector<Backend> available_backends(int threads) {
+std::vector<Backend> available_backends(int threads, const std::vector<int>& gpus) {
   const int all = threads > 0 ? threads : ThreadPool(0).size();
   std::vector<Backend> backends{cpu(1)};
   if (all > 1) backends.push_back(cpu(all));
   std::string reason;
-  if (gpu::find_device(reason)) backends.push_back({"cuda", 0, run_on_gpu});
+  const bool has_gpu = gpu::find_device(reason);
+  for (const int count : gpus) {
+    if (count == 1 && !has_gpu) continue;
+    const std::vector<int> devices = gpu::find_devices(count, reason);
+    if (static_cast<int>(devices.size()) < count) throw BackendError(fmt::format("--gpus {}, but {}", count, reason));
+    const std::vector<int> shared = count == 1 ? std::vector<int>{} : devices;
+    backends.push_back({"cuda", 0,
+                        [shared](const Simulation& s, const StepPlan& plan) { return run_on_gpu(s, plan, shared); },
+                        count});
+  }
   return backends;
 }
 
@@ -99,7 +111,7 @@ std::vector<Backend> chosen_backends(const BenchOptions& options) {
       throw BackendError(e.what());
     }
   }
-  std::vector<Backend> backends = available_backends(options.threads);
+  std::vector<Backend> backends = available_backends(options.threads, options.gpus);
   std::erase_if(backends, [&](const Backend& b) { return options.backend && b.name != *options.backend; });
   return backends;
 }

@@ -59,12 +59,14 @@ struct Backend {
   std::string name;  ///< "cpu", "cuda"
   int threads = 0;   ///< of the host; 0: not a number that matters
   std::function<StepTimes(const Simulation&, const StepPlan&)> run;
+  int gpus = 0;
 
-  std::string label() const;  ///< "cpu, 1 thread"
+  std::string label() const;  ///< "cpu, 1 thread", "cuda, 2 GPUs"
 };
 
-/// The backends of this build on this machine: the processor with one thread and with `threads` (0: all).
-std::vector<Backend> available_backends(int threads);
+/// The backends of this build on this machine: the processor with one thread and with `threads` (0: all), the GPU, and
+/// as many of them together as each of `gpus` says. @throws BackendError  there are not as many
+std::vector<Backend> available_backends(int threads, const std::vector<int>& gpus = {1});
 
 /// One case on one backend.
 struct Measurement {
@@ -72,7 +74,7 @@ struct Measurement {
   int points = 0, frames = 0, dofs = 0;  ///< frames: nodes of all kinds
   double neighbours = 0;                 ///< mean number of frames or vertices that move a point
   std::string backend;
-  int threads = 0, steps = 0;
+  int threads = 0, gpus = 0, steps = 0;
   double step_ms = 0, step_p99_ms = 0, step_max_ms = 0, cg_ms = 0;  ///< step and CG: medians
   int cg_iterations = 0;
   double residual = 0;
@@ -98,6 +100,7 @@ struct BenchOptions {
   std::string settings = "both";       ///< "paper", "default", "both"
   int repeat = 0;                      ///< steps that are timed; 0: StepPlan's
   int threads = 0;                     ///< 0: all
+  std::vector<int> gpus = {1};         ///< that share a run; each is a backend
   std::optional<std::string> backend;  ///< none: all that there are
   std::optional<std::filesystem::path> output;
   bool json = false, quiet = false;

@@ -18,7 +18,7 @@ std::string milliseconds(double ms) { return ms >= 100 ? fmt::format("{:.0f}", m
 
 std::string milliseconds(const std::optional<double>& ms) { return ms ? milliseconds(*ms) : "-"; }
 
-std::string label(const Measurement& m) { return Backend{m.backend, m.threads, {}}.label(); }
+std::string label(const Measurement& m) { return Backend{m.backend, m.threads, {}, m.gpus}.label(); }
 
 /// Backends in the order of their first row.
 std::vector<std::string> labels(const BenchmarkResult& result) {
@@ -141,12 +141,12 @@ std::string result_table(const BenchmarkResult& result, const Machine& machine) 
 std::string result_csv(const BenchmarkResult& result) {
   std::string text =
       "case,body,setting,points,frames,neighbours,dofs,backend,threads,steps,step_ms,step_p99_ms,step_max_ms,cg_ms,"
-      "cg_iterations,residual,paper_cpu_ms,paper_gpu_ms\n";
+      "cg_iterations,residual,paper_cpu_ms,paper_gpu_ms,gpus\n";
   for (const Measurement& m : result.rows)
-    text += fmt::format("{},{},{},{},{},{:.4g},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{},{}\n", m.name,
+    text += fmt::format("{},{},{},{},{},{:.4g},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{},{},{}\n", m.name,
                         m.body, m.setting, m.points, m.frames, m.neighbours, m.dofs, m.backend, m.threads, m.steps,
                         m.step_ms, m.step_p99_ms, m.step_max_ms, m.cg_ms, m.cg_iterations, m.residual,
-                        field(m.published_cpu), field(m.published_gpu));
+                        field(m.published_cpu), field(m.published_gpu), m.gpus);
   return text;
 }
 
@@ -175,6 +175,7 @@ nlohmann::ordered_json result_json(const BenchmarkResult& result, const Machine&
                          {"dofs", m.dofs},
                          {"backend", m.backend},
                          {"threads", m.threads},
+                         {"gpus", m.gpus},
                          {"steps", m.steps},
                          {"step_ms", number(m.step_ms)},
                          {"step_p99_ms", number(m.step_p99_ms)},

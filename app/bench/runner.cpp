@@ -2,6 +2,7 @@
 #include "app/scene/errors.hpp"
 #include "app/scene/parse.hpp"
 #include "core/model/errors.hpp"
+#include "gpu/device.hpp"
 
 #include <fmt/format.h>
 
@@ -54,6 +55,7 @@ Measurement describe(const BenchmarkCase& c, const Simulation& s) {
 Measurement measured(Measurement m, const Backend& backend, const StepTimes& t) {
   m.backend = backend.name;
   m.threads = backend.threads;
+  m.gpus = backend.gpus;
   m.steps = static_cast<int>(t.step_ms.size());
   m.step_ms = percentile(t.step_ms, 0.5);
   m.step_p99_ms = percentile(t.step_ms, 0.99);
@@ -132,7 +134,13 @@ BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& o
     const Measurement description = describe(c, *simulation);
     for (const Backend& backend : backends) {
       say(fmt::format("{}: {}", c.name, backend.label()));
-      result.rows.push_back(measured(description, backend, backend.run(*simulation, plan)));
+      try {
+        result.rows.push_back(measured(description, backend, backend.run(*simulation, plan)));
+      } catch (const gpu::NotShared& e) {
+        result.skipped.push_back({fmt::format("{} ({})", c.name, backend.label()), e.what()});
+      } catch (const gpu::DeviceMemoryError& e) {
+        result.skipped.push_back({fmt::format("{} ({})", c.name, backend.label()), e.what()});
+      }
     }
   }
   return result;

@@ -117,6 +117,23 @@ void read_precision(const TableReader& table, Solver& solver) {
                                          asked));
 }
 
+/// Several GPUs share Newton's directions.
+void read_gpus(const TableReader& table, Solver& solver) {
+  solver.gpus = table.integer("gpus").value_or(1);
+  if (solver.gpus == 1) return;
+  if (solver.kind == SolverKind::central_differences || solver.kind == SolverKind::modes)
+    return table.error("gpus", fmt::format("{} is not used by kind = \"{}\"; must be 1", solver.gpus,
+                                           table.text("kind").value_or("static")));
+  if (solver.backend == "cpu")
+    return table.error("gpus", fmt::format("{} does not go with backend = \"cpu\"; must be 1, or backend \"auto\" or "
+                                           "\"cuda\"",
+                                           solver.gpus));
+  if (solver.precision == "single")
+    table.error("gpus", fmt::format("{} does not go with precision = \"single\"; must be 1, or precision \"double\" or "
+                                    "\"mixed\"",
+                                    solver.gpus));
+}
+
 /// Keys that only some kinds use.
 void check_kind(const TableReader& table, const Solver& solver) {
   const std::string unused = fmt::format("is not used by kind = \"{}\"", table.text("kind").value_or("static"));
@@ -165,6 +182,7 @@ Solver read_solver(const TableReader& scene, const std::vector<std::string>& bod
   solver.full_tangent = table.text("tangent").value_or("full") == "full";
   solver.backend = table.text("backend").value_or("auto");
   read_precision(table, solver);
+  read_gpus(table, solver);
   solver.threads = table.integer("threads").value_or(0);
   return solver;
 }

@@ -298,6 +298,7 @@ struct Solver {
   bool full_tangent = true;
   std::string precision = "double";  ///< "double", "mixed", "single"
   std::string backend = "auto";      ///< "auto", "cpu", "cuda"
+  int gpus = 1;
   int threads = 0;
 };
 

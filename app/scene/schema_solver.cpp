@@ -1,4 +1,5 @@
 #include "app/scene/schema.hpp"
+#include "core/solver/settings.hpp"
 
 namespace fascia::app {
 namespace {
@@ -112,6 +113,9 @@ Key solver_schema() {
                choice({{"auto", "The best there is."}, {"cpu", "The processor."}, {"cuda", "An NVIDIA GPU."}}),
                "Where it is computed.")
                .defaults("\"auto\""),
+           key("gpus", integer(between(1, kMostDevices)),
+               "GPUs of this machine that share the integration points of meshless solids; other models take one.")
+               .defaults("1"),
            key("threads", integer(between(0, 4096)), "Threads of the processor; 0: all.").defaults("0")},
           {{{"duration", "steps"}, false}}, "kind"),
       "How it is computed.");

@@ -3,6 +3,8 @@
 #include "core/physics/point_physics.hpp"
 #include "core/solver/cg.hpp"
 
+#include <vector>
+
 namespace fascia {
 
 enum class LinearMethod { automatic, cg, cholesky };
@@ -13,6 +15,9 @@ enum class Preconditioner { automatic, none, jacobi, block_jacobi, cholesky };
 /// nodes are of 64 bits. Of the GPU's solver; the processor's has 64 bits.
 enum class Precision { full, mixed, single };
 
+/// GPUs that can share a run.
+inline constexpr int kMostDevices = 8;
+
 struct SolverSettings {
   int max_iterations = 50;        ///< Newton iterations of a load or time step
   double tolerance = 1e-8;        ///< residual relative to the largest of load, inertia and reactions
@@ -22,6 +27,7 @@ struct SolverSettings {
   CgOptions cg;
   Tangent tangent = Tangent::full;
   Precision precision = Precision::full;
+  std::vector<int> devices;  ///< GPUs that share the points of the linear solves; empty: one computes all
 };
 
 }  // namespace fascia

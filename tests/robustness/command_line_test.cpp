@@ -21,7 +21,7 @@ TEST_F(CommandLine, TellsVersionAndHelp) {
   for (const char* command : {"run", "check"}) EXPECT_NE(help.out.find(command), std::string::npos) << help.out;
   const ProgramResult run_help = fascia({"run", "--help"});
   EXPECT_EQ(run_help.status, 0);
-  for (const char* option : {"--set", "--output", "--backend", "--threads", "--quiet", "--json"}) {
+  for (const char* option : {"--set", "--output", "--backend", "--threads", "--gpus", "--quiet", "--json"}) {
     EXPECT_NE(run_help.out.find(option), std::string::npos) << option;
   }
 }
@@ -161,6 +161,20 @@ TEST_F(CommandLine, SaysThatAPrecisionNeedsTheGpu) {
   EXPECT_EQ(summary.at("precision"), "double");
   EXPECT_NE(result.err.find("precision = \"mixed\" needs the GPU, and there is none"), std::string::npos) << result.err;
   EXPECT_EQ(summary.at("warnings").size(), 1u);
+}
+
+TEST_F(CommandLine, SeveralGpusAreThoseThatThereAre) {
+  write("scene.toml", kCantilever);
+  const ProgramResult refused = fascia({"run", "scene.toml", "--gpus", "2", "--backend", "cpu", "--output", "refused"});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_NE(refused.err.find("solver.gpus = 2 needs GPUs"), std::string::npos) << refused.err;
+  EXPECT_EQ(fascia({"run", "scene.toml", "--gpus", "0"}).status, 2);
+  const ProgramResult result = fascia({"run", "scene.toml", "--gpus", "2", "--output", "out"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const nlohmann::json summary = this->summary("out");
+  if (summary.at("gpus") == 2) return;
+  EXPECT_NE(result.err.find("gpus = 2"), std::string::npos) << result.err;
+  EXPECT_EQ(summary.at("warnings").size(), summary.at("gpus") == 0 ? 1u : 0u);
 }
 
 TEST_F(CommandLine, SaysWhichFileCannotBeRead) {

@@ -182,14 +182,11 @@ TEST_P(DeviceSolution, IsThatOfEveryPrecision) {
   std::printf("\n");
 }
 
-TEST_P(DeviceSolution, IsThatOfTheProcessor) {
-  const std::optional<Simulation> simulation =
-      loaded({"solver.linear.kind=cg", "solver.linear.tolerance=1e-10", "solver.linear.max_iterations=100000",
-              "solver.newton.tolerance=1e-12"});
-  if (!simulation) GTEST_SKIP() << why_not;
-  const Simulation& s = *simulation;
-  ASSERT_EQ(app::not_on_gpu(s), "");
-  const SolverSettings settings = app::settings_of(s.scene.solver);
+const std::vector<std::string> kToRounding = {"solver.linear.kind=cg", "solver.linear.tolerance=1e-10",
+                                              "solver.linear.max_iterations=100000", "solver.newton.tolerance=1e-12"};
+
+/// Solves on the processor, and compares.
+void expect_solution_of_processor(const Simulation& s, Where where, const SolverSettings& settings) {
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   ThreadPool pool(0);
   MechanicalSystem system(s.model, pool, settings);
@@ -201,14 +198,51 @@ TEST_P(DeviceSolution, IsThatOfTheProcessor) {
   else
     on_cpu = run_implicit(system, expected, factors, settings,
                           {app::scheme_of(solver.kind), solver.time_step, std::min(solver.steps, 20)}, {});
-  const auto [got, there] = solve(s, where(), settings);
+  const auto [got, there] = solve(s, where, settings);
   EXPECT_EQ(there.message, on_cpu.message);
   EXPECT_EQ(there.steps, on_cpu.steps);
   const double error = difference(got, expected);
-  std::printf("%-30s |du|/|u| %8.1e  Newton %3d %3d  CG %6d %6d\n", scene().c_str(), error, there.newton_iterations,
-              on_cpu.newton_iterations, there.linear_iterations, on_cpu.linear_iterations);
+  std::printf("%-30s |du|/|u| %8.1e  Newton %3d %3d  CG %6d %6d\n", s.scene.path.stem().c_str(), error,
+              there.newton_iterations, on_cpu.newton_iterations, there.linear_iterations, on_cpu.linear_iterations);
   EXPECT_LE(error, std::max(kSameSolution, 1e3 * std::numeric_limits<double>::epsilon() * condition(on_cpu)));
   EXPECT_LE(std::abs(there.newton_iterations - on_cpu.newton_iterations), 2);
+}
+
+TEST_P(DeviceSolution, IsThatOfTheProcessor) {
+  const std::optional<Simulation> simulation = loaded(kToRounding);
+  if (!simulation) GTEST_SKIP() << why_not;
+  ASSERT_EQ(app::not_on_gpu(*simulation), "");
+  expect_solution_of_processor(*simulation, where(), app::settings_of(simulation->scene.solver));
+}
+
+/// Points shared by several devices, which may be one and the same.
+class SharedSolution : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SharedSolution, IsThatOfTheProcessor) {
+  std::string reason;
+  const std::vector<int> devices = gpu::find_devices(kMostDevices, reason);
+  if (devices.empty()) GTEST_SKIP() << reason;
+  const Simulation s = load(GetParam(), kToRounding);
+  SolverSettings settings = app::settings_of(s.scene.solver);
+  for (const std::size_t shares : {2U, 4U}) {
+    settings.devices.clear();
+    for (std::size_t i = 0; i < shares; ++i) settings.devices.push_back(devices[i % devices.size()]);
+    expect_solution_of_processor(s, Where::device, settings);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(device, SharedSolution,
+                         ::testing::Values("soft_cantilever", "traction_clamped", "settling_beam", "tumbling_box"),
+                         [](const auto& scene) { return scene.param; });
+
+TEST(DeviceShares, RefuseWhatTheyCannotShare) {
+  std::string reason;
+  const std::vector<int> devices = gpu::find_devices(1, reason);
+  if (devices.empty()) GTEST_SKIP() << reason;
+  const Simulation s = load("shell_roof");
+  SolverSettings settings = app::settings_of(s.scene.solver);
+  settings.devices = {devices[0], devices[0]};
+  EXPECT_THROW(solve(s, Where::device, settings), gpu::NotShared);
 }
 
 std::string name_of(const ::testing::TestParamInfo<Device::ParamType>& info) {

@@ -248,7 +248,7 @@ TEST(BenchReport, TheCsvHasALineForEachMeasurement) {
   const std::vector<std::string> lines = lines_of(result_csv(result_of_two_backends()));
   ASSERT_EQ(lines.size(), 5u);
   const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
-  EXPECT_EQ(lines[1], "a,grid beam,paper,400,72,4,0,cpu,1,5,8,0,0,4,60,0.0125,32.65,");
+  EXPECT_EQ(lines[1], "a,grid beam,paper,400,72,4,0,cpu,1,5,8,0,0,4,60,0.0125,32.65,,0");
   EXPECT_EQ(commas(lines[0]), commas(lines[1]));
 }
 

@@ -113,6 +113,20 @@ TEST(SceneErrors, PrecisionOfTheGpuAlone) {
             "a.toml:11:13: solver.precision: \"half\" is no known value; must be \"double\", \"mixed\" or \"single\"");
 }
 
+TEST(SceneErrors, SeveralGpus) {
+  EXPECT_EQ(
+      errors_of_beam("[solver]\ngpus = 2\nbackend = \"cpu\"\n"),
+      "a.toml:11:8: solver.gpus: 2 does not go with backend = \"cpu\"; must be 1, or backend \"auto\" or \"cuda\"");
+  EXPECT_EQ(errors_of_beam("[solver]\nkind = \"explicit\"\ntime_step = 1e-4\nsteps = 1\ngpus = 2\n"),
+            "a.toml:14:8: solver.gpus: 2 is not used by kind = \"explicit\"; must be 1");
+  EXPECT_EQ(
+      errors_of_beam("[solver]\nprecision = \"single\"\ngpus = 4\n"),
+      "a.toml:12:8: solver.gpus: 4 does not go with precision = \"single\"; must be 1, or precision \"double\" or "
+      "\"mixed\"");
+  EXPECT_EQ(errors_of_beam("[solver]\ngpus = 9\n"),
+            "a.toml:11:8: solver.gpus: 9 is out of range; must be from 1 to 8");
+}
+
 TEST(SceneErrors, ValuesThatExcludeOneAnother) {
   EXPECT_EQ(errors_of_beam("density = 1\n"),
             "a.toml:10:11: bodies.beam.density: cannot stand beside mass; give only one of them");

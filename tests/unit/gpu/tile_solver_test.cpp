@@ -18,12 +18,13 @@ struct TileCase {
   double drilling = 0.1;
   TileConstants constants = TileConstants::float64;
   bool resident = true;
+  int shares = 1;  ///< of as many GPUs as there are
 };
 
 std::ostream& operator<<(std::ostream& out, const TileCase& c) {
   return out << (c.half_blend ? "half " : "full ") << (c.weights == GridWeightKind::linear ? "linear " : "trilinear ")
              << "drilling " << c.drilling << (c.constants == TileConstants::float32 ? " fp32" : " fp64")
-             << (c.resident ? " resident" : "");
+             << (c.resident ? " resident" : "") << (c.shares > 1 ? " shared by " + std::to_string(c.shares) : "");
 }
 
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -51,7 +52,9 @@ class TileSolverTest : public testing::TestWithParam<TileCase> {
     random_state();
     TilePointsResult points = tile_points(built_.model.points, built_.model.rest_position);
     ASSERT_EQ(points.refusal, "");
-    solver_ = TileSolver::make(points.points, {GetParam().constants, GetParam().resident, 0}, pool_);
+    TileSolverSettings settings{GetParam().constants, GetParam().resident};
+    for (int s = 0; s < GetParam().shares; ++s) settings.devices.push_back(s % devices);
+    solver_ = TileSolver::make(points.points, settings, pool_);
     ASSERT_NE(solver_, nullptr);
     ASSERT_EQ(solver_->resident(), GetParam().resident);
     tolerance_ = GetParam().constants == TileConstants::float32 ? 1e-6 : 1e-12;
@@ -169,6 +172,10 @@ std::vector<TileCase> cases() {
   all.push_back({true, GridWeightKind::trilinear, 0, TileConstants::float64, true});
   all.push_back({true, GridWeightKind::trilinear, 0.1, TileConstants::float32, true});
   all.push_back({false, GridWeightKind::linear, 0, TileConstants::float32, false});
+  for (const int shares : {2, 3, 4}) {
+    all.push_back({true, GridWeightKind::trilinear, 0.1, TileConstants::float64, false, shares});
+    all.push_back({false, GridWeightKind::linear, 0, TileConstants::float32, false, shares});
+  }
   return all;
 }
 
