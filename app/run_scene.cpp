@@ -35,11 +35,12 @@ PathSettings path_of(const Simulation& s) {
 }
 
 Simulation load(const RunOptions& options) {
-  Scene scene = parse_scene_file(options.scene, options.overrides);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.gpus) overrides.push_back(fmt::format("solver.gpus={}", *options.gpus));
+  Scene scene = parse_scene_file(options.scene, overrides);
   if (options.output) scene.output.directory = *options.output;
   if (options.backend) scene.solver.backend = *options.backend;
   if (options.threads) scene.solver.threads = *options.threads;
-  if (options.gpus) scene.solver.gpus = *options.gpus;
   Simulation s = build_simulation(std::move(scene));
   if (s.scene.solver.kind == SolverKind::central_differences) {
     ThreadPool pool(s.scene.solver.threads);

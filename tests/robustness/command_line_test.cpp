@@ -169,6 +169,7 @@ TEST_F(CommandLine, SeveralGpusAreThoseThatThereAre) {
   EXPECT_EQ(refused.status, 5);
   EXPECT_NE(refused.err.find("solver.gpus = 2 needs GPUs"), std::string::npos) << refused.err;
   EXPECT_EQ(fascia({"run", "scene.toml", "--gpus", "0"}).status, 2);
+  EXPECT_EQ(fascia({"run", "scene.toml", "--gpus", "2", "--set", "solver.kind=modes"}).status, 2);
   const ProgramResult result = fascia({"run", "scene.toml", "--gpus", "2", "--output", "out"});
   EXPECT_EQ(result.status, 0) << result.err;
   const nlohmann::json summary = this->summary("out");

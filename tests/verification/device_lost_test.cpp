@@ -1,0 +1,71 @@
+#include "app/gpu_run.hpp"
+#include "app/run_scene.hpp"
+#include "app/scene/parse.hpp"
+#include "app/solver_settings.hpp"
+#include "gpu/device.hpp"
+#include "tests/verification/break_device.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+/// A device that fails or has no memory; each test in a process of its own.
+namespace fascia::test {
+namespace {
+
+using app::Simulation;
+
+class DeviceLost : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    std::string reason;
+    if (!gpu::find_device(reason)) GTEST_SKIP() << reason;
+    simulation_.emplace(app::build_simulation(app::parse_scene_file(
+        std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (GetParam() + ".toml"), {})));
+    state_ = simulation_->initial;
+  }
+  std::optional<app::GpuRun> run(const std::string& backend, const gpu::DeviceObserver& observe) {
+    simulation_->scene.solver.backend = backend;
+    return app::run_on_gpu(
+        *simulation_, state_, [this](double t) { return simulation_->factors(t); },
+        app::settings_of(simulation_->scene.solver), observe);
+  }
+  std::optional<Simulation> simulation_;
+  State state_;
+};
+
+TEST_P(DeviceLost, OnTheWayEndsTheRunWithWhatWasSeen) {
+  State seen;
+  const std::optional<app::GpuRun> run = this->run("auto", [&](const StepInfo& step, gpu::DeviceStep& device) {
+    seen = device.state();
+    if (step.step == 3) break_device();
+    return true;
+  });
+  ASSERT_TRUE(run.has_value());
+  EXPECT_EQ(run->report.status, RunStatus::not_converged);
+  EXPECT_EQ(run->report.steps, 3);
+  EXPECT_EQ(run->report.message.rfind("after step 3: gpu: ", 0), 0u) << run->report.message;
+  EXPECT_EQ(state_.u, seen.u);
+}
+
+TEST_P(DeviceLost, WithoutMemorySaysHowMuchThereIs) {
+  const std::vector<void*> taken = take_memory();
+  const State before = state_;
+  EXPECT_FALSE(run("auto", {}).has_value());
+  try {
+    run("cuda", {});
+    ADD_FAILURE() << "ran without memory";
+  } catch (const app::BackendError& e) {
+    EXPECT_NE(std::string(e.what()).find("gpu: out of memory: asked for "), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find(" free of "), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(state_.u, before.u);
+  give_back(taken);
+  EXPECT_TRUE(run("cuda", [](const StepInfo&, gpu::DeviceStep&) { return false; }).has_value());
+}
+
+INSTANTIATE_TEST_SUITE_P(device, DeviceLost, ::testing::Values("tumbling_box", "shell_spin", "struck_beam"),
+                         [](const auto& scene) { return scene.param; });
+
+}  // namespace
+}  // namespace fascia::test
