@@ -29,15 +29,7 @@ Backend choose_backend(const Simulation& s) {
   const std::string& asked = s.scene.solver.backend;
   const bool in_double = s.scene.solver.precision == "double";
   const int gpus = s.scene.solver.gpus;
-  if (asked == "cpu") {
-    if (gpus > 1)
-      throw BackendError(
-          fmt::format("{}: solver.gpus = {} needs GPUs; use gpus = 1, or --backend auto", s.scene.path.string(), gpus));
-    if (in_double) return Backend::cpu;
-    throw BackendError(
-        fmt::format("{}: solver.precision = \"{}\" needs the GPU; use precision = \"double\", or --backend auto",
-                    s.scene.path.string(), s.scene.solver.precision));
-  }
+  if (asked == "cpu") return Backend::cpu;
   const std::string missing = not_on_gpu(s);
   if (asked == "cuda") {
     try {
@@ -64,8 +56,8 @@ std::string not_as_asked(const Simulation& s, Backend backend) {
   const bool in_double = solver.precision == "double";
   if (backend == Backend::cuda || (in_double && solver.gpus == 1)) return "";
   const std::string missing = not_on_gpu(s);
-  const std::string asked =
-      in_double ? fmt::format("gpus = {}", solver.gpus) : fmt::format("precision = \"{}\"", solver.precision);
+  std::string asked = in_double ? "" : fmt::format("precision = \"{}\"", solver.precision);
+  if (solver.gpus > 1) asked += fmt::format("{}gpus = {}", in_double ? "" : " with ", solver.gpus);
   return fmt::format("{} needs the GPU, {}: computed in double on the processor", asked,
                      missing.empty() ? "and there is none" : "which does not compute " + missing);
 }

@@ -8,12 +8,24 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <iostream>
 #include <new>
 
 namespace {
 
 using namespace fascia::app;
+
+/// A number that is no less than `least`, or with `above` more; of whole numbers where `whole`.
+CLI::Validator number_from(double least, bool above, bool whole) {
+  const auto check = [=](const std::string& text) -> std::string {
+    double value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    if (number && (above ? value > least : value >= least) && (!whole || value == std::floor(value))) return "";
+    return fmt::format("{} must be a {}number {} {:g}", text, whole ? "whole " : "", above ? "above" : "from", least);
+  };
+  return CLI::Validator(check, "");
+}
 
 void add_scene_options(CLI::App& command, RunOptions& options) {
   command.add_option("scene", options.scene, "scene file (TOML)")->required();
@@ -28,18 +40,18 @@ void add_scene_options(CLI::App& command, RunOptions& options) {
 CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   CLI::App* bench = app.add_subcommand("bench", "time published and other cases on this machine's backends");
   bench->add_option("name", options.name, "which benchmark; without a name they are listed");
-  bench->add_option("--sizes", options.sizes, "only these numbers of points or cells: --sizes 360,6070,1e6")
+  bench->add_option("--sizes", options.sizes, "only these numbers of points or cells: --sizes 360,6070,34610")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  bench->add_option("--max-points", options.max_points, "leave out larger cases")->check(CLI::PositiveNumber);
+      ->check(number_from(0, true, false));
+  bench->add_option("--max-points", options.max_points, "leave out larger cases")->check(number_from(0, true, false));
   bench->add_option("--settings", options.settings, "paper: as published; default: the program's own choice; both")
       ->check(CLI::IsMember({"paper", "default", "both"}));
   bench->add_option("--repeat", options.repeat, "steps that are timed; otherwise those of a second, 3 to 100")
-      ->check(CLI::PositiveNumber);
+      ->check(number_from(1, false, true));
   bench->add_option("--backend", options.backend, "cpu or cuda; otherwise all that there are")
       ->check(CLI::IsMember({"cpu", "cuda"}));
   bench->add_option("--threads", options.threads, "threads beside the run on one, 0 for all")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from(0, false, true));
   bench->add_option("--gpus", options.gpus, "numbers of GPUs that share a run, beside one another: --gpus 1,2,4")
       ->delimiter(',')
       ->check(CLI::Range(1, fascia::kMostDevices));
@@ -49,6 +61,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
+bool is_command(std::string_view word) { return word == "run" || word == "check" || word == "bench"; }
+
 int dispatch(int argc, char** argv) {
   CLI::App app{"fascia: simulator of connective tissue and the organs that it ties together", "fascia"};
   app.set_version_flag("--version", version_text());
@@ -57,12 +71,17 @@ int dispatch(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "simulate a scene and write its results");
   add_scene_options(*run, options);
   run->add_option("--output", options.output, "directory of the results");
-  run->add_option("--threads", options.threads, "number of threads, 0 for all")->check(CLI::NonNegativeNumber);
+  run->add_option("--threads", options.threads, "number of threads, 0 for all")->check(number_from(0, false, true));
   run->add_flag("--quiet", options.quiet, "no progress and no summary");
   run->add_flag("--json", options.json, "print summary.json, and nothing else, on standard output");
   run->add_flag("-v,--verbose", options.verbose, "a line for each step");
   CLI::App* check = app.add_subcommand("check", "read and validate a scene, and say what would be simulated");
   add_scene_options(*check, options);
+  if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
+    fmt::print(stderr, "fascia: \"{}\" is no command; must be run, check or bench, as in: fascia run {}\n", argv[1],
+               std::string_view(argv[1]).ends_with(".toml") ? argv[1] : "SCENE");
+    return kWrongInput;
+  }
   BenchOptions bench_options;
   const CLI::App* bench = add_bench(app, bench_options);
   try {

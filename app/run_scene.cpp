@@ -11,6 +11,7 @@
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/math/rotation.hpp"
+#include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
@@ -34,13 +35,34 @@ PathSettings path_of(const Simulation& s) {
   return {arc ? PathControl::arc_length : PathControl::displacement, solver.load_steps, solver.max_steps, s.controlled};
 }
 
+/// What options of the command line may have made of a scene that was sound.
+void check_options(const Scene& scene) {
+  const Solver& solver = scene.solver;
+  const auto fail = [&](const std::string& what) {
+    throw InputError(fmt::format("{}: {}", scene.path.string(), what));
+  };
+  if (solver.gpus > 1 && (solver.kind == SolverKind::central_differences || solver.kind == SolverKind::modes))
+    fail(fmt::format("gpus = {} is not used by kind = \"{}\"; use gpus = 1", solver.gpus,
+                     solver.kind == SolverKind::modes ? "modes" : "explicit"));
+  if (solver.gpus > 1 && solver.precision == "single")
+    fail(fmt::format("gpus = {} does not go with precision = \"single\"; use gpus = 1, or precision \"mixed\"",
+                     solver.gpus));
+  if (solver.backend != "cpu") return;
+  if (solver.gpus > 1)
+    fail(fmt::format("gpus = {} does not go with --backend cpu; use gpus = 1, or --backend auto", solver.gpus));
+  if (solver.precision != "double")
+    fail(fmt::format(
+        "precision = \"{}\" needs the GPU, not --backend cpu; use precision = \"double\", or --backend auto",
+        solver.precision));
+}
+
 Simulation load(const RunOptions& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (options.gpus) overrides.push_back(fmt::format("solver.gpus={}", *options.gpus));
-  Scene scene = parse_scene_file(options.scene, overrides);
+  Scene scene = parse_scene_file(options.scene, options.overrides);
   if (options.output) scene.output.directory = *options.output;
   if (options.backend) scene.solver.backend = *options.backend;
   if (options.threads) scene.solver.threads = *options.threads;
+  if (options.gpus) scene.solver.gpus = *options.gpus;
+  check_options(scene);
   Simulation s = build_simulation(std::move(scene));
   if (s.scene.solver.kind == SolverKind::central_differences) {
     ThreadPool pool(s.scene.solver.threads);
@@ -272,6 +294,13 @@ void print_summary(const nlohmann::ordered_json& j, const std::filesystem::path&
   fmt::print("results in {}\n", directory.string());
 }
 
+void warn_of_backend(Simulation& s, Backend backend) {
+  const std::string lost = not_as_asked(s, backend);
+  if (lost.empty()) return;
+  fmt::print(stderr, "{}: warning: {}\n", s.scene.path.string(), lost);
+  s.warnings.push_back(lost);
+}
+
 int exit_status(RunStatus status) {
   if (status == RunStatus::interrupted) return kInterrupted;
   return status == RunStatus::converged ? kDone : kNotConverged;
@@ -283,10 +312,7 @@ int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   Simulation s = load(options);
   const Backend backend = choose_backend(s);
-  if (const std::string lost = not_as_asked(s, backend); !lost.empty()) {
-    fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), lost);
-    s.warnings.push_back(lost);
-  }
+  warn_of_backend(s, backend);
   io::ResultDirectory directory(s.scene.output.directory);
   ThreadPool pool(s.scene.solver.threads);
   const std::string name = s.scene.path.stem().string();
@@ -326,8 +352,9 @@ std::string describe(const SimulatedBody& b) {
 }
 
 int check_scene(const RunOptions& options) {
-  const Simulation s = load(options);
+  Simulation s = load(options);
   const Backend backend = choose_backend(s);
+  warn_of_backend(s, backend);
   for (const SimulatedBody& b : s.bodies)
     fmt::print("body {}: {}, {}, {}{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
                counted(at(b.body->node_count()), b.node_word()), counted(b.body->points().size(), "integration point"),

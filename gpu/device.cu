@@ -73,7 +73,7 @@ bool find_device(std::string& reason) { return !find_devices(1, reason).empty();
 
 void require_device() {
   std::string reason;
-  if (!find_device(reason)) throw NoDevice(reason + "; use --backend cpu");
+  if (!find_device(reason)) throw NoDevice(reason + "; use --backend auto, or cpu");
 }
 
 }  // namespace fascia::gpu

@@ -15,7 +15,9 @@ bool find_device(std::string& reason) {
 }
 
 void require_device() {
-  throw NoDevice("backend \"cuda\" is not in this build, which was made without the CUDA toolkit; use --backend cpu");
+  throw NoDevice(
+      "backend \"cuda\" is not in this build, which was made without the CUDA toolkit; use --backend auto, "
+      "or cpu");
 }
 
 RunReport run_statics(const Model&, State&, const FactorFunction&, const SolverSettings&, const StaticsSettings&,

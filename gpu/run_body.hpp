@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/solver/drivers_body.hpp"
+#include "gpu/device.hpp"
 #include "gpu/run.hpp"
 #include "gpu/system.hpp"
 
@@ -79,6 +80,9 @@ template <class Space>
 RunReport run_implicit_in(const Model& model, State& state, const FactorFunction& factors,
                           const SolverSettings& settings, const DynamicsSettings& dynamics,
                           const DeviceObserver& observe) {
+  // Tiles know the strains of one state before, and no others.
+  if (settings.devices.size() > 1 && model.points.damped && dynamics.scheme != TimeScheme::implicit_euler)
+    throw NotShared("several GPUs share stiffness damping with kind = \"implicit-euler\" alone");
   return run_in<Space>(model, state, settings, observe, [&](auto& system, auto& pose, const auto& watch) {
     return fascia::run_implicit(system, pose, factors, settings, dynamics, watch);
   });

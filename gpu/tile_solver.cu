@@ -33,10 +33,15 @@ int usual_tile_size(int influences, TileConstants constants, bool drilling) {
 template <class Constant>
 std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolverSettings& settings,
                                         ThreadPool& pool) {
-  const DeviceLimits limits = DeviceLimits::present();
+  DeviceLimits limits = DeviceLimits::present();
+  for (const int device : settings.devices) {
+    const OnDevice on(device);
+    limits.shared_bytes = std::min(limits.shared_bytes, DeviceLimits::present().shared_bytes);
+  }
   const int n = points.point_count();
   if (n == 0) return nullptr;
-  const bool team = settings.devices.size() > 1;
+  const auto shares = static_cast<int>(settings.devices.size());
+  const bool team = shares > 1;
   if (settings.resident && !team && n <= limits.multiprocessors * kMostTileThreads) {
     const int share = (n + limits.multiprocessors - 1) / limits.multiprocessors;
     for (int size = std::max(kLeastResidentPoints, whole(share, 16)); size <= kMostTileThreads; size += 16) {
@@ -55,6 +60,7 @@ std::unique_ptr<TileSolver> make_solver(const TilePoints& points, const TileSolv
     auto layout = make_tiles(points, {size, kMostTileFrames}, pool);
     if (!layout) continue;
     if (shared_plan<Constant>(*layout).bytes > limits.shared_bytes) continue;
+    if (layout->tile_count < shares && size > 64) continue;
     if (team) return std::make_unique<TeamSolver<Constant>>(std::move(*layout), settings.devices);
     return std::make_unique<Solver<Constant>>(whole_share(std::move(*layout)), std::nullopt, limits);
   }

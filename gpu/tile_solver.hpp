@@ -35,7 +35,7 @@ struct TileSolverSettings {
 class TileSolver {
  public:
   /// Null where tiles cannot hold the points (make_tiles()).
-  /// @throws gpu::NoDevice  devices that cannot read each other's memory
+  /// @throws gpu::NotShared  devices that cannot read each other's memory, or more of them than tiles
   static std::unique_ptr<TileSolver> make(const TilePoints& points, const TileSolverSettings& settings,
                                           ThreadPool& pool);
   virtual ~TileSolver() = default;

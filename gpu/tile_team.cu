@@ -1,8 +1,10 @@
 #include "gpu/device.hpp"
 #include "gpu/tile_team_solver.cuh"
 
+#include <cstdlib>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace fascia::tile {
 
@@ -22,6 +24,9 @@ void share_pool(int device, int other) {
 
 void connect_devices(std::span<const int> devices) {
   const std::set<int> all(devices.begin(), devices.end());
+  const char* blocking = std::getenv("CUDA_LAUNCH_BLOCKING");
+  if (all.size() > 1 && blocking != nullptr && std::string_view(blocking) != "0")
+    throw gpu::NotShared("GPUs that share a run wait for one another, which CUDA_LAUNCH_BLOCKING does not allow");
   for (const int device : all) {
     const OnDevice on(device);
     for (const int other : all) {
@@ -29,8 +34,8 @@ void connect_devices(std::span<const int> devices) {
       int possible = 0;
       check(cudaDeviceCanAccessPeer(&possible, device, other), "looking at a GPU's neighbours");
       if (possible == 0)
-        throw gpu::NoDevice("GPU " + std::to_string(device) + " cannot read the memory of GPU " +
-                            std::to_string(other) + "; use one GPU");
+        throw gpu::NotShared("GPU " + std::to_string(device) + " cannot read the memory of GPU " +
+                             std::to_string(other));
       const cudaError_t status = cudaDeviceEnablePeerAccess(other, 0);
       if (status == cudaErrorPeerAccessAlreadyEnabled)
         cudaGetLastError();

@@ -66,9 +66,9 @@ static __global__ __launch_bounds__(kMeetThreads) void meet_kernel(TeamView team
     *reinterpret_cast<double2*>(rows.of[e.share] + word(e.remote_row)) =
         *reinterpret_cast<const double2*>(rows.of[team.rank] + word(e.row));
   }
-  if (rows.count > 0) __threadfence_system();
   __syncthreads();
   if (threadIdx.x == 0) {
+    __threadfence_system();  // what the block wrote, before its ticket
     last = gridDim.x == 1 || atomicInc(team.arrived, gridDim.x - 1) == gridDim.x - 1;
     __threadfence_system();
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gpu/device.hpp"
 #include "gpu/tile_solver_cg.cuh"
 #include "gpu/tile_team_solver.cuh"
 
@@ -64,7 +65,7 @@ RowsArgs Solver<Constant>::rows_of(const Buffer<TileExport>& exports, int words,
 template <class Constant>
 TeamSolver<Constant>::TeamSolver(TileLayout layout, std::span<const int> devices)
     : devices_(devices.begin(), devices.end()) {
-  devices_.resize(std::min(devices_.size(), at(layout.tile_count)));
+  if (at(layout.tile_count) < devices_.size()) throw gpu::NotShared("the model has too few points for so many GPUs");
   connect_devices(devices_);
   std::vector<TileShare> shares = split_tiles(layout, static_cast<int>(devices_.size()));
   layout = {};

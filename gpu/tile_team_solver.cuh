@@ -23,7 +23,7 @@ class OnDevice {
   int before_ = 0;
 };
 
-/// Lets every device of a list read and write the memory of the others. @throws NoDevice
+/// Lets every device of a list read and write the memory of the others. @throws NotShared
 void connect_devices(std::span<const int> devices);
 
 /// A stream of a device, and the event that others wait for.

@@ -1,6 +1,7 @@
 #include "app/bench/benchmark.hpp"
 #include "app/run_scene.hpp"
 #include "app/solver_settings.hpp"
+#include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
 #include "core/solver/drivers.hpp"
 #include "gpu/device.hpp"
@@ -94,7 +95,8 @@ std::vector<Backend> available_backends(int threads, const std::vector<int>& gpu
   for (const int count : gpus) {
     if (count == 1 && !has_gpu) continue;
     const std::vector<int> devices = gpu::find_devices(count, reason);
-    if (static_cast<int>(devices.size()) < count) throw BackendError(fmt::format("--gpus {}, but {}", count, reason));
+    if (static_cast<int>(devices.size()) < count)
+      throw BackendError(fmt::format("--gpus {}, but {}; leave out --gpus", count, reason));
     const std::vector<int> shared = count == 1 ? std::vector<int>{} : devices;
     backends.push_back({"cuda", 0,
                         [shared](const Simulation& s, const StepPlan& plan) { return run_on_gpu(s, plan, shared); },
@@ -104,13 +106,12 @@ std::vector<Backend> available_backends(int threads, const std::vector<int>& gpu
 }
 
 std::vector<Backend> chosen_backends(const BenchOptions& options) {
-  if (options.backend == "cuda") {
-    try {
-      gpu::require_device();
-    } catch (const gpu::NoDevice& e) {
-      throw BackendError(e.what());
-    }
-  }
+  const bool many = std::any_of(options.gpus.begin(), options.gpus.end(), [](int count) { return count > 1; });
+  if (options.backend == "cpu" && many)
+    throw InputError("--gpus does not go with --backend cpu; leave out one of them");
+  std::string reason;
+  if (options.backend == "cuda" && !gpu::find_device(reason))
+    throw BackendError(fmt::format("{}; leave out --backend", reason));
   std::vector<Backend> backends = available_backends(options.threads, options.gpus);
   std::erase_if(backends, [&](const Backend& b) { return options.backend && b.name != *options.backend; });
   return backends;

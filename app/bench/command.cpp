@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 
 namespace fascia::app {
 namespace {
@@ -49,9 +50,24 @@ class Teller {
   bool quiet_, terminal_;
 };
 
+/// @throws FileError  files that are no result of this benchmark would be lost
+void check_replaceable(const std::filesystem::path& folder, const std::string& name) {
+  std::ifstream stream(folder / (name + ".json"), std::ios::binary);
+  const nlohmann::json older = stream ? nlohmann::json::parse(stream, nullptr, false) : nlohmann::json();
+  if (older.is_object() && older.value("benchmark", "") == name) return;
+  for (const char* kind : {".txt", ".csv", ".json"})
+    if (const std::filesystem::path file = folder / (name + kind); std::filesystem::exists(file))
+      throw FileError(file.string() +
+                      ": exists and is no result of this benchmark; remove it or choose another directory");
+}
+
 void write_files(const BenchOptions& options, const Benchmark& benchmark, const BenchmarkResult& result,
                  const Machine& machine) {
   const std::filesystem::path folder = *options.output;
+  for (const BenchmarkCase& c : benchmark.cases) {
+    std::error_code absent;
+    std::filesystem::remove(folder / "scenes" / (c.name + ".toml"), absent);  // of an older result
+  }
   io::write_file(folder / (result.name + ".txt"), result_table(result, machine));
   io::write_file(folder / (result.name + ".csv"), result_csv(result));
   io::write_file(folder / (result.name + ".json"), result_json(result, machine).dump(2) + "\n");
@@ -67,11 +83,17 @@ std::vector<Benchmark> all_benchmarks() { return {table2(), table3(), elements()
 int run_bench(const BenchOptions& options) {
   const std::vector<Benchmark> benchmarks = all_benchmarks();
   if (!options.name) {
+    const bool more = options.json || options.output || !options.sizes.empty() || options.max_points ||
+                      options.repeat > 0 || options.backend;
+    if (more) throw InputError("bench: these options need a benchmark, as in: fascia bench table3 --sizes 360");
     print_list(benchmarks);
     return kDone;
   }
   const Benchmark& benchmark = find(benchmarks, *options.name);
-  if (options.output) io::make_directories(*options.output);
+  if (options.output) {
+    check_replaceable(*options.output, benchmark.name);
+    io::make_directories(*options.output);
+  }
   const Teller say(options.quiet || options.json);
   const BenchmarkResult result =
       time_benchmark(benchmark, options, chosen_backends(options), [&](const std::string& what) { say(what); });
