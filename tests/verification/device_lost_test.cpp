@@ -20,8 +20,8 @@ class DeviceLost : public ::testing::TestWithParam<std::string> {
   void SetUp() override {
     std::string reason;
     if (!gpu::find_device(reason)) GTEST_SKIP() << reason;
-    simulation_.emplace(app::build_simulation(app::parse_scene_file(
-        std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (GetParam() + ".toml"), {})));
+    simulation_.emplace(app::build_simulation(
+        app::parse_scene_file(std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (GetParam() + ".toml"), {})));
     state_ = simulation_->initial;
   }
   std::optional<app::GpuRun> run(const std::string& backend, const gpu::DeviceObserver& observe) {

@@ -123,8 +123,7 @@ TEST(SceneErrors, SeveralGpus) {
       errors_of_beam("[solver]\nprecision = \"single\"\ngpus = 4\n"),
       "a.toml:12:8: solver.gpus: 4 does not go with precision = \"single\"; must be 1, or precision \"double\" or "
       "\"mixed\"");
-  EXPECT_EQ(errors_of_beam("[solver]\ngpus = 9\n"),
-            "a.toml:11:8: solver.gpus: 9 is out of range; must be from 1 to 8");
+  EXPECT_EQ(errors_of_beam("[solver]\ngpus = 9\n"), "a.toml:11:8: solver.gpus: 9 is out of range; must be from 1 to 8");
 }
 
 TEST(SceneErrors, ValuesThatExcludeOneAnother) {
