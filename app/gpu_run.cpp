@@ -22,12 +22,13 @@ RunReport broken_off(RunReport seen, const std::string& why) {
   return seen;
 }
 
-void warn(const Simulation& s, const std::string& text) {
+void warn(const Simulation& s, const std::string& text, std::vector<std::string>& warnings) {
   fmt::print(stderr, "{}: warning: {}\n", s.scene.path.string(), text);
+  warnings.push_back(text);
 }
 
 /// GPUs that share the run. @throws BackendError  fewer than were asked for
-std::vector<int> devices_of(const Simulation& s) {
+std::vector<int> devices_of(const Simulation& s, std::vector<std::string>& warnings) {
   const Solver& solver = s.scene.solver;
   if (solver.gpus == 1) return {};
   std::string reason;
@@ -35,7 +36,7 @@ std::vector<int> devices_of(const Simulation& s) {
   const int found = static_cast<int>(devices.size());
   if (found == solver.gpus) return devices;
   if (solver.backend != "auto") throw BackendError(fmt::format("gpus = {}, but {}", solver.gpus, reason));
-  warn(s, fmt::format("gpus = {}, but {}; {} compute{}", solver.gpus, reason, found, found == 1 ? "s" : ""));
+  warn(s, fmt::format("gpus = {}, but {}; {} compute{}", solver.gpus, reason, found, found == 1 ? "s" : ""), warnings);
   return devices;
 }
 
@@ -54,12 +55,13 @@ RunReport run_kind(const Simulation& s, State& state, const FactorFunction& fact
 }  // namespace
 
 std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors,
-                                 const SolverSettings& asked, const gpu::DeviceObserver& observe,
+                                 const SolverSettings& asked, std::vector<std::string>& warnings,
+                                 const gpu::DeviceObserver& observe,
                                  const std::function<bool(const StepInfo&)>& observed) {
   const Solver& solver = s.scene.solver;
   const bool may_choose = solver.backend == "auto";
   SolverSettings settings = asked;
-  settings.devices = devices_of(s);
+  settings.devices = devices_of(s, warnings);
   RunReport seen;
   const gpu::DeviceObserver watch = [&](const StepInfo& step, gpu::DeviceStep& device) {
     seen.steps = step.step;
@@ -76,7 +78,7 @@ std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const Factor
       return run();
     } catch (const gpu::NotShared& e) {
       if (!may_choose) throw BackendError(fmt::format("{}; use gpus = 1", e.what()));
-      warn(s, fmt::format("{}; one computes", e.what()));
+      warn(s, fmt::format("{}; one computes", e.what()), warnings);
       settings.devices.clear();
       return run();
     }
@@ -85,12 +87,14 @@ std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const Factor
   } catch (const gpu::DeviceMemoryError& e) {
     if (seen.steps > 0) return GpuRun{broken_off(seen, e.what()), gpus()};
     if (!may_choose) throw BackendError(e.what());
-    warn(s, fmt::format("{}; the processor goes on{}", e.what(),
-                        solver.precision == "double" ? "" : ", in double precision"));
+    warn(s,
+         fmt::format("{}; the processor goes on{}", e.what(),
+                     solver.precision == "double" ? "" : ", in double precision"),
+         warnings);
     return std::nullopt;
   } catch (const InputError& e) {  // more of something than the GPU's code can number
     if (seen.steps > 0 || !may_choose) throw;
-    warn(s, fmt::format("{}; the processor goes on", e.what()));
+    warn(s, fmt::format("{}; the processor goes on", e.what()), warnings);
     return std::nullopt;
   } catch (const gpu::NoDevice& e) {
     throw BackendError(e.what());

@@ -11,7 +11,6 @@
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/math/rotation.hpp"
-#include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
@@ -35,34 +34,13 @@ PathSettings path_of(const Simulation& s) {
   return {arc ? PathControl::arc_length : PathControl::displacement, solver.load_steps, solver.max_steps, s.controlled};
 }
 
-/// What options of the command line may have made of a scene that was sound.
-void check_options(const Scene& scene) {
-  const Solver& solver = scene.solver;
-  const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: {}", scene.path.string(), what));
-  };
-  if (solver.gpus > 1 && (solver.kind == SolverKind::central_differences || solver.kind == SolverKind::modes))
-    fail(fmt::format("gpus = {} is not used by kind = \"{}\"; use gpus = 1", solver.gpus,
-                     solver.kind == SolverKind::modes ? "modes" : "explicit"));
-  if (solver.gpus > 1 && solver.precision == "single")
-    fail(fmt::format("gpus = {} does not go with precision = \"single\"; use gpus = 1, or precision \"mixed\"",
-                     solver.gpus));
-  if (solver.backend != "cpu") return;
-  if (solver.gpus > 1)
-    fail(fmt::format("gpus = {} does not go with --backend cpu; use gpus = 1, or --backend auto", solver.gpus));
-  if (solver.precision != "double")
-    fail(fmt::format(
-        "precision = \"{}\" needs the GPU, not --backend cpu; use precision = \"double\", or --backend auto",
-        solver.precision));
-}
-
 Simulation load(const RunOptions& options) {
-  Scene scene = parse_scene_file(options.scene, options.overrides);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.backend) overrides.push_back("solver.backend=" + *options.backend);
+  if (options.threads) overrides.push_back(fmt::format("solver.threads={}", *options.threads));
+  if (options.gpus) overrides.push_back(fmt::format("solver.gpus={}", *options.gpus));
+  Scene scene = parse_scene_file(options.scene, overrides);
   if (options.output) scene.output.directory = *options.output;
-  if (options.backend) scene.solver.backend = *options.backend;
-  if (options.threads) scene.solver.threads = *options.threads;
-  if (options.gpus) scene.solver.gpus = *options.gpus;
-  check_options(scene);
   Simulation s = build_simulation(std::move(scene));
   if (s.scene.solver.kind == SolverKind::central_differences) {
     ThreadPool pool(s.scene.solver.threads);
@@ -103,6 +81,7 @@ struct Outcome {
   int gpus = 0;
   bool failed = false;  ///< not only steps that were accepted as they were
   std::vector<std::string> warnings;
+  std::vector<std::string> told;  ///< warnings that were printed when they arose
   RunTimes times;
   std::vector<nlohmann::json> probes;
   double stabilization = 0;
@@ -158,7 +137,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
   // Whether the GPU did it.
   const auto on_gpu = [&](const gpu::DeviceObserver& look, const std::function<bool(const StepInfo&)>& observed = {}) {
     if (out.backend != Backend::cuda) return false;
-    const std::optional<GpuRun> run = run_on_gpu(s, state, factors, settings, look, observed);
+    const std::optional<GpuRun> run = run_on_gpu(s, state, factors, settings, out.told, look, observed);
     if (!run) {
       out.backend = Backend::cpu;
       return false;
@@ -324,6 +303,7 @@ int run_scene(const RunOptions& options) {
   out.times.setup += setup;
   files.finish();
   if (s.scene.output.picture) make_picture(s, directory.path(), name);
+  s.warnings.insert(s.warnings.end(), out.told.begin(), out.told.end());
   for (const std::string& w : out.warnings) {
     fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
     s.warnings.push_back(w);

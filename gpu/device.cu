@@ -69,8 +69,6 @@ std::vector<int> find_devices(int wanted, std::string& reason) {
   return found;
 }
 
-bool find_device(std::string& reason) { return !find_devices(1, reason).empty(); }
-
 void require_device() {
   std::string reason;
   if (!find_device(reason)) throw NoDevice(reason + "; use --backend auto, or cpu");

@@ -30,7 +30,7 @@ std::vector<int> find_devices(int count, std::string& reason);
 
 /// Takes the first device that this build can use; the others are left alone. False where there is none.
 /// @param reason  why: a sentence
-bool find_device(std::string& reason);
+inline bool find_device(std::string& reason) { return !find_devices(1, reason).empty(); }
 
 /// The same. @throws NoDevice  with the reason and a remedy
 void require_device();

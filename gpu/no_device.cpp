@@ -9,11 +9,6 @@ std::vector<int> find_devices(int, std::string& reason) {
   return {};
 }
 
-bool find_device(std::string& reason) {
-  reason = "this build has no CUDA backend";
-  return false;
-}
-
 void require_device() {
   throw NoDevice(
       "backend \"cuda\" is not in this build, which was made without the CUDA toolkit; use --backend auto, "

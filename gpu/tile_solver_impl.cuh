@@ -67,9 +67,10 @@ class Solver final : public TileSolver {
   void join(std::span<const std::unique_ptr<Solver>> team, int rank);
   /// What must not happen while another device waits for this one.
   void prepare_solve() { build_graph(); }
+  void prepare_forces() { gradient_partials_.resize(at(layout_.slot_count()) * kGradient); }
+  /// gradient() without waiting, and its energies.
   void start_gradient(const double* u, const double* D, double inverse_step, double* gradient, double* moments);
   TileEnergy finish_gradient();
-  void prepare_forces() { gradient_partials_.resize(at(layout_.slot_count()) * kGradient); }
 
  private:
   using ProductKernel = void (*)(ProductArgs<Constant>);

@@ -84,7 +84,8 @@ int run_bench(const BenchOptions& options) {
   const std::vector<Benchmark> benchmarks = all_benchmarks();
   if (!options.name) {
     const bool more = options.json || options.output || !options.sizes.empty() || options.max_points ||
-                      options.repeat > 0 || options.backend;
+                      options.repeat > 0 || options.threads > 0 || options.backend ||
+                      options.gpus != std::vector<int>{1};
     if (more) throw InputError("bench: these options need a benchmark, as in: fascia bench table3 --sizes 360");
     print_list(benchmarks);
     return kDone;

@@ -150,7 +150,7 @@ TEST_F(CommandLine, SaysThatAPrecisionNeedsTheGpu) {
   const ProgramResult refused =
       fascia({"run", "scene.toml", "--set", "solver.precision=mixed", "--backend", "cpu", "--output", "refused"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("precision = \"mixed\" needs the GPU"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("solver.precision: \"mixed\" needs the GPU"), std::string::npos) << refused.err;
   const ProgramResult result = fascia({"run", "scene.toml", "--set", "solver.precision=mixed", "--output", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json summary = this->summary("out");
@@ -167,7 +167,7 @@ TEST_F(CommandLine, SeveralGpusAreThoseThatThereAre) {
   write("scene.toml", kCantilever);
   const ProgramResult refused = fascia({"run", "scene.toml", "--gpus", "2", "--backend", "cpu", "--output", "refused"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("gpus = 2 does not go with --backend cpu"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("solver.gpus: 2 does not go with backend = \"cpu\""), std::string::npos) << refused.err;
   EXPECT_EQ(fascia({"run", "scene.toml", "--gpus", "0"}).status, 2);
   EXPECT_EQ(fascia({"run", "scene.toml", "--gpus", "2", "--set", "solver.kind=modes"}).status, 2);
   const ProgramResult result = fascia({"run", "scene.toml", "--gpus", "2", "--output", "out"});
@@ -175,7 +175,7 @@ TEST_F(CommandLine, SeveralGpusAreThoseThatThereAre) {
   const nlohmann::json summary = this->summary("out");
   if (summary.at("gpus") == 2) return;
   EXPECT_NE(result.err.find("gpus = 2"), std::string::npos) << result.err;
-  EXPECT_EQ(summary.at("warnings").size(), summary.at("gpus") == 0 ? 1u : 0u);
+  EXPECT_EQ(summary.at("warnings").size(), 1u);
 }
 
 TEST_F(CommandLine, SaysWhichFileCannotBeRead) {

@@ -28,10 +28,11 @@ class DeviceLost : public ::testing::TestWithParam<std::string> {
     simulation_->scene.solver.backend = backend;
     return app::run_on_gpu(
         *simulation_, state_, [this](double t) { return simulation_->factors(t); },
-        app::settings_of(simulation_->scene.solver), observe);
+        app::settings_of(simulation_->scene.solver), warnings_, observe);
   }
   std::optional<Simulation> simulation_;
   State state_;
+  std::vector<std::string> warnings_;
 };
 
 TEST_P(DeviceLost, OnTheWayEndsTheRunWithWhatWasSeen) {
@@ -52,6 +53,7 @@ TEST_P(DeviceLost, WithoutMemorySaysHowMuchThereIs) {
   const std::vector<void*> taken = take_memory();
   const State before = state_;
   EXPECT_FALSE(run("auto", {}).has_value());
+  EXPECT_EQ(warnings_.size(), 1u);
   try {
     run("cuda", {});
     ADD_FAILURE() << "ran without memory";
