@@ -105,6 +105,9 @@ int main(int argc, char** argv) {
   } catch (const fascia::InputError& e) {
     fmt::print(stderr, "{}\n", e.what());
     return kWrongInput;
+  } catch (const fascia::StateError& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return kNotConverged;
   } catch (const fascia::FileError& e) {
     fmt::print(stderr, "{}\n", e.what());
     return kFileProblem;

@@ -1,5 +1,7 @@
 #include "app/result_warnings.hpp"
 
+#include "core/math/index.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -72,13 +74,62 @@ void SnapWatch::look(double time, double energy) {
   factors_ = factors;
 }
 
+namespace {
+
+/// Whether verdicts on the end state are this run's: of statics under load control that converged.
+bool is_judged(const Simulation& s, const RunReport& run) {
+  const Solver& solver = s.scene.solver;
+  return solver.kind == SolverKind::statics && solver.control == StaticControl::load &&
+         run.status == RunStatus::converged;
+}
+
+/// The body whose node moves most in the softest direction, and where that is.
+std::string softest_place(const Simulation& s, const State& end, int node) {
+  if (node < 0) return "";
+  const Vec3d x = s.model.rest_position[at(node)] + end.u[at(node)];
+  for (const SimulatedBody& b : s.bodies)
+    if (node >= b.body->first_node() && node < b.body->first_node() + b.body->node_count())
+      return fmt::format(" (body \"{}\" moves most, near ({:.4g}, {:.4g}, {:.4g}))", b.name, x[0], x[1], x[2]);
+  return "";
+}
+
+void judge_stability(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
+  const Stability& found = run.stability;
+  const std::string where = softest_place(s, end, found.node);
+  if (!found.known)
+    return warnings.push_back(
+        "the linear solver could not tell whether the end state is stable; linear.kind = "
+        "\"cholesky\" can, where memory allows it");
+  if (found.near_limit)
+    return warnings.push_back(
+        "the end state is near a limit point or a bifurcation" + where +
+        ": less than a hundredth of the lowest stiffness is left; a slightly larger load may have "
+        "no equilibrium nearby");
+  if (!found.is_unstable()) return;
+  if (!s.model.loads_are_conservative())
+    return warnings.push_back("the end state may be an unstable equilibrium" + where +
+                              "; loads that follow the body have no energy that could tell");
+  const std::string message =
+      "the end state is an unstable equilibrium" + where + ": the smallest disturbance makes the body leave it";
+  if (s.scene.solver.accept_unstable) return warnings.push_back(message);
+  run.status = RunStatus::unstable;
+  run.message = message +
+                "; try a small imperfection of the loads or the shape, control = \"arc-length\", or solver.accept = "
+                "[\"unstable\"] to keep it";
+}
+
+}  // namespace
+
 void add_result_warnings(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
   if (run.status == RunStatus::converged && !run.trouble.empty())
     warnings.push_back("the end state may be an unstable equilibrium: " + run.trouble);
+  const bool judged = is_judged(s, run);
+  if (judged) judge_stability(s, end, run, warnings);
   warnings.insert(warnings.end(), run.events.begin(), run.events.end());
   if (run.residual_floor > 1e-3 && !(s.model.loads.empty() && s.model.surfaces.empty()))
     warnings.push_back(fmt::format(
         "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
+  std::vector<std::string> inside_out;
   for (const SimulatedBody& b : s.bodies) {
     const auto index = static_cast<std::size_t>(&b - s.bodies.data());
     if (is_shell(s.scene.bodies[index])) {
@@ -101,7 +152,7 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
                       "it out",
                       b.name, inverted, b.body->points().size()));
     else if (inverted > 0)
-      warnings.push_back(fmt::format(
+      inside_out.push_back(fmt::format(
           "body \"{}\" is turned inside out at {} of {} integration points: {} do not resist that; the "
           "result is no physical state (law = \"neo-hookean\" would resist)",
           b.name, inverted, b.body->points().size(),
@@ -112,6 +163,14 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
                       "of {} integration points: their blend does not resolve that; use more frames",
                       b.name, unresolved, b.body->points().size()));
   }
+  if (run.status == RunStatus::unstable && !inside_out.empty()) warnings.push_back(run.message);
+  for (const std::string& message : inside_out)
+    if (judged && !s.scene.solver.accept_inverted && run.status != RunStatus::inverted) {
+      run.status = RunStatus::inverted;
+      run.message = message + "; solver.accept = [\"inverted\"] keeps it all the same";
+    } else {
+      warnings.push_back(message);
+    }
   if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
     run.status = RunStatus::not_converged;
     run.message =

@@ -2,6 +2,7 @@
 
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/model/errors.hpp"
 #include "core/physics/von_mises.hpp"
 #include "core/solver/clock.hpp"
 
@@ -220,10 +221,17 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
 
 void ResultFiles::add_state(double time, const State& state) {
   const Clock::time_point start = Clock::now();
-  for (const SimulatedBody& body : simulation_.bodies) {
-    const std::string file = fmt::format("{}_{:05d}.vtu", body.name, saved_);
-    io::write_vtu(directory_ / file, visual(body, state));
-    entries_.push_back({time, body.name, file});
+  const std::size_t listed = entries_.size();
+  try {
+    for (const SimulatedBody& body : simulation_.bodies) {
+      const std::string file = fmt::format("{}_{:05d}.vtu", body.name, saved_);
+      io::write_vtu(directory_ / file, visual(body, state));
+      entries_.push_back({time, body.name, file});
+    }
+  } catch (const StateError&) {  // the bodies that it can show are no whole state
+    for (std::size_t k = listed; k < entries_.size(); ++k) std::filesystem::remove(directory_ / entries_[k].file);
+    entries_.resize(listed);
+    throw;
   }
   ++saved_;
   seconds_ += seconds_since(start);

@@ -11,6 +11,7 @@
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/math/rotation.hpp"
+#include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/modes.hpp"
@@ -106,12 +107,17 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
   double output_seconds = 0, saved_time = -1;
   int saved_step = 0;
   SnapWatch snaps(s);
+  std::string not_shown;  // why the last state is in no result
   const auto save = [&](double time, int step, const State& at, bool fields) {
     const Clock::time_point start = Clock::now();
-    files.add_probes(time, {&at, &system, 0});
-    if (fields) files.add_state(path ? step : time, at);
-    if (fields) saved_time = time;
-    if (fields) saved_step = step;
+    try {
+      if (fields) files.add_state(path ? step : time, at);
+      files.add_probes(time, {&at, &system, 0});
+      if (fields) saved_time = time;
+      if (fields) saved_step = step;
+    } catch (const StateError& e) {
+      not_shown = e.what();
+    }
     output_seconds += seconds_since(start);
   };
   // What is watched in all steps, and what is saved of some: `show` makes `system` stand there.
@@ -123,7 +129,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
     if (due || statics) save(step.time, step.step, show(), due);
     out.stabilization = energy.stabilization;
     if (statics && !path) snaps.look(step.time, energy.elastic);
-    return interrupted == 0;
+    return interrupted == 0 && not_shown.empty();
   };
   const auto observe = [&](const StepInfo& step, const State& at, MechanicalSystem&) {
     return watch(step, system.internal_energy(), [&]() -> const State& { return at; });
@@ -166,7 +172,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
       const auto keep = [&](const StepInfo& step, const State& at) {
         save(step.time, step.step, at, true);
         out.stabilization = system.internal_energy().stabilization;
-        return interrupted == 0;
+        return interrupted == 0 && not_shown.empty();
       };
       const auto keep_from_gpu = [&](const StepInfo& step, gpu::DeviceStep& device) {
         device.show(system, factors(step.time));
@@ -183,9 +189,14 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
   }
   progress.finish();
   out.times.solve = seconds_since(start) - output_seconds;
+  if (!not_shown.empty()) {
+    out.run.status = RunStatus::diverged;
+    out.run.message = fmt::format("{} {:.6g}: {}; the results end before it",
+                                  statics ? "load factor" : "t =", out.run.time, not_shown);
+  }
   // What was computed up to a failure is a result too.
   const bool unsaved = path ? saved_step != out.run.steps || saved_step == 0 : saved_time != state.time;
-  if (out.run.status != RunStatus::converged && unsaved) {
+  if (out.run.status != RunStatus::converged && unsaved && not_shown.empty()) {
     if (statics && out.run.steps > 0) {
       files.add_state(path ? out.run.steps : state.time, state);
     } else {
@@ -195,8 +206,9 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
       save(state.time, out.run.steps, state, true);
     }
   }
-  out.failed = out.run.status != RunStatus::converged;
+  const bool ended = out.run.status == RunStatus::converged;
   add_result_warnings(s, state, out.run, out.warnings);
+  out.failed = !ended || out.run.status == RunStatus::unstable || out.run.status == RunStatus::inverted;
   out.couplings = coupling_report(s, system, state);
   for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
   if (!snaps.warning().empty()) out.warnings.push_back(snaps.warning());

@@ -29,6 +29,10 @@ const char* status_name(RunStatus status) {
       return "converged";
     case RunStatus::diverged:
       return "diverged";
+    case RunStatus::unstable:
+      return "unstable";
+    case RunStatus::inverted:
+      return "inverted";
     default:
       return "not-converged";
   }
@@ -49,6 +53,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, c
   if (!s.scene.title.empty()) j["title"] = s.scene.title;
   j["status"] = status_name(run.status);
   j["message"] = run.message;
+  j["convergence"] = run.convergence;
   j["backend"] = name_of(backend);
   j["gpus"] = gpus;
   j["precision"] = precision_of(s, backend);

@@ -23,6 +23,24 @@ bool near_limit_point(System<Space>& system, const DeviceState<Space>& pose, con
   return fascia::near_limit_point(host, state, factors, reached);
 }
 
+/// Of the equilibrium at the end of statics: by a factorisation on the host where that is cheap, as of a
+/// MechanicalSystem; else by conjugate gradients on the device.
+template <class Space>
+Stability end_stability(System<Space>& system, const DeviceState<Space>& end, const RunReport& run, bool) {
+  const Model& model = system.model();
+  if (model.free_dof_count() > kMostOfLimitPoint) return system.stability(end);
+  ThreadPool pool(0);
+  SolverSettings settings = system.settings();
+  settings.linear = LinearMethod::cholesky;
+  MechanicalSystem host(model, pool, settings);
+  State state = State::at_rest(model);
+  end.download(state);
+  host.set_factors(system.factors());
+  host.begin_step(state, 0);
+  host.evaluate();
+  return host.stability(state, run.linear_iterations, false);
+}
+
 template <class Space>
 class ReachedStep : public DeviceStep {
  public:

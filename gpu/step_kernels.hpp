@@ -192,12 +192,12 @@ struct NodeMotion {
   }
 };
 
-/// A running maximum.
-struct KeepLargest {
-  const double* now;
-  double* largest;
+/// The larger of two, and at least what was at the start.
+struct AtLeast {
+  const double* least;
+  double* value;
   FASCIA_HD void operator()(int p) const {
-    if (now[p] > largest[p]) largest[p] = now[p];
+    if (least[p] > value[p]) value[p] = least[p];
   }
 };
 

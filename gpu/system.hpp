@@ -58,6 +58,8 @@ class System {
 
   const Model& model() const { return model_; }
   const SolverSettings& settings() const { return settings_; }
+  const DofFilter& filter() const { return filter_; }
+  std::span<const double> factors() const { return factors_; }
   InternalEnergy internal_energy() const { return internal_; }
   /// By degrees of freedom, as MechanicalSystem::gradient().
   std::vector<double> gradient() const { return gradient_.downloaded(); }
@@ -65,6 +67,10 @@ class System {
   std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
   /// K d at the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);
+  /// As MechanicalSystem::stability(), by conjugate gradients.
+  Stability stability(const Pose& end) {
+    return stability_of(*this, end, Pose(State::at_rest(model_)), [&](bool) { return softest(); });
+  }
 
  private:
   /// Times the usual limit of conjugate gradients that a slender body may take.
@@ -94,6 +100,7 @@ class System {
         .subspan(report_values_.size() - 3 - surfaces_.figure_count(), surfaces_.figure_count());
   }
   Evaluation judge();
+  bool moves(int part, double squared_momentum) const;
   double energy_at_start();
   void predict_strain(const Memory& memory);
   void find_prescribed();
@@ -121,6 +128,8 @@ class System {
       return narrow_cg_;
   }
   CgReport solve(const CgOptions& options);
+  CgOptions solve_options() const;
+  SoftestDirection softest();
   CgReport solve_in_tiles(const CgOptions& options);
   void place_tethers();
 
@@ -139,6 +148,7 @@ class System {
   std::unique_ptr<TileSolver> tiles_;  ///< of meshless solids alone; none where they cannot hold them
   bool conservative_, turning_, damped_;
   MotionSizes motions_;
+  std::vector<double> masses_;  ///< part_masses()
 
   Pose start_;
   StepConstants step_;
@@ -152,7 +162,7 @@ class System {
   std::vector<double> factors_, reached_factors_;
   bool factors_are_placed_ = false;
 
-  Array<Space, double> gradient_, load_, inertia_, node_energy_, report_, part_motion_, new_motion_;
+  Array<Space, double> gradient_, load_, inertia_, node_energy_, report_, part_motion_, start_motion_;
   Array<Space, double> dependent_forces_;
   Array<Space, Mat3d> L_, tether_L_;
   Array<Space, double> prescribed_;  ///< what is still to go, in constraint axes

@@ -28,7 +28,8 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
       conservative_(model.loads_are_conservative()),
       turning_(model.has_frames()),
       damped_(model.points.damped),
-      motions_(motion_sizes(model)) {
+      motions_(motion_sizes(model)),
+      masses_(part_masses(model)) {
   const auto n = at(model.node_count()), dofs = at(model.dof_count()), parts = at(model.points.part_count());
   const std::size_t frames = turning_ ? n : 0;
   for (auto* array : {&du_, &saved_du_, &u_}) array->resize(n);
@@ -44,7 +45,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   }
   node_energy_.resize(3 * n);
   dependent_forces_.resize(6 * model.points.dependents.size());
-  for (auto* array : {&part_motion_, &new_motion_}) {
+  for (auto* array : {&part_motion_, &start_motion_}) {
     array->resize(parts);
     array->set_zero();
   }
@@ -143,10 +144,10 @@ void System<Space>::place_dependents() {
 template <class Space>
 void System<Space>::evaluate_forces() {
   const NodesView& nodes = data_.view().nodes;
-  double *largest = part_motion_.data(), *motion = new_motion_.data();
+  double* motion = part_motion_.data();
   node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, motion);
-  Space::for_each(model_.points.part_count(), kernels::KeepLargest{motion, largest});
-  blocks_.forces(nodes, pose(), history(), largest);
+  Space::for_each(model_.points.part_count(), kernels::AtLeast{start_motion_.data(), motion});
+  blocks_.forces(nodes, pose(), history(), motion);
   const kernels::ForceView f = force_view();
   Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f});
   add_other_loads();
@@ -186,6 +187,15 @@ Evaluation System<Space>::evaluate() {
   return judge();
 }
 
+/// Whether a part's momentum over the step's square is more than rounding of its displacement makes.
+template <class Space>
+bool System<Space>::moves(int part, double squared_momentum) const {
+  double motion = 0;
+  Space::copy_out(&motion, part_motion_.data() + part, sizeof motion);
+  const double still = kAtRest * masses_[at(part)] * motion / (step_.h * step_.h);
+  return squared_momentum > still * still;
+}
+
 /// From the numbers of an evaluation, as MechanicalSystem::evaluate().
 template <class Space>
 Evaluation System<Space>::judge() {
@@ -197,7 +207,7 @@ Evaluation System<Space>::judge() {
   Evaluation e;
   internal_ = {};
   load_energy_ = inertia_energy_ = 0;
-  double total = 0;
+  std::vector<PartForces> forces(parts);
   for (std::size_t p = 0; p < parts; ++p) {
     const double* q = nodes + p * kernels::kNodeQuantities;
     double rounding = 0, tethers = 0;
@@ -211,26 +221,24 @@ Evaluation System<Space>::judge() {
     }
     load_energy_ += q[kernels::kLoadEnergy];
     inertia_energy_ += q[kernels::kInertiaEnergy];
-    total += q[kernels::kResidual];
-    const double residual = std::sqrt(q[kernels::kResidual]);
-    const double reference =
-        std::sqrt(std::max({q[kernels::kLoad], q[kernels::kInertia], q[kernels::kReaction], tethers}));
     const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
     // 4: sums of a few terms of the estimated size in each entry.
     const double of_surfaces = surfaces_.empty() ? 0.0 : surfaces_.rounding(static_cast<int>(p), figures());
-    const double floor =
-        4 * leverage * std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]), of_surfaces);
-    const double allowed = std::max(settings_.tolerance * reference, floor);
-    const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
-    if (excess < e.excess && p > 0) continue;
-    e.excess = excess;
-    const double scale = std::max({reference, floor, 1e-300});
-    e.relative = residual / scale;
-    e.relative_floor = floor / scale;
+    forces[p] = {
+        .residual = q[kernels::kResidual],
+        .load = q[kernels::kLoad],
+        .inertia = q[kernels::kInertia],
+        .reaction = q[kernels::kReaction],
+        .tether = tethers,
+        .momentum = q[kernels::kCancelled],
+        .rounding = 4 * leverage * std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]), of_surfaces)};
+    forces[p].adrift = step_.h > 0 && forces[p].load == 0 && forces[p].reaction == 0 && tethers == 0 &&
+                       forces[p].momentum > 0 && moves(static_cast<int>(p), forces[p].momentum);
   }
   if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
   e.energy = internal_.total() + load_energy_ + inertia_energy_;
-  e.residual = std::sqrt(total);
+  e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
+  fascia::judge(forces, model_.points.part_whole, settings_.tolerance, e);
   prescribed_left_ = false;
   if (model_.constraints.empty()) return e;
   const double* left = report_values_.data() + report_values_.size() - 3;

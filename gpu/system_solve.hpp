@@ -147,6 +147,35 @@ CgReport System<Space>::solve(const CgOptions& options) {
   });
 }
 
+/// A limit that nobody set is no reason to stop: there is no direct solver here that could take over.
+template <class Space>
+CgOptions System<Space>::solve_options() const {
+  CgOptions options = settings_.cg;
+  const bool guessed =
+      settings_.linear == LinearMethod::automatic && options.max_iterations == CgOptions{}.max_iterations;
+  if (guessed) options.max_iterations *= kPatience;
+  return options;
+}
+
+/// Of the full tangent at the present state, which was evaluated.
+template <class Space>
+SoftestDirection System<Space>::softest() {
+  linearize(Tangent::full, true);
+  const CgOptions options = solve_options();
+  const auto probe = [&](std::span<const double> b, std::span<double> x) {
+    return with_scalars([&]<class T, class V>() {
+      std::vector<V> vector(b.begin(), b.end());
+      Space::copy_in(solver<V>().rhs(), vector.data(), vector.size() * sizeof(V));
+      const CgReport cg = solve(options);
+      Space::copy_out(vector.data(), solver<V>().solution(), vector.size() * sizeof(V));
+      std::copy(vector.begin(), vector.end(), x.begin());
+      const bool met = cg.status == CgStatus::negative_curvature;
+      return TangentProbe{met || cg.status == CgStatus::converged, met ? 1 : 0};
+    });
+  };
+  return softest_direction(model_, filter_, probe, 1);
+}
+
 template <class Space>
 DirectionReport System<Space>::direction() {
   linearize(settings_.tangent, true);
@@ -173,11 +202,7 @@ DirectionReport System<Space>::direction() {
   };
   right_hand_side();
   const Clock::time_point start = Clock::now();
-  CgOptions options = settings_.cg;
-  // A limit that nobody set is no reason to stop: there is no direct solver here that could take over.
-  const bool guessed =
-      settings_.linear == LinearMethod::automatic && options.max_iterations == CgOptions{}.max_iterations;
-  if (guessed) options.max_iterations *= kPatience;
+  const CgOptions options = solve_options();
   CgReport cg = solve(options);
   if (cg.status == CgStatus::negative_curvature && !model_.tethers.empty()) {
     linearize(settings_.tangent, false);

@@ -33,6 +33,7 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
     w_.set_zero();
   }
   rebuild_state();
+  node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, start_motion_.data());
 }
 
 template <class Space>

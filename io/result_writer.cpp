@@ -60,8 +60,8 @@ void check_sizes(const VisualMesh& mesh) {
 
 void check_finite(const std::filesystem::path& file, const VisualMesh& mesh) {
   const auto fail = [&](const std::string& name, const char* place, std::size_t index) {
-    throw InputError(fmt::format("{}: \"{}\" is not finite at {} {}; the state that it shows is wrong", file.string(),
-                                 name, place, index));
+    throw StateError(fmt::format("{}: \"{}\" is not finite at {} {}; the state that it shows is wrong",
+                                 file.filename().string(), name, place, index));
   };
   const auto check = [&](const std::vector<FieldArray>& fields, const char* place) {
     for (const FieldArray& field : fields)

@@ -89,6 +89,7 @@ void read_control(const TableReader& table, const std::vector<std::string>& bodi
     table.refuse({"controlled"}, "is used only with control = \"displacement\"");
   else
     solver.controlled = read_controlled(table, bodies);
+  if (control != "load") table.refuse({"accept"}, "is used only with control = \"load\"; a followed path goes on");
   if (control == "load")
     return table.refuse({"max_steps"}, "is used only with control = \"displacement\" or \"arc-length\"");
   solver.control = control == "displacement" ? StaticControl::displacement : StaticControl::arc_length;
@@ -138,7 +139,8 @@ void read_gpus(const TableReader& table, Solver& solver) {
 void check_kind(const TableReader& table, const Solver& solver) {
   const std::string unused = fmt::format("is not used by kind = \"{}\"", table.text("kind").value_or("static"));
   if (!is_dynamic(solver.kind)) table.refuse({"time_step", "duration", "steps"}, unused);
-  if (solver.kind != SolverKind::statics) table.refuse({"load_steps", "control", "controlled", "max_steps"}, unused);
+  if (solver.kind != SolverKind::statics)
+    table.refuse({"load_steps", "control", "controlled", "max_steps", "accept"}, unused);
   if (solver.kind != SolverKind::modes) table.refuse({"count"}, unused);
   if (solver.kind == SolverKind::central_differences) table.refuse({"newton", "linear", "tangent"}, unused);
 }
@@ -179,6 +181,9 @@ Solver read_solver(const TableReader& scene, const std::vector<std::string>& bod
   solver.modes = table.integer("count").value_or(solver.modes);
   read_newton(table.table("newton"), solver);
   read_linear(table.table("linear"), solver);
+  if (const Value* accepted = table.value("accept"))
+    for (const Value& item : *accepted->as_array())
+      (*item.as_string() == "unstable" ? solver.accept_unstable : solver.accept_inverted) = true;
   solver.full_tangent = table.text("tangent").value_or("full") == "full";
   solver.backend = table.text("backend").value_or("auto");
   read_precision(table, solver);

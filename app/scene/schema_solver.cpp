@@ -102,6 +102,12 @@ Key solver_schema() {
            key("tangent", choice({{"full", "With the geometric stiffness."}, {"material", "Without it."}}),
                "Stiffness of Newton's method; not of `kind = \"explicit\"`.")
                .defaults("\"full\""),
+           key("accept",
+               array(choice({{"unstable", "An equilibrium that the smallest disturbance makes the body leave."},
+                             {"inverted", "An equilibrium in which matter is turned inside out."}})),
+               "Of `kind = \"static\"` with `control = \"load\"`: ends that count as converged, with a warning; "
+               "else they end the run with status `unstable` or `inverted`.")
+               .defaults("[]"),
            key("precision",
                choice({{"double", "64 bits."},
                        {"mixed", "Products with the stiffness of 32 bits."},

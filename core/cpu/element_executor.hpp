@@ -55,7 +55,7 @@ class ElementExecutor {
     double elastic = 0, viscous = 0, rounding = 0;
   };
   template <ElementLaw L, int N>
-  void forces_of_patch(const At& state, int patch, bool energies, double motion);
+  void forces_of_patch(const At& state, int patch, std::span<const double> part_motion);
   template <ElementLaw L, int N>
   void product_of_patch(const At& state, int patch, std::span<const Vec3d> dx);
   template <ElementLaw L, int N>
@@ -65,6 +65,8 @@ class ElementExecutor {
   void gather_patch(std::span<const Vec3d> values, int patch, std::vector<Vec3d>& out) const;
   void find_pair_slots(const BlockMatrix& matrix);
 
+  void find_lane_parts();
+  Lanes lane_motion(int batch, int half, std::span<const double> part_motion) const;
   int part_of_patch(int patch) const { return set_.node_part[at(block_.nodes_of_patch(patch)[0])]; }
 
   // Node-averaged volumetric strain (element_average.cpp).
@@ -81,6 +83,8 @@ class ElementExecutor {
   ThreadPool& pool_;
   std::vector<Vec3d> slot_u_, slot_d_, slot_sum_;
   std::vector<PatchSums> patch_sums_;
+  std::vector<int> lane_part_;         ///< (batches × 8): part of each element; empty where each patch lies in one
+  std::vector<double> lane_rounding_;  ///< likewise: squares of rounding [N²]
   double elastic_ = 0, viscous_ = 0;
   std::vector<std::uint32_t> pair_slot_;   ///< (batches × pairs × 8): place of a block's values
   std::vector<std::uint8_t> pair_stride_;  ///< likewise: length of its rows; empty where all nodes are vertices

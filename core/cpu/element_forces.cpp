@@ -1,6 +1,8 @@
 #include "core/cpu/element_kernels.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace fascia {
 
@@ -14,6 +16,31 @@ ElementExecutor::ElementExecutor(const ElementBlock& block, const PointSet& set,
       slot_sum_(at(block.slot_count())),
       patch_sums_(at(block.patch_count())) {
   if (block_.averaged) prepare_average();
+  find_lane_parts();
+}
+
+/// Only where an element lies in another part than its patch's first node.
+void ElementExecutor::find_lane_parts() {
+  bool mixed = false;
+  std::vector<int> parts;
+  block_.for_each_element([&](std::span<const int> nodes) { parts.push_back(set_.node_part[at(nodes[0])]); });
+  std::size_t element = 0;
+  for (int patch = 0; patch < block_.patch_count(); ++patch)
+    for (const std::size_t end = std::min(parts.size(), at(block_.patch_batch[at(patch + 1)]) * kElementLanes);
+         element < end; ++element)
+      mixed = mixed || parts[element] != part_of_patch(patch);
+  if (!mixed) return;
+  lane_part_ = std::move(parts);
+  lane_part_.resize(at(block_.batch_count()) * kElementLanes, lane_part_.back());
+  lane_rounding_.resize(lane_part_.size());
+}
+
+/// Motion of the parts in which the elements of a half batch lie.
+Lanes ElementExecutor::lane_motion(int batch, int half, std::span<const double> part_motion) const {
+  Lanes motion;
+  const int* part = lane_part_.data() + at(batch) * kElementLanes + at(half * kBatchWidth);
+  for (int lane = 0; lane < kBatchWidth; ++lane) motion.v[lane] = part_motion[at(part[lane])];
+  return motion;
 }
 
 std::size_t ElementExecutor::strain_size() const {
@@ -33,16 +60,19 @@ Lanes squared(const Mat3<Lanes>& m) { return contract(m, m); }
 /// Square of what rounding leaves in a point's forces: that of F − I grows with the displacements that cancel in it,
 /// and passes through the stiffness.
 Lanes rounding_of(const Mat3<Lanes>& H, const Mat3<Lanes>& P, const ElementMaterial<Lanes>& m, const Lanes& v,
-                  const Lanes& squared_gradient, double motion) {
+                  const Lanes& squared_gradient, const Lanes& motion) {
   const Lanes stiffness = v * (m.lambda + m.mu * Lanes(2.0)) * (Lanes(1.0) + m.viscosity), strain = squared(H);
-  const Lanes moved = squared_gradient * Lanes(motion * motion);
+  const Lanes moved = squared_gradient * motion * motion;
   return squared_gradient * (v * v * squared(P) + stiffness * stiffness * (strain + moved) * (Lanes(1.0) + strain));
 }
 
 }  // namespace
 
 template <ElementLaw L, int N>
-[[gnu::flatten]] void ElementExecutor::forces_of_patch(const At& state, int patch, bool energies, double motion) {
+[[gnu::flatten]] void ElementExecutor::forces_of_patch(const At& state, int patch,
+                                                       std::span<const double> part_motion) {
+  const bool energies = !part_motion.empty();
+  const Lanes patch_motion(energies ? part_motion[at(part_of_patch(patch))] : 0.0);
   gather_patch(state.u, patch, slot_u_);
   const auto first = at(block_.patch_begin[at(patch)]);
   const auto nodes = block_.nodes_of_patch(patch);
@@ -55,6 +85,9 @@ template <ElementLaw L, int N>
       gather<N>(block_, batch, half, slot_u_.data() + first, u);
       const BatchPoints<N> points(block_, batch, half, u);
       const auto m = element_material(block_, batch, half, state.inverse_step);
+      const bool mixed = energies && !lane_part_.empty();
+      const Lanes motion = mixed ? lane_motion(batch, half, part_motion) : patch_motion;
+      Lanes rounding;
       const auto add = [&](int q, const Mat3<Lanes>& P) {
         const Mat3<Lanes> force = P * points.v(q);
         const double* g = block_.gradient_of(batch, q);
@@ -62,7 +95,7 @@ template <ElementLaw L, int N>
         if (!energies) return;
         Lanes squares;
         for (int a = 0; a < n; ++a) squares += squared_norm(gradient(g, a, half));
-        sums.rounding += lane_sum(rounding_of(points.H[q], P, m, points.v(q), squares, motion));
+        rounding += rounding_of(points.H[q], P, m, points.v(q), squares, motion);
       };
       const auto energy = [&](int q, const Lanes& elastic, const Mat3<Lanes>& viscous_strain) {
         if (!energies) return;
@@ -106,6 +139,9 @@ template <ElementLaw L, int N>
         }
       }
       scatter<N>(block_, batch, half, f, slot_sum_.data() + first);
+      if (!mixed) sums.rounding += lane_sum(rounding);
+      for (int lane = 0; lane < kBatchWidth && mixed; ++lane)
+        lane_rounding_[at(batch) * kElementLanes + at(half * kBatchWidth + lane)] = rounding.v[lane];
     }
   }
   patch_sums_[at(patch)] = sums;
@@ -115,8 +151,7 @@ void ElementExecutor::compute_forces(const At& state, bool energies, std::span<c
   if (block_.averaged) average(state);
   with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
-      const double motion = energies ? part_motion[at(part_of_patch(patch))] : 0.0;
-      forces_of_patch<L, N>(state, patch, energies, motion);
+      forces_of_patch<L, N>(state, patch, energies ? part_motion : std::span<const double>{});
     });
   });
   if (!energies) return;
@@ -131,6 +166,8 @@ void ElementExecutor::compute_forces(const At& state, bool energies, std::span<c
 void ElementExecutor::add_rounding(std::span<double> squares_of_parts) const {
   for (int patch = 0; patch < block_.patch_count(); ++patch)
     squares_of_parts[at(part_of_patch(patch))] += patch_sums_[at(patch)].rounding;
+  for (std::size_t lane = 0; lane < lane_part_.size(); ++lane)
+    squares_of_parts[at(lane_part_[lane])] += lane_rounding_[lane];
 }
 
 template <ElementLaw L, int N>

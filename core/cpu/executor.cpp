@@ -49,6 +49,7 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
       group_rounding_(at(set.group_count())),
       group_tether_(at(set.group_count())),
       part_motion_(at(set.part_count())),
+      start_motion_(at(set.part_count())),
       part_rounding_(at(set.part_count())),
       part_tether_(at(set.part_count())),
       targets_(set.axes.size() / 3),
@@ -73,15 +74,20 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
   }
 }
 
-/// Displacements and rotations (taken at the part's length) of each part, kept as a running maximum: a state that came
-/// back to rest still carries the rounding of where it was.
-void CpuExecutor::note_motion(const State& state) {
+/// The largest displacement or rotation (taken at the part's length) of each part, and at least `least`.
+void CpuExecutor::note_motion(const State& state, std::span<const double> least, std::span<double> motion) const {
+  std::copy(least.begin(), least.end(), motion.begin());
   for (int node = 0; node < set_.node_count(); ++node) {
     const int part = set_.node_part[at(node)];
     const bool turns = set_.dofs.kind(node) != FrameKind::vertex;
     const double turn = turns ? set_.part_length[at(part)] * norm(state.D[at(node)]) : 0.0;
-    part_motion_[at(part)] = std::max({part_motion_[at(part)], norm(state.u[at(node)]), turn});
+    motion[at(part)] = std::max({motion[at(part)], norm(state.u[at(node)]), turn});
   }
+}
+
+void CpuExecutor::start_from(const State& state) {
+  const std::vector<double> none(part_motion_.size(), 0.0);
+  note_motion(state, none, start_motion_);
 }
 
 template <PointKind Kind>
@@ -185,7 +191,7 @@ void CpuExecutor::forces(const State& state, const StrainHistory& history, std::
 }
 
 InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, std::span<double> gradient) {
-  note_motion(state);
+  note_motion(state, start_motion_, part_motion_);
   sum_terms(state, history, true, gradient);
   InternalEnergy energy;
   std::fill(part_rounding_.begin(), part_rounding_.end(), 0.0);

@@ -50,6 +50,9 @@ class CpuExecutor {
   /// Where tethers pull to: (groups with axes × 3 × 8) [m]. Zero at first.
   std::span<double> targets() { return targets_; }
 
+  /// Where a step starts: increments of its states carry the rounding of that motion.
+  void start_from(const State& state);
+
   /// Gradient of the internal energy by degrees of freedom: force, then torque or what is conjugate to A (overwritten).
   /// Along u ← u + dx, Q ← exp(dr) Q or A ← A + dA the energy changes by gradient · (dx, dr or dA).
   InternalEnergy gradient(const State& state, const StrainHistory& history, std::span<double> gradient);
@@ -95,8 +98,11 @@ class CpuExecutor {
   NodeGradient gradient_of_groups(int first, int count, int node) const;
 
   /// What rounding alone leaves in the gradient of a connected part, as a norm with torques divided by the part's
-  /// length, at the last call of gradient() [N]. It grows with the largest motion that the part ever went through here.
+  /// length, at the last call of gradient() [N]. It grows with the part's motion there and at the start of the step.
   double rounding(int part) const { return part_rounding_[static_cast<std::size_t>(part)]; }
+
+  /// The largest displacement of a part, or rotation at its length, that this rounding came from [m].
+  double motion(int part) const { return part_motion_[static_cast<std::size_t>(part)]; }
 
   ThreadPool& pool() { return pool_; }
 
@@ -112,7 +118,7 @@ class CpuExecutor {
   void gradient_of_group(const State& state, const StrainHistory& history, int group);
   template <PointKind Kind>
   void linearize_group(const State& state, const StrainHistory& history, int group, Linearization& out) const;
-  void note_motion(const State& state);
+  void note_motion(const State& state, std::span<const double> least, std::span<double> motion) const;
   void add_spring_forces(const State& state, std::span<double> gradient) const;
   double note_springs(const State& state);
   void linearize_springs(const State& state, Linearization& out) const;
@@ -133,7 +139,7 @@ class CpuExecutor {
   AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
   std::vector<double> group_elastic_, group_stabilization_, group_viscous_, group_rounding_, group_tether_;
   std::vector<double> spring_energy_;
-  std::vector<double> part_motion_, part_rounding_, part_tether_;
+  std::vector<double> part_motion_, start_motion_, part_rounding_, part_tether_;
   AlignedVector<double> targets_;
   std::vector<Mat3d> node_L_;         ///< L of the last gradient, of rigid frames
   std::vector<char> slot_is_tether_;  ///< empty where there are none

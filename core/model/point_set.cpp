@@ -2,10 +2,9 @@
 
 #include "core/math/index.hpp"
 #include "core/model/coloring.hpp"
-#include "core/model/disjoint_sets.hpp"
+#include "core/model/parts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -120,67 +119,6 @@ void sort_dependents(PointSet& set) {
   dependents.reserve(sorted.size());
   for (const int k : sorted) dependents.push_back(std::move(set.dependents[at(k)]));
   set.dependents = std::move(dependents);
-}
-
-/// Numbers the connected parts in the order of their first nodes.
-void find_parts(PointSet& set, const std::vector<double>& group_length, const std::vector<Joint>& joints) {
-  const auto n = static_cast<std::size_t>(set.node_count());
-  DisjointSets sets(set.node_count());
-  const auto join = [&](const auto& nodes) {
-    for (const int node : nodes) sets.join(node, nodes[0]);
-  };
-  for (int group = 0; group < set.group_count(); ++group) join(set.nodes(group));
-  for (const ElementBlock& block : set.blocks) block.for_each_element(join);
-  for (const ShellBlock& shell : set.shells)
-    for (int e = 0; e < shell.count; ++e) join(shell.element(e));
-  for (const DependentNode& dependent : set.dependents) {
-    join(dependent.hosts);
-    join(std::array{dependent.node, dependent.hosts[0]});
-  }
-  for (const Joint& joint : joints) join(joint.nodes);
-  std::vector<double> nodes, volume;
-  set.node_part.resize(n);
-  for (int i = 0; i < set.node_count(); ++i) {
-    const int r = sets.root(i);
-    if (r == i) {
-      set.node_part[static_cast<std::size_t>(i)] = static_cast<int>(nodes.size());
-      nodes.push_back(0);
-    } else {
-      set.node_part[static_cast<std::size_t>(i)] = set.node_part[static_cast<std::size_t>(r)];
-    }
-    nodes[static_cast<std::size_t>(set.node_part[static_cast<std::size_t>(i)])] += 1;
-  }
-  volume.resize(nodes.size());
-  std::vector<double> length(nodes.size());
-  for (int group = 0; group < set.group_count(); ++group) {
-    if (set.rule[static_cast<std::size_t>(group)].rule.law == Law::tether) continue;
-    const auto part = static_cast<std::size_t>(set.part_of_group(group));
-    for (int lane = 0; lane < kGroupSize; ++lane) {
-      const double v = set.material_of_group(group)[kVolume * kGroupSize + lane];
-      volume[part] += v;
-      length[part] += v * group_length[static_cast<std::size_t>(group)];
-    }
-  }
-  const auto weigh = [&](int node, double edge) {
-    const auto part = static_cast<std::size_t>(set.node_part[static_cast<std::size_t>(node)]);
-    const double v = std::pow(edge, 3);
-    volume[part] += v;
-    length[part] += v * edge;
-  };
-  for (const ElementBlock& block : set.blocks)
-    block.for_each_element([&](std::span<const int> element) { weigh(element[0], block.length); });
-  for (const ShellBlock& shell : set.shells)
-    for (int e = 0; e < shell.count; ++e) weigh(shell.element(e)[0], shell.length);
-  std::vector<double> of_joints(nodes.size(), 0.0);
-  for (const Joint& joint : joints) {
-    if (joint.nodes.empty()) continue;
-    double& largest = of_joints[at(set.node_part[at(joint.nodes[0])])];
-    largest = std::max(largest, joint.length);
-  }
-  for (std::size_t p = 0; p < nodes.size(); ++p) {
-    const double without_matter = of_joints[p] > 0 ? of_joints[p] : 1.0;
-    set.part_length.push_back(volume[p] > 0 ? length[p] / volume[p] : without_matter);
-  }
 }
 
 }  // namespace

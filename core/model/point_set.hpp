@@ -58,8 +58,11 @@ struct PointSet {
   std::vector<int> node_slot_begin;  ///< (nodes + 1), transposed incidence
   std::vector<int> node_slot;        ///< slots of each node, ascending
 
-  std::vector<int> node_part;       ///< connected part of each node: nodes that share a group hang together
+  /// Part of each node: nodes of like stiffness that hang together. Residuals are judged by part, so that bone does not
+  /// hide what is left in a strand on it (parts.hpp).
+  std::vector<int> node_part;
   std::vector<double> part_length;  ///< (parts) mean spacing of its frames: makes torques and forces comparable [m]
+  std::vector<int> part_whole;      ///< (parts) the connected whole that it belongs to, whatever the stiffness
 
   std::vector<int> color_begin{0};  ///< groups of one colour share no frame
   std::vector<int> color_group;

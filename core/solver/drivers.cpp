@@ -2,21 +2,59 @@
 
 namespace fascia {
 
+std::string convergence_sentence(const NewtonReport& r, const SolverSettings& settings) {
+  std::ostringstream out;
+  out.precision(2);
+  switch (r.convergence) {
+    case Convergence::none:
+      return "";
+    case Convergence::tolerance:
+      out << "residual " << r.last.relative << " of the largest of loads, inertia and reactions, within the tolerance "
+          << settings.tolerance;
+      if (r.last.left_of_load > 100 * settings.tolerance)
+        out << " (" << r.last.left_of_load << " of the loads on a part that is soft or light beside the others)";
+      break;
+    case Convergence::rounding:
+      out << "residual " << r.last.relative << " of what acts, which is what rounding leaves (" << r.last.relative_floor
+          << ")";
+      break;
+    case Convergence::stagnation:
+      out << "residual " << r.last.left_of_load
+          << " of the loads, which falls no further, and the last correction was small";
+      break;
+  }
+  return out.str();
+}
+
+namespace {
+
+/// The residual that was left, against what it should be.
+void describe_residual(const Evaluation& last, const SolverSettings& settings, std::ostream& out) {
+  if (last.relative > settings.tolerance)
+    out << ", residual " << last.relative << " > " << settings.tolerance;
+  else
+    out << ", residual " << last.left_of_load << " > " << kLargestShare
+        << " of the loads on a part that is soft or light beside the others";
+}
+
+}  // namespace
+
 std::string failure_sentence(const NewtonReport& r, const SolverSettings& settings) {
   std::ostringstream out;
   switch (r.status) {
     case NewtonStatus::converged:
       return "";
     case NewtonStatus::limit:
-      out << "Newton stopped after " << r.iterations << " iterations, residual " << r.last.relative << " > "
-          << settings.tolerance;
+      out << "Newton stopped after " << r.iterations << " iterations";
+      describe_residual(r.last, settings, out);
       break;
     case NewtonStatus::stalled:
-      if (r.last.relative > settings.tolerance)
-        out << "Newton found no better state along its direction, residual " << r.last.relative << " > "
-            << settings.tolerance;
-      else
+      if (r.last.excess > 1) {
+        out << "Newton found no better state along its direction";
+        describe_residual(r.last, settings, out);
+      } else {
         out << "the prescribed motion could not be carried out: elements or points would turn inside out";
+      }
       break;
     case NewtonStatus::not_finite:
       out << "the forces are not finite";

@@ -9,7 +9,8 @@
 
 namespace fascia {
 
-enum class RunStatus { converged, not_converged, diverged, interrupted };
+/// unstable, inverted: an equilibrium, but one that no body rests in.
+enum class RunStatus { converged, not_converged, diverged, interrupted, unstable, inverted };
 
 /// What a driver tells after each accepted step.
 struct StepInfo {
@@ -33,13 +34,21 @@ struct RunReport {
   double residual = 0, residual_floor = 0;  ///< largest of the steps, relative
   double time = 0;
   int steps_at_limit = 0;           ///< accepted above the tolerance (proceed_on_limit)
-  std::string trouble;              ///< of the last step's last direction: its equilibrium may be unstable
+  std::string trouble;              ///< of a followed path: its end may be unstable
+  std::string convergence;          ///< why the last step counts as converged, in words
+  Stability stability;              ///< of the end of statics under load control
   std::vector<std::string> events;  ///< limit points and bifurcations that a followed path passed, a sentence each
   std::string message;              ///< one sentence on what went wrong, where, and what to try
 };
 
+/// Which criterion ended a step, with its figures; empty where none did.
+std::string convergence_sentence(const NewtonReport& newton, const SolverSettings& settings);
 /// Why a step did not converge.
 std::string failure_sentence(const NewtonReport& newton, const SolverSettings& settings);
+/// Of the equilibrium at the end of statics, which the system stands at.
+inline Stability end_stability(MechanicalSystem& system, const State& end, const RunReport& run, bool current) {
+  return system.stability(end, run.linear_iterations, current);
+}
 /// Boundary rotations are spread over steps of at most this angle: their linear prediction still holds there [rad].
 inline constexpr double kRotationPerStep = 0.35;
 

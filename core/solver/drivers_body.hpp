@@ -13,6 +13,10 @@ namespace fascia {
 
 namespace drivers {
 
+/// Solves of one load step that may fail before the step does, and of a time step as often as it may be halved: where
+/// short steps fail and succeed in turn, more of them only take time.
+constexpr int kMostFailures = 16, kMostHalvings = 8;
+
 inline void count(RunReport& run, const NewtonReport& newton) {
   run.newton_iterations += newton.iterations;
   run.linear_iterations += newton.linear_iterations;
@@ -24,13 +28,21 @@ inline bool acceptable(const NewtonReport& newton, const SolverSettings& setting
   return settings.proceed_on_limit && usable && newton.last.finite();
 }
 
-inline void accept(RunReport& run, const NewtonReport& newton, double time) {
+inline void accept(RunReport& run, const NewtonReport& newton, const SolverSettings& settings, double time) {
   ++run.steps;
   run.time = time;
   run.residual = std::max(run.residual, newton.last.relative);
   run.steps_at_limit += newton.status != NewtonStatus::converged;
-  run.trouble = newton.trouble;
+  run.convergence = convergence_sentence(newton, settings);
   run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor);
+}
+
+/// Of a step taken in halves: the worse verdict of both, with the larger residual.
+inline NewtonReport worse(const NewtonReport& first, NewtonReport second) {
+  if (first.last.excess > second.last.excess) second.last = first.last;
+  if (second.status == NewtonStatus::converged) second.status = first.status;
+  if (second.convergence < first.convergence) second.convergence = first.convergence;
+  return second;
 }
 
 inline RunStatus failure_status(const NewtonReport& newton) {
@@ -48,6 +60,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
   RunReport run;
   const double longest = statics.load_steps > 0 ? 1.0 / statics.load_steps : 1.0;
   double reached = 0, increment = longest;
+  int failures = 0;  // since the last step that was as long as asked
   state.time = 0;
   while (reached < 1) {
     const Clock::time_point start = Clock::now();
@@ -66,7 +79,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     count(run, report);
     if (!acceptable(report, settings)) {
       increment = 0.5 * (target - reached);
-      if (increment >= kSmallest) continue;
+      if (increment >= kSmallest && ++failures < kMostFailures) continue;
       std::ostringstream message;
       message << "load step " << run.steps + 1 << " (load factor " << target
               << "): " << failure_sentence(report, settings);
@@ -85,10 +98,12 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
       run.residual = report.last.finite() ? report.last.relative : 0.0;
       return run;
     }
+    if (target == asked) failures = 0;
     state = system.finish_step(target);
-    accept(run, report, target);
+    accept(run, report, settings, target);
     reached = target;
     increment = std::min(longest, 2 * increment);
+    if (reached >= 1) run.stability = end_stability(system, state, run, report.iterations > 0);
     if (observe && !observe({run.steps, reached, reached, report, seconds_since(start)}, state, system)) {
       if (reached < 1) run.status = RunStatus::interrupted;
       return run;
@@ -108,6 +123,7 @@ struct Stepper {
   TimeScheme scheme;
   RunReport& run;
   typename System::Memory memory;
+  int failures = 0;  ///< of the present time step
 
   /// Advances by dt, in halves where Newton fails or a boundary turns too far at once.
   NewtonReport advance(typename System::Pose& state, double end, double dt, int depth) {
@@ -130,11 +146,11 @@ struct Stepper {
         state = system.finish_step(end, memory);
         return report;
       }
-      if (depth == 0) return report;
+      if (depth == 0 || ++failures > kMostHalvings) return report;
     }
     report = advance(state, end - 0.5 * dt, 0.5 * dt, depth - 1);
     if (!acceptable(report, settings)) return report;
-    return advance(state, end, 0.5 * dt, depth - 1);
+    return worse(report, advance(state, end, 0.5 * dt, depth - 1));
   }
 };
 
@@ -146,12 +162,13 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
                        const std::type_identity_t<ObserverOf<System>>& observe) {
   using namespace drivers;
   RunReport run;
-  Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}};
+  Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}, 0};
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
     const double end = step * dynamics.time_step;
     const typename System::Pose before = state;
-    const NewtonReport report = stepper.advance(state, end, dynamics.time_step, 8);
+    stepper.failures = 0;
+    const NewtonReport report = stepper.advance(state, end, dynamics.time_step, kMostHalvings);
     if (!acceptable(report, settings)) {
       state = before;
       std::ostringstream message;
@@ -162,7 +179,7 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
       run.residual = report.last.finite() ? report.last.relative : 0.0;
       return run;
     }
-    accept(run, report, end);
+    accept(run, report, settings, end);
     if (observe && system.solves_for_middle()) system.look_back(state, before, dynamics.time_step);
     const double progress = static_cast<double>(step) / dynamics.steps;
     if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {

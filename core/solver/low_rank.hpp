@@ -3,6 +3,7 @@
 #include "core/cpu/executor.hpp"
 #include "core/solver/dof_filter.hpp"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,11 @@ class LowRank {
  public:
   void set(const std::vector<RankOne>& terms, const DofFilter& filter);
   bool empty() const { return terms_.empty(); }
+  int count() const { return static_cast<int>(terms_.size()); }
+  /// Negative eigenvalues of K that the terms lifted, as the last correct() found: each denominator below 0 is one.
+  int lifted() const {
+    return static_cast<int>(std::count_if(scale_.begin(), scale_.end(), [](double s) { return s < 0; }));
+  }
 
   /// y += Σ k g (g · x), on all degrees of freedom.
   void add_product(std::span<const double> x, std::span<double> y) const {

@@ -21,6 +21,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       dependents_(model.points),
       conservative_(model.loads_are_conservative()),
       surfaces_(model),
+      masses_(part_masses(model)),
       state_(State::at_rest(model)) {
   const auto n = at(model.dof_count());
   gradient_.resize(n);
@@ -150,16 +151,15 @@ void MechanicalSystem::add_loads() {
 void MechanicalSystem::add_inertia() {
   std::fill(inertia_.begin(), inertia_.end(), 0.0);
   inertia_energy_ = 0;
-  inertia_rounding_.assign(at(model_.points.part_count()), 0.0);
+  inertia_cancelled_.assign(at(model_.points.part_count()), 0.0);
   if (form_.h <= 0) return;
   for (int i = 0; i < model_.node_count(); ++i) {
     const StepInertia f = node_inertia(at(i));
     inertia_energy_ += f.energy;
     inertia_energy_ += f.damping_energy;
     add(inertia_, i, f.force, f.moment, {});
-    inertia_rounding_[at(model_.points.node_part[at(i)])] += f.cancelled_force * f.cancelled_force;
+    inertia_cancelled_[at(model_.points.node_part[at(i)])] += f.cancelled_force * f.cancelled_force;
   }
-  for (double& r : inertia_rounding_) r = std::numeric_limits<double>::epsilon() * std::sqrt(r);
 }
 
 /// @param turning  false leaves out how forces on dependent nodes turn their hosts, tethers' pull among them
@@ -221,28 +221,31 @@ Evaluation MechanicalSystem::evaluate() {
   add_squares(load_, part_squares_.load, part_squares_.held_load);
   add_squares(inertia_, part_squares_.inertia, part_squares_.unused);
   add_squares(gradient_, part_squares_.residual, part_squares_.reaction);
-  double total = 0;
-  for (std::size_t p = 0; p < part_squares_.residual.size(); ++p) {
+  e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
+  judge(part_forces(), model_.points.part_whole, settings_.tolerance, e);
+  return e;
+}
+
+std::vector<PartForces> MechanicalSystem::part_forces() const {
+  std::vector<PartForces> parts(part_squares_.residual.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
     const int part = static_cast<int>(p);
-    total += part_squares_.residual[p];
-    const double residual = std::sqrt(part_squares_.residual[p]);
-    const double reference =
-        std::sqrt(std::max({part_squares_.load[p] + part_squares_.held_load[p], part_squares_.inertia[p],
-                            part_squares_.reaction[p], executor_.squared_tether_force(part)}));
     // 4: sums of a few terms of the estimated size in each entry.
     const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
-    const double floor =
-        4 * leverage * std::hypot(executor_.rounding(part), inertia_rounding_[p], surfaces_.rounding(part));
-    const double allowed = std::max(settings_.tolerance * reference, floor);
-    const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
-    if (excess < e.excess && p > 0) continue;
-    e.excess = excess;
-    const double scale = std::max({reference, floor, 1e-300});
-    e.relative = residual / scale;
-    e.relative_floor = floor / scale;
+    const double inertia_rounding = std::numeric_limits<double>::epsilon() * std::sqrt(inertia_cancelled_[p]);
+    parts[p] = {
+        .residual = part_squares_.residual[p],
+        .load = part_squares_.load[p] + part_squares_.held_load[p],
+        .inertia = part_squares_.inertia[p],
+        .reaction = part_squares_.reaction[p],
+        .tether = executor_.squared_tether_force(part),
+        .momentum = inertia_cancelled_[p],
+        .rounding = 4 * leverage * std::hypot(executor_.rounding(part), inertia_rounding, surfaces_.rounding(part))};
+    PartForces& f = parts[p];
+    const double still = kAtRest * masses_[p] * executor_.motion(part) / (form_.h * form_.h);
+    f.adrift = form_.h > 0 && f.load == 0 && f.reaction == 0 && f.tether == 0 && f.momentum > still * still;
   }
-  e.residual = std::sqrt(total);
-  return e;
+  return parts;
 }
 
 DirectionReport MechanicalSystem::direction() {

@@ -65,6 +65,12 @@ class MechanicalSystem {
   bool has_prescribed_increment() const;
   bool conservative() const { return conservative_; }
 
+  /// Of the equilibrium that the last step of statics found, which the system still stands at (tangent_stability.cpp).
+  /// @param end   as finish_step() returned it
+  /// @param made     iterations of CG in the run so far
+  /// @param current  the last direction was that of a correction too small to matter
+  Stability stability(const State& end, long made, bool current);
+
   // What path following asks for (path_system.cpp).
   /// At the present state, which was evaluated. @param ahead, behind  factors at two load factors `width` apart
   PathDirections path_directions(std::span<const double> ahead, std::span<const double> behind, double width);
@@ -112,6 +118,7 @@ class MechanicalSystem {
   bool solves_for_middle() const { return form_.scheme == TimeScheme::midpoint; }
 
   const State& state() const { return state_; }
+  std::span<const double> factors() const { return factors_; }
   /// Gradient of the internal energy, loads and inertia: what supports add to hold the model (by degrees of freedom).
   /// What acts on dependent nodes is on their hosts.
   std::span<const double> gradient() const { return gradient_; }
@@ -135,6 +142,7 @@ class MechanicalSystem {
     FrameMatrices Ds;
     std::vector<std::array<double, 3>> turned;  ///< as in State
   };
+  std::vector<PartForces> part_forces() const;
   double energy_at_start();
   void rebuild_state();
   void place_dependents_of_step();
@@ -162,6 +170,7 @@ class MechanicalSystem {
   DependentNodes dependents_;  ///< at the present state
   bool conservative_;
   SurfaceLoads surfaces_;
+  std::vector<double> masses_;  ///< part_masses()
 
   State start_, state_;
   StepForm form_;
@@ -173,7 +182,7 @@ class MechanicalSystem {
 
   std::vector<double> gradient_, load_, inertia_, direction_, dependent_forces_;
   mutable std::vector<double> work_;
-  std::vector<double> inertia_rounding_;  ///< by part [N]
+  std::vector<double> inertia_cancelled_;  ///< by part: squares of what cancels in the inertia [N²]
   struct PartSquares {
     std::vector<double> load, held_load, inertia, residual, reaction, unused;
   } part_squares_;

@@ -1,25 +1,13 @@
 #pragma once
 
 #include "core/solver/settings.hpp"
+#include "core/solver/verdict.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 namespace fascia {
-
-/// A system at a state, in numbers. Residuals are norms with torques divided by a length [N]. Each connected part of
-/// the model is judged by itself, so that a stiff or heavy neighbour does not hide what is left in a soft one.
-struct Evaluation {
-  double energy = 0;          ///< potential that an equilibrium minimises [J]
-  double residual = 0;        ///< of all free degrees of freedom
-  double excess = 0;          ///< largest of the parts: residual over what is allowed; at most 1 where converged
-  double relative = 0;        ///< that part's residual over the largest of its loads, inertia, reactions and rounding
-  double relative_floor = 0;  ///< what rounding leaves of it, likewise
-
-  bool finite() const { return std::isfinite(energy) && std::isfinite(residual); }
-  bool converged() const { return excess <= 1; }
-};
 
 /// A Newton direction and what the linear solver says of it.
 struct DirectionReport {
@@ -34,8 +22,13 @@ struct DirectionReport {
 
 enum class NewtonStatus { converged, limit, stalled, not_finite, linear_failure };
 
+/// Why a solve counts as converged: its residual is below the tolerance; or it is what rounding leaves; or it is a
+/// small share of the loads and falls no further, and the last correction was small.
+enum class Convergence { none, tolerance, rounding, stagnation };
+
 struct NewtonReport {
   NewtonStatus status = NewtonStatus::converged;
+  Convergence convergence = Convergence::none;
   int iterations = 0, linear_iterations = 0;
   Evaluation last;
   std::string trouble;         ///< of the last direction, empty where there was none
@@ -58,26 +51,53 @@ class Newton {
     report_ = {};
     current_ = system_.evaluate();
     if (!current_.finite()) return finish(NewtonStatus::not_finite);
+    first_residual_ = current_.residual;
     mark();
-    while (system_.has_prescribed_increment() || !current_.converged()) {
-      if (report_.iterations >= settings_.max_iterations) return finish(NewtonStatus::limit);
+    while (system_.has_prescribed_increment() || !settled()) {
+      if (report_.iterations >= settings_.max_iterations) return give_up(NewtonStatus::limit);
       const bool moving = system_.has_prescribed_increment();
       const DirectionReport d = direction();
-      if (!d.usable) return finish(NewtonStatus::linear_failure);
+      if (!d.usable) return give_up(NewtonStatus::linear_failure);
+      const double before = current_.residual;
       system_.apply(std::min(1.0, kRotationCap / std::max(d.largest_rotation, 1e-300)));
       current_ = system_.evaluate();
+      if (moving) first_residual_ = std::max(first_residual_, current_.residual);
+      if (!moving) count_standing(before);
+      if (!moving && !current_.converged() && stagnates(d)) return finish_at_best(Convergence::stagnation);
       if (current_.finite() && (moving || better_than_mark())) {
         mark();
       } else if (!current_.finite() || ++detour_ > kDetour) {
-        if (const NewtonStatus status = search_from_mark(); status != NewtonStatus::converged) return finish(status);
+        if (const NewtonStatus status = search_from_mark(); status != NewtonStatus::converged) return give_up(status);
       }
     }
+    report_.convergence = current_.by_rounding ? Convergence::rounding : Convergence::tolerance;
     return finish(NewtonStatus::converged);
   }
 
  private:
   static constexpr double kRotationCap = 0.8;  ///< largest rotation of a frame in one iteration [rad]
   static constexpr int kDetour = 4, kHalvings = 14;
+  static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
+  static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
+  static constexpr int kStands = 2;                ///< iterations in which it does
+  static constexpr double kReduced = kLargestShare;
+
+  /// Rounding excuses a residual only where Newton's method has reduced it, or has tried to and cannot.
+  bool settled() const {
+    if (!current_.converged()) return false;
+    return !current_.by_rounding || current_.residual <= kReduced * first_residual_ || standing_ >= kStands;
+  }
+
+  /// Counts full steps in a row that did not reduce the residual.
+  void count_standing(double before) {
+    standing_ = current_.finite() && current_.residual >= kFalls * before ? standing_ + 1 : 0;
+  }
+
+  /// What is left is a small share of the loads, the last corrections were small, and it falls no further.
+  bool stagnates(const DirectionReport& d) const {
+    return standing_ >= kStands && std::abs(d.slope) <= kSmallDecrement * current_.energy_scale &&
+           marked_.left_of_load <= kLargestShare;
+  }
 
   DirectionReport direction() {
     DirectionReport d = system_.direction();
@@ -103,6 +123,7 @@ class Newton {
 
   NewtonStatus search_from_mark() {
     system_.restore();
+    standing_ = 0;
     current_ = system_.evaluate();
     if (report_.iterations >= settings_.max_iterations) return NewtonStatus::limit;
     const DirectionReport d = direction();
@@ -120,7 +141,32 @@ class Newton {
       system_.restore();
     }
     current_ = system_.evaluate();
+    last_decrement_ = std::abs(d.slope);
     return NewtonStatus::stalled;
+  }
+
+  /// Goes back to the best state met, where that is better than the present one.
+  void return_to_best() {
+    if (current_.finite() && current_.residual <= marked_.residual) return;
+    system_.restore();
+    current_ = system_.evaluate();
+  }
+
+  NewtonReport finish_at_best(Convergence convergence) {
+    return_to_best();
+    report_.convergence = convergence;
+    return finish(NewtonStatus::converged);
+  }
+
+  /// What is kept of a solve that failed is the best state that it met.
+  NewtonReport give_up(NewtonStatus status) {
+    if (system_.has_prescribed_increment() && status != NewtonStatus::stalled) return finish(status);
+    if (status == NewtonStatus::stalled && marked_.converged()) return finish_at_best(Convergence::rounding);
+    const bool small = last_decrement_ <= kSmallDecrement * marked_.energy_scale;
+    if (status == NewtonStatus::stalled && small && marked_.left_of_load <= kLargestShare)
+      return finish_at_best(Convergence::stagnation);
+    return_to_best();
+    return finish(status);
   }
 
   NewtonReport finish(NewtonStatus status) {
@@ -133,7 +179,9 @@ class Newton {
   const SolverSettings& settings_;
   NewtonReport report_;
   Evaluation current_, marked_;
-  int detour_ = 0;
+  int detour_ = 0, standing_ = 0;
+  double first_residual_ = 0;
+  double last_decrement_ = 0;  ///< of a search that found nothing better [J]
 };
 
 }  // namespace fascia

@@ -13,10 +13,10 @@ std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
   // Cholesky, which is several times faster, while it lasts.
   as_is_ = unstable_ > 0 ? nullptr : &factor();
   if (as_is_ != nullptr && as_is_->factorize(matrix())) return 0;
-  if (!indefinite_) indefinite_.emplace(matrix(), filter_, Pivots::any);
+  const std::optional<int> negative = factorize_any();
   as_is_ = &*indefinite_;
-  if (!as_is_->factorize(matrix())) return std::nullopt;
-  return unstable_ = as_is_->negative_pivots();
+  if (negative) unstable_ = *negative;
+  return negative;
 }
 
 bool TangentSolver::solve_as_is(std::span<const double> prescribed, std::span<const double> b, std::span<double> x) {

@@ -99,8 +99,8 @@ void TangentSolver::apply_matrix(std::span<const double> local, std::span<double
 }
 
 void TangentSolver::solve_with_factor(std::span<const double> b, std::span<double> x) {
-  factor().solve(b, x);
-  low_rank_.correct([&](std::span<const double> g, std::span<double> z) { factor().solve(g, z); }, b, x);
+  solving_->solve(b, x);
+  low_rank_.correct([&](std::span<const double> g, std::span<double> z) { solving_->solve(g, z); }, b, x);
 }
 
 TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed,
@@ -145,18 +145,50 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
 }
 
 bool TangentSolver::factorize(const Relinearize& relinearize, TangentReport& report) {
-  if (factor().factorize(matrix())) return true;
+  solving_ = &factor();
+  definite_ = solving_->factorize(matrix()) || definite_with_low_rank();
+  if (definite_) return true;
   if (!model_.tethers.empty()) {
     assemble(relinearize(TamerTangent::without_tethers), matrix());
     if (factor().factorize(matrix())) return true;
   }
-  report.trouble = "the tangent was not positive definite (buckling, or parts that nothing holds); it was shifted";
-  if (!material_matrix_) material_matrix_.emplace(model_.points);
-  assemble(relinearize(TamerTangent::material), *material_matrix_);
-  for (shift_ = std::max(1e-3, 0.1 * shift_); shift_ < 1e3; shift_ *= 4)
-    if (factor().factorize(matrix(), shift_, &*material_matrix_)) return true;
+  if (shift_until_definite(relinearize)) {
+    report.trouble = "the tangent was not positive definite (buckling, or parts that nothing holds); it was shifted";
+    return true;
+  }
   report.usable = false;
   report.trouble = "the tangent stays indefinite under every shift";
+  return false;
+}
+
+/// The matrix alone is not positive definite, and may be with the terms beside it: an enclosed fluid holds a wall that
+/// could not hold itself. K + Σ k g gᵀ has as many negative eigenvalues as K, less those that the terms lift.
+bool TangentSolver::definite_with_low_rank() {
+  if (low_rank_.empty()) return false;
+  const std::optional<int> negative = factorize_any();
+  if (!negative || *negative > low_rank_.count()) return false;
+  solving_ = &*indefinite_;
+  std::vector<double> none(rhs_.size(), 0.0), unused(rhs_.size(), 0.0);
+  low_rank_.correct([&](std::span<const double> g, std::span<double> z) { solving_->solve(g, z); }, none, unused);
+  if (low_rank_.lifted() == *negative) return true;
+  solving_ = &factor();
+  return false;
+}
+
+/// L D Lᵀ of the matrix as it is; its negative pivots, none where one vanishes.
+std::optional<int> TangentSolver::factorize_any() {
+  if (!indefinite_) indefinite_.emplace(matrix(), filter_, Pivots::any);
+  if (!indefinite_->factorize(matrix())) return std::nullopt;
+  return indefinite_->negative_pivots();
+}
+
+/// Shifts start small, since those that are larger than need be shorten every step, and come down again.
+bool TangentSolver::shift_until_definite(const Relinearize& relinearize) {
+  constexpr double kSmallest = 1e-6, kLargest = 1e3, kDown = 0.1, kUp = 4;
+  if (!material_matrix_) material_matrix_.emplace(model_.points);
+  assemble(relinearize(TamerTangent::material), *material_matrix_);
+  for (shift_ = std::max(kSmallest, kDown * shift_); shift_ < kLargest; shift_ *= kUp)
+    if (factor().factorize(matrix(), shift_, &*material_matrix_)) return true;
   return false;
 }
 

@@ -6,6 +6,7 @@
 #include "core/solver/dof_filter.hpp"
 #include "core/solver/low_rank.hpp"
 #include "core/solver/settings.hpp"
+#include "core/solver/stability.hpp"
 #include "core/solver/vectors.hpp"
 
 #include <functional>
@@ -43,6 +44,12 @@ class TangentSolver {
   /// Solves with that factor. False where rounding spoils the solution: K is all but singular.
   bool solve_as_is(std::span<const double> prescribed, std::span<const double> b, std::span<double> x);
 
+  /// The softest direction of a tangent, and how many negative ones it has: from a factor where one is at hand or cheap
+  /// beside the iterations that CG has made, else by CG. (tangent_stability.cpp)
+  /// @param made     iterations of CG in the run so far
+  /// @param current  `at` is that of the last solve, but for a correction too small to matter
+  SoftestDirection softest(const Linearization& at, long made, bool current);
+
   /// Cholesky is used, and not CG.
   bool direct();
   BlockMatrix& matrix();
@@ -52,6 +59,10 @@ class TangentSolver {
   void assemble(const Linearization& at, BlockMatrix& matrix);
   bool cg_is_too_slow(const TangentReport& report);
   bool factorize(const Relinearize& relinearize, TangentReport& report);
+  bool definite_with_low_rank();
+  bool shift_until_definite(const Relinearize& relinearize);
+  std::optional<int> factorize_any();
+  bool factor_is_cheap(long made);
   TangentReport solve_cg(std::span<const double> b, std::span<double> x);
   void build_block_jacobi();
   void apply_matrix(std::span<const double> local, std::span<double> out);
@@ -65,8 +76,10 @@ class TangentSolver {
   DependentNodes dependents_;
   std::optional<BlockMatrix> matrix_, material_matrix_;
   std::optional<BlockCholesky> cholesky_, indefinite_;
-  BlockCholesky* as_is_ = nullptr;  ///< what factorize_as_is() left
-  int unstable_ = 0;                ///< negative pivots that it met last
+  BlockCholesky* as_is_ = nullptr;    ///< what factorize_as_is() left
+  int unstable_ = 0;                  ///< negative pivots that it met last
+  BlockCholesky* solving_ = nullptr;  ///< factor of the last direct solve
+  bool definite_ = false;             ///< of K itself, without shift
   std::optional<bool> direct_;
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;

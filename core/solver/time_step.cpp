@@ -21,6 +21,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   increment_.Ds.set_zero();
   increment_.turned = start_.turned;
   surfaces_.begin_step();
+  executor_.start_from(start_);
   static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);
   form_.q.assign(n, {});
   form_.w.assign(n, {});

@@ -1,0 +1,69 @@
+#include "core/solver/verdict.hpp"
+
+#include "core/math/index.hpp"
+
+namespace fascia {
+
+namespace {
+
+double largest_root(std::initializer_list<double> squares) { return std::sqrt(std::max(squares)); }
+
+/// The rounding floor as far as it excuses a residual: never more than a small share of the loads, of inertia and
+/// momentum, or, where there is no load, of reactions that stand out of the rounding. Where nothing but rounding acts
+/// (a body that was moved rigidly and rests) all of it.
+double excused(const PartForces& f) {
+  if (f.load > 0 || f.adrift)
+    return std::min(f.rounding, kLargestShare * largest_root({f.load, f.inertia, f.momentum}));
+  const double acting = largest_root({f.inertia, f.reaction, f.tether});
+  return acting > kAboveRounding * f.rounding ? std::min(f.rounding, kLargestShare * acting) : f.rounding;
+}
+
+}  // namespace
+
+std::vector<double> part_masses(const Model& model) {
+  std::vector<double> squares(at(model.points.part_count()), 0.0);
+  for (int node = 0; node < model.node_count(); ++node) {
+    const double mass = model.inertia[at(node)].mass;
+    squares[at(model.points.node_part[at(node)])] += mass * mass;
+  }
+  for (double& s : squares) s = std::sqrt(s);
+  return squares;
+}
+
+void judge(std::span<const PartForces> parts, std::span<const int> whole, double tolerance, Evaluation& e) {
+  std::vector<PartForces> wholes(parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    PartForces& sum = wholes[at(whole[p])];
+    sum.load += parts[p].load;
+    sum.inertia += parts[p].inertia;
+    sum.reaction += parts[p].reaction;
+    sum.tether += parts[p].tether;
+  }
+  double total = 0;
+  e.excess = e.relative = e.relative_floor = e.left_of_load = 0;
+  e.by_rounding = false;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const PartForces& f = parts[p];
+    const PartForces& all = wholes[at(whole[p])];
+    total += f.residual;
+    const double residual = std::sqrt(f.residual);
+    const double reference = largest_root({all.load, all.inertia, all.reaction, all.tether});
+    double allowed = tolerance * reference;
+    if (f.load > 0) allowed = std::min(allowed, kLargestShare * std::sqrt(f.load));
+    allowed = std::max(allowed, tolerance * largest_root({f.load, f.inertia}));
+    e.by_rounding = e.by_rounding || residual > allowed;
+    allowed = std::max(allowed, excused(f));
+    const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
+    const double own = f.load > 0 ? largest_root({f.load, f.inertia, f.momentum})
+                                  : largest_root({f.inertia, f.momentum, f.reaction, f.tether});
+    if (residual > 0) e.left_of_load = std::max(e.left_of_load, residual / std::max(own, 1e-300));
+    if (excess < e.excess && p > 0) continue;
+    e.excess = excess;
+    const double scale = std::max({reference, f.rounding, 1e-300});
+    e.relative = residual / scale;
+    e.relative_floor = f.rounding / scale;
+  }
+  e.residual = std::sqrt(total);
+}
+
+}  // namespace fascia
