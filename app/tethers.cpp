@@ -22,7 +22,7 @@ std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, doubl
   std::vector<Vec3d> candidates;
   const auto add = [&](const std::vector<Vec3d>& positions, const std::vector<char>& boundary) {
     if (positions.empty()) return;
-    const std::vector<bool> chosen = select(region, {positions, boundary});
+    const std::vector<bool> chosen = select(region, {positions, boundary, nullptr, {}, b.body->size()});
     for (std::size_t i = 0; i < positions.size(); ++i)
       if (chosen[i]) candidates.push_back(positions[i]);
   };
