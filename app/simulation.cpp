@@ -9,6 +9,7 @@
 #include "core/geometry/bounds.hpp"
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/model/dependent_inertia.hpp"
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/block_matrix.hpp"
@@ -97,7 +98,11 @@ void start_dependents(Simulation& s) {
 void give_inertia_to_hosts(Simulation& s) {
   for (const DependentNode& d : s.model.points.dependents) s.dependent_inertia.push_back(s.model.inertia[at(d.node)]);
   try {
-    move_inertia_to_hosts(s.model);
+    const bool idle = s.scene.solver.kind == SolverKind::statics && squared_norm(s.scene.world.gravity) == 0;
+    if (idle)
+      move_idle_inertia_to_hosts(s.model);
+    else
+      move_inertia_to_hosts(s.model);
   } catch (const InputError& e) {
     throw SceneError({{s.scene.couplings.empty() ? s.scene.bodies[0].place : s.scene.couplings[0].place, e.what()}});
   }
