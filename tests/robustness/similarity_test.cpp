@@ -203,6 +203,20 @@ TEST_F(Similarity, FarBodiesWarnOfLostDigits) {
   EXPECT_EQ((near.out + near.err).find("digits"), std::string::npos) << near.out << near.err;
 }
 
+/// Weights that reach over far too many frames make a stiffness that is as good as singular: check says so.
+TEST_F(Similarity, FramesThatReachFarAreWarnedOf) {
+  const auto said = [&](const char* neighbours) {
+    write("line.toml",
+          "[bodies.l]\nmodel = \"meshless\"\ndomain = { line = { from = [0, 0, 0], to = [0.5, 0, 0] } }\nradius = "
+          "0.007\nframes = { count = 54 }\nweights = { neighbours = " +
+              std::string(neighbours) +
+              " }\ndensity = 1000\nmaterial = { young = 1e6, poisson = 0.3 }\n[solver]\nkind = \"modes\"\n");
+    return fascia({"check", "line.toml"}).err;
+  };
+  EXPECT_NE(said("33").find("bodies.l: points follow 33 frames"), std::string::npos);
+  EXPECT_EQ(said("8").find("points follow"), std::string::npos);
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, SimilarBodies, ::testing::ValuesIn(kBodies),
                          [](const auto& info) { return std::string(info.param.name); });
 
