@@ -218,6 +218,6 @@ TEST_F(Similarity, FramesThatReachFarAreWarnedOf) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, SimilarBodies, ::testing::ValuesIn(kBodies),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& kind) { return std::string(kind.param.name); });
 
 }  // namespace
