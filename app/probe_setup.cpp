@@ -21,7 +21,7 @@ std::size_t nearest_point(const ModelBody& body, const Vec3d& X, int cell) {
   for (std::size_t q = 0; q < body.points().size(); ++q) {
     const BodyPoint& p = body.points()[q];
     const double distance = squared_norm(p.X - X);
-    if (distance >= least || (p.cell >= 0 && p.cell != cell)) continue;
+    if (distance >= least * (1 - 1e-9) || (p.cell >= 0 && p.cell != cell)) continue;
     least = distance;
     best = q;
   }

@@ -43,7 +43,9 @@ std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, doubl
 }
 
 int nearest_frame(const SimulatedBody& b, const Vec3d& x) {
-  const auto nearer = [&](const Vec3d& p, const Vec3d& q) { return squared_norm(p - x) < squared_norm(q - x); };
+  const auto nearer = [&](const Vec3d& p, const Vec3d& q) {
+    return squared_norm(p - x) < squared_norm(q - x) * (1 - 1e-9);
+  };
   const auto found = std::min_element(b.nodes.begin(), b.nodes.end(), nearer);
   return b.node_ids[static_cast<std::size_t>(found - b.nodes.begin())];
 }
