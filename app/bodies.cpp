@@ -8,6 +8,7 @@
 #include "coupling/rigid_body.hpp"
 #include "coupling/surface_body.hpp"
 #include "io/point_table.hpp"
+#include "meshless/cloud_parts.hpp"
 #include "meshless/grid_body.hpp"
 #include "shells/shell_body.hpp"
 #include "shells/surface_checks.hpp"
@@ -32,10 +33,10 @@ PointMaterialSpec point_material(const Material& m) {
 namespace {
 
 /// A single-material spec, or a choice by region.
-std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body) {
-  return [&body](const Vec3d& X) {
+std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body, double size) {
+  return [&body, size](const Vec3d& X) {
     for (const MaterialUse& use : body.materials)
-      if (contains(use.where, X)) return point_material(use.material);
+      if (contains(use.where, X, size)) return point_material(use.material);
     throw SceneError(
         {{body.place,
           fmt::format("no material at ({}, {}, {}); let the last entry of material have no where", X[0], X[1], X[2])}});
@@ -45,19 +46,20 @@ std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body) {
 void check_material_regions(const Body& body, const ModelBody& built) {
   for (const MaterialUse& use : body.materials) {
     const auto& points = built.points();
-    if (!std::any_of(points.begin(), points.end(), [&](const BodyPoint& p) { return contains(use.where, p.middle); }))
+    if (!std::any_of(points.begin(), points.end(),
+                     [&](const BodyPoint& p) { return contains(use.where, p.middle, built.size()); }))
       throw SceneError({{use.where.place, "the region holds no integration point of the body; enlarge it"}});
   }
 }
 
-void fill_matter(const Body& body, double volume, BodyMatter& matter) {
+void fill_matter(const Body& body, const MatterParts& parts, double volume, BodyMatter& matter) {
   const bool consistent = body.weights == WeightKind::automatic || body.weights == WeightKind::trilinear ||
                           body.weights == WeightKind::linear || body.weights == WeightKind::mls;
   matter.affine = body.affine;
   matter.half_blend = body.blend == Blend::half || (body.blend == Blend::automatic && consistent);
   matter.stabilization = body.drilling.value_or(body.affine ? kAffineStabilization : kDrilling);
   matter.density = body.density ? *body.density : *body.mass / volume;
-  matter.material = material_of(body);
+  matter.material = material_of(body, size_of(parts));
 }
 
 std::unique_ptr<ModelBody> build_grid(const Body& body, const MatterParts& parts, BodyBuild& build) {
@@ -76,7 +78,7 @@ std::unique_ptr<ModelBody> build_grid(const Body& body, const MatterParts& parts
                                                                 : IntegrationKind::selective;
   spec.rotation = parts.rotation;
   spec.translation = parts.translation;
-  fill_matter(body, spec.domain.volume, spec);
+  fill_matter(body, parts, spec.domain.volume, spec);
   return std::make_unique<GridBody>(spec, build.model, build.points);
 }
 
@@ -138,7 +140,7 @@ void describe_thin_grid(const Body& body, const MatterParts& parts, const BodyBu
   if (const auto* r = std::get_if<RectangleDomain>(&body.domain)) {
     thin.grid.origin = r->origin * scale;
     thin.grid.edge = {r->edge_u * scale, r->edge_v * scale};
-    thin.extent = [&body](const Vec3d& X) { return thickness_at(body, X); };
+    thin.extent = [&body, size = size_of(parts)](const Vec3d& X) { return thickness_at(body, X, size); };
   } else {
     const auto& line = std::get<LineDomain>(body.domain);
     thin.grid.origin = line.from * scale;
@@ -200,7 +202,8 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build) {
     build.messages = std::move(carried.messages);
     return std::make_unique<SurfaceBody>(std::move(carried.mesh), build.model);
   }
-  const MatterParts parts = build.between ? *build.between : make_domain(body, build.messages);
+  const Body local = near_origin(body);
+  const MatterParts parts = build.between ? *build.between : make_domain(local, build.messages);
   const bool grid = std::holds_alternative<GridFrames>(body.frames);
   std::unique_ptr<ModelBody> built;
   if (grid && parts.dimension() == 3) {
@@ -209,7 +212,7 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build) {
     CloudSpec spec;
     spec.through = body.through.value_or(0);
     if (grid) {
-      describe_thin_grid(body, parts, build, spec);
+      describe_thin_grid(local, parts, build, spec);
     } else {
       ScatterSpec scatter{parts,
                           frame_choice(body, parts),
@@ -222,7 +225,7 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build) {
     }
     double volume = 0;
     for (const CloudPoint& p : spec.points) volume += p.volume;
-    fill_matter(body, volume, spec);
+    fill_matter(body, parts, volume, spec);
     built = std::make_unique<CloudBody>(spec, build.model, build.points);
     warn_of_thin_choices(body, *built, build.messages);
   }

@@ -167,9 +167,13 @@ DependentNode embedded(const Simulation& s, const Coupling& c, int node, const S
   return d;
 }
 
-/// The node takes the rotation of the host that moves it most.
+/// The node takes the rotation of the host that moves it most; of equals, as between the ends of an edge, the first.
 void turn_with_nearest(const Simulation& s, DependentNode& d) {
-  const auto most = static_cast<std::size_t>(std::max_element(d.w.begin(), d.w.end()) - d.w.begin());
+  constexpr double tie = 1e-6;
+  const double largest = *std::max_element(d.w.begin(), d.w.end());
+  std::size_t most = d.w.size();
+  for (std::size_t k = 0; k < d.w.size(); ++k)
+    if (d.w[k] >= (1 - tie) * largest && (most == d.w.size() || d.hosts[k] < d.hosts[most])) most = k;
   if (s.model.kind(d.hosts[most]) != FrameKind::rigid) return;
   std::swap(d.hosts[0], d.hosts[most]);
   std::swap(d.w[0], d.w[most]);

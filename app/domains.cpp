@@ -2,6 +2,8 @@
 
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
+#include "app/scene/schema.hpp"
+#include "core/geometry/bounds.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/mesh_parts.hpp"
 #include "core/geometry/primitives.hpp"
@@ -10,6 +12,7 @@
 #include "core/math/rotation.hpp"
 #include "core/model/errors.hpp"
 #include "io/mesh_reader.hpp"
+#include "meshless/cloud_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -116,10 +119,11 @@ SolidDomain make_solid(ClosedSurface closed, double scale) {
 SheetPart make_sheet(TriangleMesh mesh, const Body& body, const MatterParts& placement) {
   SheetPart sheet;
   sheet.surface = std::move(mesh);
+  const double size = bounds_of(sheet.surface.points).diagonal();
   for (const auto& t : sheet.surface.triangles) {
     Vec3d center;
     for (const int node : t) center += sheet.surface.points[at(node)] * (1.0 / 3);
-    sheet.thickness.push_back(thickness_at(body, placement.rotation * center + placement.translation));
+    sheet.thickness.push_back(thickness_at(body, placement.rotation * center + placement.translation, size));
   }
   return sheet;
 }
@@ -167,9 +171,8 @@ ClosedSurface closed_or_thin(const Mesh& mesh) {
 }
 
 /// Solids, sheets and lines of a mesh.
-void add_mesh(const FileDomain& file, const Body& body, MatterParts& parts, std::vector<std::string>& messages) {
+void add_mesh(const Mesh& mesh, const Body& body, MatterParts& parts, std::vector<std::string>& messages) {
   const double scale = body.transform.scale;
-  const Mesh mesh = io::read_mesh(file.path);
   if (body.thickness.empty() && !body.radius) {
     ClosedSurface closed = closed_or_thin(mesh);
     messages.insert(messages.end(), closed.messages.begin(), closed.messages.end());
@@ -193,9 +196,9 @@ void add_mesh(const FileDomain& file, const Body& body, MatterParts& parts, std:
 
 }  // namespace
 
-double thickness_at(const Body& body, const Vec3d& X) {
+double thickness_at(const Body& body, const Vec3d& X, double size) {
   for (const ThicknessUse& use : body.thickness)
-    if (contains(use.where, X)) return use.value;
+    if (contains(use.where, X, size)) return use.value;
   throw SceneError({{body.thickness_place,
                      fmt::format("no thickness at ({}, {}, {}); let the last entry have no where", X[0], X[1], X[2])}});
 }
@@ -218,10 +221,53 @@ MatterParts strand_parts(double radius, std::vector<Vec3d> points, std::vector<s
   return parts;
 }
 
+void check_size(const Body& body, double size) {
+  if (size >= kShortest && size <= kLongest) return;
+  throw SceneError({{body.domain_place,
+                     fmt::format("the body is {:.3g} m across, and its volume or moments of inertia leave the range of "
+                                 "double numbers; must be from {} to {} m across: check the file's unit and "
+                                 "transform.scale",
+                                 size, kShortest, kLongest)}});
+}
+
+namespace {
+
+Mat3d rotation_of(const Transform& t) {
+  return t.angle != 0 ? rotation_about(normalized(t.axis), t.angle) : Mat3d::identity();
+}
+
+/// Where coordinates near a domain start, where it is far from the origin beside its size; else the origin.
+Vec3d local_origin(const Bounds& bounds) {
+  constexpr double far = 1000;  // sizes
+  return norm(bounds.middle()) > far * bounds.diagonal() ? bounds.middle() : Vec3d{};
+}
+
+}  // namespace
+
+Body near_origin(const Body& body) {
+  Body result = body;
+  Vec3d c;
+  const auto shift = [&](std::initializer_list<Vec3d> corners, std::initializer_list<Vec3d*> places) {
+    Bounds bounds;
+    for (const Vec3d& x : corners) bounds.include(x);
+    c = local_origin(bounds);
+    for (Vec3d* place : places) *place -= c;
+  };
+  if (auto* box = std::get_if<BoxDomain>(&result.domain)) shift({box->min, box->max}, {&box->min, &box->max});
+  if (auto* y = std::get_if<CylinderDomain>(&result.domain)) shift({y->from, y->to}, {&y->from, &y->to});
+  if (auto* e = std::get_if<EllipsoidDomain>(&result.domain))
+    shift({e->center - e->radii, e->center + e->radii}, {&e->center});
+  if (auto* r = std::get_if<RectangleDomain>(&result.domain))
+    shift({r->origin, r->origin + r->edge_u + r->edge_v}, {&r->origin});
+  if (auto* l = std::get_if<LineDomain>(&result.domain)) shift({l->from, l->to}, {&l->from, &l->to});
+  result.transform.translate += rotation_of(body.transform) * (c * body.transform.scale);
+  return result;
+}
+
 MatterParts make_domain(const Body& body, std::vector<std::string>& messages) {
   MatterParts parts;
   const double scale = body.transform.scale;
-  if (body.transform.angle != 0) parts.rotation = rotation_about(normalized(body.transform.axis), body.transform.angle);
+  parts.rotation = rotation_of(body.transform);
   parts.translation = body.transform.translate;
   if (const auto* box = std::get_if<BoxDomain>(&body.domain)) parts.solid = make_box(*box, body);
   if (const auto* cylinder = std::get_if<CylinderDomain>(&body.domain)) parts.solid = make_cylinder(*cylinder, body);
@@ -230,7 +276,14 @@ MatterParts make_domain(const Body& body, std::vector<std::string>& messages) {
   if (const auto* r = std::get_if<RectangleDomain>(&body.domain))
     parts.sheets.push_back(make_sheet(rectangle_mesh(*r, body, scale), body, parts));
   if (const auto* line = std::get_if<LineDomain>(&body.domain)) parts.lines.push_back(line_part(*line, body, scale));
-  if (const auto* file = std::get_if<FileDomain>(&body.domain)) add_mesh(*file, body, parts, messages);
+  if (const auto* file = std::get_if<FileDomain>(&body.domain)) {
+    Mesh mesh = io::read_mesh(file->path);
+    const Vec3d c = local_origin(bounds_of(mesh.points));
+    for (Vec3d& x : mesh.points) x -= c;
+    parts.translation += parts.rotation * (c * scale);
+    add_mesh(mesh, body, parts, messages);
+  }
+  check_size(body, size_of(parts));
   return parts;
 }
 

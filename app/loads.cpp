@@ -60,7 +60,7 @@ std::vector<Share> volume_shares(const SimulatedBody& owner, const Region& regio
     positions.push_back(p.middle);
     cells.push_back(p.cell);
   }
-  const std::vector<bool> chosen = select(region, {positions, {}, owner.groups(), cells});
+  const std::vector<bool> chosen = select(region, {positions, {}, owner.groups(), cells, body.size()});
   std::vector<Share> shares;
   for (std::size_t q = 0; q < positions.size(); ++q)
     if (chosen[q]) shares.push_back({body.points()[q].X, body.attach_point(q), body.points()[q].volume, {}, {}});

@@ -21,7 +21,7 @@ std::size_t nearest_point(const ModelBody& body, const Vec3d& X, int cell) {
   for (std::size_t q = 0; q < body.points().size(); ++q) {
     const BodyPoint& p = body.points()[q];
     const double distance = squared_norm(p.X - X);
-    if (distance >= least || (p.cell >= 0 && p.cell != cell)) continue;
+    if (distance >= least * (1 - 1e-9) || (p.cell >= 0 && p.cell != cell)) continue;
     least = distance;
     best = q;
   }
@@ -40,7 +40,12 @@ void select_tethers(const Simulation& s, ResolvedProbe& r) {
       chosen = std::find(nodes.begin(), nodes.end(), m.frame) != nodes.end();
     } else if (r.probe->where) {
       const char on_boundary = 1;
-      chosen = select(*r.probe->where, {std::span(&s.model.tethers[at(m.tether)].X, 1), std::span(&on_boundary, 1)})[0];
+      const Selectable place{std::span(&s.model.tethers[at(m.tether)].X, 1),
+                             std::span(&on_boundary, 1),
+                             nullptr,
+                             {},
+                             s.bodies[at(m.body)].body->size()};
+      chosen = select(*r.probe->where, place)[0];
     }
     if (chosen) r.tethered.push_back(static_cast<int>(t));
   }

@@ -1,7 +1,9 @@
 #include "app/regions.hpp"
 
 #include "app/scene/errors.hpp"
+#include "core/geometry/bounds.hpp"
 #include "core/math/index.hpp"
+#include "core/math/precise_sum.hpp"
 
 #include <fmt/format.h>
 
@@ -19,22 +21,67 @@ struct Overloaded : Handlers... {
 template <class... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
-/// Rounding must not decide whether a frame on a face is inside: a small part of the largest coordinate is forgiven.
-double tolerance(const Vec3d& a, const Vec3d& b) { return 1e-9 * (norm(a) + norm(b)); }
+/// Rounding must not decide whether a frame on a face is inside: a small part of the body's size is forgiven, and what
+/// coordinates far from the origin are rounded to. How large the region is does not count: a generous one selects the
+/// same. Signed distances are sums of products with twice the digits of a double, in which a sphere of 1e15 m that
+/// touches a body of 1 mm keeps 12 digits of the body's size; but its own centre and radius are doubles, which far out
+/// are 0.1 m apart, and what they were rounded to is what counts.
+class Forgiving {
+ public:
+  explicit Forgiving(double size) : part_(1e-9 * size) {}
+  double at(const Vec3d& X) const {
+    constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+    return part_ + rounding * norm(X);
+  }
 
-bool in_box(const BoxRegion& b, const Vec3d& X) {
-  const double t = tolerance(b.min, b.max);
+ private:
+  double part_;
+};
+
+bool in_box(const BoxRegion& b, const Vec3d& X, double t) {
   for (int a = 0; a < 3; ++a)
     if (X[a] < b.min[a] - t || X[a] > b.max[a] + t) return false;
   return true;
 }
 
-bool in_cylinder(const CylinderRegion& c, const Vec3d& X) {
-  const Vec3d axis = c.to - c.from, d = X - c.from;
-  const double length = norm(axis), along = dot(d, axis) / length;
-  const double radius = norm(d - axis * (along / length));
-  const double t = tolerance(c.from, c.to);
-  return along >= -t && along <= length + t && radius <= c.radius + t;
+/// |X − c|² − r² over |X − c| + r.
+bool in_sphere(const SphereRegion& s, const Vec3d& X, double t) {
+  PreciseSum excess;
+  excess.add(-s.radius, s.radius);
+  for (int a = 0; a < 3; ++a) excess.add(X[a], X[a]).add(-2 * X[a], s.center[a]).add(s.center[a], s.center[a]);
+  return excess.value() <= t * (norm(X - s.center) + s.radius);
+}
+
+/// (X − p) · n over |n|.
+bool in_halfspace(const HalfspaceRegion& h, const Vec3d& X, double t) {
+  PreciseSum height;
+  for (int a = 0; a < 3; ++a) height.add(X[a], h.normal[a]).add(-h.point[a], h.normal[a]);
+  return height.value() <= t * norm(h.normal);
+}
+
+/// (X − end) · (to − from): above 0 beyond an end, over the length the distance from it.
+double along_axis(const CylinderRegion& c, const Vec3d& X, const Vec3d& end) {
+  PreciseSum sum;
+  for (int a = 0; a < 3; ++a) sum.add(X[a], c.to[a]).add(-X[a], c.from[a]).add(-end[a], c.to[a]).add(end[a], c.from[a]);
+  return sum.value();
+}
+
+/// |(X − from) × (to − from)| = |X × to − X × from − from × to|, over the length the distance from the axis.
+Vec3d across_axis(const CylinderRegion& c, const Vec3d& X) {
+  Vec3d moment;
+  for (int a = 0; a < 3; ++a) {
+    const int i = (a + 1) % 3, j = (a + 2) % 3;
+    PreciseSum sum;
+    sum.add(X[i], c.to[j]).add(-X[j], c.to[i]).add(-X[i], c.from[j]).add(X[j], c.from[i]);
+    moment[a] = sum.add(-c.from[i], c.to[j]).add(c.from[j], c.to[i]).value();
+  }
+  return moment;
+}
+
+bool in_cylinder(const CylinderRegion& c, const Vec3d& X, double t) {
+  const double length = norm(c.to - c.from);
+  return along_axis(c, X, c.from) >= -t * length && along_axis(c, X, c.to) <= t * length &&
+         norm(across_axis(c, X)) <= (c.radius + t) * length;
 }
 
 int nearest_point(const Vec3d& target, std::span<const Vec3d> points) {
@@ -89,17 +136,19 @@ void select_group(const Region& region, const std::string& name, const Selectabl
 
 }  // namespace
 
-std::vector<bool> select(const Region& region, const Selectable& from) {
+namespace {
+
+std::vector<bool> select(const Region& region, const Selectable& from, const Forgiving& forgiving) {
   const std::span<const Vec3d> points = from.points;
   const std::span<const char> on_boundary = from.on_boundary;
   std::vector<bool> chosen(points.size(), false);
-  const auto by_position = [&](const auto& test) {
-    for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = test(points[i]);
+  const auto by_position = [&](const auto& inside, const auto& shape) {
+    for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = inside(shape, points[i], forgiving.at(points[i]));
   };
   const auto combine = [&](const std::vector<Region>& parts, bool all) {
     chosen.assign(points.size(), all);
     for (const Region& part : parts) {
-      const std::vector<bool> other = select(part, from);
+      const std::vector<bool> other = select(part, from, forgiving);
       for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = all ? chosen[i] && other[i] : chosen[i] || other[i];
     }
   };
@@ -110,15 +159,10 @@ std::vector<bool> select(const Region& region, const Selectable& from) {
                      fail(region, "boundary cannot be asked for here; use a box, sphere or cylinder");
                    for (std::size_t i = 0; i < points.size(); ++i) chosen[i] = on_boundary[i] != 0;
                  },
-                 [&](const BoxRegion& b) { by_position([&](const Vec3d& X) { return in_box(b, X); }); },
-                 [&](const SphereRegion& s) {
-                   by_position([&](const Vec3d& X) { return norm(X - s.center) <= s.radius + tolerance(s.center, X); });
-                 },
-                 [&](const CylinderRegion& c) { by_position([&](const Vec3d& X) { return in_cylinder(c, X); }); },
-                 [&](const HalfspaceRegion& h) {
-                   by_position(
-                       [&](const Vec3d& X) { return dot(X - h.point, normalized(h.normal)) <= tolerance(X, h.point); });
-                 },
+                 [&](const BoxRegion& b) { by_position(in_box, b); },
+                 [&](const SphereRegion& s) { by_position(in_sphere, s); },
+                 [&](const CylinderRegion& c) { by_position(in_cylinder, c); },
+                 [&](const HalfspaceRegion& h) { by_position(in_halfspace, h); },
                  [&](const NearestRegion& n) {
                    if (const int i = nearest_point(n.point, points); i >= 0) chosen[static_cast<std::size_t>(i)] = true;
                  },
@@ -134,12 +178,18 @@ std::vector<bool> select(const Region& region, const Selectable& from) {
                  [&](const AllOfRegion& r) { combine(r.parts, true); },
                  [&](const AnyOfRegion& r) { combine(r.parts, false); },
                  [&](const NotRegion& r) {
-                   chosen = select(*r.part, from);
+                   chosen = select(*r.part, from, forgiving);
                    chosen.flip();
                  },
              },
              region.shape);
   return chosen;
+}
+
+}  // namespace
+
+std::vector<bool> select(const Region& region, const Selectable& from) {
+  return select(region, from, Forgiving(std::max(from.size, bounds_of(from.points).diagonal())));
 }
 
 namespace {
@@ -166,9 +216,9 @@ void require_material(const Region& region) {
   });
 }
 
-bool contains(const Region& region, const Vec3d& X) {
+bool contains(const Region& region, const Vec3d& X, double size) {
   require_material(region);
-  return select(region, {std::span(&X, 1)})[0];
+  return select(region, {.points = std::span(&X, 1), .size = size})[0];
 }
 
 bool names_boundary(const Region& region) {

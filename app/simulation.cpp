@@ -1,6 +1,7 @@
 #include "app/simulation.hpp"
 
 #include "app/bodies.hpp"
+#include "app/domains.hpp"
 #include "app/neighbours.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
@@ -8,6 +9,7 @@
 #include "core/geometry/bounds.hpp"
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/model/dependent_inertia.hpp"
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/block_matrix.hpp"
@@ -19,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 namespace fascia::app {
 
@@ -95,7 +98,11 @@ void start_dependents(Simulation& s) {
 void give_inertia_to_hosts(Simulation& s) {
   for (const DependentNode& d : s.model.points.dependents) s.dependent_inertia.push_back(s.model.inertia[at(d.node)]);
   try {
-    move_inertia_to_hosts(s.model);
+    const bool idle = s.scene.solver.kind == SolverKind::statics && squared_norm(s.scene.world.gravity) == 0;
+    if (idle)
+      move_idle_inertia_to_hosts(s.model);
+    else
+      move_inertia_to_hosts(s.model);
   } catch (const InputError& e) {
     throw SceneError({{s.scene.couplings.empty() ? s.scene.bodies[0].place : s.scene.couplings[0].place, e.what()}});
   }
@@ -103,6 +110,19 @@ void give_inertia_to_hosts(Simulation& s) {
 
 FrameInertia added(const FrameInertia& before, const FrameInertia& after) {
   return {after.mass - before.mass, after.first - before.first, after.second - before.second};
+}
+
+/// Far from the origin coordinates are rounded to more than a part of the body that answers can do without.
+std::string lost_digits(const ModelBody& body, std::span<const Vec3d> nodes) {
+  constexpr double fine = 1e-8;  // of the body's size: a fiftieth of it, the width of an element, keeps six digits
+  double farthest = 0;
+  for (const Vec3d& x : nodes) farthest = std::max(farthest, norm(x));
+  const double apart = farthest * std::numeric_limits<double>::epsilon();
+  if (!(apart > fine * body.size())) return "";
+  return fmt::format(
+      "lies {:.3g} m from the origin, where coordinates are {:.2g} m apart: they keep {} digits of its size, {:.3g} m, "
+      "and answers fewer; move it nearer with transform.translate, and all that goes with it",
+      farthest, apart, std::max(0, static_cast<int>(std::floor(std::log10(body.size() / apart)))), body.size());
 }
 
 SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
@@ -113,6 +133,7 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     b.name = body.name;
     const std::vector<FrameInertia> before = build.shared.empty() ? std::vector<FrameInertia>{} : s.model.inertia;
     b.body = build_body(body, build);
+    check_size(body, b.body->size());
     for (const int node : b.body->shared_nodes())
       b.shared_inertia.push_back(added(before[at(node)], s.model.inertia[at(node)]));
     for (std::size_t i = 0; i < b.body->weights().size(); ++i)
@@ -123,6 +144,8 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     for (int i = 0; i < b.body->node_count(); ++i) b.node_ids.push_back(b.body->first_node() + i);
     b.node_ids.insert(b.node_ids.end(), b.body->shared_nodes().begin(), b.body->shared_nodes().end());
     for (const int node : b.node_ids) b.nodes.push_back(s.model.rest_position[at(node)]);
+    if (const std::string lost = lost_digits(*b.body, b.nodes); !lost.empty())
+      s.warnings.push_back(fmt::format("bodies.{}: {}", body.name, lost));
     b.node_on_boundary = b.body->nodes_on_boundary();
     b.surface_on_boundary.assign(b.body->surface().points.size(), 1);
     b.interfaces = std::move(build.interfaces);
@@ -221,9 +244,11 @@ std::size_t SimulatedBody::index_of(int node) const {
          static_cast<std::size_t>(std::lower_bound(shared.begin(), shared.end(), node) - shared.begin());
 }
 
-Selectable SimulatedBody::selectable_nodes() const { return {nodes, node_on_boundary, groups()}; }
+Selectable SimulatedBody::selectable_nodes() const { return {nodes, node_on_boundary, groups(), {}, body->size()}; }
 
-Selectable SimulatedBody::selectable_surface() const { return {body->surface().points, surface_on_boundary, groups()}; }
+Selectable SimulatedBody::selectable_surface() const {
+  return {body->surface().points, surface_on_boundary, groups(), {}, body->size()};
+}
 
 double mean_spacing(const SimulatedBody& b) {
   if (b.nodes.size() < 2) return b.body->size();

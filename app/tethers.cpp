@@ -22,7 +22,7 @@ std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, doubl
   std::vector<Vec3d> candidates;
   const auto add = [&](const std::vector<Vec3d>& positions, const std::vector<char>& boundary) {
     if (positions.empty()) return;
-    const std::vector<bool> chosen = select(region, {positions, boundary});
+    const std::vector<bool> chosen = select(region, {positions, boundary, nullptr, {}, b.body->size()});
     for (std::size_t i = 0; i < positions.size(); ++i)
       if (chosen[i]) candidates.push_back(positions[i]);
   };
@@ -43,7 +43,9 @@ std::vector<Vec3d> places_in(const SimulatedBody& b, const Region& region, doubl
 }
 
 int nearest_frame(const SimulatedBody& b, const Vec3d& x) {
-  const auto nearer = [&](const Vec3d& p, const Vec3d& q) { return squared_norm(p - x) < squared_norm(q - x); };
+  const auto nearer = [&](const Vec3d& p, const Vec3d& q) {
+    return squared_norm(p - x) < squared_norm(q - x) * (1 - 1e-9);
+  };
   const auto found = std::min_element(b.nodes.begin(), b.nodes.end(), nearer);
   return b.node_ids[static_cast<std::size_t>(found - b.nodes.begin())];
 }

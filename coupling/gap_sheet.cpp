@@ -68,7 +68,7 @@ double place_along(const std::vector<Vec3d>& line, const Vec3d& X) {
     if (k > 0) t = std::max(t, 0.0);
     if (k + 2 < line.size()) t = std::min(t, 1.0);
     const double distance = norm(line[k] + edge * t - X);
-    if (distance < nearest) {
+    if (distance < nearest * (1 - 1e-9)) {
       nearest = distance;
       place = before + t * length;
     }
@@ -208,10 +208,10 @@ TriangleMesh gap_sheet(const GapSide& first, const GapSide& second, double spaci
   if (!(columns < most_cells)) throw InputError("the sheet takes more than 1e7 triangles; use a larger spacing");
   const std::vector<Vec3d> from = a.middle_line(static_cast<int>(columns));
   std::vector<Vec3d> to = b.middle_line(static_cast<int>(columns)), other(to.rbegin(), to.rend());
-  if (squared_distance(from, other) < squared_distance(from, to)) to = other;
+  if (squared_distance(from, other) < squared_distance(from, to) * (1 - 1e-9)) to = other;
   double width = 0;
   for (std::size_t c = 0; c < from.size(); ++c) width += norm(to[c] - from[c]) / static_cast<double>(from.size());
-  const double rows = std::max(1.0, std::round(width / spacing));
+  const double rows = std::max(1.0, std::round(width / spacing * (1 + 1e-9)));
   if (!(rows * columns < most_cells)) throw InputError("the sheet takes more than 1e7 triangles; use a larger spacing");
   TriangleMesh sheet = sheet_between(from, to, static_cast<int>(rows), sides.touching);
   if (sheet.triangles.empty()) fail_touching(first.body, second.body);

@@ -75,6 +75,7 @@ class CloudBody final : public ModelBody {
   void add_inertia(const CloudSpec& spec, Model& model);
   void describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights);
   void warn_of_locking(const CloudSpec& spec);
+  void warn_of_overlap(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights);
   int node_of(int frame) const {
     return frame < node_count_ ? first_node_ + frame : share_[static_cast<std::size_t>(frame - node_count_)].node;
   }

@@ -3,10 +3,12 @@
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "meshless/matter_parts.hpp"
+#include "meshless/point_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -53,7 +55,7 @@ class VoxelGrid {
   std::size_t voxel_of(const Vec3d& x) const {
     std::array<int, 3> i{};
     for (int a = 0; a < 3; ++a)
-      i[at(a)] = static_cast<int>(std::clamp((x[a] - min_[a]) / cell_[a], 0.0, count_[at(a)] - 0.5));
+      i[at(a)] = static_cast<int>(std::clamp((x[a] - min_[a]) / cell_[a] + kTie, 0.0, count_[at(a)] - 0.5));
     return number(i[0], i[1], i[2]);
   }
   template <class Act>
@@ -111,9 +113,15 @@ std::optional<MatterPiece> voxel_part(const VoxelGrid& grid, int i, int j, int k
   MatterPiece piece;
   piece.volume = static_cast<double>(found.size());
   const Vec3d centroid = sum * (1.0 / static_cast<double>(found.size()));
-  piece.x = contains(centroid) ? centroid : *std::min_element(found.begin(), found.end(), [&](auto& a, auto& b) {
-    return squared_norm(a - centroid) < squared_norm(b - centroid);
-  });
+  piece.x = centroid;
+  if (contains(centroid)) return piece;
+  double least = std::numeric_limits<double>::max();
+  for (const Vec3d& x : found) {
+    const double squared = squared_norm(x - centroid);
+    if (squared >= least * (1 - kTie)) continue;
+    least = squared;
+    piece.x = x;
+  }
   return piece;
 }
 

@@ -46,7 +46,7 @@ void cut_triangle(const std::array<Vec3d, 3>& corners, const std::array<Vec3d, 3
       longest = n;
     }
   }
-  if (squared <= kLongestEdge * kLongestEdge * size * size) {
+  if (squared <= kLongestEdge * kLongestEdge * size * size * (1 + 1e-9)) {
     const Vec3d sum = normals[0] + normals[1] + normals[2];
     parts.push_back({(corners[0] + corners[1] + corners[2]) * (1.0 / 3), sum, area});
     return;

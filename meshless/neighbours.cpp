@@ -1,6 +1,7 @@
 #include "meshless/neighbours.hpp"
 
 #include "core/math/index.hpp"
+#include "meshless/point_grid.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -63,8 +64,17 @@ class Within {
 
 // NOLINTEND(readability-identifier-naming)
 
-std::vector<int> in_order(std::vector<Found> found) {
+/// By distance, of equals by index.
+void sort_found(std::vector<Found>& found) {
   std::sort(found.begin(), found.end());
+  const auto by_index = [](const Found& a, const Found& b) { return a.second < b.second; };
+  for (auto first = found.begin(), end = first; first != found.end(); first = end) {
+    while (end != found.end() && end->first <= first->first * (1 + kTie)) ++end;
+    std::sort(first, end, by_index);
+  }
+}
+
+std::vector<int> indices_of(std::span<const Found> found) {
   std::vector<int> indices;
   indices.reserve(found.size());
   for (const Found& f : found) indices.push_back(f.second);
@@ -86,9 +96,11 @@ struct FrameSearch::Tree {
   explicit Tree(std::span<const Vec3d> positions) : points(positions.begin(), positions.end()), index(3, *this) {}
 
   template <class Results>
-  std::vector<int> find(const Vec3d& x, Results results) const {
+  std::vector<Found> find(const Vec3d& x, Results results) const {
     index.findNeighbors(results, x.v, nanoflann::SearchParams());
-    return in_order(results.take());
+    std::vector<Found> found = results.take();
+    sort_found(found);
+    return found;
   }
 
   std::vector<Vec3d> points;
@@ -103,12 +115,15 @@ FrameSearch& FrameSearch::operator=(FrameSearch&&) noexcept = default;
 std::vector<int> FrameSearch::nearest(const Vec3d& x, int k) const {
   const std::size_t count = std::min(k > 0 ? at(k) : 0, tree_->points.size());
   if (count == 0) return {};
-  return tree_->find(x, Nearest(count));
+  std::vector<Found> found = tree_->find(x, Nearest(count + 1));
+  const double last = found[count - 1].first, beyond = last * (1 + kTie);
+  if (found.size() > count && found[count].first <= beyond) found = tree_->find(x, Within(beyond));
+  return indices_of(std::span(found).first(count));
 }
 
 std::vector<int> FrameSearch::within(const Vec3d& x, double radius) const {
   if (tree_->points.empty() || !(radius >= 0)) return {};
-  return tree_->find(x, Within(radius * radius));
+  return indices_of(tree_->find(x, Within(radius * radius)));
 }
 
 namespace {

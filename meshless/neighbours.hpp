@@ -9,7 +9,8 @@
 
 namespace fascia {
 
-/// Which frames are near a point. Results ascend by distance, equal ones by index: they do not depend on the search.
+/// Which frames are near a point. Results ascend by distance, equal ones (to kTie of point_grid.hpp) by index: they
+/// depend neither on the search nor on rounding.
 class FrameSearch {
  public:
   /// @param positions  copied

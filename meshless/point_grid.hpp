@@ -12,6 +12,10 @@
 
 namespace fascia {
 
+/// Squared distances that differ by less, relative to them, are the same: rounding, and with it the unit of length and
+/// the distance from the origin, must not choose between neighbours in regular places.
+inline constexpr double kTie = 1e-6;
+
 /// Points in cubic cells that are found through a hash: insertion and near neighbours in constant time.
 ///
 /// Cells that share a slot only add candidates, whose distance is measured anyway.
@@ -34,7 +38,7 @@ class PointGrid {
   bool any_within(const Vec3d& x, double radius, Accept&& accept) const {
     const Cell home = cell_of(x);
     const auto gaps = gaps_around(home, x);
-    const double most = radius * radius;
+    const double most = radius * radius * (1 + kTie);
     for (const auto& offset : kNearFirst) {
       if (squared_gap(gaps, offset) > most) continue;
       for (int i = first_in(home, offset); i >= 0; i = next_[at(i)]) {
@@ -56,12 +60,12 @@ class PointGrid {
     const auto covered = [&](int ring) { return std::max(0.0, margin) + ring * cell_; };
     const auto offer = [&](int i) { best.offer(i, squared_norm(points_[at(i)] - x), accept); };
     for (const auto& offset : kNearFirst) {
-      if (squared_gap(gaps, offset) > best.squared) continue;
+      if (squared_gap(gaps, offset) > best.reach()) continue;
       for (int i = first_in(home, offset); i >= 0; i = next_[at(i)]) offer(i);
     }
     for (int ring = 1;; ++ring) {
       if (ring > 1) visit_ring(home, ring, offer);
-      if (best.index >= 0 && best.squared <= covered(ring) * covered(ring)) return best.index;
+      if (best.index >= 0 && best.reach() <= covered(ring) * covered(ring)) return best.index;
       if (covered(ring) >= reach) return best.index;
       if (ring == kMostRings) break;
     }
@@ -79,12 +83,12 @@ class PointGrid {
     int index = -1;
     double squared = std::numeric_limits<double>::infinity();
 
+    double reach() const { return squared * (1 + kTie); }
     template <class Accept>
     void offer(int i, double d, Accept&& accept) {
-      if ((d < squared || (d == squared && i < index)) && accept(i)) {
-        squared = d;
-        index = i;
-      }
+      if (d > reach() || !accept(i)) return;
+      if (i < index || d < squared * (1 - kTie)) index = i;
+      squared = std::min(squared, d);
     }
   };
 
@@ -120,7 +124,7 @@ class PointGrid {
       const double gap = gaps[a][at(o[a] + 1)];
       sum += gap * gap;
     }
-    return sum * (1 - 1e-9);  // rounding must not hide a point on the border
+    return sum * (1 - 4 * kTie);  // rounding must not hide a point on the border
   }
   int first_in(const Cell& home, const Offset& o) const {
     return head_[slot({home[0] + o[0], home[1] + o[1], home[2] + o[2]})];

@@ -48,7 +48,7 @@ class FrameSet {
     const auto conflict = [&](const MatterPiece& piece, const Vec3d& x) {
       return grid_.any_within(x, std::max(same, lower), [&](int i, double squared) {
         const double r = samples_[at(i)].feature == piece.feature ? same : lower;
-        return squared < r * r;
+        return squared < r * r * (1 - kTie);
       });
     };
     throw_darts(matter_, darts, conflict, [&](const SamplePlace& place) { add(place); });

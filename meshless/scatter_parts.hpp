@@ -4,6 +4,7 @@
 #include "meshless/scatter.hpp"
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <span>
 #include <vector>
@@ -18,9 +19,13 @@ template <class A, class B>
 bool alike(const A& a, const B& b) {
   if (a.dimension != b.dimension) return false;
   if (a.dimension == 3) return true;
-  if (a.dimension == 2) return dot(a.axes.column(2), b.axes.column(2)) >= 0.5;
-  return std::abs(dot(a.axes.column(0), b.axes.column(0))) >= 0.5;
+  constexpr double least = 0.5 - kTie;
+  if (a.dimension == 2) return dot(a.axes.column(2), b.axes.column(2)) >= least;
+  return std::abs(dot(a.axes.column(0), b.axes.column(0))) >= least;
 }
+
+/// To the nearest whole number, halves upward whatever their last digits are.
+inline double rounded(double positive) { return std::round(positive * (1 + kTie)); }
 
 /// Whether a point lies in some solid.
 bool inside(const Matter& matter, const Vec3d& x);

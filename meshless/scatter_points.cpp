@@ -11,7 +11,7 @@ constexpr int kRounds = 4;  // of relaxation
 constexpr std::array<double, 4> kSaturated{1, 1.338, 1.198, 1.109};
 
 double wanted(double measure, int dimension, double spacing) {
-  return measure > 0 ? std::max(1.0, std::round(measure / std::pow(spacing, dimension))) : 0;
+  return measure > 0 ? std::max(1.0, rounded(measure / std::pow(spacing, dimension))) : 0;
 }
 
 std::vector<SamplePlace> throw_at(const Matter& matter, std::span<const Dart> darts, double least) {

@@ -45,7 +45,7 @@ double chain_length(const FeatureChain& chain) {
 }
 
 int interval_count(const FeatureChain& chain, double spacing) {
-  const double count = std::round(chain_length(chain) / spacing);
+  const double count = rounded(chain_length(chain) / spacing);
   constexpr double most = 5e7;
   if (!(count <= most)) throw InputError("the edges take more than 5e7 samples; use a larger spacing");
   return std::max(chain.closed ? 3 : 1, static_cast<int>(count));
@@ -113,7 +113,7 @@ void move_to_middles(const Matter& matter, std::span<const int> pieces, std::spa
     if (owner[n] < 0) continue;
     Gathered& g = gathered[at(owner[n])];
     const double squared = squared_norm(matter.pieces[at(pieces[n])].x - g.middle());
-    if (squared >= g.squared) continue;
+    if (squared >= g.squared * (1 - kTie)) continue;
     g.squared = squared;
     g.nearest = pieces[n];
   }

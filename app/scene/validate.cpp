@@ -119,7 +119,12 @@ class Validator {
     if (!number) return wrong_type(value, path, wanted);
     if (!std::isfinite(*number)) return fail(value, path, fmt::format("{} is not finite; must be {}", shown, wanted));
     if (!shape.range.contains(*number))
-      fail(value, path, fmt::format("{} is out of range; must be {}", shown, shape.range.text()));
+      return fail(value, path, fmt::format("{} is out of range; must be {}", shown, shape.range.text()));
+    const bool tiny = shape.range.min >= 0 && *number > 0 && *number < kShortest;
+    if (shape.unit == "m" && (tiny || std::abs(*number) > kLongest))
+      fail(value, path,
+           fmt::format("{} is a length whose volume or moment of inertia double numbers cannot hold; must be {} {} m",
+                       shown, tiny ? "at least" : "at most", tiny ? kShortest : kLongest));
   }
 
   void check_integer(Value& value, const Shape& shape, const std::string& path, const std::string& wanted) {

@@ -71,13 +71,16 @@ double TriangleTree::squared_distance(const Node& node, const Vec3d& x) {
 }
 
 double TriangleTree::distance(const Vec3d& x, Vec3d* nearest, int* triangle) const {
+  // Of places that are equally near, to what rounding may make of it, the one of the first triangle.
+  constexpr double tie = 1e-9;
   double best = std::numeric_limits<double>::infinity();
+  int best_number = 0;
   std::vector<int> open;
   if (!nodes_.empty()) open.push_back(0);
   while (!open.empty()) {
     const Node& node = nodes_[static_cast<std::size_t>(open.back())];
     open.pop_back();
-    if (squared_distance(node, x) >= best) continue;
+    if (squared_distance(node, x) > best * (1 + tie)) continue;
     if (node.children >= 0) {
       // The nearer child last, so that it is looked at first.
       const int first = node.children, second = first + 1;
@@ -90,8 +93,11 @@ double TriangleTree::distance(const Vec3d& x, Vec3d* nearest, int* triangle) con
     for (int t = node.begin; t < node.end; ++t) {
       const auto& [corners, number] = triangles_[static_cast<std::size_t>(t)];
       const Vec3d y = nearest_on_triangle(x, corners[0], corners[1], corners[2]);
-      if (squared_norm(y - x) >= best) continue;
-      best = squared_norm(y - x);
+      const double squared = squared_norm(y - x);
+      const bool nearer = squared < best * (1 - tie), first = number < best_number;
+      if (squared > best * (1 + tie) || !(nearer || first)) continue;
+      best = std::min(best, squared);
+      best_number = number;
       if (nearest) *nearest = y;
       if (triangle) *triangle = number;
     }

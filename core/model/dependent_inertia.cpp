@@ -1,5 +1,6 @@
+#include "core/model/dependent_inertia.hpp"
+
 #include "core/model/errors.hpp"
-#include "core/model/model.hpp"
 
 #include <sstream>
 
@@ -38,13 +39,21 @@ void give_away(const Model& model, std::vector<FrameInertia>& inertia, std::vect
   for (const DependentNode& d : dependents) received[at(d.node)] = 0;
 }
 
-}  // namespace
-
-void move_inertia_to_hosts(Model& model) {
-  if (model.points.dependents.empty()) return;
+/// Which nodes received mass.
+std::vector<char> give_all_away(Model& model) {
   std::vector<char> received(at(model.node_count()), 0), unused = received;
   give_away(model, model.inertia, received);
   if (!model.mass_damping.empty()) give_away(model, model.mass_damping, unused);
+  return received;
+}
+
+}  // namespace
+
+void move_idle_inertia_to_hosts(Model& model) { give_all_away(model); }
+
+void move_inertia_to_hosts(Model& model) {
+  if (model.points.dependents.empty()) return;
+  const std::vector<char> received = give_all_away(model);
   for (int host = 0; host < model.node_count(); ++host) {
     if (received[at(host)] == 0 || model.inertia[at(host)].mass > 0) continue;
     const Vec3d& X = model.rest_position[at(host)];

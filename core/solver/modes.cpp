@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -150,7 +151,7 @@ namespace {
 /// Stabilisation's part of the energy of a small motion along a shape; 0 of a free motion.
 double stabilization_part(const Model& model, CpuExecutor& executor, const std::vector<double>& shape, double frequency,
                           double highest) {
-  if (frequency < 1e-5 * highest) return 0;
+  if (frequency == 0 || frequency < 1e-5 * highest) return 0;
   State state = State::at_rest(model);
   const DofLayout& dofs = model.points.dofs;
   double largest = 0;
@@ -176,8 +177,10 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   const int free = problem.filter().free_count();
   if (free == 0) return {};
   const int wanted = std::min(count, free), block = std::min(free, std::max(2 * wanted, wanted + 8));
-  // Free motions have eigenvalue 0 up to the rounding of the largest, of which iterations see a part.
+  // Free motions have eigenvalue 0 up to the rounding of the largest, of which iterations see a part. Ritz values are
+  // never below the eigenvalues: one that vanishes beside rounding has settled, though its digits change for ever.
   const double rounding = 1e-17 * problem.stiffness_to_mass();
+  const double zero = 10 * std::numeric_limits<double>::epsilon() * problem.stiffness_to_mass();
   const BlockCholesky factor = problem.factorize();
 
   std::mt19937 random(1);
@@ -204,12 +207,12 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     modes.converged = true;
     for (int k = 0; k < wanted; ++k) {
       const double allowed = std::max({1e-10 * std::abs(next[k]), 1e-12 * std::abs(next[wanted - 1]), rounding});
-      modes.converged = modes.converged && std::abs(next[k] - values[k]) <= allowed;
+      modes.converged = modes.converged && (next[k] <= zero || std::abs(next[k] - values[k]) <= allowed);
     }
     values = next;
   }
   for (int k = 0; k < wanted; ++k) {
-    modes.frequency.push_back(std::sqrt(std::max(0.0, values[k])) / (2 * std::numbers::pi));
+    modes.frequency.push_back(values[k] <= zero ? 0.0 : std::sqrt(values[k]) / (2 * std::numbers::pi));
     std::vector<double> shape(X.col(k).data(), X.col(k).data() + n);
     problem.filter().to_global(shape);
     problem.dependents().expand(shape);

@@ -334,4 +334,21 @@ TEST_F(BadCouplings, Extremes) {
   for (const char* density : {"1e-3", "1e9"}) expect_sound(with(scene, "1000.5", density) + kDynamic);
 }
 
+/// A heavy bar in the corner of a light second-order host, whose weights are negative: what a static solve without
+/// gravity does not use is not refused.
+TEST_F(BadCouplings, MassesThatNothingMoves) {
+  const std::string box = "{ box = { min = [-0.1, -1, -1], max = [0.01, 2, 2] } }";
+  const std::string scene =
+      "[bodies.host]\nmodel = \"tetrahedra\"\norder = 2\ndomain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = "
+      "[1, 1, 1] } }\ndensity = 1\nmaterial = { young = 1e4, poisson = 0.3 }\n[bodies.bar]\nmodel = \"hexahedra\"\n"
+      "domain = { box = { min = [0.1, 0.02, 0.02], max = [0.9, 0.1, 0.1], cells = [4, 1, 1] } }\ndensity = 1e4\n"
+      "material = { young = 1e6, poisson = 0.3 }\n" +
+      coupling("inside", "embed", "bar", "\"all\"", "host") + fixed("host", box) +
+      "[[loads]]\nbody = \"host\"\nwhere = { box = { min = [0.99, -1, -1], max = [1.01, 2, 2] } }\ntotal_force = [10, "
+      "0, 0]\n";
+  expect_sound(scene + kStatic);
+  for (const std::string& moved : {kGravity + scene + kStatic, scene + kDynamic})
+    expect_refused(moved, {"couplings.inside", "would have a mass of"});
+}
+
 }  // namespace

@@ -44,5 +44,17 @@ TEST(Modes, FreeBlockHasSixZeros) {
   }
 }
 
+/// A free motion is 0, however few others are asked for: six of a line are all of them, and settle at once.
+TEST(Modes, FreeMotionsAloneSettle) {
+  for (const char* scene : {"line_free_modes", "free_modes"})
+    for (const int count : {1, 5, 6, 7}) {
+      const SceneRun run(scene, {"solver.count=" + std::to_string(count)});
+      const nlohmann::json f = run.probe("frequency");
+      ASSERT_EQ(f.size(), static_cast<std::size_t>(count));
+      for (int i = 0; i < count; ++i)
+        EXPECT_EQ(f[static_cast<std::size_t>(i)].get<double>() == 0, i < 6) << scene << " " << i << " of " << count;
+    }
+}
+
 }  // namespace
 }  // namespace fascia::test

@@ -1,6 +1,7 @@
 #include "core/solver/dependents.hpp"
 
 #include "core/cpu/executor.hpp"
+#include "core/model/dependent_inertia.hpp"
 #include "core/model/errors.hpp"
 #include "tests/support/dependent_models.hpp"
 
@@ -203,6 +204,16 @@ TEST(DependentNodes, HostsKeepPositiveMasses) {
     EXPECT_NE(std::string(error.what()).find("frame at (0, 0, 0)"), std::string::npos) << error.what();
     EXPECT_EQ(error.blame, Blame::weights);
   }
+}
+
+TEST(DependentNodes, MassesThatNothingMovesMayBeNegative) {
+  CoupledModel built;
+  const int light = built.add_frame({}, 1), heavy = built.add_frame({{1, 0, 0}}, 20), node = built.add_frame({}, 5);
+  built.points.add_dependent({node, {light, heavy}, {-0.3, 1.3}, {{}, {}}, false});
+  built.finish();
+  move_idle_inertia_to_hosts(built.model);
+  EXPECT_DOUBLE_EQ(built.model.inertia[at(light)].mass, -0.5);
+  EXPECT_DOUBLE_EQ(built.model.inertia[at(heavy)].mass, 26.5);
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "meshless/neighbours.hpp"
 
 #include "core/math/index.hpp"
+#include "meshless/point_grid.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace fascia {
@@ -30,8 +32,12 @@ std::vector<Vec3d> scattered(int count) {
 std::vector<int> sorted_by_distance(const std::vector<Vec3d>& points, const Vec3d& x) {
   std::vector<int> order;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) order.push_back(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int i, int j) { return squared_norm(points[at(i)] - x) < squared_norm(points[at(j)] - x); });
+  const auto squared = [&](int i) { return squared_norm(points[at(i)] - x); };
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return squared(i) < squared(j); });
+  for (auto first = order.begin(), end = first; first != order.end(); first = end) {
+    while (end != order.end() && squared(*end) <= squared(*first) * (1 + kTie)) ++end;
+    std::sort(first, end);
+  }
   return order;
 }
 
@@ -54,6 +60,24 @@ TEST(FrameSearch, AgreesWithComparingAll) {
           if (squared_norm(points[at(i)] - x) <= radius * radius) expected.push_back(i);
         EXPECT_EQ(search.within(x, radius), expected);
       }
+    }
+  }
+}
+
+/// Powers of ten round a lattice's distances, which are equal, in as many ways.
+TEST(FrameSearch, FindsTheSameInEveryUnit) {
+  const FrameSearch search(lattice(7));
+  for (const double unit : {1e-6, 1e-3, 0.1, 1e5}) {
+    std::vector<Vec3d> points = lattice(7);
+    for (Vec3d& x : points) x = x * unit;
+    const FrameSearch scaled(points);
+    PointGrid grid(2 * unit), old(2);
+    for (const Vec3d& x : points) grid.insert(x);
+    for (const Vec3d& x : lattice(7)) old.insert(x);
+    for (const Vec3d& x : {Vec3d{{3, 3, 3}}, Vec3d{{2.5, 2.5, 2.5}}, Vec3d{{2.1, 3.9, 4.5}}, Vec3d{{0.3, 0.7, 0.3}}}) {
+      for (const int k : {1, 2, 5, 8, 20}) EXPECT_EQ(scaled.nearest(x * unit, k), search.nearest(x, k)) << unit;
+      const auto any = [](int) { return true; };
+      EXPECT_EQ(grid.nearest(x * unit, INFINITY, any), old.nearest(x, INFINITY, any)) << unit;
     }
   }
 }
