@@ -149,9 +149,9 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
   Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}};
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
-    const double end = step * dynamics.time_step;
+    const double end = dynamics.end_of(step), dt = dynamics.length_of(step);
     const typename System::Pose before = state;
-    const NewtonReport report = stepper.advance(state, end, dynamics.time_step, 8);
+    const NewtonReport report = stepper.advance(state, end, dt, 8);
     if (!acceptable(report, settings)) {
       state = before;
       std::ostringstream message;
@@ -163,7 +163,7 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
       return run;
     }
     accept(run, report, end);
-    if (observe && system.solves_for_middle()) system.look_back(state, before, dynamics.time_step);
+    if (observe && system.solves_for_middle()) system.look_back(state, before, dt);
     const double progress = static_cast<double>(step) / dynamics.steps;
     if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {
       if (step < dynamics.steps) run.status = RunStatus::interrupted;
