@@ -47,9 +47,8 @@ RunReport run_kind(const Simulation& s, State& state, const FactorFunction& fact
   if (solver.kind == SolverKind::statics)
     return gpu::run_statics(s.model, state, factors, settings, {solver.load_steps}, watch);
   if (solver.kind == SolverKind::central_differences)
-    return gpu::run_explicit(s.model, state, factors, settings, {solver.time_step, solver.steps, observed}, watch);
-  return gpu::run_implicit(s.model, state, factors, settings, {scheme_of(solver.kind), solver.time_step, solver.steps},
-                           watch);
+    return gpu::run_explicit(s.model, state, factors, settings, explicit_of(s.scene, observed), watch);
+  return gpu::run_implicit(s.model, state, factors, settings, dynamics_of(solver), watch);
 }
 
 }  // namespace

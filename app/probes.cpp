@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace fascia::app {
 
@@ -103,6 +104,14 @@ struct Energies {
   double elastic = 0, stabilization = 0, kinetic = 0, potential = 0;
 };
 
+/// Groups of points that tether the material of a body, or of all.
+std::set<int> tether_groups(const Simulation& s, int body) {
+  std::set<int> groups;
+  for (const TetheredMaterial& m : s.tethered)
+    if (body < 0 || m.body == body) groups.insert(s.model.tethers[at(m.tether)].group);
+  return groups;
+}
+
 Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
   Energies e;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
@@ -117,6 +126,8 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
     for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
       e.elastic += snap.system->executor().shell_elastic(shell);
   }
+  for (const int group : tether_groups(s, probe.body))
+    e.stabilization += snap.system->executor().group_stabilization()[at(group)];
   const std::vector<Spring>& springs = s.model.points.springs;
   for (std::size_t k = 0; k < springs.size(); ++k)
     if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), springs[k].node))

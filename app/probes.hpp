@@ -15,6 +15,7 @@ struct Snapshot {
   const State* state = nullptr;
   MechanicalSystem* system = nullptr;  ///< evaluated at the state
   double frequency = 0;                ///< of a mode [Hz]
+  double time_step = 0;                ///< explicit: of the step that ended here, at the start of the first one [s]
 };
 
 /// Value of a probe as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).

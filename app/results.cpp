@@ -113,7 +113,7 @@ ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path dir
   csv_ = "time";
   for (const ResolvedProbe& p : simulation.probes)
     for (const std::string& column : probe_columns(p)) csv_ += "," + column;
-  csv_ += "\n";
+  csv_ += tells_time_step() ? ",time_step\n" : "\n";
   for (const SimulatedBody& b : simulation.bodies) {
     surface_.emplace_back();
     if (b.groups() != nullptr) continue;  // a mesh is written as it is
@@ -128,8 +128,11 @@ void ResultFiles::add_probes(double time, const Snapshot& snap) {
     last_[i] = probe_values(simulation_, simulation_.probes[i], snap);
     for (const double value : last_[i]) csv_ += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
   }
+  if (tells_time_step()) csv_ += fmt::format(",{:.17g}", snap.time_step);
   csv_ += "\n";
 }
+
+bool ResultFiles::tells_time_step() const { return simulation_.scene.solver.time_step_automatic; }
 
 /// Cells on the nodes, with tensors by cell and averaged at the nodes.
 io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) const {

@@ -31,6 +31,7 @@ class ResultFiles {
   double seconds() const { return seconds_; }
 
  private:
+  bool tells_time_step() const;  ///< the last column of probes.csv: steps that follow the state
   io::VisualMesh visual_mesh(const SimulatedBody& b, const State& state) const;
   io::VisualMesh visual(const SimulatedBody& body, const State& state) const;
   const Simulation& simulation_;

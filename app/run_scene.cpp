@@ -59,17 +59,20 @@ class SaveRule {
       : every_(output.every), every_steps_(output.every_steps), statics_(statics) {
     if (!statics && every_ == 0 && every_steps_ == 0) every_ = kDefaultEvery;
   }
-  bool save(const StepInfo& step) {
+  bool save(const StepInfo& step) const {
     if (step.progress >= 1) return true;
     if (every_steps_ > 0) return step.step % every_steps_ == 0;
     if (statics_ || every_ <= 0) return false;
-    const double count = std::floor(step.time / every_ * (1 + 1e-9));
-    const bool due = count > saved_;
-    saved_ = std::max(saved_, count);
-    return due;
+    return count(step) > saved_;
+  }
+  /// A step that was to be saved is.
+  void note(const StepInfo& step) {
+    if (every_ > 0) saved_ = std::max(saved_, count(step));
   }
 
  private:
+  double count(const StepInfo& step) const { return std::floor(step.time / every_ * (1 + 1e-9)); }
+
   double every_;
   int every_steps_;
   bool statics_;
@@ -104,7 +107,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
   SaveRule rule(s.scene.output, statics);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   const bool path = s.scene.solver.control != StaticControl::load;
-  double output_seconds = 0, saved_time = -1;
+  double output_seconds = 0, saved_time = -1, time_step = s.scene.solver.time_step;
   int saved_step = 0;
   SnapWatch snaps(s);
   std::string not_shown;  // why the last state is in no result
@@ -112,7 +115,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
     const Clock::time_point start = Clock::now();
     try {
       if (fields) files.add_state(path ? step : time, at);
-      files.add_probes(time, {&at, &system, 0});
+      files.add_probes(time, {&at, &system, 0, time_step});
       if (fields) saved_time = time;
       if (fields) saved_step = step;
     } catch (const StateError& e) {
@@ -126,6 +129,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
     out.times.steps.push_back(step.seconds);
     progress.update(step);
     const bool due = rule.save(step);
+    rule.note(step);
     if (due || statics) save(step.time, step.step, show(), due);
     out.stabilization = energy.stabilization;
     if (statics && !path) snaps.look(step.time, energy.elastic);
@@ -166,10 +170,12 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
     if (s.scene.solver.kind == SolverKind::central_differences) {
       const auto observed = [&](const StepInfo& step) {
         out.times.steps.push_back(step.seconds);
+        time_step = step.time_step;
         progress.update(step);
         return rule.save(step) || interrupted != 0;
       };
       const auto keep = [&](const StepInfo& step, const State& at) {
+        rule.note(step);
         save(step.time, step.step, at, true);
         out.stabilization = system.internal_energy().stabilization;
         return interrupted == 0 && not_shown.empty();
@@ -180,11 +186,10 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
       };
       if (!on_gpu(keep_from_gpu, observed))
         out.run =
-            run_explicit(system, state, factors, {s.scene.solver.time_step, s.scene.solver.steps, observed},
+            run_explicit(system, state, factors, explicit_of(s.scene, observed),
                          [&](const StepInfo& step, const State& at, MechanicalSystem&) { return keep(step, at); });
     } else if (!on_gpu(observe_on_gpu)) {
-      out.run = run_implicit(system, state, factors, settings,
-                             {scheme_of(s.scene.solver.kind), s.scene.solver.time_step, s.scene.solver.steps}, observe);
+      out.run = run_implicit(system, state, factors, settings, dynamics_of(s.scene.solver), observe);
     }
   }
   progress.finish();
@@ -363,10 +368,11 @@ int check_scene(const RunOptions& options) {
              followers > 0 ? fmt::format(", {} that follow others", followers) : "", tethers,
              counted(s.scene.loads.size(), "load"), counted(s.probes.size(), "probe"));
   if (s.stable_step > 0)
-    fmt::print("{}, {} steps of {:.4g} s\n",
+    fmt::print("{}, {}{} steps of {:.4g} s{}\n",
                std::isfinite(s.stable_step) ? fmt::format("stable time step {:.4g} s", s.stable_step)
                                             : "nothing elastic limits the time step",
-               s.scene.solver.steps, s.scene.solver.time_step);
+               s.scene.solver.time_step_automatic ? "about " : "", s.scene.solver.steps, s.scene.solver.time_step,
+               s.scene.solver.time_step_automatic ? " at first" : "");
   for (const SimulatedBody& b : s.bodies)
     if (s.stable_step > 0 && b.body->fastest_cell() > 0)
       fmt::print("body {}: {} {} limits the time step\n", b.name,

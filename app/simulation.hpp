@@ -114,8 +114,11 @@ double model_memory(const Simulation& simulation);
 /// Time between saved states of a dynamic run that names none [s].
 inline constexpr double kDefaultEvery = 0.04;
 
-/// Of central differences: the largest time step that is stable at the start [s], into Simulation::stable_step; an
-/// automatic step takes it, with as many steps as the duration needs.
+/// Time between saved states [s]; 0: they are counted by steps.
+double saving_time(const Output& output);
+
+/// Of central differences: the largest time step that is stable at the start [s], into Simulation::stable_step. An
+/// automatic step begins with it, and the steps are then those that the duration would take if it stayed.
 /// @throws SceneError  where time_step is larger
 void settle_time_step(Simulation& simulation, MechanicalSystem& system);
 

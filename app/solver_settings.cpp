@@ -1,5 +1,7 @@
 #include "app/solver_settings.hpp"
 
+#include "app/simulation.hpp"
+
 namespace fascia::app {
 
 SolverSettings settings_of(const Solver& solver) {
@@ -33,6 +35,16 @@ SolverSettings settings_of(const Solver& solver) {
   if (solver.precision == "single") s.precision = Precision::single;
   s.tangent = solver.full_tangent ? Tangent::full : Tangent::material;
   return s;
+}
+
+DynamicsSettings dynamics_of(const Solver& solver) {
+  return {scheme_of(solver.kind), solver.time_step, solver.steps, solver.duration.value_or(0)};
+}
+
+ExplicitSettings explicit_of(const Scene& scene, const std::function<bool(const StepInfo&)>& observed) {
+  const Solver& solver = scene.solver;
+  const double every = saving_time(scene.output);
+  return {solver.time_step, solver.steps, observed, solver.duration.value_or(0), solver.time_step_automatic, every};
 }
 
 TimeScheme scheme_of(SolverKind kind) {

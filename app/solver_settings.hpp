@@ -1,6 +1,8 @@
 #pragma once
 
 #include "app/scene/scene.hpp"
+#include "core/solver/drivers.hpp"
+#include "core/solver/explicit_plan.hpp"
 #include "core/solver/settings.hpp"
 #include "core/solver/time_scheme.hpp"
 
@@ -8,6 +10,11 @@ namespace fascia::app {
 
 /// What a scene's solver asks of Newton's method and the linear solver.
 SolverSettings settings_of(const Solver& solver);
+
+/// The time of a scene's implicit dynamics.
+DynamicsSettings dynamics_of(const Solver& solver);
+/// Of its explicit dynamics, once settle_time_step() was there. @param observed  as in ExplicitSettings
+ExplicitSettings explicit_of(const Scene& scene, const std::function<bool(const StepInfo&)>& observed);
 
 /// Implicit Euler where the solver has no scheme of its own.
 TimeScheme scheme_of(SolverKind kind);

@@ -26,14 +26,6 @@ std::string rounded_down(double value) {
   return fmt::format("{:.4g}", std::floor(value / unit * (1 + 1e-12)) * unit);
 }
 
-/// Time between saved states that a step should divide [s]; 0: none.
-double saving_time(const Scene& scene) {
-  if (scene.output.every_steps > 0) return 0;
-  const double every = scene.output.every > 0 ? scene.output.every : kDefaultEvery;
-  const double count = *scene.solver.duration / every;
-  return std::abs(count - std::round(count)) < 1e-9 * count && count >= 1 ? every : 0;
-}
-
 }  // namespace
 
 void settle_time_step(Simulation& s, MechanicalSystem& system) {
@@ -51,15 +43,21 @@ void settle_time_step(Simulation& s, MechanicalSystem& system) {
                                               "a coarser mesh, or an implicit kind",
                                               solver.time_step, rounded_down(s.stable_step), limit_of(s))}});
   }
-  const double part = saving_time(s.scene) > 0 ? saving_time(s.scene) : *solver.duration;
-  const double steps = std::round(*solver.duration / part) * std::max(1.0, std::ceil(part / s.stable_step));
+  const double duration = *solver.duration, every = saving_time(s.scene.output);
+  const double part = every > 0 && every < duration ? every : duration;
+  const double steps = std::ceil(duration / part - 1e-9) * std::max(1.0, std::ceil(part / s.stable_step));
   if (!(steps <= kMostSteps))
     throw SceneError(
         {{solver.time_step_place, fmt::format("the stable time step is {:.4g} s{}: {:.3g} steps, at most {:.0g}; use "
                                               "an implicit kind",
                                               s.stable_step, limit_of(s), steps, kMostSteps)}});
   solver.steps = static_cast<int>(steps);
-  solver.time_step = *solver.duration / steps;
+  solver.time_step = std::min(s.stable_step, part);
+}
+
+double saving_time(const Output& output) {
+  if (output.every_steps > 0) return 0;
+  return output.every > 0 ? output.every : kDefaultEvery;
 }
 
 }  // namespace fascia::app

@@ -5,19 +5,22 @@
 #include "gpu/explicit.hpp"
 #include "gpu/step_kernels.hpp"
 
+#include <limits>
 #include <utility>
 
 /// The bodies of ExplicitSystem, for the files that instantiate it.
 namespace fascia::gpu {
 
 template <class Space>
-ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, double dt, FactorFunction factors)
+ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, const ExplicitPlan& plan,
+                                      FactorFunction factors)
     : model_(model),
       factor_function_(std::move(factors)),
-      dt_(dt),
-      begin_(state.time),
+      plan_(plan),
+      last_step_(plan.step()),
+      times_{plan.step(), plan.step()},
       filter_(model),
-      nodes_(model, dt),
+      nodes_(model, plan.step()),
       data_(model, filter_, zero_factors(model).size()),
       blocks_(model.points),
       dependents_(model.points),
@@ -53,6 +56,8 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, do
     dependents_.place_rates(pose_.v.data(), pose_.Q_dot.data());
   }
   start_velocities();
+  if (plan.automatic() && filter_.free_count() > 0)
+    mode_ = std::make_unique<ExplicitMode<Space, ExplicitSystem>>(*this);
 }
 
 template <class Space>
@@ -69,7 +74,6 @@ void ExplicitSystem<Space>::upload_nodes() {
   tethers_.upload(model_.tethers);
 }
 
-/// Calls act.operator()<Frames>().
 template <class Space>
 template <class Act>
 void ExplicitSystem<Space>::for_nodes(const Act& act) {
@@ -86,7 +90,8 @@ kernels::ExplicitView ExplicitSystem<Space>::view(const Array<Space, double>& fa
   s.m = data_.view();
   s.m.factors = factors.data();
   s.blocks = blocks_.view();
-  s.dt = dt_;
+  s.last_step = last_step_;
+  s.times = times_;
   s.damping = damping_.data();
   s.turning = turning_.data();
   s.center = center_.data();
@@ -124,14 +129,14 @@ template <class Space>
 void ExplicitSystem<Space>::place_tethers() {
   if (model_.tethers.empty()) return;
   std::vector<double> targets(blocks_.points().targets().size());
-  fascia::place_tethers(model_, factor_function_(begin_), targets);
+  fascia::place_tethers(model_, factor_function_(plan_.time()), targets);
   blocks_.points().targets().upload(targets);
 }
 
 /// Half a step back, so that the mean of both sides is the velocity given.
 template <class Space>
 void ExplicitSystem<Space>::start_velocities() {
-  next_.upload(factor_function_(begin_));
+  next_.upload(factor_function_(plan_.time()));
   if (model_.points.damped) store_start_strain();
   place_tethers();
   const double internal = energy().total();
@@ -148,12 +153,13 @@ void ExplicitSystem<Space>::start_velocities() {
 /// Has the factors of the next two steps in the space.
 template <class Space>
 void ExplicitSystem<Space>::queue_factors() {
-  if (steps_ + 2 <= queued_from_ + queued_) return;
-  queued_from_ = steps_;
+  if (plan_.taken() + 2 <= queued_from_ + queued_) return;
+  queued_from_ = plan_.taken();
   queued_ = kQueue;
   std::vector<double> rows;
-  for (int k = 0; k < kQueue; ++k) {
-    const std::vector<double> factors = factor_function_(time_of(steps_ + k) + dt_);
+  ExplicitPlan ahead = plan_;
+  for (int k = 0; k < kQueue; ++k, ahead.take()) {
+    const std::vector<double> factors = factor_function_(ahead.end());
     rows.insert(rows.end(), factors.begin(), factors.end());
   }
   table_.upload(rows);
@@ -163,16 +169,30 @@ void ExplicitSystem<Space>::queue_factors() {
 /// Blocks and loads at the state. @param factors  there
 template <class Space>
 void ExplicitSystem<Space>::update_forces(const Array<Space, double>& factors) {
+  update_forces(view(factors), {E_.data(), E_.empty() ? 0.0 : 1 / last_step_});
+}
+
+/// The same at the pose of a view.
+template <class Space>
+void ExplicitSystem<Space>::update_forces(const kernels::ExplicitView& s, const HistoryView& history) {
   const NodesView& nodes = data_.view().nodes;
-  blocks_.forces(nodes, pose_view(), {E_.data(), E_.empty() ? 0.0 : 1 / dt_}, nullptr);
+  const PoseView pose{s.u, s.D};
+  blocks_.forces(nodes, pose, history, nullptr);
   if (load_.empty()) return;
-  for_nodes([&]<bool Frames>() { Space::for_each(nodes.count, kernels::GatherLoads<Frames>{view(factors)}); });
-  if (!followers_.empty()) followers_.add_forces(nodes, pose_view(), factors.data(), load_.data());
-  if (!surfaces_.empty()) surfaces_.add_forces(nodes, pose_view(), factors.data(), load_.data());
+  for_nodes([&]<bool Frames>() { Space::for_each(nodes.count, kernels::GatherLoads<Frames>{s}); });
+  if (!followers_.empty()) followers_.add_forces(nodes, pose, s.m.factors, load_.data());
+  if (!surfaces_.empty()) surfaces_.add_forces(nodes, pose, s.m.factors, load_.data());
   if (dependents_.empty()) return;
-  dependents_.turn(pose_.D.data());
+  dependents_.turn(s.D);
   dependents_.transfer(nodes, gradient_.data(), nullptr);
   dependents_.transfer(nodes, load_.data(), nullptr);
+}
+
+template <class Space>
+void ExplicitSystem<Space>::gather_acting(kernels::ExplicitView s, const HistoryView& history, double* out) {
+  s.uneven = nullptr;
+  update_forces(s, history);
+  for_nodes([&]<bool Frames>() { Space::for_each(model_.node_count(), kernels::GatherActing<Frames>{s, out}); });
 }
 
 template <class Space>
@@ -185,10 +205,58 @@ template <class Space>
 void ExplicitSystem<Space>::advance() {
   queue_factors();
   // As if the boundary had moved on like that before.
-  if (steps_ == 0) find_prescribed(table_.data(), last_increments_);
-  loop_.run(1, 1, &progress_.data()->unsound, [this] { step(); });
-  ++steps_;
-  pose_.time = time();
+  if (plan_.taken() == 0) find_prescribed(table_.data(), last_increments_);
+  const LeapTimes times = LeapTimes::between(last_step_, plan_.step());
+  if (times.kick != times_.kick || times.drift != times_.drift) ++record_;
+  times_ = times;
+  loop_.run(record_, 1, &progress_.data()->unsound, [this] { step(); });
+  last_step_ = times_.drift;
+  plan_.take();
+  pose_.time = plan_.time();
+}
+
+template <class Space>
+double ExplicitSystem<Space>::stable_step() {
+  return mode_ == nullptr ? std::numeric_limits<double>::infinity() : mode_->stable_step(plan_.limit());
+}
+
+template <class Space>
+void ExplicitSystem<Space>::adopt(double stable) {
+  const double step = plan_.step();
+  plan_.adopt(stable);
+  if (plan_.step() != step) queued_ = queued_from_ = 0;
+}
+
+template <class Space>
+template <class Act>
+void ExplicitSystem<Space>::for_moving(const Act& act) {
+  act(half_v_, saved_.half_v);
+  act(half_spin_, saved_.half_spin);
+  act(half_rate_, saved_.half_rate);
+  act(last_increments_, saved_.last_increments);
+  act(E_, saved_.E);
+  act(present_, saved_.present);
+  act(next_, saved_.next);
+  act(progress_, saved_.progress);
+  if (!model_.tethers.empty()) act(blocks_.points().targets(), saved_.targets);
+}
+
+template <class Space>
+void ExplicitSystem<Space>::save() {
+  for_moving([](const auto& now, auto& kept) { kept.copy_from(now); });
+  saved_.pose = pose_;
+  saved_.plan = plan_;
+  saved_.last_step = last_step_;
+}
+
+template <class Space>
+void ExplicitSystem<Space>::restore(double limit) {
+  for_moving([](auto& now, const auto& kept) { now.copy_from(kept); });
+  pose_ = saved_.pose;
+  plan_ = *saved_.plan;
+  plan_.shorten(limit);
+  last_step_ = saved_.last_step;
+  queued_ = queued_from_ = 0;
 }
 
 /// What a step queues: the same in all of them.
@@ -216,9 +284,11 @@ template <class Space>
 void ExplicitSystem<Space>::report_velocities() {
   queue_factors();
   update_forces(next_);
-  find_prescribed(table_.data() + at((steps_ - queued_from_) * schedules_), increments_);
+  find_prescribed(table_.data() + at((plan_.taken() - queued_from_) * schedules_), increments_);
+  kernels::ExplicitView present = view(next_);
+  present.times = LeapTimes::between(last_step_, plan_.step());
   for_nodes([&]<bool Frames>() {
-    Space::for_each(model_.node_count(), kernels::ReportVelocity<Frames>{view(next_), held_acceleration_.data()});
+    Space::for_each(model_.node_count(), kernels::ReportVelocity<Frames>{present, held_acceleration_.data()});
   });
   if (!dependents_.empty()) dependents_.place_rates(pose_.v.data(), pose_.Q_dot.data());
   Space::template sum<1>(model_.node_count(), kernels::SizeOfMotion{view(next_)},

@@ -32,7 +32,8 @@ struct ExplicitProgress {
 struct ExplicitView {
   ModelView m;  ///< with the factors of the state
   BlocksView blocks;
-  double dt = 0;
+  double last_step = 0;  ///< the one that ended at the state [s]
+  LeapTimes times;       ///< about the state
   const double* damping = nullptr;
   const SpinInertia* turning = nullptr;
   const Vec3d* center = nullptr;
@@ -55,7 +56,7 @@ struct ExplicitView {
   template <bool Frames>
   FASCIA_HD ExplicitNode node(int i) const {
     ExplicitNode n;
-    n.damping = damping[i];
+    n.damping = 0.5 * times.kick * damping[i];
     n.inertia = m.inertia + i;
     if constexpr (Frames) {
       n.kind = m.nodes.kind[i];
@@ -87,9 +88,9 @@ struct ExplicitView {
   /// The velocity half a step later, of what a model's nodes may be.
   template <bool Frames>
   FASCIA_HD HalfStepVelocity kick(const ExplicitNode& n, const HalfStepVelocity& old, const double* f) const {
-    if constexpr (Frames) return kicked(n, old, f, dt);
-    if (n.held != nullptr) return kicked_held_vertex(n, old, f, dt);
-    return {kicked_vertex(n.damping, n.inertia->mass, old.v, Vec3d{{f[0], f[1], f[2]}}, dt), {}, {}};
+    if constexpr (Frames) return kicked(n, old, f, times);
+    if (n.held != nullptr) return kicked_held_vertex(n, old, f, times);
+    return {kicked_vertex(n.damping, n.inertia->mass, old.v, Vec3d{{f[0], f[1], f[2]}}, times.kick), {}, {}};
   }
   template <bool Frames>
   FASCIA_HD PoseMotion given_velocity(int i) const {
@@ -170,7 +171,7 @@ struct KickAndDrift {
     double* turned = node.held == nullptr ? nullptr : s.turned + 3 * s.m.constraint[i];
     Mat3d D = node.D;
     ExplicitSums own;
-    drift(node, next, s.dt, load, s.u[i], D, turned, own);
+    drift(node, next, s.times.drift, load, s.u[i], D, turned, own);
     if (Frames && node.kind != FrameKind::vertex) s.D[i] = D;
     if (node.held != nullptr) add_boundary_work(node, force, s.last_increments + s.m.nodes.dof[i], own);
     sums.v[0] += own.kinetic;
@@ -255,8 +256,8 @@ struct StepBack {
   Vec3d* u;
   Mat3d* D;
   FASCIA_HD void operator()(int i) const {
-    u[i] = s.u[i] - s.v[i] * s.dt;
-    if (s.D != nullptr) D[i] = s.D[i] - s.Q_dot[i] * s.dt;
+    u[i] = s.u[i] - s.v[i] * s.last_step;
+    if (s.D != nullptr) D[i] = s.D[i] - s.Q_dot[i] * s.last_step;
   }
 };
 
@@ -272,7 +273,7 @@ struct StartVelocity {
     const HalfStepVelocity now = velocity_of(node, given);
     double load[kMostDofs], force[kMostDofs];
     s.forces(node, i, now, load, force);
-    s.set_velocity<Frames>(i, kicked_back(node, now, force, s.dt));
+    s.set_velocity<Frames>(i, kicked_back(node, now, force, s.last_step));
   }
 };
 
@@ -288,9 +289,11 @@ struct ReportVelocity {
     double load[kMostDofs], force[kMostDofs];
     s.forces(node, i, old, load, force);
     const HalfStepVelocity next = s.kick<Frames>(node, old, force);
-    const PoseMotion v = pose_velocity(node, (old + next) * 0.5);
+    const double later = s.times.share_of_later();
+    const PoseMotion v = pose_velocity(node, old * (1 - later) + next * later);
     if (node.held != nullptr)
-      held_acceleration[s.m.constraint[i]] = (pose_velocity(node, next) - pose_velocity(node, old)) * (1 / s.dt);
+      held_acceleration[s.m.constraint[i]] =
+          (pose_velocity(node, next) - pose_velocity(node, old)) * (1 / s.times.kick);
     s.v[i] = v.u;
     if constexpr (Frames) s.Q_dot[i] = v.Q;
   }

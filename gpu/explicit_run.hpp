@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 /// The body of explicit runs, for the files that instantiate it.
 namespace fascia::gpu {
@@ -46,37 +47,64 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
                           const ExplicitSettings& settings, const DeviceObserver& observe) {
   constexpr int kLookEvery = 50;
   static_assert(kExplicitKeepEvery % kLookEvery == 0);
-  const double begin = state.time;
-  ExplicitSystem<Space> system(model, state, settings.time_step, factors);
+  ExplicitSystem<Space> system(model, state, ExplicitPlan(settings, state.time), factors);
+  const ExplicitPlan& plan = system.plan();
   RunReport run;
+  if (plan.automatic()) system.save();
   DeviceState<Space> good = system.pose();
-  int good_step = 0;
+  int good_step = 0, retries = 0;
+  std::vector<double> ends;  // of the steps since the motion was looked at
   Clock::time_point start = Clock::now();
-  for (int step = 1; step <= settings.steps; ++step) {
+  while (!plan.done()) {
+    const double dt = plan.step();
     system.advance();
-    run.steps = step;
-    run.time = begin + step * settings.time_step;
-    const StepInfo info{step, run.time, static_cast<double>(step) / settings.steps, {}, seconds_since(start)};
+    const int step = plan.taken();
+    const double time = plan.time();
+    ends.push_back(time);
+    const StepInfo info{step, time, plan.progress(), {}, seconds_since(start), dt};
     start = Clock::now();
-    const bool last = step == settings.steps;
+    const bool last = plan.done();
     const bool seen = last || (observe && (!settings.observed || settings.observed(info)));
-    const bool kept = seen || step % kExplicitKeepEvery == 0;
+    const bool looks = plan.asks() || (seen && plan.automatic());
+    if (looks) {
+      const double stable = system.progress().unsound == 0 ? system.stable_step() : 0;
+      if (plan.overruns(stable) && !plan.collapsed() && retries < kExplicitRetries) {
+        system.restore(stable > 0 ? kStableMargin * stable : 0.5 * plan.limit());
+        ends.clear();
+        ++retries;
+        continue;
+      }
+      if (stable > 0) system.adopt(stable);
+    }
+    run.steps = step;
+    run.time = time;
+    const bool kept = plan.automatic() ? looks : seen || step % kExplicitKeepEvery == 0;
     if (kept) system.report_velocities();
-    if (!kept && step % kLookEvery != 0) continue;
+    if (!kept && step % kLookEvery != 0 && !plan.collapsed()) continue;
     const auto progress = system.progress();
-    if (progress.unsound > 0 || (kept && !std::isfinite(progress.motion))) {
+    const bool sound = progress.unsound == 0 && !(kept && !std::isfinite(progress.motion));
+    if (!sound && plan.automatic() && retries < kExplicitRetries) {
+      system.restore(0.5 * plan.limit());
+      ends.clear();
+      ++retries;
+      continue;
+    }
+    if (!sound || plan.collapsed()) {
+      const int failed = progress.unsound > 0 ? progress.unsound : step;
       good.download(state);
       ThreadPool pool(0);
       MechanicalSystem host(model, pool, solver);
       run.status = RunStatus::diverged;
-      run.message =
-          explicit_divergence(host, state, progress.unsound > 0 ? progress.unsound : step, settings.time_step);
+      run.message = explicit_divergence(host, state, failed, ends[ends.size() - 1 - at(step - failed)], plan);
       run.time = state.time;
       run.steps = good_step;
       return run;
     }
+    ends.clear();
     if (kept) good = system.pose();
     if (kept) good_step = step;
+    if (kept && plan.automatic()) system.save();
+    if (kept) retries = 0;
     if (!seen || !observe) continue;
     ReachedExplicitStep<Space> reached(system, state);
     if (!observe(info, reached)) {

@@ -78,9 +78,9 @@ Key solver_schema() {
       table(
           {key("kind", choice(kinds()), "What is computed.").defaults("\"static\""),
            key("time_step",
-               one_of({number("s", above(0)),
-                       choice({{"auto",
-                                "Of `kind = \"explicit\"`: from the largest natural frequency. Needs `duration`."}})}),
+               one_of({number("s", above(0)), choice({{"auto",
+                                                       "Of `kind = \"explicit\"`: from the largest natural frequency, "
+                                                       "which is followed through the run. Needs `duration`."}})}),
                "Of dynamics, where it is needed."),
            key("duration", number("s", above(0)), "Of dynamics; or `steps`."),
            key("steps", integer(between(1, many)), "Of dynamics; or `duration`. Not with `time_step = \"auto\"`."),

@@ -2,6 +2,7 @@
 
 #include "core/solver/mechanical_system.hpp"
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -18,7 +19,8 @@ struct StepInfo {
   double time = 0;      ///< [s]; in statics the load factor
   double progress = 0;  ///< part of the whole [0, 1]
   NewtonReport newton;
-  double seconds = 0;  ///< of this step
+  double seconds = 0;    ///< of this step
+  double time_step = 0;  ///< explicit: its length [s]
 };
 
 /// Called with the state and the system (whose gradient belongs to it); returns false to stop (Ctrl-C).
@@ -69,6 +71,18 @@ struct DynamicsSettings {
   TimeScheme scheme = TimeScheme::implicit_euler;
   double time_step = 0;  ///< [s]
   int steps = 0;
+  double duration = 0;  ///< the last step is cut, so that it ends there [s]; 0: it is as long as the others
+
+  /// A step counted from 1: its end and its length [s].
+  double end_of(int step) const { return ends_at_duration(step) ? duration : step * time_step; }
+  double length_of(int step) const {
+    const bool cut = ends_at_duration(step) && std::abs(step * time_step - duration) > kWhole * time_step;
+    return cut ? duration - (step - 1) * time_step : time_step;
+  }
+
+ private:
+  static constexpr double kWhole = 1e-9;  ///< a last step that lacks less is a whole one
+  bool ends_at_duration(int step) const { return duration > 0 && step == steps; }
 };
 
 /// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256.

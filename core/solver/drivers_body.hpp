@@ -165,10 +165,10 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
   Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}, 0};
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
-    const double end = step * dynamics.time_step;
+    const double end = dynamics.end_of(step), dt = dynamics.length_of(step);
     const typename System::Pose before = state;
     stepper.failures = 0;
-    const NewtonReport report = stepper.advance(state, end, dynamics.time_step, kMostHalvings);
+    const NewtonReport report = stepper.advance(state, end, dt, kMostHalvings);
     if (!acceptable(report, settings)) {
       state = before;
       std::ostringstream message;
@@ -180,7 +180,7 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
       return run;
     }
     accept(run, report, settings, end);
-    if (observe && system.solves_for_middle()) system.look_back(state, before, dynamics.time_step);
+    if (observe && system.solves_for_middle()) system.look_back(state, before, dt);
     const double progress = static_cast<double>(step) / dynamics.steps;
     if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {
       if (step < dynamics.steps) run.status = RunStatus::interrupted;

@@ -19,59 +19,93 @@ bool is_finite(const State& state) {
 
 }  // namespace
 
-std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double dt) {
+std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double time,
+                                const ExplicitPlan& plan) {
   std::ostringstream out;
   out.precision(4);
-  out << "step " << step << " (t = " << step * dt << " s): the motion grows beyond what the loads can do; ";
+  out << "step " << step << " (t = " << time << " s): ";
+  if (plan.collapsed()) {
+    out << "the stable step fell to " << plan.limit()
+        << " s, as where elements or points are crushed or turn inside out; use smaller loads or motions, a stiffer "
+           "material or an implicit kind";
+    return out.str();
+  }
+  out << "the motion grows beyond what the loads can do; ";
+  const double dt = plan.limit();
   const double at_rest = stable_time_step(system), stable = stable_time_step(system, good);
-  if (at_rest < dt)
+  if (at_rest < dt && !plan.automatic())
     out << "time_step = " << dt << " is above the stable step at rest, " << at_rest << " s; use that or \"auto\"";
+  else if (stable < dt && plan.automatic())
+    out << "the material stiffened within a few steps: its stable step shrank to about " << stable << " s, below the "
+        << dt << " s of \"auto\"; use a time_step clearly below that";
   else if (stable < dt)
     out << "the material stiffened: its stable step shrank to about " << stable << " s, below time_step = " << dt
-        << "; use a time_step clearly below that";
+        << "; use \"auto\", which follows it, or a time_step clearly below that";
   else
-    out << "try a smaller time_step, damping or smaller loads";
+    out << "try a smaller time_step" << (plan.automatic() ? "" : " or \"auto\"") << ", damping or smaller loads";
   return out.str();
 }
 
 RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunction& factors,
                        const ExplicitSettings& settings, const StepObserver& observe) {
-  const double dt = settings.time_step;
+  ExplicitPlan plan(settings, state.time), kept_plan = plan;
   RunReport run;
-  ExplicitStepper stepper(system, state, dt, factors(state.time));
-  const double begin = state.time;
+  ExplicitStepper stepper(system, state, plan.step(), factors(state.time));
+  if (plan.automatic()) stepper.save();
   State good = state;
-  int good_step = 0;
+  int good_step = 0, retries = 0;
   Clock::time_point start = Clock::now();
-  std::vector<double> next = factors(begin + dt);
-  for (int step = 1; step <= settings.steps; ++step) {
-    const double time = begin + step * dt;
+  std::vector<double> next = factors(plan.end());
+  while (!plan.done()) {
+    const double dt = plan.step();
     stepper.advance(next);
-    state.time = time;
-    const std::vector<double> present = std::move(next);
-    next = factors(time + dt);
-    const StepInfo info{step, time, static_cast<double>(step) / settings.steps, {}, seconds_since(start)};
+    plan.take();
+    const int step = plan.taken();
+    state.time = plan.time();
+    const bool last = plan.done();
+    const StepInfo info{step, state.time, plan.progress(), {}, seconds_since(start), dt};
     start = Clock::now();
-    bool sound = stepper.is_sound();
-    const bool last = step == settings.steps;
+    bool sound = stepper.is_sound() && !plan.collapsed();
     const bool seen = sound && (last || (observe && (!settings.observed || settings.observed(info))));
-    if (seen || (sound && step % kExplicitKeepEvery == 0)) {
+    const bool looks = plan.asks() || (seen && plan.automatic());
+    const double stable = sound && looks ? stepper.stable_step(plan.limit()) : plan.limit();
+    const bool overrun = !sound || (looks && plan.overruns(stable));
+    if (overrun && plan.automatic() && !plan.collapsed() && retries < kExplicitRetries) {
+      stepper.restore();
+      plan = kept_plan;
+      plan.shorten(sound && stable > 0 ? kStableMargin * stable : 0.5 * plan.limit());
+      stepper.set_step(plan.step());
+      next = factors(plan.end());
+      ++retries;
+      continue;
+    }
+    if (looks) plan.adopt(stable);
+    stepper.set_step(plan.step());
+    const std::vector<double> present = std::move(next);
+    next = factors(plan.end());
+    const bool kept = seen || (sound && (plan.automatic() ? looks : step % kExplicitKeepEvery == 0));
+    if (kept) {
       stepper.report_velocities(next);
       sound = is_finite(state);
     }
     if (!sound) {
       run.status = RunStatus::diverged;
-      run.message = explicit_divergence(system, good, step, dt);
+      run.message = explicit_divergence(system, good, step, state.time, plan);
       state = good;
       run.time = state.time;
       run.steps = good_step;
       return run;
     }
     run.steps = step;
-    run.time = time;
-    if (seen || step % kExplicitKeepEvery == 0) {
+    run.time = state.time;
+    if (kept) {
       good = state;
       good_step = step;
+    }
+    if (kept && plan.automatic()) {
+      stepper.save();
+      kept_plan = plan;
+      retries = 0;
     }
     if (!seen || !observe) continue;
     system.set_factors(present);

@@ -1,24 +1,17 @@
 #pragma once
 
 #include "core/solver/drivers.hpp"
+#include "core/solver/explicit_plan.hpp"
 
-#include <functional>
 #include <string>
 
 namespace fascia {
-
-struct ExplicitSettings {
-  double time_step = 0;  ///< [s]
-  int steps = 0;
-  /// Which steps the observer sees, besides the last; asked once after each step. Empty: all. Velocities at whole steps
-  /// and the system's evaluation are made only for these.
-  std::function<bool(const StepInfo&)> observed;
-};
 
 /// Dynamics by central differences, as a leap-frog: forces at whole steps, velocities at half steps,
 ///
 ///   v₊ = ((1 − α dt/2) v₋ + dt f/m) / (1 + α dt/2),   u ← u + dt v₊,
 ///
+/// where steps are unequal with the mean of both, (dt₋ + dt₊)/2, in the place of dt in v₊ (ExplicitPlan has the steps),
 /// of rigid frames with the momentum about their mass centre, L₊ from L₋ and the torque, and the rotation exp(dt ω),
 /// ω = I(exp(dt ω₀/2) Q)⁻¹ L, ω₀ = I(Q)⁻¹ L. Stiffness damping acts with the strain rate of the last half step.
 /// Velocities that the observer sees are means of the half steps on both sides. The system's gradient is then that of
@@ -38,14 +31,15 @@ double stable_time_step(MechanicalSystem& system, const State& state);
 /// At rest, where a run begins.
 double stable_time_step(MechanicalSystem& system);
 
-/// What is kept of the limit: the material stiffens where it is stretched, and iterations find ω from below.
-inline constexpr double kStableMargin = 0.95;
-
 /// A run keeps its state every so many steps, to return to where it blows up.
 inline constexpr int kExplicitKeepEvery = 100;
 
-/// Why a run stops at a step. @param good  the last state kept
-std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double dt);
+/// So many times in a row automatic steps are taken again before a run counts as blown up.
+inline constexpr int kExplicitRetries = 10;
+
+/// Why a run stops at a step of a plan. @param good  the last state kept
+std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double time,
+                                const ExplicitPlan& plan);
 
 /// @throws InputError  where a free motion of a node has no inertia
 void require_inertia(const Model& model, const DofFilter& filter);

@@ -45,9 +45,9 @@ ExplicitNodes::ExplicitNodes(const Model& model, double dt) {
       const FrameInertia& damped = model.mass_damping[i];
       const double turn = trace(inertia.second);
       if (massive)
-        damping[i] = 0.5 * dt * damped.mass / inertia.mass;
+        damping[i] = damped.mass / inertia.mass;
       else if (turn > 0)
-        damping[i] = 0.5 * dt * trace(damped.second) / turn;
+        damping[i] = trace(damped.second) / turn;
     }
     const double still = 1e-10 * model.points.part_length[at(model.points.node_part[i])] / dt;
     rounding_energy += inertia.mass * still * still;
@@ -60,16 +60,16 @@ ExplicitNodes::ExplicitNodes(const Model& model, double dt) {
     affine[i] = static_cast<int>(inverse_mass.size());
     inverse_mass.push_back(inverse_affine_mass(inertia));
   }
-  if (!dependents.empty() && !model.mass_damping.empty()) find_uneven_damping(model, dt);
+  if (!dependents.empty() && !model.mass_damping.empty()) find_uneven_damping(model);
 }
 
-void ExplicitNodes::find_uneven_damping(const Model& model, double dt) {
+void ExplicitNodes::find_uneven_damping(const Model& model) {
   uneven_damping.resize(damping.size());
   for (const DependentNode& d : model.points.dependents)
     for (const int host : d.hosts) {
       const std::size_t i = at(host);
       if (model.frame_kind[i] == FrameKind::vertex || skips(host)) continue;
-      const double alpha = 2 * damping[i] / dt;
+      const double alpha = damping[i];
       const FrameInertia &damped = model.mass_damping[i], &inertia = model.inertia[i];
       uneven_damping[i] = {damped.mass - alpha * inertia.mass, damped.first - inertia.first * alpha,
                            damped.second - inertia.second * alpha};

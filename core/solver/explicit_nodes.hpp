@@ -11,7 +11,7 @@ namespace fascia {
 struct ExplicitNodes {
   std::vector<SpinInertia> turning;  ///< of free rigid frames
   std::vector<Vec3d> center;         ///< c / m of free rigid frames [m]
-  std::vector<double> damping;       ///< α dt / 2
+  std::vector<double> damping;       ///< α [1/s]
   /// Mass damping of hosts beyond α times their inertia: what they carry may be damped otherwise. Empty: none.
   std::vector<FrameInertia> uneven_damping;
   std::vector<int> constraint;                       ///< of each node, −1: none
@@ -20,11 +20,12 @@ struct ExplicitNodes {
   std::vector<char> follows;                         ///< nodes all of which depends on others; empty: none
   double rounding_energy = 0;                        ///< that rounding of displacements may show [J]
 
+  /// @param dt  about which steps are long [s]
   ExplicitNodes(const Model& model, double dt);
   bool skips(int node) const { return !follows.empty() && follows[at(node)] != 0; }
 
  private:
-  void find_uneven_damping(const Model& model, double dt);
+  void find_uneven_damping(const Model& model);
 };
 
 }  // namespace fascia

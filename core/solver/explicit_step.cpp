@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace fascia {
 
@@ -23,7 +25,8 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       surfaces_(system.model()),
       dependents_(system.model().points),
       state_(state),
-      dt_(dt),
+      last_step_(dt),
+      times_{dt, dt},
       nodes_(system.model(), dt),
       factors_(factors.begin(), factors.end()) {
   require_inertia(model_, filter_);
@@ -61,10 +64,10 @@ void ExplicitStepper::start_velocities() {
   if (model_.points.damped) {
     State before = state_;
     for (std::size_t i = 0; i < before.u.size(); ++i) {
-      before.u[i] -= state_.v[i] * dt_;
-      before.D[i] -= state_.Q_dot[i] * dt_;
+      before.u[i] -= state_.v[i] * last_step_;
+      before.D[i] -= state_.Q_dot[i] * last_step_;
     }
-    history_.inverse_step = 1 / dt_;
+    history_.inverse_step = 1 / last_step_;
     executor_.store_strain(before, history_);
   }
   place_tethers(model_, factors_, executor_.targets());
@@ -79,33 +82,60 @@ void ExplicitStepper::start_velocities() {
     velocity_[at(i)] = now;
     double load[kMostDofs], force[kMostDofs];
     node_force(node, i, load, force);
-    velocity_[at(i)] = kicked_back(node, now, force, dt_);
+    velocity_[at(i)] = kicked_back(node, now, force, last_step_);
   }
 }
 
 void ExplicitStepper::update_forces() {
-  executor_.forces(state_, history_, gradient_);
+  add_forces(state_, gradient_, follower_);
   if (model_.points.damped) executor_.store_strain(state_, history_);
-  std::fill(follower_.begin(), follower_.end(), 0.0);
-  for (const FollowerLoad& load : model_.followers)
-    for_each_share(load, state_, factors_[at(load.schedule)],
-                   [&](int node, const Vec3d& force, const Mat3d& couple, const Vec3d& torque) {
-                     add_node_force(model_.kind(node), state_.D[at(node)], force, couple, torque,
-                                    follower_.data() + model_.points.dofs.begin(node));
-                   });
-  surfaces_.add_forces(state_, factors_, follower_);
-  if (!dependents_.empty()) transfer_to_hosts();
 }
 
-void ExplicitStepper::transfer_to_hosts() {
+/// Of the internal energy with the viscous stress of the history; of loads that follow; on hosts of dependent nodes.
+void ExplicitStepper::add_forces(const State& state, std::vector<double>& gradient, std::vector<double>& follower) {
+  executor_.forces(state, history_, gradient);
+  std::fill(follower.begin(), follower.end(), 0.0);
+  for (const FollowerLoad& load : model_.followers)
+    for_each_share(load, state, factors_[at(load.schedule)],
+                   [&](int node, const Vec3d& force, const Mat3d& couple, const Vec3d& torque) {
+                     add_node_force(model_.kind(node), state.D[at(node)], force, couple, torque,
+                                    follower.data() + model_.points.dofs.begin(node));
+                   });
+  surfaces_.add_forces(state, factors_, follower);
+  if (dependents_.empty()) return;
   for (const PlacedLoad& p : dependent_loads_) {
     const double s = factors_[at(p.schedule)];
-    add_node_force(model_.kind(p.load.node), state_.D[at(p.load.node)], p.load.force * s, p.load.couple * s,
-                   p.load.torque * s, follower_.data() + model_.points.dofs.begin(p.load.node));
+    add_node_force(model_.kind(p.load.node), state.D[at(p.load.node)], p.load.force * s, p.load.couple * s,
+                   p.load.torque * s, follower.data() + model_.points.dofs.begin(p.load.node));
   }
-  dependents_.turn(state_.D);
-  dependents_.transfer(gradient_);
-  dependents_.transfer(follower_);
+  dependents_.turn(state.D);
+  dependents_.transfer(gradient);
+  dependents_.transfer(follower);
+}
+
+double ExplicitStepper::stable_step(double about) {
+  if (filter_.free_count() == 0) return std::numeric_limits<double>::infinity();
+  if (!mode_)
+    mode_.emplace(model_, filter_, executor_.pool(),
+                  [this, all = std::vector<double>(gradient_.size()), follower = follower_](
+                      const State& state, double inverse_step, std::span<double> out) mutable {
+                    const double own = std::exchange(history_.inverse_step, inverse_step);
+                    add_forces(state, all, follower);
+                    history_.inverse_step = own;
+                    for (std::size_t k = 0; k < all.size(); ++k) out[k] = all[k];
+                    for (std::size_t k = 0; k < follower.size(); ++k) out[k] -= follower[k];
+                  });
+  return mode_->stable_step(state_, about);
+}
+
+void ExplicitStepper::save() {
+  saved_ = moving();
+  saved_targets_.assign(executor_.targets().begin(), executor_.targets().end());
+}
+
+void ExplicitStepper::restore() {
+  moving() = saved_;
+  std::copy(saved_targets_.begin(), saved_targets_.end(), executor_.targets().begin());
 }
 
 /// What loads do on a node, and all that acts on it.
@@ -129,7 +159,7 @@ ExplicitNode ExplicitStepper::node_at(int node) const {
   const std::size_t i = at(node);
   ExplicitNode out;
   out.kind = model_.kind(node);
-  out.damping = nodes_.damping[i];
+  out.damping = 0.5 * times_.kick * nodes_.damping[i];
   out.inertia = &model_.inertia[i];
   out.turning = &nodes_.turning[i];
   if (!nodes_.inverse_mass.empty()) out.inverse_mass = nodes_.inverse_mass[at(nodes_.affine[i])].data();
@@ -150,8 +180,9 @@ bool ExplicitStepper::step_free_vertex(int node, ExplicitSums& sums) {
   Vec3d load;
   for (int k = load_begin_[i]; k < load_begin_[i + 1]; ++k)
     load += loads_[at(k)].load.force * factors_[at(loads_[at(k)].schedule)];
-  fascia::step_free_vertex(nodes_.damping[i], model_.inertia[i].mass, load,
-                           gradient_.data() + model_.points.dofs.begin(node), dt_, state_.u[i], velocity_[i].v, sums);
+  fascia::step_free_vertex(0.5 * times_.kick * nodes_.damping[i], model_.inertia[i].mass, load,
+                           gradient_.data() + model_.points.dofs.begin(node), times_, state_.u[i], velocity_[i].v,
+                           sums);
   return true;
 }
 
@@ -167,10 +198,10 @@ void ExplicitStepper::advance(std::span<const double> factors) {
       double load[kMostDofs], force[kMostDofs];
       const ExplicitNode node = node_at(i);
       node_force(node, i, load, force);
-      velocity_[at(i)] = kicked(node, velocity_[at(i)], force, dt_);
+      velocity_[at(i)] = kicked(node, velocity_[at(i)], force, times_);
       double* turned = node.held == nullptr ? nullptr : state_.turned[at(nodes_.constraint[at(i)])].data();
       Mat3d D = node.D;
-      drift(node, velocity_[at(i)], dt_, load, state_.u[at(i)], D, turned, sums);
+      drift(node, velocity_[at(i)], times_.drift, load, state_.u[at(i)], D, turned, sums);
       if (node.kind != FrameKind::vertex) state_.D[at(i)] = D;
       if (node.held != nullptr) add_boundary_work(node, force, last_increments_.data() + dofs.begin(i), sums);
     }
@@ -185,6 +216,9 @@ void ExplicitStepper::advance(std::span<const double> factors) {
   }
   largest_work_ = std::max(largest_work_, work_);
   std::copy(factors.begin(), factors.end(), factors_.begin());
+  last_step_ = times_.drift;
+  times_ = {last_step_, last_step_};
+  history_.inverse_step = model_.points.damped ? 1 / last_step_ : 0.0;
   update_forces();
 }
 
@@ -211,16 +245,17 @@ double ExplicitStepper::tether_work(std::span<const double> factors) {
 
 void ExplicitStepper::report_velocities(std::span<const double> factors) {
   if (!model_.constraints.empty()) prescribed_increments(model_, filter_, state_, state_.turned, factors, increments_);
+  const double later = times_.share_of_later();
   for (int i = 0; i < model_.node_count(); ++i) {
     if (nodes_.skips(i)) continue;
     double load[kMostDofs], force[kMostDofs];
     const ExplicitNode node = node_at(i);
     node_force(node, i, load, force);
-    const HalfStepVelocity &old = velocity_[at(i)], next = kicked(node, old, force, dt_);
-    const PoseMotion v = pose_velocity(node, (old + next) * 0.5);
+    const HalfStepVelocity &old = velocity_[at(i)], next = kicked(node, old, force, times_);
+    const PoseMotion v = pose_velocity(node, old * (1 - later) + next * later);
     if (node.held != nullptr)
       held_acceleration_[at(nodes_.constraint[at(i)])] =
-          (pose_velocity(node, next) - pose_velocity(node, old)) * (1 / dt_);
+          (pose_velocity(node, next) - pose_velocity(node, old)) * (1 / times_.kick);
     state_.v[at(i)] = v.u;
     state_.Q_dot[at(i)] = v.Q;
   }

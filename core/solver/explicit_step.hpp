@@ -1,10 +1,13 @@
 #pragma once
 
 #include "core/solver/dependents.hpp"
+#include "core/solver/explicit_mode.hpp"
 #include "core/solver/explicit_nodes.hpp"
 #include "core/solver/mechanical_system.hpp"
 
+#include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace fascia {
@@ -16,8 +19,16 @@ class ExplicitStepper {
   /// @param factors  of all schedules at the start
   ExplicitStepper(MechanicalSystem& system, State& state, double dt, std::span<const double> factors);
 
+  /// How long the next step and those after it are [s].
+  void set_step(double dt) { times_ = LeapTimes::between(last_step_, dt); }
   /// One step. @param factors  at its end
   void advance(std::span<const double> factors);
+  /// The stable step at the present state, without a margin [s]; after a step.
+  /// @param about  what it is about
+  double stable_step(double about);
+  /// Keeps all that steps change, and returns to it.
+  void save();
+  void restore();
   /// v and Q_dot at the present step: means of the half steps on both sides. @param factors  at the end of the next
   /// step
   void report_velocities(std::span<const double> factors);
@@ -37,9 +48,13 @@ class ExplicitStepper {
     NodeLoad load;
   };
 
+  auto moving() {
+    return std::tie(state_, velocity_, factors_, gradient_, follower_, last_increments_, history_, stepped_, kinetic_,
+                    work_, largest_work_, last_step_, times_);
+  }
   void place_loads();
   void update_forces();
-  void transfer_to_hosts();
+  void add_forces(const State& state, std::vector<double>& gradient, std::vector<double>& follower);
   void start_velocities();
   void node_force(const ExplicitNode& at_node, int node, double* load, double* force) const;
   bool step_free_vertex(int node, ExplicitSums& sums);
@@ -53,7 +68,8 @@ class ExplicitStepper {
   SurfaceLoads surfaces_;
   DependentNodes dependents_;
   State& state_;
-  double dt_;
+  double last_step_;  ///< [s]
+  LeapTimes times_;   ///< about the present step
 
   ExplicitNodes nodes_;
   std::vector<HalfStepVelocity> velocity_;  ///< at the last half step
@@ -67,6 +83,11 @@ class ExplicitStepper {
   StrainHistory history_;
   std::vector<ExplicitSums> chunk_sums_;
   std::vector<PoseMotion> held_acceleration_;  ///< of each constraint
+  std::tuple<State, std::vector<HalfStepVelocity>, std::vector<double>, std::vector<double>, std::vector<double>,
+             std::vector<double>, StrainHistory, bool, double, double, double, double, LeapTimes>
+      saved_;
+  std::vector<double> saved_targets_;
+  std::optional<ExplicitMode> mode_;  ///< from the first stable_step() on
   bool stepped_ = false;
   double kinetic_ = 0, work_ = 0, largest_work_ = 0, start_energy_ = 0;
 };

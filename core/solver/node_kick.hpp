@@ -27,10 +27,20 @@ struct HalfStepVelocity {
   }
 };
 
+/// Times about a whole step: from the half step before to the one after, and to the next whole step [s]. They differ
+/// where steps are of unequal length.
+struct LeapTimes {
+  double kick = 0, drift = 0;
+
+  FASCIA_HD static LeapTimes between(double before, double after) { return {0.5 * (before + after), after}; }
+  /// How much of the velocity half a step later, of both, is in the velocity at the whole step.
+  FASCIA_HD double share_of_later() const { return 1 - 0.5 * drift / kick; }
+};
+
 /// A node at a whole step.
 struct ExplicitNode {
   FrameKind kind = FrameKind::vertex;
-  double damping = 0;  ///< α dt / 2
+  double damping = 0;  ///< α / 2 times the kick
   const FrameInertia* inertia = nullptr;
   const SpinInertia* turning = nullptr;   ///< of free rigid frames
   const double* inverse_mass = nullptr;   ///< of free affine frames: (origin, axes)², by rows
@@ -51,11 +61,11 @@ FASCIA_HD inline Vec3d kicked_vertex(double damping, double mass, const Vec3d& v
 }
 
 FASCIA_HD inline HalfStepVelocity kicked_held_vertex(const ExplicitNode& node, const HalfStepVelocity& old,
-                                                     const double* f, double dt) {
+                                                     const double* f, const LeapTimes& times) {
   const Mat3d& T = node.held->translation_axes;
-  Vec3d next = T * kicked_vertex(node.damping, node.inertia->mass, old.v, Vec3d{{f[0], f[1], f[2]}}, dt);
+  Vec3d next = T * kicked_vertex(node.damping, node.inertia->mass, old.v, Vec3d{{f[0], f[1], f[2]}}, times.kick);
   for (int k = 0; k < 3; ++k)
-    if (node.is_fixed(k)) next[k] = node.increments[k] / dt;
+    if (node.is_fixed(k)) next[k] = node.increments[k] / times.drift;
   return {transpose(T) * next, {}, {}};
 }
 
@@ -88,9 +98,9 @@ FASCIA_HD inline void solve_free(const ExplicitNode& node, const SmallFactor& fa
 /// In constraint axes: what is prescribed goes where it must, the rest follows M dw/dt + α M w = f − what turning
 /// takes.
 FASCIA_HD inline HalfStepVelocity kicked_held(const ExplicitNode& node, const HalfStepVelocity& velocity,
-                                              const double* f, double dt) {
+                                              const double* f, const LeapTimes& times) {
   const FrameKind kind = node.kind;
-  if (kind == FrameKind::vertex) return kicked_held_vertex(node, velocity, f, dt);
+  if (kind == FrameKind::vertex) return kicked_held_vertex(node, velocity, f, times);
   const FrameConstraint& c = *node.held;
   const int n = dof_count(kind);
   const double a = node.damping;
@@ -117,10 +127,10 @@ FASCIA_HD inline HalfStepVelocity kicked_held(const ExplicitNode& node, const Ha
     // z = (1 + a) w₊ − (1 − a) w₋
     double z[kMostDofs] = {};
     for (int k = 0; k < n; ++k)
-      if (node.is_fixed(k)) z[k] = (1 + a) * node.increments[k] / dt - (1 - a) * old[k];
-    solve_free(node, factor, regular, local, local_f, dt, z);
+      if (node.is_fixed(k)) z[k] = (1 + a) * node.increments[k] / times.drift - (1 - a) * old[k];
+    solve_free(node, factor, regular, local, local_f, times.kick, z);
     for (int k = 0; k < n; ++k)
-      next[k] = node.is_fixed(k) ? node.increments[k] / dt : (z[k] + (1 - a) * old[k]) / (1 + a);
+      next[k] = node.is_fixed(k) ? node.increments[k] / times.drift : (z[k] + (1 - a) * old[k]) / (1 + a);
     turn_dofs(kind, c.translation_axes, c.rotation_axes, true, next);
     result.v = Vec3d{{next[0], next[1], next[2]}};
     if (kind == FrameKind::rigid) result.spin = Vec3d{{next[3], next[4], next[5]}};
@@ -132,9 +142,9 @@ FASCIA_HD inline HalfStepVelocity kicked_held(const ExplicitNode& node, const Ha
 
 /// The velocity half a step later than the node. @param f  all that acts on it, by degrees of freedom
 FASCIA_HD inline HalfStepVelocity kicked(const ExplicitNode& node, const HalfStepVelocity& old, const double* f,
-                                         double dt) {
-  if (node.held != nullptr) return kicked_held(node, old, f, dt);
-  const double a = node.damping, keep = (1 - a) / (1 + a), kick = dt / (1 + a), mass = node.inertia->mass;
+                                         const LeapTimes& times) {
+  if (node.held != nullptr) return kicked_held(node, old, f, times);
+  const double a = node.damping, keep = (1 - a) / (1 + a), kick = times.kick / (1 + a), mass = node.inertia->mass;
   const Vec3d force{{f[0], f[1], f[2]}};
   HalfStepVelocity next;
   switch (node.kind) {
@@ -163,12 +173,13 @@ FASCIA_HD inline HalfStepVelocity kicked(const ExplicitNode& node, const HalfSte
   return next;
 }
 
-/// The velocity half a step before the node that has the velocity `now`. @param f  as above
+/// The velocity half a step before the node that has the velocity `now`, at steps of equal length.
+/// @param f  as above
 FASCIA_HD inline HalfStepVelocity kicked_back(const ExplicitNode& node, const HalfStepVelocity& now, const double* f,
                                               double dt) {
   // Kicked from `now`: ((1 − a) v + dt f/m) / (1 + a), of which the half step back is (1 + a) v − dt f/(2 m).
   const double a = node.damping;
-  return now * (1 + a) - (kicked(node, now, f, dt) * (1 + a) - now * (1 - a)) * 0.5;
+  return now * (1 + a) - (kicked(node, now, f, {dt, dt}) * (1 + a) - now * (1 - a)) * 0.5;
 }
 
 }  // namespace fascia

@@ -3,6 +3,7 @@
 #include "core/solver/explicit_dynamics.hpp"
 #include "core/solver/node_inertia.hpp"
 #include "core/solver/small_factor.hpp"
+#include "core/solver/tridiagonal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,29 +14,6 @@
 namespace fascia {
 
 namespace {
-
-/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the signs of its pivots.
-/// @param off  entries beside the diagonal, one fewer
-double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector<double>& off) {
-  double low = diagonal[0], high = diagonal[0];
-  for (std::size_t i = 0; i < diagonal.size(); ++i) {
-    const double beside = (i > 0 ? off[i - 1] : 0.0) + (i + 1 < diagonal.size() ? off[i] : 0.0);
-    low = std::max(low, diagonal[i]);
-    high = std::max(high, diagonal[i] + beside);
-  }
-  while (high - low > 1e-12 * high) {
-    const double middle = 0.5 * (low + high);
-    bool above = true;  // of every eigenvalue
-    double pivot = 1;
-    for (std::size_t i = 0; i < diagonal.size() && above; ++i) {
-      pivot = middle - diagonal[i] - (i > 0 ? off[i - 1] * off[i - 1] / pivot : 0.0);
-      above = pivot > 0;
-    }
-    if (middle <= low || middle >= high) break;
-    (above ? high : low) = middle;
-  }
-  return high;
-}
 
 /// Stiffness of enclosed volumes, the largest of their schedules.
 std::vector<RankOne> fluids_of(const Model& model, const State& state) {

@@ -82,13 +82,16 @@ struct Runs {
 };
 
 /// @param part  of the stable step
-Runs run_both(const Simulation& s, Where where, double part, int steps) {
+/// @param automatic  up to the time that so many such steps take
+Runs run_both(const Simulation& s, Where where, double part, int steps, bool automatic = false) {
   const SolverSettings settings = app::settings_of(s.scene.solver);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   ThreadPool pool(1);
   MechanicalSystem system(s.model, pool, settings), shown(s.model, pool, settings);
   const double dt = time_step(s, system, part);
-  const ExplicitSettings dynamics{dt, steps, [](const StepInfo& info) { return info.step % 77 == 0; }};
+  ExplicitSettings dynamics{dt, steps, [](const StepInfo& info) { return info.step % 77 == 0; }};
+  dynamics.automatic = automatic;
+  dynamics.duration = automatic ? steps * dt : 0;
   Runs r{s.initial, s.initial, {}, {}, {}, {}, {}, {}};
   r.on_cpu = run_explicit(system, r.expected, factors, dynamics, [&](const StepInfo& i, const State&, auto& at) {
     r.expected_seen.push_back(i.step);
@@ -139,6 +142,23 @@ TEST_P(DeviceExplicit, StepsAreThoseOfTheProcessor) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(r.got.turned[k][a], r.expected.turned[k][a], kSameState);
 }
 
+using DeviceAutomatic = DeviceExplicit;
+
+/// The same steps, of the same lengths, where they follow the state.
+TEST_P(DeviceAutomatic, StepsFollowTheStateAsOnTheProcessor) {
+  constexpr int kSteps = 200;
+  const Runs r = run_both(load(scene()), where(), 1, kSteps, true);
+  std::printf("%-24s %d steps, %zu seen\n", scene().c_str(), r.on_cpu.steps, r.seen.size());
+  EXPECT_EQ(r.on_cpu.status, RunStatus::converged) << r.on_cpu.message;
+  EXPECT_EQ(r.there.status, RunStatus::converged) << r.there.message;
+  EXPECT_EQ(r.there.steps, r.on_cpu.steps);
+  EXPECT_EQ(r.seen, r.expected_seen);
+  EXPECT_EQ(r.got.time, r.expected.time);
+  constexpr double kSameSteps = 1e-6;  // their lengths come from differences of forces, good to about 1e-7
+  EXPECT_LE(apart(r.got.u, r.expected.u), kSameSteps);
+  EXPECT_LE(apart(r.got.v, r.expected.v), kSameSteps);
+}
+
 class ExplicitEnergies : public ::testing::TestWithParam<std::string> {};
 
 /// What the watch compares.
@@ -150,7 +170,7 @@ TEST_P(ExplicitEnergies, AreThoseOfTheProcessor) {
   const double dt = time_step(s, system, 0.5);
   State state = s.initial;
   ExplicitStepper expected(system, state, dt, factors(0));
-  gpu::ExplicitSystem<gpu::HostSpace> got(s.model, s.initial, dt, factors);
+  gpu::ExplicitSystem<gpu::HostSpace> got(s.model, s.initial, ExplicitPlan({dt, 200, {}}, 0), factors);
   for (int step = 1; step <= 200; ++step) {
     expected.advance(factors(step * dt));
     got.advance();
@@ -191,6 +211,13 @@ const auto kScenes = ::testing::Values(
     "roll_up", "affine_beside_rigid", "ligament_springs", "traction_clamped", "coupled_surfaces", "shell_roll_up");
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceExplicit, ::testing::Combine(kWheres, kScenes), name_of);
+/// Vertices, rigid and affine frames, shells, tethers, springs, fluids, dependent nodes, damping, motions that stretch.
+INSTANTIATE_TEST_SUITE_P(Scenes, DeviceAutomatic,
+                         ::testing::Combine(kWheres, ::testing::Values("explicit_cantilever", "tumbling_box",
+                                                                       "shell_spin", "scattered_stretch", "filled_ball",
+                                                                       "affine_cantilever", "ligament_springs",
+                                                                       "settling_beam", "bone_plate", "rigid_turn")),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceWatch,
                          ::testing::Combine(kWheres, ::testing::Values("explicit_cantilever", "tumbling_box")),
                          name_of);

@@ -203,6 +203,28 @@ TEST_F(ScatteredLiver, HangsAndMovesRigidlyWithoutEnergy) {
   EXPECT_NEAR(free.number("volume") / body["volume"].get<double>(), 1, 1e-12);
 }
 
+/// What the tethers of a held region store belongs to the total energy, of the scene and of their body: swinging freely
+/// under the midpoint rule the beam keeps it, to second order in the step.
+TEST(ScatteredMotion, TetheredBodyKeepsItsTotalEnergy) {
+  double drift[2] = {0, 0};
+  for (int k = 0; k < 2; ++k) {
+    const SceneRun run(
+        kScene, {"solver={kind='midpoint',time_step=" + std::to_string(2e-3 / (1 << k)) + ",duration=0.1}", spaced(0.9),
+                 "probes={scene={quantity='total_energy'},"
+                 "beam={body='beam',quantity='total_energy'},"
+                 "kinetic={quantity='kinetic_energy'}}",
+                 "output.every=0.01"});
+    ASSERT_TRUE(run.ok());
+    for (const auto& row : run.history()) {
+      drift[k] = std::max(drift[k], std::abs(row[1]) / run.number("kinetic"));
+      EXPECT_NEAR(row[2], row[1], 1e-9 * run.number("kinetic"));
+    }
+  }
+  std::printf("total energy changes by %.1e, with half the step %.1e of the kinetic energy\n", drift[0], drift[1]);
+  EXPECT_LT(drift[0], 1e-6);
+  EXPECT_NEAR(drift[0] / drift[1], 4, 0.8);
+}
+
 /// The ties of a held region turn with it; what follows strains nothing.
 TEST(ScatteredMotion, LedByOneEnd) {
   const SceneRun run("led_by_one_end",
