@@ -214,7 +214,7 @@ struct ForceOfAcceleration {
   }
 };
 
-/// Adds what accelerated supports carry of their own mass.
+/// Adds what accelerated supports carry of their own mass, and its damping.
 struct SupportInertia {
   StepView s;
   const Vec3d *v, *v_before;
@@ -225,7 +225,12 @@ struct SupportInertia {
     const ModelView& m = s.model;
     const int i = m.constraints[k].node;
     const Mat3d rate_change = s.turning ? (rate[i] - rate_before[i]) * inverse_dt : Mat3d{};
-    const InertiaForce f = inertia_force(m.inertia[i], (v[i] - v_before[i]) * inverse_dt, rate_change);
+    InertiaForce f = inertia_force(m.inertia[i], (v[i] - v_before[i]) * inverse_dt, rate_change);
+    if (const FrameInertia* damping = m.damping_of(i); damping != nullptr) {
+      const InertiaForce drag = inertia_force(*damping, v[i], s.turning ? rate[i] : Mat3d{});
+      f.force += drag.force;
+      f.moment += drag.moment;
+    }
     add_node_force(m.nodes.kind[i], s.D_now(i), f.force, f.moment, {}, gradient + m.nodes.dof[i]);
   }
 };

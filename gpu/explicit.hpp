@@ -40,6 +40,7 @@ class ExplicitSystem {
   std::vector<PoseMotion> held_accelerations() const { return held_acceleration_.downloaded(); }
   int constraint_of(int node) const { return nodes_.constraint[at(node)]; }
   double time() const { return time_of(steps_); }
+  double time_step() const { return dt_; }
 
  private:
   template <class Act>

@@ -27,8 +27,7 @@ class ReachedExplicitStep : public DeviceStep {
   }
   void show(MechanicalSystem& host, std::span<const double> factors) override {
     host.set_factors(factors);
-    host.begin_step(state(), 0);
-    host.evaluate();
+    host.look_at(state(), system_.time_step());
     const std::vector<PoseMotion> accelerations = system_.held_accelerations();
     host.add_support_inertia([&](int node) { return accelerations[at(system_.constraint_of(node))]; });
   }

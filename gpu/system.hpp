@@ -44,7 +44,7 @@ class System {
   }
   Pose finish_step(double end_time, Memory& memory);
   void start_acceleration(const Pose& start, double dt, Memory& memory);
-  void look_back(const Pose& state, const Pose& before, double dt);
+  void look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt);
 
   Evaluation evaluate();
   DirectionReport direction();
@@ -63,6 +63,8 @@ class System {
   std::vector<double> gradient() const { return gradient_.downloaded(); }
   /// As MechanicalSystem::dependent_forces().
   std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
+  /// That the viscous stress of the last evaluation comes from.
+  StrainHistory strain_history() const;
   /// K d at the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);
 
@@ -96,6 +98,8 @@ class System {
   Evaluation judge();
   double energy_at_start();
   void predict_strain(const Memory& memory);
+  void follow_strain(const Pose& before, const Pose& earlier, double dt);
+  void store_strain_at(const Pose& pose, Array<Space, double>& E);
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
   void linearize_tiles(Tangent tangent);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 /// The bodies of the drivers, for the files that instantiate them.
 namespace fascia {
@@ -147,10 +148,11 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
   using namespace drivers;
   RunReport run;
   Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}};
+  typename System::Pose earlier;  // a step before `before`; empty in the first one
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
     const double end = step * dynamics.time_step;
-    const typename System::Pose before = state;
+    typename System::Pose before = state;
     const NewtonReport report = stepper.advance(state, end, dynamics.time_step, 8);
     if (!acceptable(report, settings)) {
       state = before;
@@ -163,7 +165,8 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
       return run;
     }
     accept(run, report, end);
-    if (observe && system.solves_for_middle()) system.look_back(state, before, dynamics.time_step);
+    if (observe && system.solves_for_middle()) system.look_back(state, before, earlier, dynamics.time_step);
+    earlier = std::move(before);
     const double progress = static_cast<double>(step) / dynamics.steps;
     if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {
       if (step < dynamics.steps) run.status = RunStatus::interrupted;

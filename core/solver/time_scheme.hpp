@@ -76,6 +76,10 @@ struct StepForm : StepConstants {
   std::vector<PoseMotion> q, w;
 };
 
+/// The rate at the end of a step from the increments in it and in the step before, both of the same length; times that
+/// length.
+FASCIA_HD constexpr double end_increment(double last, double before) { return 1.5 * last - 0.5 * before; }
+
 /// Above this ratio to the step before, BDF2 loses its accuracy (and at 1 + √2 its stability).
 inline constexpr double kLargestStepRatio = 2;
 
