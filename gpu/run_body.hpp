@@ -39,7 +39,7 @@ class ReachedStep : public DeviceStep {
   }
   void show(MechanicalSystem& host, std::span<const double> factors) override {
     host.set_factors(factors);
-    host.look_at(state(), system_.strain_history());
+    host.look_at(state(), system_.strain_history(), system_.tether_targets());
     host.adopt(system_.gradient(), system_.dependent_forces(), system_.internal_energy());
   }
 

@@ -65,6 +65,8 @@ class System {
   std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
   /// That the viscous stress of the last evaluation comes from.
   StrainHistory strain_history() const;
+  /// As CpuExecutor::targets(); empty where nothing is tethered.
+  std::vector<double> tether_targets();
   /// K d at the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);
 
@@ -99,6 +101,8 @@ class System {
   double energy_at_start();
   void predict_strain(const Memory& memory);
   void follow_strain(const Pose& before, const Pose& earlier, double dt);
+  void note_stretches();
+  void stretch_tethers(double time);
   void store_strain_at(const Pose& pose, Array<Space, double>& E);
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
@@ -153,6 +157,8 @@ class System {
   Array<Space, double> turned_, saved_turned_;
   Array<Space, PoseMotion> q_, w_;
   Array<Space, PoseMotion> before_;  ///< motion in the step before
+  Array<Space, Tether> tethers_;
+  MiddleStretches<Array<Space, Vec3d>> middles_;
   std::vector<double> factors_, reached_factors_;
   bool factors_are_placed_ = false;
 

@@ -65,6 +65,7 @@ void System<Space>::predict_strain(const Memory& memory) {
 template <class Space>
 void System<Space>::set_factors(std::span<const double> factors) {
   known_.reset();
+  note_stretches();
   if (std::equal(factors.begin(), factors.end(), factors_.begin(), factors_.end()) && factors_are_placed_) return;
   factors_.assign(factors.begin(), factors.end());
   factors_are_placed_ = true;
@@ -167,9 +168,42 @@ void System<Space>::look_back(const Pose& state, const Pose& before, const Pose&
   if (damped_) follow_strain(before, earlier, dt);
   evaluate();
   internal_.viscous = 0;
+  if (!middles_.empty()) stretch_tethers(state.time);
   Space::for_each(static_cast<int>(model_.constraints.size()),
                   kernels::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
                                           before.Q_dot.data(), 1 / dt, gradient_.data()});
+}
+
+/// Before the factors of the end take the place of those of the middle.
+template <class Space>
+void System<Space>::note_stretches() {
+  if (tethers_.empty() || !solves_for_middle() || step_.h <= 0) return;
+  Array<Space, Vec3d>& stretch = middles_.at_middle(start_.time + step_.reach);
+  stretch.resize(tethers_.size());
+  Points<Space>& points = blocks_.points();
+  Space::for_each(static_cast<int>(tethers_.size()), kernels::NoteStretches{tethers_.data(), points.view(), pose(),
+                                                                            points.targets().data(), stretch.data()});
+}
+
+/// Evaluates forces again, with tethers that pull as in the middles of steps.
+template <class Space>
+void System<Space>::stretch_tethers(double time) {
+  Points<Space>& points = blocks_.points();
+  const std::array<double, 3> w = middles_.weights(time);
+  const auto& s = middles_.stretch;
+  Space::for_each(static_cast<int>(tethers_.size()), kernels::StretchTethers{tethers_.data(),
+                                                                             points.view(),
+                                                                             pose(),
+                                                                             {s[0].data(), s[1].data(), s[2].data()},
+                                                                             {w[0], w[1], w[2]},
+                                                                             points.targets().data()});
+  factors_are_placed_ = false;
+  evaluate_forces();
+}
+
+template <class Space>
+std::vector<double> System<Space>::tether_targets() {
+  return tethers_.empty() ? std::vector<double>{} : blocks_.points().targets().downloaded();
 }
 
 /// Ê of the strain rate at the end of a step, from the strains of three states.

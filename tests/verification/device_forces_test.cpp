@@ -92,7 +92,7 @@ Simulation load() {
 
 /// What acts after a step, as numbers.
 struct Forces {
-  std::vector<double> gradient, couplings;
+  std::vector<double> gradient, couplings, tethers;
   InternalEnergy energy;
 };
 
@@ -104,8 +104,12 @@ void append(const nlohmann::ordered_json& value, std::vector<double>& out) {
 
 Forces forces_at(const Simulation& s, const MechanicalSystem& system, const State& state,
                  const InternalEnergy& energy) {
-  Forces f{{system.gradient().begin(), system.gradient().end()}, {}, energy};
+  Forces f{{system.gradient().begin(), system.gradient().end()}, {}, {}, energy};
   for (const auto& [name, report] : app::coupling_report(s, system, state)) append(report, f.couplings);
+  for (const Tether& tether : s.model.tethers) {
+    const Vec3d pull = system.executor().tether_force(tether, state);
+    f.tethers.insert(f.tethers.end(), pull.v, pull.v + 3);
+  }
   // Of free degrees of freedom it is what Newton's method left.
   system.filter().to_local(f.gradient);
   system.filter().keep_fixed(f.gradient);
@@ -168,6 +172,7 @@ TEST_P(DeviceForces, AreThoseOfTheProcessor) {
     std::printf("%-16s", kind.c_str());
     expect_same(got[i].gradient, expected[i].gradient, "supports");
     expect_same(got[i].couplings, expected[i].couplings, "couplings");
+    expect_same(got[i].tethers, expected[i].tethers, "tethers");
     const InternalEnergy &a = got[i].energy, &b = expected[i].energy;
     expect_same({a.elastic, a.stabilization, a.viscous}, {b.elastic, b.stabilization, b.viscous}, "energies");
     std::printf("\n");

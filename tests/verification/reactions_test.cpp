@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
 
 namespace fascia::test {
 namespace {
@@ -134,11 +135,16 @@ void expect_agreement(const std::string& name, double dt, double without,
     const Halved h{relative(force(kind, dt), reference), relative(force(kind, dt / 2), reference)};
     std::printf("  %7.1e %7.1e", h.coarse, h.fine);
     const bool euler = kind == "implicit-euler";
-    EXPECT_LT(h.fine, euler ? 2e-3 : 1e-3) << name << ' ' << kind;
-    // Of first order where errors of both signs do not cancel, of second that of BDF2; Newmark and the midpoint rule
+    // Stiff tethers, which nothing damps, swing in the schemes that damp nothing.
+    const bool swings = (kind == "newmark" || kind == "midpoint") && name.starts_with("scattered");
+    EXPECT_LT(h.fine, swings ? 1e-2 : euler ? 2e-3 : 1e-3) << name << ' ' << kind;
+    // Of first order where errors of both signs do not cancel, of second that of BDF2. Newmark and the midpoint rule
     // take the acceleration of a support's own mass half a step and more before the end.
-    if (h.fine > 3e-4 || kind == "bdf2") {
-      EXPECT_GT(h.coarse / h.fine, kind == "bdf2" ? 3.0 : 1.6) << name << ' ' << kind << ": order";
+    if (h.fine > 3e-4) {
+      EXPECT_GT(h.coarse / h.fine, 1.6) << name << ' ' << kind << ": order";
+    }
+    if (kind == "bdf2" && h.fine > 5e-5) {
+      EXPECT_GT(h.coarse / h.fine, 3.0) << name << ' ' << kind << ": order";
     }
   }
   if (!central_differences) return static_cast<void>(std::printf("\n"));
@@ -167,14 +173,14 @@ TEST(Reactions, OfAllSchemesAgree) {
     }
 }
 
-/// Tethers swing for ever after a motion that starts at once, unless the stiffness of the material damps them.
+/// After a motion that starts at once the tethers swing against the frames' masses. Stiffness damping ends that where
+/// steps are short enough to follow it.
 TEST(Reactions, OfTethersUnderExplicitSteps) {
-  Vector force[2];
-  for (const std::string kind : {"bdf2", "explicit"})
-    force[kind == "bdf2" ? 0 : 1] =
-        pulled("scattered", kind, kind == "bdf2" ? 0.002 : 0, "damping={stiffness=0.2}\n", "");
-  std::printf("BDF2 %.4f N, explicit %.4f N\n", force[0][0], force[1][0]);
-  EXPECT_LT(relative(force[1], force[0]), 1e-3);
+  const std::string damping = "damping={stiffness=0.2}\n";
+  const Vector bdf2 = pulled("scattered", "bdf2", 0.002, damping, "");
+  const Vector central = pulled("scattered", "explicit", 0, damping, "");
+  std::printf("BDF2 %.4f N, explicit %.4f N\n", bdf2[0], central[0]);
+  EXPECT_LT(relative(central, bdf2), 1e-3);
 }
 
 /// Hexahedra, tissue that shares their vertices, and a cap of tetrahedra whose vertices follow the tissue.
@@ -193,16 +199,22 @@ std::string chain(const std::string& damping, const std::string& run) {
 
 TEST(Reactions, OfCouplingsAgree) {
   print_head();
-  for (const std::string damping : {"stiffness=\"0.2 s\"", "mass=\"20 Hz\""})
-    for (const std::string what : {"right", "tissue", "seam"}) {
-      const auto run = [&](const std::string& kind, double dt, const std::string& damped) {
-        const TextRun r(chain(damped, solver(kind, dt, 0.5)));
-        return what == "right" ? r.vector("right") : r.coupling(what, "force", what == "tissue" ? "organ" : "");
-      };
-      expect_agreement(
-          what + " " + damping.substr(0, damping.find('=')), 0.02, length(run("midpoint", 0.0025, "")),
-          [&](const std::string& kind, double dt) { return run(kind, dt, "damping={" + damping + "}\n"); });
+  std::map<std::string, std::map<std::string, Vector>> known;  // by run
+  const auto force = [&](const std::string& what, const std::string& kind, double dt, const std::string& damping) {
+    const std::string text = chain(damping, solver(kind, dt, 0.5));
+    if (!known.contains(text)) {
+      const TextRun run(text);
+      known[text] = {{"right", run.vector("right")},
+                     {"tissue", run.coupling("tissue", "force", "organ")},
+                     {"seam", run.coupling("seam", "force")}};
     }
+    return known[text][what];
+  };
+  for (const std::string damping : {"stiffness=\"0.2 s\"", "mass=\"20 Hz\""})
+    for (const std::string what : {"right", "tissue", "seam"})
+      expect_agreement(
+          what + " " + damping.substr(0, damping.find('=')), 0.02, length(force(what, "midpoint", 0.0025, "")),
+          [&](const std::string& kind, double dt) { return force(what, kind, dt, "damping={" + damping + "}\n"); });
 }
 
 }  // namespace
