@@ -2,6 +2,7 @@
 
 #include "app/mechanisms.hpp"
 #include "core/math/index.hpp"
+#include "core/physics/inertia.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -54,13 +55,23 @@ Wrench weight_of(const Simulation& s, const State& state, int node, const FrameI
   return w;
 }
 
-/// What hosts do on a dependent node, whose weight they carry.
+/// Mass damping of what moves with a node.
+Wrench drag_on(const Simulation& s, const State& state, int node, const FrameInertia& damping) {
+  const InertiaForce f = inertia_force(damping, state.v[at(node)], state.Q_dot[at(node)]);
+  const Mat3d Q = Mat3d::identity() + state.D[at(node)];
+  Wrench w;
+  w.add(place_of(s, state, node), -f.force, axl(Q * transpose(f.moment)) * -1.0);
+  return w;
+}
+
+/// What hosts do on a dependent node, whose weight and mass damping they carry.
 Wrench support_of(const Simulation& s, const MechanicalSystem& system, const State& state, std::size_t dependent) {
   const double* f = system.dependent_forces().data() + 6 * dependent;
   Wrench w;
   const int node = s.model.points.dependents[dependent].node;
   w.add(place_of(s, state, node), {{f[0], f[1], f[2]}}, {{f[3], f[4], f[5]}});
   w -= weight_of(s, state, node, s.dependent_inertia[dependent]);
+  if (!s.dependent_damping.empty()) w -= drag_on(s, state, node, s.dependent_damping[dependent]);
   return w;
 }
 
@@ -78,7 +89,7 @@ std::size_t owner_of(const Simulation& s, int node) {
                                   s.bodies.begin());
 }
 
-/// What a body's points do on a node that it shares, with the weight of its matter there.
+/// What a body's points do on a node that it shares, with the weight and the mass damping of its matter there.
 Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const MechanicalSystem& system, const State& state,
                std::size_t shared) {
   const int node = tissue.body->shared_nodes()[shared];
@@ -88,6 +99,7 @@ Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const Mechanica
   const bool turns = s.model.kind(node) != FrameKind::vertex;
   w.add(place_of(s, state, node), f.force * -1.0, turns ? axl(Q * transpose(f.N)) * -1.0 : Vec3d{});
   w += weight_of(s, state, node, tissue.shared_inertia[shared]);
+  w += drag_on(s, state, node, tissue.shared_damping[shared]);
   return w;
 }
 

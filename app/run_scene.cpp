@@ -164,8 +164,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
       out.run = run_statics(system, state, factors, settings, {s.scene.solver.load_steps}, observe);
   } else {
     system.set_factors(factors(0));
-    system.begin_step(state, 0);
-    system.evaluate();
+    system.look_at(state, s.scene.solver.time_step);
     save(0, 0, state, true);
     if (s.scene.solver.kind == SolverKind::central_differences) {
       const auto observed = [&](const StepInfo& step) {
@@ -206,8 +205,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
       files.add_state(path ? out.run.steps : state.time, state);
     } else {
       system.set_factors(factors(state.time));
-      system.begin_step(state, 0);
-      system.evaluate();
+      system.look_at(state, s.scene.solver.time_step);
       save(state.time, out.run.steps, state, true);
     }
   }

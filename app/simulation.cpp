@@ -94,8 +94,18 @@ void start_dependents(Simulation& s) {
   }
 }
 
+FrameInertia added(const FrameInertia& before, const FrameInertia& after) {
+  return {after.mass - before.mass, after.first - before.first, after.second - before.second};
+}
+
+/// Of a node; zero where the model has none, or none there yet.
+FrameInertia mass_damping_of(const std::vector<FrameInertia>& mass_damping, int node) {
+  return at(node) < mass_damping.size() ? mass_damping[at(node)] : FrameInertia{};
+}
+
 /// @throws SceneError  a host that would lose its mass
 void give_inertia_to_hosts(Simulation& s) {
+  const std::vector<FrameInertia> damping = s.model.mass_damping;
   for (const DependentNode& d : s.model.points.dependents) s.dependent_inertia.push_back(s.model.inertia[at(d.node)]);
   try {
     const bool idle = s.scene.solver.kind == SolverKind::statics && squared_norm(s.scene.world.gravity) == 0;
@@ -106,10 +116,9 @@ void give_inertia_to_hosts(Simulation& s) {
   } catch (const InputError& e) {
     throw SceneError({{s.scene.couplings.empty() ? s.scene.bodies[0].place : s.scene.couplings[0].place, e.what()}});
   }
-}
-
-FrameInertia added(const FrameInertia& before, const FrameInertia& after) {
-  return {after.mass - before.mass, after.first - before.first, after.second - before.second};
+  if (damping.empty()) return;
+  for (const DependentNode& d : s.model.points.dependents)
+    s.dependent_damping.push_back(added(s.model.mass_damping[at(d.node)], damping[at(d.node)]));
 }
 
 /// Far from the origin coordinates are rounded to more than a part of the body that answers can do without.
@@ -131,11 +140,15 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     gather_neighbours(s, body, build);
     SimulatedBody b;
     b.name = body.name;
-    const std::vector<FrameInertia> before = build.shared.empty() ? std::vector<FrameInertia>{} : s.model.inertia;
+    std::vector<FrameInertia> before, damping;
+    if (!build.shared.empty()) before = s.model.inertia;
+    if (!build.shared.empty()) damping = s.model.mass_damping;
     b.body = build_body(body, build);
     check_size(body, b.body->size());
-    for (const int node : b.body->shared_nodes())
+    for (const int node : b.body->shared_nodes()) {
       b.shared_inertia.push_back(added(before[at(node)], s.model.inertia[at(node)]));
+      b.shared_damping.push_back(added(mass_damping_of(damping, node), mass_damping_of(s.model.mass_damping, node)));
+    }
     for (std::size_t i = 0; i < b.body->weights().size(); ++i)
       b.lumped_mass.push_back(s.model.inertia[at(b.body->first_node()) + i].mass);
     give_rotations(s.model, build.shared, *b.body);

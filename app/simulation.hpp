@@ -30,6 +30,7 @@ struct SimulatedBody {
   std::vector<char> surface_on_boundary;     ///< ones, for each point of the surface
   std::string gap;                           ///< what it fills between two bodies, in words
   std::vector<FrameInertia> shared_inertia;  ///< its own on the nodes that it shares
+  std::vector<FrameInertia> shared_damping;  ///< the same weighted with α, as Model::mass_damping
   std::vector<double> lumped_mass;           ///< of its nodes, where a static weight is shared otherwise [kg]
   std::vector<Interface> interfaces;         ///< its own frames on these follow the other body
 
@@ -92,6 +93,7 @@ struct Simulation {
   std::vector<FluidOfBody> fluids;
   std::vector<BuiltCoupling> couplings;         ///< of Scene::couplings
   std::vector<FrameInertia> dependent_inertia;  ///< of dependent nodes, before their hosts took it over
+  std::vector<FrameInertia> dependent_damping;  ///< what their hosts took over of Model::mass_damping; or empty
   std::optional<ControlledPoint> controlled;    ///< of control = "displacement"
   State initial;
   std::vector<std::string> warnings;

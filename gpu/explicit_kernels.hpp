@@ -4,6 +4,7 @@
 #include "core/solver/node_drift.hpp"
 #include "core/solver/node_load.hpp"
 #include "gpu/blocks.hpp"
+#include "gpu/boundary_kernels.hpp"
 #include "gpu/model_data.hpp"
 #include "gpu/space.hpp"
 
@@ -215,14 +216,8 @@ struct MoveTethers {
   }
   /// As CpuExecutor::tether_force().
   FASCIA_HD Vec3d force(const Tether& t) const {
-    Vec3d u;
-    for (int slot = points.slot_begin[t.group]; slot < points.slot_begin[t.group + 1]; ++slot) {
-      const double* shape = points.shape + at(slot) * 13 * kGroupSize + t.lane;
-      const Vec3d lever{{shape[4 * kGroupSize], shape[7 * kGroupSize], shape[10 * kGroupSize]}};
-      u += pose.u[points.slot_node[slot]] * shape[kGroupSize] + pose.D_of(points.slot_node[slot]) * lever;
-    }
     const double* axes = points.axes + at(points.rule[t.group].axes) * 9 * kGroupSize + t.lane;
-    const Vec3d apart = target(t) - u;
+    const Vec3d apart = tether_stretch(points, pose, t, targets);
     Vec3d pull;
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j) pull[k] += axes[(3 * k + j) * kGroupSize] * apart[j];

@@ -16,7 +16,9 @@ namespace fascia::gpu {
 template <class Space>
 class ReachedExplicitStep : public DeviceStep {
  public:
-  ReachedExplicitStep(ExplicitSystem<Space>& system, State& state) : system_(system), state_(state) {}
+  /// @param dt  of the step that led there [s]
+  ReachedExplicitStep(ExplicitSystem<Space>& system, State& state, double dt)
+      : system_(system), state_(state), dt_(dt) {}
   InternalEnergy energy() const override { return system_.energy(); }
   const State& state() override {
     if (fetched_) return state_;
@@ -28,8 +30,7 @@ class ReachedExplicitStep : public DeviceStep {
   }
   void show(MechanicalSystem& host, std::span<const double> factors) override {
     host.set_factors(factors);
-    host.begin_step(state(), 0);
-    host.evaluate();
+    host.look_at(state(), dt_);
     const std::vector<PoseMotion> accelerations = system_.held_accelerations();
     host.add_support_inertia([&](int node) { return accelerations[at(system_.constraint_of(node))]; });
   }
@@ -37,6 +38,7 @@ class ReachedExplicitStep : public DeviceStep {
  private:
   ExplicitSystem<Space>& system_;
   State& state_;
+  double dt_;
   bool fetched_ = false;
 };
 
@@ -106,7 +108,7 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
     if (kept && plan.automatic()) system.save();
     if (kept) retries = 0;
     if (!seen || !observe) continue;
-    ReachedExplicitStep<Space> reached(system, state);
+    ReachedExplicitStep<Space> reached(system, state, dt);
     if (!observe(info, reached)) {
       if (!last) run.status = RunStatus::interrupted;
       break;

@@ -57,8 +57,7 @@ class ReachedStep : public DeviceStep {
   }
   void show(MechanicalSystem& host, std::span<const double> factors) override {
     host.set_factors(factors);
-    host.begin_step(state(), 0);
-    host.evaluate();
+    host.look_at(state(), system_.strain_history(), system_.tether_targets());
     host.adopt(system_.gradient(), system_.dependent_forces(), system_.internal_energy());
   }
 

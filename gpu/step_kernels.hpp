@@ -229,6 +229,16 @@ struct StrainAlongVelocity {
   }
 };
 
+/// E − dt dE/dt at the end of a step, from the strains at its start and a step before; null: none.
+struct StrainFromSteps {
+  double* E;
+  const double *before, *earlier;
+  FASCIA_HD void operator()(int k) const {
+    const double increment = E[k] - before[k];
+    E[k] -= earlier == nullptr ? increment : end_increment(increment, before[k] - earlier[k]);
+  }
+};
+
 /// The tangent's terms of one node alone.
 struct NodeBlocks {
   StepView s;

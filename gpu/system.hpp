@@ -44,7 +44,7 @@ class System {
   }
   Pose finish_step(double end_time, Memory& memory);
   void start_acceleration(const Pose& start, double dt, Memory& memory);
-  void look_back(const Pose& state, const Pose& before, double dt);
+  void look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt);
 
   Evaluation evaluate();
   DirectionReport direction();
@@ -65,6 +65,10 @@ class System {
   std::vector<double> gradient() const { return gradient_.downloaded(); }
   /// As MechanicalSystem::dependent_forces().
   std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
+  /// That the viscous stress of the last evaluation comes from.
+  StrainHistory strain_history() const;
+  /// As CpuExecutor::targets(); empty where nothing is tethered.
+  std::vector<double> tether_targets();
   /// K d at the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);
   /// As MechanicalSystem::stability(), by conjugate gradients.
@@ -103,6 +107,10 @@ class System {
   bool moves(int part, double squared_momentum) const;
   double energy_at_start();
   void predict_strain(const Memory& memory);
+  void follow_strain(const Pose& before, const Pose& earlier, double dt);
+  void note_stretches();
+  void stretch_tethers(double time);
+  void store_strain_at(const Pose& pose, Array<Space, double>& E);
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
   void linearize_tiles(Tangent tangent);
@@ -159,6 +167,8 @@ class System {
   Array<Space, double> turned_, saved_turned_;
   Array<Space, PoseMotion> q_, w_;
   Array<Space, PoseMotion> before_;  ///< motion in the step before
+  Array<Space, Tether> tethers_;
+  MiddleStretches<Array<Space, Vec3d>> middles_;
   std::vector<double> factors_, reached_factors_;
   bool factors_are_placed_ = false;
 

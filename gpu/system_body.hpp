@@ -50,6 +50,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
     array->set_zero();
   }
   if (!model.tethers.empty()) tether_L_.resize(n);
+  tethers_.upload(model.tethers);
   report_.resize(parts * kernels::kNodeQuantities + blocks_.report_size() + surfaces_.figure_count() + 3);
   report_.set_zero();
   report_values_.resize(report_.size());

@@ -66,6 +66,7 @@ void System<Space>::predict_strain(const Memory& memory) {
 template <class Space>
 void System<Space>::set_factors(std::span<const double> factors) {
   known_.reset();
+  note_stretches();
   if (std::equal(factors.begin(), factors.end(), factors_.begin(), factors_.end()) && factors_are_placed_) return;
   factors_.assign(factors.begin(), factors.end());
   factors_are_placed_ = true;
@@ -163,12 +164,81 @@ void System<Space>::start_acceleration(const Pose& start, double dt, Memory& mem
 }
 
 template <class Space>
-void System<Space>::look_back(const Pose& state, const Pose& before, double dt) {
+void System<Space>::look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt) {
   begin_step(state, 0);
+  if (damped_) follow_strain(before, earlier, dt);
   evaluate();
+  internal_.viscous = 0;
+  if (!middles_.empty()) stretch_tethers(state.time);
   Space::for_each(static_cast<int>(model_.constraints.size()),
                   kernels::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
                                           before.Q_dot.data(), 1 / dt, gradient_.data()});
+}
+
+/// Before the factors of the end take the place of those of the middle.
+template <class Space>
+void System<Space>::note_stretches() {
+  if (tethers_.empty() || !solves_for_middle() || step_.h <= 0) return;
+  Array<Space, Vec3d>& stretch = middles_.at_middle(start_.time + step_.reach);
+  stretch.resize(tethers_.size());
+  Points<Space>& points = blocks_.points();
+  Space::for_each(static_cast<int>(tethers_.size()), kernels::NoteStretches{tethers_.data(), points.view(), pose(),
+                                                                            points.targets().data(), stretch.data()});
+}
+
+/// Evaluates forces again, with tethers that pull as in the middles of steps.
+template <class Space>
+void System<Space>::stretch_tethers(double time) {
+  Points<Space>& points = blocks_.points();
+  const std::array<double, 3> w = middles_.weights(time);
+  const auto& s = middles_.stretch;
+  Space::for_each(static_cast<int>(tethers_.size()), kernels::StretchTethers{tethers_.data(),
+                                                                             points.view(),
+                                                                             pose(),
+                                                                             {s[0].data(), s[1].data(), s[2].data()},
+                                                                             {w[0], w[1], w[2]},
+                                                                             points.targets().data()});
+  factors_are_placed_ = false;
+  evaluate_forces();
+}
+
+template <class Space>
+std::vector<double> System<Space>::tether_targets() {
+  return tethers_.empty() ? std::vector<double>{} : blocks_.points().targets().downloaded();
+}
+
+/// Ê of the strain rate at the end of a step, from the strains of three states.
+template <class Space>
+void System<Space>::follow_strain(const Pose& before, const Pose& earlier, double dt) {
+  const bool second = !earlier.u.empty();
+  E_.resize(blocks_.strain_size());
+  blocks_.store_strain(pose(), E_.data());
+  store_strain_at(before, behind_E_);
+  if (second) store_strain_at(earlier, ahead_E_);
+  Space::for_each(static_cast<int>(E_.size()),
+                  kernels::StrainFromSteps{E_.data(), behind_E_.data(), second ? ahead_E_.data() : nullptr});
+  inverse_step_ = 1 / dt;
+}
+
+/// @param pose  whose dependent nodes may not be placed yet
+template <class Space>
+void System<Space>::store_strain_at(const Pose& pose, Array<Space, double>& E) {
+  E.resize(blocks_.strain_size());
+  if (dependents_.empty()) return blocks_.store_strain({pose.u.data(), pose.D.data()}, E.data());
+  moved_u_.copy_from(pose.u);
+  moved_D_.copy_from(pose.D);
+  dependents_.place(moved_u_.data(), moved_D_.data());
+  blocks_.store_strain({moved_u_.data(), moved_D_.data()}, E.data());
+}
+
+template <class Space>
+StrainHistory System<Space>::strain_history() const {
+  StrainHistory out;
+  if (!damped_ || inverse_step_ == 0) return out;
+  out.inverse_step = inverse_step_;
+  out.E.resize(E_.size());
+  E_.download(out.E);
+  return out;
 }
 
 template <class Space>

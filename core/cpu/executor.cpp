@@ -224,7 +224,7 @@ CpuExecutor::NodeGradient CpuExecutor::gradient_of_groups(int first, int count, 
   return {sum.force, sum.N};
 }
 
-Vec3d CpuExecutor::tether_force(const Tether& tether, const State& state) const {
+Vec3d CpuExecutor::tether_stretch(const Tether& tether, const State& state) const {
   const auto nodes = set_.nodes(tether.group);
   Vec3d u;
   for (std::size_t s = 0; s < nodes.size(); ++s) {
@@ -232,12 +232,17 @@ Vec3d CpuExecutor::tether_force(const Tether& tether, const State& state) const 
     const Vec3d lever{{shape[4 * kGroupSize], shape[7 * kGroupSize], shape[10 * kGroupSize]}};
     u += state.u[at(nodes[s])] * shape[kGroupSize] + state.D[at(nodes[s])] * lever;
   }
+  const std::size_t first = at(set_.rule[at(tether.group)].axes) * 3 * kGroupSize + at(tether.lane);
+  return Vec3d{{targets_[first], targets_[first + kGroupSize], targets_[first + 2 * kGroupSize]}} - u;
+}
+
+Vec3d CpuExecutor::tether_force(const Tether& tether, const State& state) const {
+  const Vec3d stretch = tether_stretch(tether, state);
   const auto index = at(set_.rule[at(tether.group)].axes);
   Vec3d force;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      force[i] += set_.axes[(index * 9 + at(3 * i + j)) * kGroupSize + at(tether.lane)] *
-                  (targets_[(index * 3 + at(j)) * kGroupSize + at(tether.lane)] - u[j]);
+      force[i] += set_.axes[(index * 9 + at(3 * i + j)) * kGroupSize + at(tether.lane)] * stretch[j];
   return force * set_.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
 }
 

@@ -86,6 +86,8 @@ class CpuExecutor {
   /// Σ |force|² of a connected part's tethers at the last call of gradient() [N²]; and the force on one of them [N].
   double squared_tether_force(int part) const { return part_tether_[static_cast<std::size_t>(part)]; }
   Vec3d tether_force(const Tether& tether, const State& state) const;
+  /// From the place that a tether holds to its target [m].
+  Vec3d tether_stretch(const Tether& tether, const State& state) const;
   /// Of a spring on its node [N].
   static Vec3d spring_force(const Spring& spring, const State& state);
 

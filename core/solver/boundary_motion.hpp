@@ -80,6 +80,10 @@ FASCIA_HD inline Vec3d tether_target(const Tether& t, const PrescribedMotion* mo
   const Vec3d target = m.displacement(t.X + t.arm, factors[m.schedule]);
   return squared_norm(t.arm) > 0 ? target - m.displacement(t.X, factors[m.schedule]) : target;
 }
+/// Adds to the target of one tether, in the layout of CpuExecutor::targets().
+FASCIA_HD inline void move_target(const Tether& t, int axes, const Vec3d& by, double* targets) {
+  for (int k = 0; k < 3; ++k) targets[at(axes * 3 + k) * kGroupSize + at(t.lane)] += by[k];
+}
 /// The same of all: as CpuExecutor::targets().
 void place_tethers(const Model& model, std::span<const double> factors, std::span<double> targets);
 

@@ -88,7 +88,7 @@ struct DynamicsSettings {
 /// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256.
 ///
 /// The observer sees the state at the end of each step. The system's gradient belongs to the step's equations there,
-/// with inertia; after a midpoint step it is evaluated anew at the end, without inertia and viscous stress.
+/// with inertia; after a midpoint step it is what look_back() says.
 template <class System>
 RunReport run_implicit(System& system, typename System::Pose& state, const FactorFunction& factors,
                        const SolverSettings& settings, const DynamicsSettings& dynamics,

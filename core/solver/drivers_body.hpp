@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 /// The bodies of the drivers, for the files that instantiate them.
 namespace fascia {
@@ -163,10 +164,11 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
   using namespace drivers;
   RunReport run;
   Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}, 0};
+  typename System::Pose earlier;  // a step before `before`; empty in the first one
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
     const double end = dynamics.end_of(step), dt = dynamics.length_of(step);
-    const typename System::Pose before = state;
+    typename System::Pose before = state;
     stepper.failures = 0;
     const NewtonReport report = stepper.advance(state, end, dt, kMostHalvings);
     if (!acceptable(report, settings)) {
@@ -180,7 +182,10 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
       return run;
     }
     accept(run, report, settings, end);
-    if (observe && system.solves_for_middle()) system.look_back(state, before, dt);
+    const bool equal = step > 1 && std::abs(dt - dynamics.length_of(step - 1)) <= 1e-9 * dt;
+    if (observe && system.solves_for_middle())
+      system.look_back(state, before, equal ? earlier : typename System::Pose{}, dt);
+    earlier = std::move(before);
     const double progress = static_cast<double>(step) / dynamics.steps;
     if (observe && !observe({step, end, progress, report, seconds_since(start)}, state, system)) {
       if (step < dynamics.steps) run.status = RunStatus::interrupted;

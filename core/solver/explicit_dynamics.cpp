@@ -109,8 +109,7 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
     }
     if (!seen || !observe) continue;
     system.set_factors(present);
-    system.begin_step(state, 0);
-    system.evaluate();
+    system.look_at(state, dt);
     system.add_support_inertia([&](int node) { return stepper.held_acceleration(node); });
     if (!observe(info, state, system)) {
       if (!last) run.status = RunStatus::interrupted;

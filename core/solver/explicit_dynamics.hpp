@@ -14,8 +14,9 @@ namespace fascia {
 /// where steps are unequal with the mean of both, (dt₋ + dt₊)/2, in the place of dt in v₊ (ExplicitPlan has the steps),
 /// of rigid frames with the momentum about their mass centre, L₊ from L₋ and the torque, and the rotation exp(dt ω),
 /// ω = I(exp(dt ω₀/2) Q)⁻¹ L, ω₀ = I(Q)⁻¹ L. Stiffness damping acts with the strain rate of the last half step.
-/// Velocities that the observer sees are means of the half steps on both sides. The system's gradient is then that of
-/// the state at rest: without inertia and viscous stress.
+/// Velocities that the observer sees are means of the half steps on both sides. The system's gradient is then what
+/// look_at() says of them: the viscous stress is that of the state seen, to second order, not that of the half step
+/// before; with what accelerated supports carry, without inertia elsewhere.
 ///
 /// It stops with RunStatus::diverged and the last good state when the kinetic energy exceeds what loads and boundaries
 /// can have given.

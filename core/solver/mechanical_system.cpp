@@ -49,6 +49,7 @@ void MechanicalSystem::add(std::vector<double>& out, int node, const Vec3d& forc
 
 void MechanicalSystem::set_factors(std::span<const double> factors) {
   known_.reset();
+  note_stretches();
   factors_.assign(factors.begin(), factors.end());
   place_tethers(model_, factors_, executor_.targets());
 }

@@ -100,16 +100,18 @@ class MechanicalSystem {
     internal_ = energy;
   }
 
-  /// After a midpoint step: evaluates the state at its end, at rest, with what accelerated supports carry.
-  /// @param before  the state at its start
-  void look_back(const State& state, const State& before, double dt) {
-    begin_step(state, 0);
-    evaluate();
-    add_support_inertia([&](int node) {
-      const auto i = at(node);
-      return PoseMotion{(state.v[i] - before.v[i]) * (1 / dt), (state.Q_dot[i] - before.Q_dot[i]) * (1 / dt)};
-    });
-  }
+  // Evaluations of states that no step's equations hold at (reached_state.cpp). The gradient is what acts there: with
+  // the viscous stress and the mass damping of what is held, without inertia. Energies are those of the state at rest.
+  /// The strain rate comes from strains along the velocities, a time h ahead and behind. @param h  0: no viscous stress
+  void look_at(const State& state, double h);
+  /// With the viscous stress of a step that was taken elsewhere, and what its tethers pulled to, where there are any.
+  void look_at(const State& state, const StrainHistory& history, std::span<const double> targets);
+  /// After a midpoint step: the state at its end, with what accelerated supports carry. The strain rate comes from the
+  /// strains of three states, since velocities of the midpoint rule ring where strong damping starts at once; tethers
+  /// pull as in the middles of the last two steps, since stiff ones ring too.
+  /// @param before   the state at its start
+  /// @param earlier  the one as long before that, or empty: the strain rate is then that of the middle of the step
+  void look_back(const State& state, const State& before, const State& earlier, double dt);
 
   /// Largest rotation [rad] by which a boundary motion would turn a frame from its present place.
   double prescribed_rotation() const;
@@ -151,6 +153,9 @@ class MechanicalSystem {
   void add_squares(std::span<const double> global, std::vector<double>& free, std::vector<double>& fixed);
   void add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N, const Vec3d& torque) const;
   void predict_strain(const StepMemory& memory);
+  void store_strain_at(State state, StrainHistory& history);
+  void evaluate_reached(std::span<const double> targets);
+  void note_stretches();
   State moved_by_velocity(double time) const;
   void follow_boundaries(State& end, const std::vector<PoseMotion>& before, StepMemory& memory) const;
   void finish_middle(State& end, std::vector<PoseMotion>& motion) const;
@@ -176,6 +181,7 @@ class MechanicalSystem {
   StepForm form_;
   StrainHistory history_;
   AlignedVector<double> start_strain_;  ///< E at the start of the step
+  MiddleStretches<std::vector<Vec3d>> middles_;
   std::vector<double> factors_;
   std::vector<double> reached_factors_;  ///< at the end of the last step
   Increment increment_, saved_;

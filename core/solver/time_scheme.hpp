@@ -3,7 +3,9 @@
 #include "core/math/mat3.hpp"
 #include "core/model/aligned.hpp"
 
+#include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace fascia {
@@ -74,6 +76,40 @@ struct StepConstants {
 /// What a step starts from, node by node.
 struct StepForm : StepConstants {
   std::vector<PoseMotion> q, w;
+};
+
+/// The rate at the end of a step from the increments in it and in the step before, both of the same length; times that
+/// length.
+FASCIA_HD constexpr double end_increment(double last, double before) { return 1.5 * last - 0.5 * before; }
+
+/// How far tethers were stretched in the middles of the last midpoint steps, the latest first. @tparam Vectors  of each
+/// tether [m]; empty: none yet
+template <class Vectors>
+struct MiddleStretches {
+  std::array<double, 3> time{};  ///< [s]
+  std::array<Vectors, 3> stretch{};
+
+  bool empty() const { return stretch[0].empty(); }
+  /// Where those of a middle go; one that is not later than the last replaces it.
+  Vectors& at_middle(double middle) {
+    if (!empty() && middle > time[0])
+      for (const std::size_t k : {1U, 0U}) {
+        std::swap(time[k], time[k + 1]);
+        std::swap(stretch[k], stretch[k + 1]);
+      }
+    time[0] = middle;
+    for (const std::size_t k : {1U, 2U})
+      if (time[k] >= middle) stretch[k] = {};
+    return stretch[0];
+  }
+  /// Of the three in the stretch at the end of a step: what means of two middles lead to, in which nothing is left of
+  /// what changes sign from step to step.
+  std::array<double, 3> weights(double end) const {
+    if (stretch[1].empty()) return {1, 0, 0};
+    if (stretch[2].empty()) return {0.5, 0.5, 0};
+    const double r = (2 * end - time[0] - time[1]) / (time[0] - time[2]);
+    return {0.5 + 0.5 * r, 0.5, -0.5 * r};
+  }
 };
 
 /// Above this ratio to the step before, BDF2 loses its accuracy (and at 1 + √2 its stability).

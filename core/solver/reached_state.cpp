@@ -1,0 +1,94 @@
+#include "core/physics/inertia.hpp"
+#include "core/solver/boundary_motion.hpp"
+#include "core/solver/mechanical_system.hpp"
+
+#include <algorithm>
+#include <array>
+
+/// What acts at a state that was reached, where no step's equations say it.
+namespace fascia {
+
+void MechanicalSystem::look_at(const State& state, double h) {
+  begin_step(state, 0);
+  if (model_.points.damped && h > 0) {
+    StrainHistory ahead, behind;
+    executor_.store_strain(moved_by_velocity(h), ahead);
+    executor_.store_strain(moved_by_velocity(-h), behind);
+    executor_.store_strain(state_, history_);
+    for (std::size_t k = 0; k < history_.E.size(); ++k) history_.E[k] -= 0.5 * (ahead.E[k] - behind.E[k]);
+    history_.inverse_step = 1 / h;
+  }
+  evaluate_reached({});
+}
+
+void MechanicalSystem::look_at(const State& state, const StrainHistory& history, std::span<const double> targets) {
+  begin_step(state, 0);
+  if (model_.points.damped) history_ = history;
+  evaluate_reached(targets);
+}
+
+void MechanicalSystem::look_back(const State& state, const State& before, const State& earlier, double dt) {
+  begin_step(state, 0);
+  if (model_.points.damped) {
+    StrainHistory last, first;
+    store_strain_at(before, last);
+    if (!earlier.u.empty()) store_strain_at(earlier, first);
+    executor_.store_strain(state_, history_);
+    for (std::size_t k = 0; k < history_.E.size(); ++k) {
+      const double increment = history_.E[k] - last.E[k];
+      history_.E[k] -= first.E.empty() ? increment : end_increment(increment, last.E[k] - first.E[k]);
+    }
+    history_.inverse_step = 1 / dt;
+  }
+  std::vector<double> targets;
+  if (!middles_.empty()) {
+    targets.assign(executor_.targets().begin(), executor_.targets().end());
+    const std::array<double, 3> weights = middles_.weights(state.time);
+    for (std::size_t i = 0; i < model_.tethers.size(); ++i) {
+      const Tether& t = model_.tethers[i];
+      Vec3d more = executor_.tether_stretch(t, state_) * -1.0;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (weights[k] != 0) more += middles_.stretch[k][i] * weights[k];
+      move_target(t, model_.points.rule[at(t.group)].axes, more, targets.data());
+    }
+  }
+  evaluate_reached(targets);
+  add_support_inertia([&](int node) {
+    const auto i = at(node);
+    return PoseMotion{(state.v[i] - before.v[i]) * (1 / dt), (state.Q_dot[i] - before.Q_dot[i]) * (1 / dt)};
+  });
+}
+
+/// @param state  whose dependent nodes may not be placed yet
+void MechanicalSystem::store_strain_at(State state, StrainHistory& history) {
+  place_dependents(model_.points, state);
+  executor_.store_strain(state, history);
+}
+
+/// Before the factors of the end take the place of those of the middle.
+void MechanicalSystem::note_stretches() {
+  if (model_.tethers.empty() || !solves_for_middle() || form_.h <= 0) return;
+  std::vector<Vec3d>& stretch = middles_.at_middle(start_.time + form_.reach);
+  stretch.clear();
+  for (const Tether& t : model_.tethers) stretch.push_back(executor_.tether_stretch(t, state_));
+}
+
+/// @param targets  what tethers pull to where that differs from what their energy says; or empty
+void MechanicalSystem::evaluate_reached(std::span<const double> targets) {
+  evaluate();
+  internal_.viscous = 0;
+  if (!targets.empty()) {
+    std::copy(targets.begin(), targets.end(), executor_.targets().begin());
+    executor_.forces(state_, history_, gradient_);
+    for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] -= load_[i];
+    dependents_.transfer(gradient_, dependent_forces_);
+  }
+  if (model_.mass_damping.empty()) return;
+  for (const FrameConstraint& c : model_.constraints) {
+    const std::size_t i = at(c.node);
+    const InertiaForce f = inertia_force(model_.mass_damping[i], start_.v[i], start_.Q_dot[i]);
+    add(gradient_, c.node, f.force, f.moment, {});
+  }
+}
+
+}  // namespace fascia
