@@ -113,9 +113,9 @@ void judge_stability(const Simulation& s, const State& end, RunReport& run, std:
       "the end state is an unstable equilibrium" + where + ": the smallest disturbance makes the body leave it";
   if (s.scene.solver.accept_unstable) return warnings.push_back(message);
   run.status = RunStatus::unstable;
-  run.message = message +
-                "; try a small imperfection of the loads or the shape, control = \"arc-length\", or solver.accept = "
-                "[\"unstable\"] to keep it";
+  run.message =
+      message +
+      "; try solver.imperfection = 1e-4, control = \"arc-length\", or solver.accept = [\"unstable\"] to keep it";
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ Simulation load(const RunOptions& options) {
   Scene scene = parse_scene_file(options.scene, overrides);
   if (options.output) scene.output.directory = *options.output;
   Simulation s = build_simulation(std::move(scene));
+  add_imperfection(s);
   if (s.scene.solver.kind == SolverKind::central_differences) {
     ThreadPool pool(s.scene.solver.threads);
     MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));

@@ -119,6 +119,12 @@ inline constexpr double kDefaultEvery = 0.04;
 /// Time between saved states [s]; 0: they are counted by steps.
 double saving_time(const Output& output);
 
+/// Adds the loads of solver.imperfection: those that displace the model at rest by its lowest natural mode, whose
+/// largest displacement is that part of the largest body. They grow with the load factor, as what an imperfect shape
+/// does under the other loads; torques on frames are left out, so that all stays conservative.
+/// @throws SceneError  nothing can buckle
+void add_imperfection(Simulation& simulation);
+
 /// Of central differences: the largest time step that is stable at the start [s], into Simulation::stable_step. An
 /// automatic step begins with it, and the steps are then those that the duration would take if it stayed.
 /// @throws SceneError  where time_step is larger

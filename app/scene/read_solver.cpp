@@ -140,7 +140,7 @@ void check_kind(const TableReader& table, const Solver& solver) {
   const std::string unused = fmt::format("is not used by kind = \"{}\"", table.text("kind").value_or("static"));
   if (!is_dynamic(solver.kind)) table.refuse({"time_step", "duration", "steps"}, unused);
   if (solver.kind != SolverKind::statics)
-    table.refuse({"load_steps", "control", "controlled", "max_steps", "accept"}, unused);
+    table.refuse({"load_steps", "control", "controlled", "max_steps", "accept", "imperfection"}, unused);
   if (solver.kind != SolverKind::modes) table.refuse({"count"}, unused);
   if (solver.kind == SolverKind::central_differences) table.refuse({"newton", "linear", "tangent"}, unused);
 }
@@ -181,6 +181,8 @@ Solver read_solver(const TableReader& scene, const std::vector<std::string>& bod
   solver.modes = table.integer("count").value_or(solver.modes);
   read_newton(table.table("newton"), solver);
   read_linear(table.table("linear"), solver);
+  solver.imperfection = table.number("imperfection").value_or(0);
+  solver.imperfection_place = table.place("imperfection");
   if (const Value* accepted = table.value("accept"))
     for (const Value& item : *accepted->as_array())
       (*item.as_string() == "unstable" ? solver.accept_unstable : solver.accept_inverted) = true;

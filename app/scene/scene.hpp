@@ -296,9 +296,11 @@ struct Solver {
   int linear_max_iterations = 1000;
   double linear_tolerance = 1e-6;
   bool full_tangent = true;
+  double imperfection = 0;  ///< of statics: part of the largest body by which the lowest mode bends it
+  Place imperfection_place;
   bool accept_unstable = false, accept_inverted = false;  ///< ends of statics that count as converged all the same
-  std::string precision = "double";  ///< "double", "mixed", "single"
-  std::string backend = "auto";      ///< "auto", "cpu", "cuda"
+  std::string precision = "double";                       ///< "double", "mixed", "single"
+  std::string backend = "auto";                           ///< "auto", "cpu", "cuda"
   int gpus = 1;
   int threads = 0;
 };

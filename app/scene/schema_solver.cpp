@@ -102,6 +102,10 @@ Key solver_schema() {
            key("tangent", choice({{"full", "With the geometric stiffness."}, {"material", "Without it."}}),
                "Stiffness of Newton's method; not of `kind = \"explicit\"`.")
                .defaults("\"full\""),
+           key("imperfection", number("1", inside(0, 0.1)),
+               "Of `kind = \"static\"`: small loads, growing with the others, that would bend the model at rest along "
+               "its "
+               "lowest natural mode by this part of the largest body. They set off what a perfect shape would not do."),
            key("accept",
                array(choice({{"unstable", "An equilibrium that the smallest disturbance makes the body leave."},
                              {"inverted", "An equilibrium in which matter is turned inside out."}})),

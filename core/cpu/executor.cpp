@@ -91,7 +91,7 @@ void CpuExecutor::start_from(const State& state) {
 }
 
 template <PointKind Kind>
-void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& history, int group) {
+void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& history, int group, bool all) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int first_slot = set_.slot_begin[at(group)];
@@ -109,6 +109,7 @@ void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& his
     const PointStress<Lanes> stress = point_stress<Kind.stabilization>(x, m, E_old);
     P[b] = stress.P * m.volume;
     Y[b] = stress.Y * m.volume;
+    if (!all) continue;
     const PointEnergy<Lanes> energy = point_energy<Kind.stabilization>(x, m, E_old);
     elastic += lane_sum(energy.elastic);
     stabilizing += lane_sum(energy.stabilization);
@@ -121,11 +122,13 @@ void CpuExecutor::gradient_of_group(const State& state, const StrainHistory& his
     rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
                                                         (Lanes(1.0) + strain)));
   }
-  group_elastic_[at(group)] = elastic;
-  group_stabilization_[at(group)] = stabilizing;
-  group_viscous_[at(group)] = viscous;
-  group_rounding_[at(group)] = rounding;
-  group_tether_[at(group)] = tether;
+  if (all) {
+    group_elastic_[at(group)] = elastic;
+    group_stabilization_[at(group)] = stabilizing;
+    group_viscous_[at(group)] = viscous;
+    group_rounding_[at(group)] = rounding;
+    group_tether_[at(group)] = tether;
+  }
   for (std::size_t s = 0; s < nodes.size(); ++s) {
     const int slot = first_slot + static_cast<int>(s);
     slot_sums<kBlend>(set_.shape_of_slot(slot), P, Y, slot_sums_.data() + at(slot) * 12);
@@ -174,7 +177,7 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
 void CpuExecutor::sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient) {
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
-      with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group); });
+      with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group, all); });
   });
   for (std::size_t b = 0; b < elements_.size(); ++b)
     elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, all, part_motion_);

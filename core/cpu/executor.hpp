@@ -117,7 +117,7 @@ class CpuExecutor {
   void sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient);
   void sum_forces(const State& state, bool keep_moments, std::span<double> gradient);
   template <PointKind Kind>
-  void gradient_of_group(const State& state, const StrainHistory& history, int group);
+  void gradient_of_group(const State& state, const StrainHistory& history, int group, bool all);
   template <PointKind Kind>
   void linearize_group(const State& state, const StrainHistory& history, int group, Linearization& out) const;
   void note_motion(const State& state, std::span<const double> least, std::span<double> motion) const;

@@ -143,6 +143,7 @@ SceneRun run_cube(const Cube& cube, const std::string& law, const std::string& a
                                        "\", young = 1000, poisson = 0.3 }\n" + held + actions + R"(
 [solver]
 kind = "static"
+accept = ["unstable", "inverted"]
 newton = { tolerance = 1e-12 }
 [probes.corner]
 body = "cube"

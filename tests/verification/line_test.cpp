@@ -299,10 +299,11 @@ TEST(Line, ByThePapersOwnRuleHasNoRodInIt) {
   const double expected[] = {15.83, 3.957, 0.989};
   for (std::size_t k = 0; k < 3; ++k) {
     const int n = 9 * (1 << k) + 1;
-    const SceneRun run("line_cantilever",
-                       {"bodies.line.frames.grid=[" + std::to_string(n) + "]", "solver.linear.kind=cg",
-                        "bodies.line.points.per_cell=[6]", "bodies.line.points.through=1",
-                        "bodies.line.weights.blend=full", "bodies.line.weights.drilling=0"});
+    const SceneRun run(
+        "line_cantilever",
+        {"bodies.line.frames.grid=[" + std::to_string(n) + "]", "solver.linear.kind=cg",
+         "bodies.line.points.per_cell=[6]", "bodies.line.points.through=1", "bodies.line.weights.blend=full",
+         "bodies.line.weights.drilling=0", "solver.accept=['unstable']"});  // most of its motions cost nothing
     const double stiffness = 1e-6 / run.vector("tip")[1];
     std::printf("own rule, %2d frames: bending stiffness %.4f of a rod\n", n, stiffness);
     EXPECT_NEAR(stiffness, expected[k], 0.01 * expected[k]);

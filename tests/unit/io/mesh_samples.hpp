@@ -38,12 +38,14 @@ inline std::vector<Vec3d> cube_points() {
   return {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
 }
 
-/// The message of the InputError that `act` throws; fails the test where it throws none.
+/// The message of the InputError or StateError that `act` throws; fails the test where it throws none.
 template <class Act>
 std::string input_error(Act&& act) {
   try {
     act();
   } catch (const InputError& e) {
+    return e.what();
+  } catch (const StateError& e) {
     return e.what();
   }
   ADD_FAILURE() << "no InputError";

@@ -1,0 +1,178 @@
+// What counts as converged: the judgement of parts, and Newton's method where rounding or a detour is in its way.
+#include "core/model/parts.hpp"
+#include "core/solver/newton.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+namespace fascia {
+namespace {
+
+constexpr double kTolerance = 1e-8;
+
+PartForces part(double residual, double load, double reaction, double rounding) {
+  PartForces f;
+  f.residual = residual * residual;
+  f.load = load * load;
+  f.reaction = reaction * reaction;
+  f.rounding = rounding;
+  return f;
+}
+
+Evaluation judged(std::vector<PartForces> parts, std::vector<int> whole) {
+  Evaluation e;
+  judge(parts, whole, kTolerance, e);
+  return e;
+}
+
+TEST(Verdict, ToleranceRefersToTheLargestOfLoadsAndReactions) {
+  EXPECT_TRUE(judged({part(0.9e-8, 1, 0, 0)}, {0}).converged());
+  EXPECT_FALSE(judged({part(1.1e-8, 1, 0, 0)}, {0}).converged());
+  EXPECT_TRUE(judged({part(0.9e-6, 1, 100, 0)}, {0}).converged());
+}
+
+/// Reactions of 1e9 N allow 10 N, which is more than all of the load.
+TEST(Verdict, ReactionsNeverExcuseMoreThanAShareOfTheLoad) {
+  EXPECT_TRUE(judged({part(0.9e-4, 1, 1e9, 0)}, {0}).converged());
+  EXPECT_FALSE(judged({part(1.1e-4, 1, 1e9, 0)}, {0}).converged());
+}
+
+TEST(Verdict, RoundingNeverExcusesMoreThanAShareOfTheLoad) {
+  EXPECT_TRUE(judged({part(0.9e-4, 1, 0, 10)}, {0}).converged());
+  EXPECT_FALSE(judged({part(1.1e-4, 1, 0, 10)}, {0}).converged());
+}
+
+/// A body that was moved rigidly and rests: its reactions are rounding.
+TEST(Verdict, WhereNothingActsRoundingIsEnough) {
+  const Evaluation e = judged({part(1e-9, 0, 1e-9, 1e-8)}, {0});
+  EXPECT_TRUE(e.converged());
+  EXPECT_TRUE(e.by_rounding);
+  EXPECT_FALSE(judged({part(1e-7, 0, 1e-9, 1e-8)}, {0}).converged());
+}
+
+TEST(Verdict, MomentumIsMoreThanRounding) {
+  PartForces f = part(0.5, 0, 0, 1);
+  f.momentum = f.inertia = 1;
+  EXPECT_TRUE(judged({f}, {0}).converged());
+  f.adrift = true;
+  EXPECT_FALSE(judged({f}, {0}).converged());
+}
+
+/// Bone of 1e6 N and a strand that weighs 1 N: the bone's tolerance is 0.01 N.
+TEST(Verdict, ASoftPartIsJudgedByItsOwnLoad) {
+  const PartForces bone = part(1e-5, 10, 1e6, 0);
+  EXPECT_TRUE(judged({bone, part(0.9e-4, 1, 0, 0)}, {0, 0}).converged());
+  EXPECT_FALSE(judged({bone, part(1.1e-4, 1, 0, 0)}, {0, 0}).converged());
+  EXPECT_NEAR(judged({bone, part(1.1e-4, 1, 0, 0)}, {0, 0}).left_of_load, 1.1e-4, 1e-15);
+  EXPECT_FALSE(judged({bone, part(0.9e-4, 1, 0, 0)}, {0, 1}).converged()) << "another whole has its own tolerance";
+}
+
+/// A chain of springs from rigid to soft, three nodes each, by points whose influence is their gradient.
+PointSet chain(const std::vector<double>& young) {
+  PointSetBuilder builder;
+  for (std::size_t k = 0; k < young.size(); ++k) {
+    PointSample p;
+    p.volume = 1;
+    p.mu = 0.5 * young[k];
+    p.influences = {{0.5, {{-1, 0, 0}}, {}, {}}, {0.5, {{1, 0, 0}}, {}, {}}};
+    const std::array<int, 2> nodes{static_cast<int>(k), static_cast<int>(k) + 1};
+    builder.add_points(nodes, std::array{p}, 0.1, {Law::solid, Stabilization::none, false});
+  }
+  return std::move(builder).finish(std::vector<FrameKind>(young.size() + 1, FrameKind::vertex));
+}
+
+TEST(Parts, AJumpInStiffnessDividesAWhole) {
+  const PointSet set = chain({1e10, 1e10, 1e4, 1e4});
+  EXPECT_EQ(set.node_part, (std::vector<int>{0, 0, 0, 1, 1})) << "the node between is as stiff as the stiffer side";
+  EXPECT_EQ(set.part_whole, (std::vector<int>{0, 0}));
+  EXPECT_EQ(set.part_length.size(), 2U);
+  for (const double length : set.part_length) EXPECT_DOUBLE_EQ(length, 0.1);
+}
+
+TEST(Parts, AGradualChangeDoesNot) {
+  EXPECT_EQ(chain({1e10, 1e8, 1e6, 1e4}).part_whole.size(), 1U);
+  EXPECT_EQ(chain({1e10, 1.1e7}).part_whole.size(), 1U);
+}
+
+/// One unknown with the force f(x) and the tangent k(x).
+struct OneSpring {
+  using Function = double (*)(double);
+  Function force, tangent;
+  double noise = 0;  ///< that rounding leaves
+  double x = 0, saved = 0, d = 0;
+  int evaluations = 0;
+
+  Evaluation evaluate() {
+    ++evaluations;
+    Evaluation e;
+    const double sign = evaluations % 2 == 0 ? 1 : -1;
+    judge(std::array{part(std::abs(force(x)) + sign * 0.5 * noise, 1, 0, noise)}, std::array{0}, kTolerance, e);
+    e.energy_scale = 1;
+    return e;
+  }
+  DirectionReport direction() {
+    d = -force(x) / tangent(x);
+    DirectionReport report;
+    report.slope = force(x) * d;
+    return report;
+  }
+  void apply(double step) { x += step * d; }
+  void save() { saved = x; }
+  void restore() { x = saved; }
+  bool has_prescribed_increment() const { return false; }
+  bool conservative() const { return false; }
+};
+
+NewtonReport solve(OneSpring& system, int iterations) {
+  SolverSettings settings;
+  settings.max_iterations = iterations;
+  Newton newton(system, settings);
+  return newton.solve();
+}
+
+TEST(NewtonVerdict, SaysThatTheToleranceWasMet) {
+  OneSpring system{[](double x) { return x + x * x * x - 1; }, [](double x) { return 1 + 3 * x * x; }};
+  const NewtonReport r = solve(system, 50);
+  EXPECT_EQ(r.status, NewtonStatus::converged);
+  EXPECT_EQ(r.convergence, Convergence::tolerance);
+  EXPECT_NEAR(system.x, 0.6823278038280193, 1e-8);
+}
+
+/// arctan overshoots and diverges from x = 2: what is kept at the limit is no worse than the start.
+TEST(NewtonVerdict, KeepsTheBestStateWhereItGivesUp) {
+  OneSpring system{[](double x) { return std::atan(x - 2); }, [](double x) { return 1 / (1 + (x - 2) * (x - 2)); }};
+  for (const int iterations : {1, 2, 3, 4}) {
+    system.x = 0;
+    const NewtonReport r = solve(system, iterations);
+    EXPECT_LE(r.last.residual, std::atan(2.0) + 1e-15) << iterations;
+  }
+}
+
+/// A residual of 1e-6 of the load that no step reduces, of which the estimate of rounding knows nothing.
+TEST(NewtonVerdict, StagnationNearTheSolutionIsSaid) {
+  OneSpring system{[](double x) { return x - 1 + (x > 0.999 ? 1e-6 : 0.0); }, [](double) { return 1.0; }};
+  system.force = [](double x) { return std::abs(x - 1) < 1e-3 ? 1e-6 : x - 1; };
+  const NewtonReport r = solve(system, 50);
+  EXPECT_EQ(r.status, NewtonStatus::converged);
+  EXPECT_EQ(r.convergence, Convergence::stagnation);
+  EXPECT_LT(r.iterations, 10);
+}
+
+TEST(NewtonVerdict, StagnationFarFromTheSolutionIsNoConvergence) {
+  OneSpring system{[](double x) { return std::abs(x - 1) < 1e-3 ? 1e-3 : x - 1; }, [](double) { return 1.0; }};
+  EXPECT_NE(solve(system, 50).status, NewtonStatus::converged);
+}
+
+/// A start within the rounding floor is not taken for a solution before an iteration has tried to do better.
+TEST(NewtonVerdict, RoundingExcusesOnlyWhatNewtonTriedToReduce) {
+  OneSpring system{[](double x) { return x - 1e-5; }, [](double) { return 1.0; }, 1e-4};
+  const NewtonReport r = solve(system, 50);
+  EXPECT_EQ(r.status, NewtonStatus::converged);
+  EXPECT_GE(r.iterations, 1);
+  EXPECT_NEAR(system.x, 1e-5, 1e-18);
+}
+
+}  // namespace
+}  // namespace fascia

@@ -1,0 +1,259 @@
+// What a run says of its end: stable or not, inside out, within tolerance, and what it keeps where it fails.
+#include "tests/support/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+namespace fascia::test {
+namespace {
+
+/// A scene from text, run to any end.
+struct Ended {
+  int status = -1;
+  nlohmann::json summary;
+
+  explicit Ended(const std::string& text, const Settings& settings = {}) {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = folder.path / "scene.toml";
+    std::ofstream(scene) << text;
+    std::vector<std::string> command{FASCIA_EXECUTABLE, "run",      scene.string(),
+                                     "--json",          "--output", (folder.path / "out").string(),
+                                     "--backend",       "cpu"};
+    for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
+    const ProgramResult run = run_program(command, {});
+    status = run.status;
+    summary = nlohmann::json::parse(run.out, nullptr, false);
+    if (summary.is_discarded()) summary = nlohmann::json::object();
+  }
+  std::string said() const { return summary.value("status", "none"); }
+  std::string message() const { return summary.value("message", ""); }
+  double component(const std::string& probe, int k) const {
+    return summary["probes"][probe]["value"][static_cast<std::size_t>(k)].get<double>();
+  }
+};
+
+/// A column 2 m long and 0.1 m wide, clamped at its foot. Euler: π² E I / (4 L²) = 5.140 N for 1 MPa.
+std::string column(double force) {
+  return R"(
+[bodies.c]
+model = "hexahedra"
+order = 2
+domain = { box = { min = [0, -0.05, -0.05], max = [2, 0.05, 0.05], cells = [20, 2, 2] } }
+density = 1000
+material = { young = 1e6, poisson = 0.0 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -1, -1], max = [0.0001, 2, 2] } }
+fix = "all"
+[[loads]]
+body = "c"
+where = { box = { min = [1.9999, -1, -1], max = [2.01, 2, 2] } }
+total_force = [)" +
+         std::to_string(-force) + R"(, 0, 0]
+[solver]
+kind = "static"
+[probes.tip]
+body = "c"
+at = [2, 0, 0]
+quantity = "displacement"
+)";
+}
+
+constexpr double kEuler = 5.140;
+
+TEST(Stability, OfAColumnIsTheSameByFactorAndByConjugateGradients) {
+  std::printf("load over Euler's   cholesky        cg\n");
+  for (const double part : {0.5, 0.9, 1.1, 2.0, 10.0}) {
+    const Ended direct(column(part * kEuler), {"solver.linear.kind='cholesky'", "solver.load_steps=2"});
+    const Ended iterative(column(part * kEuler),
+                          {"solver.linear.kind='cg'", "solver.load_steps=2", "solver.linear.max_iterations=20000"});
+    std::printf("%17.2f   %-12s    %-12s\n", part, direct.said().c_str(), iterative.said().c_str());
+    EXPECT_EQ(direct.said(), part < 1 ? "converged" : "unstable") << direct.message();
+    EXPECT_EQ(iterative.said(), direct.said()) << iterative.message();
+    EXPECT_EQ(direct.status, part < 1 ? 0 : 3);
+  }
+}
+
+TEST(Stability, TheMessageNamesBodyAndRemedyAndTheSceneMayAccept) {
+  const Ended refused(column(2 * kEuler), {"solver.load_steps=2"});
+  EXPECT_EQ(refused.status, 3);
+  for (const char* word : {"unstable", "\"c\"", "arc-length", "accept"})
+    EXPECT_NE(refused.message().find(word), std::string::npos) << refused.message();
+  const Ended accepted(column(2 * kEuler), {"solver.load_steps=2", "solver.accept=['unstable']"});
+  EXPECT_EQ(accepted.status, 0);
+  EXPECT_EQ(accepted.said(), "converged");
+  EXPECT_NE(accepted.summary["warnings"].dump().find("unstable"), std::string::npos);
+}
+
+/// The elastica of Timoshenko and Gere, table 2-4, clamped and free: at 1.063 Euler loads the end turns by 40°, and
+/// comes down by 0.119 lengths and goes aside by 0.422.
+TEST(Stability, AnImperfectionSetsOffBuckling) {
+  const Ended bent(column(1.063 * kEuler), {"solver.imperfection=1e-4"});
+  ASSERT_EQ(bent.said(), "converged") << bent.message();
+  const double down = -bent.component("tip", 0) / 2,
+               aside = std::hypot(bent.component("tip", 1), bent.component("tip", 2)) / 2;
+  std::printf("down %.4f (elastica 0.119), aside %.4f (0.422), %d iterations\n", down, aside,
+              bent.summary.value("newton_iterations", -1));
+  EXPECT_NEAR(down, 0.119, 0.02);
+  EXPECT_NEAR(aside, 0.422, 0.03);
+  EXPECT_EQ(Ended(column(1), {"solver.imperfection=0.5"}).status, 2);
+  EXPECT_EQ(Ended(column(1), {"solver.imperfection=1e-4", "constraints[0].where='all'"}).status, 2);
+}
+
+/// A cube pressed by more than its law can bear, 0.192 E A.
+const char* kCrushed = R"(
+[bodies.c]
+model = "tetrahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [3, 3, 3] } }
+density = 1000
+material = { young = 1e6, poisson = 0.3 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -1, -1], max = [0.0001, 2, 2] } }
+fix = "all"
+[[loads]]
+body = "c"
+where = { box = { min = [0.9999, -1, -1], max = [1.01, 2, 2] } }
+total_force = [-1e6, 0, 0]
+[solver]
+kind = "static"
+)";
+
+TEST(Inversion, IsAStatusUnlessTheSceneAcceptsIt) {
+  const Ended crushed(kCrushed);
+  EXPECT_EQ(crushed.status, 3);
+  EXPECT_EQ(crushed.said(), "inverted");
+  EXPECT_NE(crushed.message().find("inside out"), std::string::npos);
+  const Ended accepted(kCrushed, {"solver.accept=['inverted', 'unstable']"});
+  EXPECT_EQ(accepted.status, 0);
+  EXPECT_EQ(accepted.said(), "converged");
+}
+
+/// A strand of 1 kPa on bone of 17 GPa under its own weight: 7.85 g hang on the bone.
+TEST(Contrast, AStrandOnBoneCarriesItsWeight) {
+  const Ended run(R"(
+[world]
+gravity = [0, -9.81, 0]
+[bodies.c]
+model = "tetrahedra"
+order = 2
+domain = { box = { min = [-0.02, -0.0025, -0.0025], max = [0.1, 0.0025, 0.0025], cells = [24, 2, 2] } }
+density = 1000
+material = [{ where = { box = { min = [-1, -1, -1], max = [0, 1, 1] } }, use = "bone" }, { use = "tissue" }]
+[materials.bone]
+young = "17 GPa"
+poisson = 0.3
+[materials.tissue]
+young = "1 kPa"
+poisson = 0.3
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -1, -1], max = [-0.0199, 2, 2] } }
+fix = "all"
+[solver]
+kind = "static"
+accept = ["inverted", "unstable"]
+[probes.R]
+body = "c"
+quantity = "force"
+where = { box = { min = [-0.1, -1, -1], max = [-0.0199, 2, 2] } }
+)");
+  ASSERT_EQ(run.said(), "converged") << run.message();
+  const double weight = 0.12 * 0.005 * 0.005 * 1000 * 9.81;
+  std::printf("reaction %.9f N, weight %.9f N\n", run.component("R", 1), weight);
+  EXPECT_NEAR(run.component("R", 1), weight, 1e-4 * weight);
+}
+
+/// A block that spins by 1 rad a step, 1e8 times longer than its vibrations: its momentum is 7.8e-8 N s.
+TEST(Momentum, IsKeptOrTheRunHasNotConverged) {
+  const std::string text = R"(
+[bodies.b]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [1e-3, 1e-3, 1e-3], cells = [2, 2, 2] } }
+density = 7800
+material = { young = 2e11, poisson = 0.3 }
+initial = { velocity = [1e-2, 0, 0], angular_velocity = [0, 0, 0.1] }
+[solver]
+kind = "implicit-euler"
+time_step = 10
+steps = 2
+[probes.p]
+quantity = "momentum"
+)";
+  for (const char* kind : {"implicit-euler", "midpoint"}) {
+    const Ended run(text, {std::string("solver.kind='") + kind + "'"});
+    const double p = run.component("p", 0);
+    std::printf("%-16s %-14s momentum %.4g of 7.8e-8 N s\n", kind, run.said().c_str(), p);
+    EXPECT_TRUE(run.said() != "converged" || std::abs(p - 7.8e-8) < 1e-3 * 7.8e-8) << kind << ": " << p;
+  }
+}
+
+/// Pressed until J = 0: the states before are kept, and the status says that the run did not end well.
+TEST(Failure, KeepsWhatWasComputedBeforeAStateThatCannotBeShown) {
+  const Ended run(R"(
+[bodies.c]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
+density = 1000
+material = { young = 1e4, poisson = 0.0 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
+fix = "all"
+[[constraints]]
+body = "c"
+where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
+move = { translate = [-1, 0, 0] }
+over = "1 s"
+[solver]
+kind = "implicit-euler"
+time_step = "40 ms"
+duration = "1 s"
+[probes.s]
+body = "c"
+at = [0.5, 0.5, 0.5]
+quantity = "stress"
+)");
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.said(), "diverged");
+  EXPECT_NE(run.message().find("not finite"), std::string::npos) << run.message();
+}
+
+/// One end of a line comes nearer and aside: shifts of an indefinite tangent that start too large do not get there.
+TEST(Shifts, ASlackLineIsSolved) {
+  const Ended run(R"(
+[bodies.c]
+model = "meshless"
+domain = { line = { from = [0, 0, 0], to = [0.3, 0, 0] } }
+radius = 0.0025
+frames = { grid = [31] }
+density = 1000
+material = { young = 1e6, poisson = 0.3 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -1, -1], max = [0.0001, 2, 2] } }
+fix = "all"
+[[constraints]]
+body = "c"
+where = { box = { min = [0.2999, -1, -1], max = [0.31, 2, 2] } }
+move = { translate = [-0.1, 0.1, 0.0] }
+[solver]
+kind = "static"
+accept = ["unstable"]
+)");
+  EXPECT_EQ(run.said(), "converged") << run.message();
+  std::printf("%d iterations\n", run.summary.value("newton_iterations", -1));
+  EXPECT_LE(run.summary.value("newton_iterations", 1000), 200);
+}
+
+/// Statuses that do not exist, and paths, which go on past unstable states anyway.
+TEST(Accept, OfUnknownStatesAndOfPathsIsRefused) {
+  EXPECT_EQ(Ended(column(1), {"solver.accept=['bent']"}).status, 2);
+  EXPECT_EQ(Ended(column(1), {"solver.accept=['unstable']", "solver.control='arc-length'"}).status, 2);
+}
+
+}  // namespace
+}  // namespace fascia::test
