@@ -54,7 +54,7 @@ constexpr std::array kFrames{Samples{72, 55.234, 1},  Samples{144, 41.443, 1},  
                              Samples{6922, 8.765, 1}};
 constexpr std::array kPoints{Samples{360, 22.374, 3},      Samples{400, 21.544, 2},      Samples{500, 19.902, 2},
                              Samples{750, 17.461, 2},      Samples{800, 17.1, 2},        Samples{864, 16.66, 2},
-                             Samples{1470, 13.961, 2},     Samples{2340, 11.967, 2},     Samples{2600, 11.541, 2},
+                             Samples{1470, 13.961, 2},     Samples{2340, 11.967, 2},     Samples{2600, 11.5404, 2},
                              Samples{6070, 8.70155, 3},    Samples{12700, 6.8009793, 2}, Samples{16210, 6.2667417, 2},
                              Samples{19990, 5.8398577, 3}, Samples{26750, 5.2970931, 3}, Samples{34610, 4.8576133, 3}};
 

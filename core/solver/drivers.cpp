@@ -26,6 +26,15 @@ std::string convergence_sentence(const NewtonReport& r, const SolverSettings& se
   return out.str();
 }
 
+std::string passed_sentence(double from, double to) {
+  std::ostringstream out;
+  out << "between load factors " << from << " and " << to
+      << " the structure passed a limit point or a bifurcation (its tangent stiffness became indefinite): what follows "
+         "may "
+         "be another equilibrium than the one that the path leads to; use control = \"arc-length\" to follow it";
+  return out.str();
+}
+
 namespace {
 
 /// The residual that was left, against what it should be.

@@ -39,12 +39,14 @@ struct RunReport {
   std::string trouble;              ///< of a followed path: its end may be unstable
   std::string convergence;          ///< why the last step counts as converged, in words
   Stability stability;              ///< of the end of statics under load control
-  std::vector<std::string> events;  ///< limit points and bifurcations that a followed path passed, a sentence each
+  std::vector<std::string> events;  ///< limit points and bifurcations that were passed, a sentence each
   std::string message;              ///< one sentence on what went wrong, where, and what to try
 };
 
 /// Which criterion ended a step, with its figures; empty where none did.
 std::string convergence_sentence(const NewtonReport& newton, const SolverSettings& settings);
+/// That a load step led past a place where the path of equilibria turns or branches.
+std::string passed_sentence(double from, double to);
 /// Why a step did not converge.
 std::string failure_sentence(const NewtonReport& newton, const SolverSettings& settings);
 /// Of the equilibrium at the end of statics, which the system stands at.

@@ -61,7 +61,8 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
   RunReport run;
   const double longest = statics.load_steps > 0 ? 1.0 / statics.load_steps : 1.0;
   double reached = 0, increment = longest;
-  int failures = 0;  // since the last step that was as long as asked
+  int failures = 0;       // since the last step that was as long as asked
+  bool definite = false;  // all tangents of the last step
   state.time = 0;
   while (reached < 1) {
     const Clock::time_point start = Clock::now();
@@ -102,6 +103,8 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     if (target == asked) failures = 0;
     state = system.finish_step(target);
     accept(run, report, settings, target);
+    if (definite && report.indefinite) run.events.push_back(passed_sentence(reached, target));
+    definite = !report.indefinite;
     reached = target;
     increment = std::min(longest, 2 * increment);
     if (reached >= 1) run.stability = end_stability(system, state, run, report.iterations > 0);

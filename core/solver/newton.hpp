@@ -32,6 +32,7 @@ struct NewtonReport {
   int iterations = 0, linear_iterations = 0;
   Evaluation last;
   std::string trouble;         ///< of the last direction, empty where there was none
+  bool indefinite = false;     ///< a tangent on the way was not positive definite
   double linear_residual = 0;  ///< of the last direction
   double cg_seconds = 0;       ///< of all directions
 };
@@ -104,6 +105,7 @@ class Newton {
     ++report_.iterations;
     report_.linear_iterations += d.linear_iterations;
     report_.trouble = d.trouble;
+    report_.indefinite = report_.indefinite || !d.trouble.empty();
     report_.linear_residual = d.linear_residual;
     report_.cg_seconds += d.cg_seconds;
     return d;
