@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 /// Newton's directions of System.
 namespace fascia::gpu {
@@ -173,7 +174,10 @@ SoftestDirection System<Space>::softest() {
       return TangentProbe{met || cg.status == CgStatus::converged, met ? 1 : 0};
     });
   };
-  return softest_direction(model_, filter_, probe, 1);
+  SoftestDirection found = softest_direction(model_, filter_, probe, 1);
+  // A solve that was cut short has no quotient, and must not pass for one near a limit point.
+  if (found.probe.unstable > 0) found.stiffness = -std::numeric_limits<double>::infinity();
+  return found;
 }
 
 template <class Space>

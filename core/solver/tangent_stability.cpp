@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 /// The parts of TangentSolver and MechanicalSystem that ask whether an equilibrium is stable.
 namespace fascia {
@@ -38,7 +39,10 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
       const bool settled = report.usable && report.iterations < settings_.cg.max_iterations;
       return TangentProbe{settled || (report.usable && met), met ? 1 : 0};
     };
-    return softest_direction(model_, filter_, solve, kRoundsOfCg);
+    SoftestDirection found = softest_direction(model_, filter_, solve, kRoundsOfCg);
+    // A solve that was cut short has no quotient, and must not pass for one near a limit point.
+    if (found.probe.unstable > 0) found.stiffness = -std::numeric_limits<double>::infinity();
+    return found;
   }
   int negative = 0;
   if (!reusable) {

@@ -77,6 +77,15 @@ TEST(Stability, OfAColumnIsTheSameByFactorAndByConjugateGradients) {
   }
 }
 
+/// A section of 12 x 12 cells, whose factor costs more than all of the solves: conjugate gradients themselves tell.
+TEST(Stability, OfALargerColumnIsFoundWithoutAFactor) {
+  for (const double part : {0.4, 10.0}) {
+    const Ended run(column(part * kEuler), {"bodies.c.order=1", "bodies.c.domain.box.cells=[16, 12, 12]",
+                                            "solver.linear.kind='cg'", "solver.linear.max_iterations=20000"});
+    EXPECT_EQ(run.said(), part < 1 ? "converged" : "unstable") << run.message();
+  }
+}
+
 TEST(Stability, TheMessageNamesBodyAndRemedyAndTheSceneMayAccept) {
   const Ended refused(column(2 * kEuler), {"solver.load_steps=2"});
   EXPECT_EQ(refused.status, 3);
