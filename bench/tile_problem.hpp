@@ -111,7 +111,7 @@ class TileReference {
     for (int q = 0; q < p_.points.point_count(); ++q) {
       const PointMotion<double> x = motion(
           q, [&](int node) { return p_.u[at(node)]; }, [&](int node) { return p_.D[at(node)]; });
-      points_.push_back({x, stress(q, x).S});
+      points_.push_back(x);
     }
   }
 
@@ -134,7 +134,7 @@ class TileReference {
     std::vector<double> y(6 * Q_.size(), 0.0);
     energy = 0;
     for (int q = 0; q < p_.points.point_count(); ++q) {
-      const PointMotion<double>& x = points_[at(q)].x;
+      const PointMotion<double>& x = points_[at(q)];
       const auto s = stress(q, x);
       scatter(q, s.P, s.Y, y);
       const auto e = drilling() ? point_energy<Stabilization::drilling>(x, material(q), Mat3d{})
@@ -169,10 +169,6 @@ class TileReference {
   }
 
  private:
-  struct Point {
-    PointMotion<double> x;
-    Mat3d S;
-  };
   bool drilling() const { return p_.points.drilling; }
   double block(std::size_t f, std::size_t i, std::size_t j) const {
     return 0.5 * (p_.node_blocks[36 * f + 6 * i + j] + p_.node_blocks[36 * f + 6 * j + i]);
@@ -213,11 +209,13 @@ class TileReference {
                       : point_stress<Stabilization::none>(x, material(q), Mat3d{});
   }
   PointStressDifferential<double> differential(int q, const PointMotion<double>& d) const {
-    const Point& at_point = points_[at(q)];
-    return drilling() ? point_stress_differential<Stabilization::drilling>(at_point.x, at_point.S, material(q),
-                                                                           Tangent::full, d.H, d.Dbar)
-                      : point_stress_differential<Stabilization::none>(at_point.x, at_point.S, material(q),
-                                                                       Tangent::full, d.H, d.Dbar);
+    return drilling() ? differential_of<Stabilization::drilling>(q, d) : differential_of<Stabilization::none>(q, d);
+  }
+  template <Stabilization Tie>
+  PointStressDifferential<double> differential_of(int q, const PointMotion<double>& d) const {
+    const PointMotion<double>& x = points_[at(q)];
+    return point_stress_differential<Tie>(x, tangent_stress<Tie>(x, material(q), Mat3d{}), material(q), Tangent::full,
+                                          d);
   }
   void add_force(int q, std::size_t k, const Mat3d& P, const Mat3d& Y, double* y) const {
     const double v = p_.points.volume[at(q)];
@@ -236,7 +234,7 @@ class TileReference {
 
   const TileProblem& p_;
   std::vector<Mat3d> Q_;
-  std::vector<Point> points_;
+  std::vector<PointMotion<double>> points_;
 };
 
 }  // namespace fascia::bench

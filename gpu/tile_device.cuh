@@ -242,10 +242,13 @@ __device__ inline void stress_of_direction(const double* state, int lanes, const
   constexpr Stabilization kTie = Drilling ? Stabilization::drilling : Stabilization::none;
   PointMotion<double> x;
   x.H = load_matrix(state, lanes);
-  const Mat3d S = load_symmetric(state + 9 * lanes, lanes);
-  if constexpr (Drilling) x.Dbar = load_matrix(state + 15 * lanes, lanes);
+  TangentStress<double> s{load_symmetric(state + 9 * lanes, lanes), {}};
+  if constexpr (Drilling) {
+    x.Dbar = load_matrix(state + 15 * lanes, lanes);
+    s.drilling = drilling_axis(drilling_motion(x), material.stabilization);
+  }
   const auto d =
-      point_stress_differential<kTie>(x, S, material, tangent, tg + wA, Drilling ? wA * (1 / blend) : Mat3d{});
+      point_stress_differential<kTie>(x, s, material, tangent, {tg + wA, Drilling ? wA * (1 / blend) : Mat3d{}});
   dP = d.dP * material.volume;
   if constexpr (Drilling) dW = dP + d.dY * (material.volume / blend);
 }

@@ -30,6 +30,8 @@ class BatchTangent {
       } else {
         const Lanes p = block.averaged ? pressure : m.lambda * volumetric_strain<L>(points.H[q]);
         point_[q] = ElasticPoint<L, Lanes>(points.H[q], m, p, old, block.damped);
+        if (!state.S.empty())
+          point_[q].set_stress(symmetric_matrix(state.S.data() + symmetric_row(block, batch, q), 0, half));
       }
     }
     if constexpr (kTurns) element_.close();

@@ -25,10 +25,13 @@ class ElementExecutor {
     std::span<const double> E;  ///< strains at the start of the step (batches × points × 6 × 8), or empty
     double inverse_step = 0;    ///< of damping [1/s]
     Tangent tangent = Tangent::full;
+    std::span<const double> S{};  ///< stresses of the tangent, in the layout of E; empty: those of the state
   };
 
   std::size_t strain_size() const;
   void store_strain(std::span<const Vec3d> u, std::span<double> E);
+  /// Stresses extrapolated along a step dx from a state. @param S  in the layout of E
+  void extrapolate(const At& start, std::span<const Vec3d> dx, std::span<double> S);
 
   /// Sums forces (the gradient of the energy) by patch. @param energies  energies and rounding too
   void compute_forces(const At& state, bool energies, std::span<const double> part_motion);
@@ -41,6 +44,10 @@ class ElementExecutor {
       sum += slot_sum_[at(block_.node_slot[at(k)])];
     return sum;
   }
+
+  /// The largest rotation that a motion has at a point, to first order [rad]; 0 of the linear law, which has no use for
+  /// it.
+  double largest_spin(std::span<const Vec3d> dx);
 
   /// Adds K to a matrix of the set's pattern.
   void assemble(const At& state, BlockMatrix& matrix);
@@ -62,6 +69,10 @@ class ElementExecutor {
   void assemble_patch(const At& state, int patch, BlockMatrix& matrix);
   template <ElementLaw L, int N>
   void strain_of_patch(int patch, std::span<double> E) const;
+  template <int N>
+  double spin_of_patch(int patch) const;
+  template <ElementLaw L, int N>
+  void extrapolate_patch(const At& start, int patch, std::span<double> S) const;
   void gather_patch(std::span<const Vec3d> values, int patch, std::vector<Vec3d>& out) const;
   void find_pair_slots(const BlockMatrix& matrix);
 
@@ -83,6 +94,7 @@ class ElementExecutor {
   ThreadPool& pool_;
   std::vector<Vec3d> slot_u_, slot_d_, slot_sum_;
   std::vector<PatchSums> patch_sums_;
+  std::vector<double> patch_spin_;
   std::vector<int> lane_part_;         ///< (batches × 8): part of each element; empty where each patch lies in one
   std::vector<double> lane_rounding_;  ///< likewise: squares of rounding [N²]
   double elastic_ = 0, viscous_ = 0;

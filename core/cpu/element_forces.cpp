@@ -179,7 +179,7 @@ void ElementExecutor::strain_of_patch(int patch, std::span<double> E) const {
       gather<N>(block_, batch, half, slot_u_.data() + first, u);
       const BatchPoints<N> points(block_, batch, half, u);
       for (int q = 0; q < points.count(); ++q) {
-        double* out = E.data() + (at(batch) * at(block_.points) + at(q)) * 6 * kElementLanes;
+        double* out = E.data() + symmetric_row(block_, batch, q);
         if constexpr (L == ElementLaw::corotational) {
           const CorotationalElement<Lanes> element(points.mean(points.H), points.safe_volume(), true);
           store_symmetric(out, 0, half, element.strain(points.H[q]));

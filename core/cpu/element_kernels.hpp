@@ -67,10 +67,15 @@ inline ElementMaterial<Lanes> element_material(const ElementBlock& block, int ba
   return {row(base, 0, half), row(base, 1, half), row(base, 2, half) * Lanes(inverse_step), row(base, 3, half)};
 }
 
+/// Place of a symmetric matrix of each point in an array of the layout of strains.
+inline std::size_t symmetric_row(const ElementBlock& block, int batch, int q) {
+  return (at(batch) * at(block.points) + at(q)) * 6 * kElementLanes;
+}
+
 /// Strain at the start of the step; zero where nothing is damped.
 inline Mat3<Lanes> old_strain(const ElementBlock& block, std::span<const double> E, int batch, int q, int half) {
   if (E.empty()) return {};
-  return symmetric_matrix(E.data() + (at(batch) * at(block.points) + at(q)) * 6 * kElementLanes, 0, half);
+  return symmetric_matrix(E.data() + symmetric_row(block, batch, q), 0, half);
 }
 
 /// Mean of λ θ about the nodes of a batch.

@@ -27,16 +27,25 @@ struct StrainHistory {
   double inverse_step = 0;  ///< 1/dt [1/s]; 0 switches the viscous stress off
 };
 
+/// A step of Newton's method, along which stresses are extrapolated for the tangent where it ends.
+struct TakenStep {
+  std::vector<Vec3d> u;   ///< where it started: displacements [m]
+  FrameMatrices D;        ///< and rotations − I
+  std::vector<double> d;  ///< its direction times its length, by degrees of freedom
+};
+
 /// The second derivative of the internal energy at a state. It stays valid as long as it is held.
 struct Linearization {
+  static constexpr int kRows = 27;
   Tangent tangent = Tangent::full;
   double inverse_step = 0;          ///< of the viscous stress
   std::vector<Mat3d> Q;             ///< I + D of each frame
   std::vector<double> node_blocks;  ///< what acts on one frame alone, by rows: rotation-rotation terms, inertia, loads
-  AlignedVector<double> points;     ///< (groups × 24 × 8): H (9), Dbar (9), S (6)
+  AlignedVector<double> points;     ///< (groups × kRows × 8): H (9), Dbar (9), S (6), drilling (3)
   std::vector<Vec3d> u;             ///< displacements, where there are elements or shells
   std::vector<Mat3d> D;             ///< rotations − I, where there are shells
   AlignedVector<double> E;          ///< StrainHistory::E, where elements or shells are damped
+  AlignedVector<double> stress;     ///< extrapolated, of elements and shells in the layout of E; or empty
   std::vector<SurfaceTangent> surfaces;  ///< of surface loads; added by who knows them, as to node_blocks
   std::vector<RankOne> low_rank;         ///< terms that no matrix holds; products have them
 };
@@ -63,11 +72,15 @@ class CpuExecutor {
   /// Tangent at the state of the last call of gradient(), which must have been `state`.
   /// @param tethers_turn  false leaves out what the pull of tethers does to turning frames: a place that is still far
   ///                      from its target pulls so hard that the full tangent is indefinite
+  /// @param taken  the step that led here: stresses of the geometric part are extrapolated along it
   void linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out,
-                 bool tethers_turn = true);
+                 bool tethers_turn = true, const TakenStep* taken = nullptr);
 
   /// y = K x without a matrix.
   void multiply(const Linearization& at, std::span<const double> x, std::span<double> y);
+
+  /// The largest rotation that a direction has in elements [rad]; frames show theirs.
+  double largest_spin(std::span<const double> direction);
 
   /// Fills a matrix made from the same point set.
   void assemble(const Linearization& at, BlockMatrix& matrix);
@@ -111,6 +124,8 @@ class CpuExecutor {
  private:
   /// @param block  of elements, then of shells
   std::span<const double> strain_of_block(const AlignedVector<double>& E, std::size_t block) const;
+  /// Of Linearization::stress, which has no points; empty where the block's stresses are those of the state.
+  std::span<const double> stress_of_block(const AlignedVector<double>& stress, std::size_t block) const;
   ElementExecutor::At element_at(const Linearization& lin, std::size_t block) const;
   ShellExecutor::At shell_at(const Linearization& lin, std::size_t shell) const;
   /// @param all  with energies, rounding, and what linearize() needs
@@ -119,7 +134,13 @@ class CpuExecutor {
   template <PointKind Kind>
   void gradient_of_group(const State& state, const StrainHistory& history, int group, bool all);
   template <PointKind Kind>
-  void linearize_group(const State& state, const StrainHistory& history, int group, Linearization& out) const;
+  void linearize_group(const State& state, const StrainHistory& history, int group, const TakenStep* taken,
+                       Linearization& out);
+  void linearize_points(const State& state, const StrainHistory& history, const TakenStep* taken, Linearization& out);
+  void extrapolate_blocks(const StrainHistory& history, const TakenStep& taken, Linearization& out);
+  void spread_direction(std::span<const double> x, const std::vector<Mat3d>& Q);
+  std::span<const Vec3d> translations(std::span<const double> x);
+  std::size_t block_strains_begin() const { return static_cast<std::size_t>(set_.group_count()) * 6 * kGroupSize; }
   void note_motion(const State& state, std::span<const double> least, std::span<double> motion) const;
   void add_spring_forces(const State& state, std::span<double> gradient) const;
   double note_springs(const State& state);
@@ -143,7 +164,8 @@ class CpuExecutor {
   std::vector<double> spring_energy_;
   std::vector<double> part_motion_, start_motion_, part_rounding_, part_tether_;
   AlignedVector<double> targets_;
-  std::vector<Mat3d> node_L_;         ///< L of the last gradient, of rigid frames
+  std::vector<Mat3d> node_L_;  ///< L of the last gradient, of rigid frames
+  std::vector<Mat3d> extrapolated_L_;
   std::vector<char> slot_is_tether_;  ///< empty where there are none
   std::vector<Mat3d> tether_L_;       ///< the part of tethers; empty where there are none
   AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), dA (9)

@@ -3,6 +3,7 @@
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace fascia {
@@ -11,20 +12,17 @@ using namespace kernels;
 
 namespace {
 
+const double* rows_of(const Linearization& lin, int group) {
+  return lin.points.data() + at(group) * Linearization::kRows * kGroupSize;
+}
+
 PointMotion<Lanes> motion_of(const Linearization& lin, int group, int b) {
-  const double* point = lin.points.data() + at(group) * 24 * kGroupSize;
-  return {matrix(point, 0, b), matrix(point, 9, b)};
+  return {matrix(rows_of(lin, group), 0, b), matrix(rows_of(lin, group), 9, b)};
 }
 
-Mat3<Lanes> stress_of(const Linearization& lin, int group, int b) {
-  return symmetric_matrix(lin.points.data() + at(group) * 24 * kGroupSize, 18, b);
-}
-
-Mat3d stored_matrix(const double* rows) {
-  Mat3d m;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) m(i, j) = rows[3 * i + j];
-  return m;
+TangentStress<Lanes> stress_of(const Linearization& lin, int group, int b) {
+  const double* rows = rows_of(lin, group);
+  return {symmetric_matrix(rows, 18, b), {{row(rows, 24, b), row(rows, 25, b), row(rows, 26, b)}}};
 }
 
 }  // namespace
@@ -44,7 +42,7 @@ void CpuExecutor::multiply_group(const Linearization& lin, int group) {
     }
     const auto m = material<Kind>(set_, group, b, lin.inverse_step, targets_);
     const auto r = point_stress_differential<Kind.stabilization>(motion_of(lin, group, b), stress_of(lin, group, b), m,
-                                                                 lin.tangent, direction.H, direction.Dbar);
+                                                                 lin.tangent, direction);
     dP[b] = r.dP * m.volume;
     dY[b] = r.dY * m.volume;
   }
@@ -55,36 +53,55 @@ void CpuExecutor::multiply_group(const Linearization& lin, int group) {
 }
 
 ElementExecutor::At CpuExecutor::element_at(const Linearization& lin, std::size_t block) const {
-  return {lin.u, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent};
+  return {lin.u, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent, stress_of_block(lin.stress, block)};
 }
 
 ShellExecutor::At CpuExecutor::shell_at(const Linearization& lin, std::size_t shell) const {
-  return {lin.u, lin.D, strain_of_block(lin.E, elements_.size() + shell), lin.inverse_step, lin.tangent};
+  const std::size_t block = elements_.size() + shell;
+  return {
+      lin.u, lin.D, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent, stress_of_block(lin.stress, block)};
 }
 
-void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, std::span<double> y) {
+/// Motions of the nodes for products of points: dx, and dA of frames that stand at Q.
+void CpuExecutor::spread_direction(std::span<const double> x, const std::vector<Mat3d>& Q) {
   pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       double* d = directions_.data() + at(node) * 12;
       const double* xn = x.data() + set_.dofs.begin(node);
-      const Mat3d W = frame_variation(set_.dofs.kind(node), xn + 3, lin.Q[at(node)]);
+      const Mat3d W = frame_variation(set_.dofs.kind(node), xn + 3, Q[at(node)]);
       for (int i = 0; i < 3; ++i) {
         d[i] = xn[i];
         for (int j = 0; j < 3; ++j) d[3 + 3 * i + j] = W(i, j);
       }
     }
   });
+}
+
+std::span<const Vec3d> CpuExecutor::translations(std::span<const double> x) {
+  element_direction_.resize(at(set_.node_count()));
+  for (int node = 0; node < set_.node_count(); ++node)
+    std::copy_n(x.data() + set_.dofs.begin(node), 3, element_direction_[at(node)].v);
+  return element_direction_;
+}
+
+double CpuExecutor::largest_spin(std::span<const double> direction) {
+  if (elements_.empty()) return 0;
+  const std::span<const Vec3d> dx = translations(direction);
+  double largest = 0;
+  for (ElementExecutor& block : elements_) largest = std::max(largest, block.largest_spin(dx));
+  return largest;
+}
+
+void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, std::span<double> y) {
+  if (set_.group_count() > 0) spread_direction(x, lin.Q);
   pool_.for_ranges(set_.group_count(), 32, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
       with_kind(group, [&](auto kind) { multiply_group<kind.value>(lin, group); });
   });
   if (!elements_.empty()) {
-    element_direction_.resize(at(set_.node_count()));
-    for (int node = 0; node < set_.node_count(); ++node)
-      std::copy_n(x.data() + set_.dofs.begin(node), 3, element_direction_[at(node)].v);
+    const std::span<const Vec3d> dx = translations(x);
+    for (std::size_t b = 0; b < elements_.size(); ++b) elements_[b].compute_product(element_at(lin, b), dx);
   }
-  for (std::size_t b = 0; b < elements_.size(); ++b)
-    elements_[b].compute_product(element_at(lin, b), element_direction_);
   for (std::size_t b = 0; b < shells_.size(); ++b) shells_[b].compute_product(shell_at(lin, b), x);
   pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
@@ -184,7 +201,7 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
   for (int batch = 0; batch < kBatches; ++batch) {
     const auto m = material<Kind>(set_, group, batch, lin.inverse_step, targets_);
     const PointMotion<Lanes> x = motion_of(lin, group, batch);
-    const Mat3<Lanes> S = stress_of(lin, group, batch);
+    const TangentStress<Lanes> stress = stress_of(lin, group, batch);
     for (int a = 0; a < n; ++a)
       A[at(a)] = broadcast(lin.Q[at(nodes[at(a)])]) * kernels::matrix(set_.shape_of_slot(first_slot + a), 4, batch);
     for (int b = 0; b < n; ++b) {
@@ -196,7 +213,7 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
         const PointMotion<Lanes> unit =
             unit_motion<kBlend>(set_.dofs.kind(column_node), k, set_.shape_of_slot(first_slot + b), batch,
                                 lin.Q[at(column_node)], A[at(b)]);
-        const auto d = point_stress_differential<Kind.stabilization>(x, S, m, lin.tangent, unit.H, unit.Dbar);
+        const auto d = point_stress_differential<Kind.stabilization>(x, stress, m, lin.tangent, unit);
         const Mat3<Lanes> dP = d.dP * m.volume, dY = d.dY * m.volume;
         for (int a = b; a < n; ++a)
           add_column<kBlend>(set_.dofs.kind(nodes[at(a)]), set_.shape_of_slot(first_slot + a), batch,

@@ -87,6 +87,13 @@ Vec3<Lanes> broadcast(const Vector& a) {
   return {{Lanes(a[0]), Lanes(a[1]), Lanes(a[2])}};
 }
 
+inline Mat3d stored_matrix(const double* rows) {
+  Mat3d m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = rows[3 * i + j];
+  return m;
+}
+
 inline Mat3<Lanes> broadcast(const Mat3d& a) {
   Mat3<Lanes> m;
   for (int i = 0; i < 3; ++i)

@@ -61,7 +61,8 @@ struct ShellBatch {
   int node_of(int corner, int lane) const { return node[corner * kElementLanes + lane]; }
 };
 
-ShellStrain<Lanes> old_strain(std::span<const double> e, int batch, int half) {
+/// Strains or stresses of a batch; zero where there are none.
+ShellStrain<Lanes> load_strain(std::span<const double> e, int batch, int half) {
   ShellStrain<Lanes> strain;
   if (e.empty()) return strain;
   const double* rows = e.data() + at(batch) * 12 * kElementLanes;
@@ -70,6 +71,14 @@ ShellStrain<Lanes> old_strain(std::span<const double> e, int batch, int half) {
     strain.bending[k] = row(rows, 6 + k, half);
   }
   return strain;
+}
+
+void store_strain_of(const ShellStrain<Lanes>& strain, std::span<double> e, int batch, int half) {
+  double* rows = e.data() + at(batch) * 12 * kElementLanes;
+  for (int k = 0; k < 6; ++k) {
+    store(rows, k, half, strain.membrane[k]);
+    store(rows, 6 + k, half, strain.bending[k]);
+  }
 }
 
 /// Elastic and viscous stress.
@@ -127,7 +136,7 @@ void ShellExecutor::forces_of_batch(const At& state, int batch, bool energies, d
     const ShellBatch shell(block_, batch, half, state);
     const ShellTriangle<Lanes> triangle(shell.constants, shell.u, shell.D);
     const ShellStrain<Lanes>& e = triangle.strain();
-    const ShellStrain<Lanes> old = old_strain(state.e, batch, half);
+    const ShellStrain<Lanes> old = load_strain(state.e, batch, half);
     const ShellNodes<Lanes> f = triangle.forces(total_stress(shell, e, old));
     const Mat3<Lanes> axes = shell.axes + shell.axes * triangle.turned();
     store_corners(axes, f, slot_sums_.data() + (at(batch) * kElementLanes + at(half * kBatchWidth)) * kElementDofs);
@@ -173,14 +182,9 @@ ShellExecutor::Force ShellExecutor::sum_at(int node) const {
 void ShellExecutor::store_strain(const At& state, std::span<double> e) {
   pool_.for_ranges(block_.batch_count(), kGrain, [&](int begin, int end) {
     for (int batch = begin; batch < end; ++batch) {
-      double* rows = e.data() + at(batch) * 12 * kElementLanes;
       for (int half = 0; half < kBatches; ++half) {
         const ShellBatch shell(block_, batch, half, state);
-        const ShellTriangle<Lanes> triangle(shell.constants, shell.u, shell.D);
-        for (int k = 0; k < 6; ++k) {
-          store(rows, k, half, triangle.strain().membrane[k]);
-          store(rows, 6 + k, half, triangle.strain().bending[k]);
-        }
+        store_strain_of(ShellTriangle<Lanes>(shell.constants, shell.u, shell.D).strain(), e, batch, half);
       }
     }
   });
@@ -202,30 +206,54 @@ struct BatchProducts {
         axes(shell.axes + shell.axes * triangle.turned()),
         stiffness(Lanes(1) + shell.viscosity),
         full(state.tangent == Tangent::full) {
-    triangle.prepare_products(total_stress(shell, triangle.strain(), old_strain(state.e, batch, half)));
+    triangle.prepare_products(state.s.empty()
+                                  ? total_stress(shell, triangle.strain(), load_strain(state.e, batch, half))
+                                  : load_strain(state.s, batch, half));
   }
   BatchProducts(const BatchProducts&) = delete;
   BatchProducts& operator=(const BatchProducts&) = delete;
 };
+
+/// A motion of the model's nodes, in element axes.
+ShellNodes<Lanes> motion_in(const Mat3<Lanes>& axes, const ShellBatch& shell, const DofLayout& dofs,
+                            std::span<const double> d) {
+  ShellNodes<Lanes> motion;
+  for (int a = 0; a < 3; ++a) {
+    alignas(64) double rows[kCornerDofs][kBatchWidth];
+    for (int lane = 0; lane < kBatchWidth; ++lane) {
+      const double* from = d.data() + dofs.begin(shell.node_of(a, lane));
+      for (int i = 0; i < kCornerDofs; ++i) rows[i][lane] = from[i];
+    }
+    motion.x[a] = transpose(axes) * load_vector(rows);
+    motion.r[a] = transpose(axes) * load_vector(rows + 3);
+  }
+  return motion;
+}
 
 }  // namespace
 
 void ShellExecutor::product_of_batch(const At& state, int batch, std::span<const double> d) {
   for (int half = 0; half < kBatches; ++half) {
     const BatchProducts products(block_, batch, half, state);
-    ShellNodes<Lanes> motion;
-    for (int a = 0; a < 3; ++a) {
-      alignas(64) double rows[kCornerDofs][kBatchWidth];
-      for (int lane = 0; lane < kBatchWidth; ++lane) {
-        const double* from = d.data() + set_.dofs.begin(products.shell.node_of(a, lane));
-        for (int i = 0; i < kCornerDofs; ++i) rows[i][lane] = from[i];
-      }
-      motion.x[a] = transpose(products.axes) * load_vector(rows);
-      motion.r[a] = transpose(products.axes) * load_vector(rows + 3);
-    }
+    const ShellNodes<Lanes> motion = motion_in(products.axes, products.shell, set_.dofs, d);
     store_corners(products.axes, products.triangle.product(motion, products.stiffness, products.full),
                   slot_sums_.data() + (at(batch) * kElementLanes + at(half * kBatchWidth)) * kElementDofs);
   }
+}
+
+void ShellExecutor::extrapolate(const At& start, std::span<const double> d, std::span<double> s) {
+  pool_.for_ranges(block_.batch_count(), kGrain, [&](int begin, int end) {
+    for (int batch = begin; batch < end; ++batch) {
+      for (int half = 0; half < kBatches; ++half) {
+        const ShellBatch shell(block_, batch, half, start);
+        const ShellTriangle<Lanes> triangle(shell.constants, shell.u, shell.D);
+        const Mat3<Lanes> axes = shell.axes + shell.axes * triangle.turned();
+        const ShellStrain<Lanes> e =
+            triangle.strain() + triangle.strain_differential(motion_in(axes, shell, set_.dofs, d));
+        store_strain_of(total_stress(shell, e, load_strain(start.e, batch, half)), s, batch, half);
+      }
+    }
+  });
 }
 
 void ShellExecutor::compute_product(const At& state, std::span<const double> d) {

@@ -26,6 +26,7 @@ class ShellExecutor {
     std::span<const double> e;  ///< strains at the start of the step (batches × 12 × 8), or empty
     double inverse_step = 0;    ///< of damping [1/s]
     Tangent tangent = Tangent::full;
+    std::span<const double> s{};  ///< stresses of the tangent, in the layout of e; empty: those of the state
   };
   struct Force {
     Vec3d force{}, torque{};
@@ -33,6 +34,8 @@ class ShellExecutor {
 
   std::size_t strain_size() const { return at(block_.batch_count()) * 12 * kElementLanes; }
   void store_strain(const At& state, std::span<double> e);
+  /// Stresses extrapolated along a step d from a state, by degrees of freedom. @param s  in the layout of e
+  void extrapolate(const At& start, std::span<const double> d, std::span<double> s);
 
   /// The gradient of the energy, by triangle. @param energies  energies and rounding too
   void compute_forces(const At& state, bool energies, std::span<const double> part_motion);

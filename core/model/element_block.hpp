@@ -56,6 +56,11 @@ struct ElementBlock {
   std::vector<int> node_slot_begin, node_slot;   ///< slots of each node of the model, ascending
   std::vector<int> color_begin{0}, color_patch;  ///< patches of one colour share no node
 
+  /// Its tangent takes extrapolated stresses (core/physics/point_physics.hpp): that of a law with large strain, where
+  /// the stress is each point's own.
+  bool extrapolates() const {
+    return !averaged && (law == ElementLaw::st_venant_kirchhoff || law == ElementLaw::neo_hookean);
+  }
   int batch_count() const { return (count + kElementLanes - 1) / kElementLanes; }
   int patch_count() const { return static_cast<int>(patch_batch.size()) - 1; }
   int slot_count() const { return static_cast<int>(patch_node.size()); }

@@ -114,25 +114,37 @@ struct ElasticPoint {
     return total + H * total;
   }
 
+  /// dS for dF, elastic and viscous; `lambda` 0 where p is an average.
+  FASCIA_HD Mat3<T> stress_differential(const Mat3<T>& dF, const ElementMaterial<T>& m, const T& lambda,
+                                        bool full) const {
+    const Mat3<T> dE = L == ElementLaw::linear ? sym(dF) : sym(transpose_times(F, dF));
+    const Mat3<T> viscous = StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity;
+    if constexpr (L == ElementLaw::neo_hookean) {
+      const Mat3<T> C_inverse = times_transpose(F_inverse, F_inverse);
+      return viscous + C_inverse * dE * C_inverse * (T(2) * shear(m, full)) +
+             C_inverse * (lambda * contract(C_inverse, dE));
+    } else {
+      return viscous + StVenantKirchhoff<T>{lambda, m.mu}.second_piola(dE);
+    }
+  }
+
   /// dP for dF; `lambda` 0 where p is an average.
   FASCIA_HD Mat3<T> differential(const Mat3<T>& dF, const ElementMaterial<T>& m, const T& lambda, bool full) const {
-    if constexpr (L == ElementLaw::linear) {
-      const Mat3<T> dE = sym(dF);
-      return StVenantKirchhoff<T>{lambda, m.mu}.second_piola(dE) +
-             StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity;
-    } else {
-      const Mat3<T> dE = sym(transpose_times(F, dF));
-      Mat3<T> dS = StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity;
-      if constexpr (L == ElementLaw::neo_hookean) {
-        const Mat3<T> C_inverse = times_transpose(F_inverse, F_inverse);
-        dS += C_inverse * dE * C_inverse * (T(2) * shear(m, full)) + C_inverse * (lambda * contract(C_inverse, dE));
-      } else {
-        dS += StVenantKirchhoff<T>{lambda, m.mu}.second_piola(dE);
-      }
-      Mat3<T> dP = F * dS;
-      if (full) dP += dF * (S + S_viscous);
-      return dP;
-    }
+    const Mat3<T> dS = stress_differential(dF, m, lambda, full);
+    if constexpr (L == ElementLaw::linear) return dS;
+    Mat3<T> dP = F * dS;
+    if (full) dP += dF * (S + S_viscous);
+    return dP;
+  }
+
+  /// Total stress after a step dF, to first order: of the geometric part of the next tangent (point_physics.hpp).
+  FASCIA_HD Mat3<T> extrapolated_stress(const Mat3<T>& dF, const ElementMaterial<T>& m) const {
+    return S + S_viscous + stress_differential(dF, m, m.lambda, true);
+  }
+  /// Takes such a stress for what products need of one.
+  FASCIA_HD void set_stress(const Mat3<T>& total) {
+    S = total;
+    S_viscous = {};
   }
 
   /// μ − p of the neo-Hookean law; its material tangent takes no negative one.

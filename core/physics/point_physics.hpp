@@ -26,11 +26,26 @@ struct PointStress {
   Mat3<T> S;  ///< second Piola-Kirchhoff stress, elastic and viscous [Pa]
 };
 
-/// γ (M − Mᵀ) with M = QbarᵀF, formed from H and Dbar so that small rotations keep their digits.
+/// The stresses that the tangent's geometric part is made of.
 template <class T>
-FASCIA_HD Mat3<T> drilling_stress(const PointMotion<T>& x, const T& gamma) {
-  const Mat3<T> M = transpose(x.Dbar) + x.H + transpose_times(x.Dbar, x.H);
-  return (M - transpose(M)) * gamma;
+struct TangentStress {
+  Mat3<T> S;         ///< second Piola-Kirchhoff stress, elastic and viscous [Pa]
+  Vec3<T> drilling;  ///< the drilling stress is skew(drilling) [Pa]
+};
+
+/// M − I of M = QbarᵀF, formed from H and Dbar so that small rotations keep their digits.
+template <class T>
+FASCIA_HD Mat3<T> drilling_motion(const PointMotion<T>& x) {
+  return transpose(x.Dbar) + x.H + transpose_times(x.Dbar, x.H);
+}
+template <class T>
+FASCIA_HD Mat3<T> drilling_differential(const PointMotion<T>& x, const PointMotion<T>& d) {
+  return transpose(d.Dbar) + transpose_times(d.Dbar, x.H) + d.H + transpose_times(x.Dbar, d.H);
+}
+/// t of γ (M − Mᵀ) = skew(t).
+template <class T>
+FASCIA_HD Vec3<T> drilling_axis(const Mat3<T>& M, const T& gamma) {
+  return axl(M) * -gamma;
 }
 
 /// K (displacement − target) in the first column.
@@ -42,25 +57,40 @@ FASCIA_HD Mat3<T> tether_stress(const ThinMaterial<T>& material, const Vec3<T>& 
   return P;
 }
 
-/// Stress of a point.
+/// Of a point at a state; not of a tether, whose tangent has none.
 ///
 /// @param E_old  strain at the start of the time step, used where material.viscosity is not zero
 template <Stabilization Tie, class T, template <class> class Material>
-FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
+FASCIA_HD TangentStress<T> tangent_stress(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
+  TangentStress<T> r{stress(material, x.H, green_strain(x.H), E_old), {}};
+  if constexpr (Tie == Stabilization::drilling) r.drilling = drilling_axis(drilling_motion(x), material.stabilization);
+  return r;
+}
+
+/// Extrapolated along a step: at its start, with the first-order change. A full step of Newton's method turns a slender
+/// body and stretches it by the square of that, which the next step takes back: the stress of the stretch, let into the
+/// tangent, would make it too stiff or indefinite (Magisano, Leonetti and Garcea 2017: mixed integration points;
+/// docs/decisions/extrapolated_stress.md). Where steps are small it is the stress at the end, to the square of the
+/// step.
+template <Stabilization Tie, class T, template <class> class Material>
+FASCIA_HD TangentStress<T> extrapolated_stress(const PointMotion<T>& start, const PointMotion<T>& step,
+                                               const Material<T>& material, const Mat3<T>& E_old) {
+  TangentStress<T> r = tangent_stress<Tie>(start, material, E_old);
+  r.S += stress_differential(material, start.H, sym(step.H + transpose_times(start.H, step.H)));
+  if constexpr (Tie == Stabilization::drilling)
+    r.drilling += drilling_axis(drilling_differential(start, step), material.stabilization);
+  return r;
+}
+
+/// P and Y of a point with given stresses.
+template <Stabilization Tie, class T, template <class> class Material>
+FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>& material, const TangentStress<T>& s) {
   PointStress<T> r;
-  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
-    if (material.law == Law::tether) {
-      r.P = tether_stress(material, x.H.column(0) - material.target);
-      return r;
-    }
-  }
-  const Mat3<T> E = green_strain(x.H);
-  r.S = stress(material, x.H, E, E_old);
+  r.S = s.S;
   r.P = r.S + x.H * r.S;
   if constexpr (Tie == Stabilization::drilling) {
-    const Mat3<T> Tm = drilling_stress(x, material.stabilization);
+    const Mat3<T> Tm = skew(s.drilling), Tt = transpose(Tm);
     r.P += Tm + x.Dbar * Tm;
-    const Mat3<T> Tt = transpose(Tm);
     r.Y = Tt + x.H * Tt;
   }
   if constexpr (Tie == Stabilization::affine) {
@@ -69,6 +99,19 @@ FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>
     r.Y = G * T(-1);
   }
   return r;
+}
+
+/// Stress of a point at a state.
+template <Stabilization Tie, class T, template <class> class Material>
+FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
+  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
+    if (material.law == Law::tether) {
+      PointStress<T> r;
+      r.P = tether_stress(material, x.H.column(0) - material.target);
+      return r;
+    }
+  }
+  return point_stress<Tie>(x, material, tangent_stress<Tie>(x, material, E_old));
 }
 
 /// Energies of a point [J]: elastic; stabilisation (drilling v/(4γ) T:T, affine v γ/2 |F − Σ w A|²) and tethers;
@@ -92,8 +135,8 @@ FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const Material<T>
   r.elastic = material.volume * elastic_energy(material, x.H, E);
   r.viscous = material.volume * material.viscosity * energy_density(material, E - E_old);
   if constexpr (Tie == Stabilization::drilling) {
-    const Mat3<T> M = drilling_stress(x, T(1));
-    r.stabilization = material.volume * material.stabilization * T(0.25) * contract(M, M);
+    const Vec3<T> t = drilling_axis(drilling_motion(x), T(1));
+    r.stabilization = material.volume * material.stabilization * T(0.5) * squared_norm(t);
   }
   if constexpr (Tie == Stabilization::affine) {
     const Mat3<T> G = x.H - x.Dbar;
@@ -111,39 +154,37 @@ struct PointStressDifferential {
   Mat3<T> dP, dY;
 };
 
-/// Directional derivative of P and Y.
+/// Directional derivative of P and Y, with the frames' rotations.
 ///
-/// @param dH     direction of F, with the frames' rotations
-/// @param dQbar  direction of Qbar
+/// @param s  the stresses of the geometric part: tangent_stress(), or extrapolated
+/// @param d  direction
 template <Stabilization Tie, class T, template <class> class Material>
-FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion<T>& x, const Mat3<T>& S,
+FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion<T>& x, const TangentStress<T>& s,
                                                                const Material<T>& material, Tangent tangent,
-                                                               const Mat3<T>& dH, const Mat3<T>& dQbar) {
+                                                               const PointMotion<T>& d) {
   PointStressDifferential<T> r;
   if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
     if (material.law == Law::tether) {
-      r.dP = tether_stress(material, dH.column(0));
+      r.dP = tether_stress(material, d.H.column(0));
       return r;
     }
   }
-  const Mat3<T> dE = sym(dH + transpose_times(x.H, dH));
+  const Mat3<T> dE = sym(d.H + transpose_times(x.H, d.H));
   const Mat3<T> dS = stress_differential(material, x.H, dE);
   r.dP = dS + x.H * dS;
-  if (tangent == Tangent::full) r.dP += dH * S;
+  if (tangent == Tangent::full) r.dP += d.H * s.S;
   if constexpr (Tie == Stabilization::drilling) {
-    const Mat3<T> dM = transpose(dQbar) + transpose_times(dQbar, x.H) + dH + transpose_times(x.Dbar, dH);
-    const Mat3<T> dT = (dM - transpose(dM)) * material.stabilization;
-    const Mat3<T> dTt = transpose(dT);
+    const Mat3<T> dT = skew(drilling_axis(drilling_differential(x, d), material.stabilization)), dTt = transpose(dT);
     r.dP += dT + x.Dbar * dT;
     r.dY = dTt + x.H * dTt;
     if (tangent == Tangent::full) {
-      const Mat3<T> Tm = drilling_stress(x, material.stabilization);
-      r.dP += dQbar * Tm;
-      r.dY += times_transpose(dH, Tm);
+      const Mat3<T> Tm = skew(s.drilling);
+      r.dP += d.Dbar * Tm;
+      r.dY += times_transpose(d.H, Tm);
     }
   }
   if constexpr (Tie == Stabilization::affine) {
-    const Mat3<T> dG = (dH - dQbar) * material.stabilization;
+    const Mat3<T> dG = (d.H - d.Dbar) * material.stabilization;
     r.dP += dG;
     r.dY = dG * T(-1);
   }

@@ -13,6 +13,10 @@ struct CgOptions {
 
 enum class CgStatus { converged, limit, negative_curvature, not_finite };
 
+/// What a solve does at a direction of negative curvature: it stops before it; or goes along it as far as if the
+/// curvature were positive.
+enum class NegativeCurvature { stops, reflected };
+
 struct CgReport {
   CgStatus status = CgStatus::converged;
   int iterations = 0;
@@ -23,15 +27,17 @@ struct CgReport {
 /// Preconditioned conjugate gradients for A x = b from x = 0.
 ///
 /// At a direction of negative curvature it stops with the x reached, which is a descent direction (truncated Newton,
-/// Steihaug 1983); at the first iteration with M⁻¹ b.
+/// Steihaug 1983); at the first iteration with M⁻¹ b. Reflected, x goes along that direction too.
 ///
 /// @param apply         apply(p, Ap)
 /// @param precondition  precondition(r, z) returns r · z
 /// @param space         dot, advance, xpay and zeros, as in CpuVectors
 template <class Space, class Apply, class Precondition>
 CgReport conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
-                             const typename Space::Vector& b, typename Space::Vector& x, const CgOptions& options) {
+                             const typename Space::Vector& b, typename Space::Vector& x, const CgOptions& options,
+                             NegativeCurvature negative = NegativeCurvature::stops) {
   using Vector = typename Space::Vector;
+  constexpr double kLeast = 1e-12;  // of a curvature that is all but zero
   CgReport report;
   Vector r = b, z = space.zeros(b.size()), p = z, Ap = z;
   const auto stop = [&](CgStatus status, double residual) {
@@ -51,7 +57,10 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
     const double curvature = space.dot(p, Ap);
     if (!std::isfinite(curvature)) return stop(CgStatus::not_finite, std::sqrt(rz / rz_start));
     if (curvature <= 0) {
-      if (report.iterations == 0) x = p;
+      if (negative == NegativeCurvature::reflected)
+        space.advance(rz / std::max(-curvature, kLeast * rz), p, Ap, x, r);
+      else if (report.iterations == 0)
+        x = p;
       return stop(CgStatus::negative_curvature, std::sqrt(rz / rz_start));
     }
     const double alpha = rz / curvature;

@@ -250,7 +250,8 @@ std::vector<PartForces> MechanicalSystem::part_forces() const {
 }
 
 DirectionReport MechanicalSystem::direction() {
-  executor_.linearize(state_, history_, settings_.tangent, lin_);
+  const TakenStep* taken = has_taken_ ? &taken_ : nullptr;
+  executor_.linearize(state_, history_, settings_.tangent, lin_, true, taken);
   add_node_blocks(lin_);
   std::vector<double> rhs(gradient_.size()), prescribed;
   for (std::size_t i = 0; i < rhs.size(); ++i) rhs[i] = -gradient_[i];
@@ -260,7 +261,7 @@ DirectionReport MechanicalSystem::direction() {
   const TangentReport solved = tangent_.solve(
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
         const bool material = kind == TamerTangent::material;
-        executor_.linearize(state_, history_, material ? Tangent::material : settings_.tangent, fallback, false);
+        executor_.linearize(state_, history_, material ? Tangent::material : settings_.tangent, fallback, false, taken);
         add_node_blocks(fallback, false);
         return fallback;
       });
@@ -274,7 +275,7 @@ DirectionReport MechanicalSystem::direction() {
   dependents_.expand(direction_);
   surfaces_.aim(lin_, direction_);
   for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
-  report.largest_rotation = largest_rotation_in(direction_);
+  report.largest_rotation = std::max(largest_rotation_in(direction_), executor_.largest_spin(direction_));
   return report;
 }
 
@@ -288,7 +289,18 @@ std::vector<double> MechanicalSystem::product(std::span<const double> d) {
   return y;
 }
 
+/// Keeps where a step starts, and along what it goes.
+void MechanicalSystem::note_step(double step) {
+  has_taken_ = settings_.tangent == Tangent::full;
+  if (!has_taken_) return;
+  taken_.u = state_.u;
+  taken_.D = state_.D;
+  taken_.d = direction_;
+  for (double& d : taken_.d) d *= step;
+}
+
 void MechanicalSystem::apply(double step) {
+  note_step(step);
   surfaces_.approach(step);
   for (int i = 0; i < model_.node_count(); ++i) {
     const double* d = direction_.data() + model_.points.dofs.begin(i);
@@ -309,6 +321,7 @@ void MechanicalSystem::save() {
 }
 
 void MechanicalSystem::restore() {
+  has_taken_ = false;
   increment_ = saved_;
   surfaces_.restore();
   rebuild_state();

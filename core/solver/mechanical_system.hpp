@@ -147,6 +147,7 @@ class MechanicalSystem {
   std::vector<PartForces> part_forces() const;
   double energy_at_start();
   void rebuild_state();
+  void note_step(double step);
   void place_dependents_of_step();
   void add_loads();
   void add_inertia();
@@ -185,6 +186,8 @@ class MechanicalSystem {
   std::vector<double> factors_;
   std::vector<double> reached_factors_;  ///< at the end of the last step
   Increment increment_, saved_;
+  TakenStep taken_;
+  bool has_taken_ = false;  ///< a step of Newton's method led to the present state
 
   std::vector<double> gradient_, load_, inertia_, direction_, dependent_forces_;
   mutable std::vector<double> work_;

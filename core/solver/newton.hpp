@@ -60,7 +60,7 @@ class Newton {
       const DirectionReport d = direction();
       if (!d.usable) return give_up(NewtonStatus::linear_failure);
       const double before = current_.residual;
-      system_.apply(std::min(1.0, kRotationCap / std::max(d.largest_rotation, 1e-300)));
+      system_.apply(capped(d));
       current_ = system_.evaluate();
       if (moving) first_residual_ = std::max(first_residual_, current_.residual);
       if (!moving) count_standing(before);
@@ -76,12 +76,18 @@ class Newton {
   }
 
  private:
-  static constexpr double kRotationCap = 0.8;  ///< largest rotation of a frame in one iteration [rad]
+  static constexpr double kRotationCap = 0.8;    ///< largest rotation of a frame or a cell in one iteration [rad]
+  static constexpr double kIndefiniteCap = 0.4;  ///< the same along a direction that no minimum gave
   static constexpr int kDetour = 4, kHalvings = 14;
   static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
   static constexpr double kReduced = kLargestShare;
+
+  static double capped(const DirectionReport& d) {
+    const double cap = d.trouble.empty() ? kRotationCap : kIndefiniteCap;
+    return std::min(1.0, cap / std::max(d.largest_rotation, 1e-300));
+  }
 
   /// Rounding excuses a residual only where Newton's method has reduced it, or has tried to and cannot.
   bool settled() const {

@@ -23,6 +23,9 @@ constexpr double kMostFactorBytes = 2e9;
 
 constexpr int kNodeChunk = 512;
 
+/// Of an indefinite tangent, relative to its material part's diagonal.
+constexpr double kSmallestShift = 1e-6;
+
 /// y = B x; returns x · y.
 template <int N>
 double apply_block(const double* B, const double* x, double* y) {
@@ -122,6 +125,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   } else if (direct()) {
     if (!factorize(relinearize, report)) return report;
     solve_with_factor(rhs_, x);
+    if (shifted_) finish_shifted(x);
   } else {
     report = solve_cg(rhs_, x);
     if (!report.trouble.empty() && !model_.tethers.empty()) {
@@ -133,6 +137,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
       report = {};
       if (!factorize(relinearize, report)) return report;
       solve_with_factor(rhs_, x);
+      if (shifted_) finish_shifted(x);
       report.iterations = iterations;
     }
   }
@@ -145,6 +150,7 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
 }
 
 bool TangentSolver::factorize(const Relinearize& relinearize, TangentReport& report) {
+  shifted_ = false;
   solving_ = &factor();
   definite_ = solving_->factorize(matrix()) || definite_with_low_rank();
   if (definite_) return true;
@@ -152,7 +158,8 @@ bool TangentSolver::factorize(const Relinearize& relinearize, TangentReport& rep
     assemble(relinearize(TamerTangent::without_tethers), matrix());
     if (factor().factorize(matrix())) return true;
   }
-  if (shift_until_definite(relinearize)) {
+  shifted_ = shift_until_definite(relinearize);
+  if (shifted_) {
     report.trouble = "the tangent was not positive definite (buckling, or parts that nothing holds); it was shifted";
     return true;
   }
@@ -184,12 +191,33 @@ std::optional<int> TangentSolver::factorize_any() {
 
 /// Shifts start small, since those that are larger than need be shorten every step, and come down again.
 bool TangentSolver::shift_until_definite(const Relinearize& relinearize) {
-  constexpr double kSmallest = 1e-6, kLargest = 1e3, kDown = 0.1, kUp = 4;
+  constexpr double kLargest = 1e3, kDown = 0.1, kUp = 4;
   if (!material_matrix_) material_matrix_.emplace(model_.points);
   assemble(relinearize(TamerTangent::material), *material_matrix_);
-  for (shift_ = std::max(kSmallest, kDown * shift_); shift_ < kLargest; shift_ *= kUp)
+  for (shift_ = std::max(kSmallestShift, kDown * shift_); shift_ < kLargest; shift_ *= kUp)
     if (factor().factorize(matrix(), shift_, &*material_matrix_)) return true;
   return false;
+}
+
+/// Where the smallest shift is enough, a few soft directions alone are indefinite, and a slender body has softer ones
+/// beside them: conjugate gradients with the shifted factor as a preconditioner give those their full step, and stop
+/// at the first direction of negative curvature, which they take as far as if it were as stiff upwards.
+void TangentSolver::finish_shifted(std::span<double> x) {
+  constexpr CgOptions kOptions{30, 1e-6};
+  if (shift_ > kSmallestShift) return;
+  CpuVectors::Vector result;
+  const CgReport cg = conjugate_gradients(
+      vectors_,
+      [&](const std::vector<double>& p, std::vector<double>& Ap) {
+        apply_matrix(p, Ap);
+        filter_.clear_fixed(Ap);
+      },
+      [&](const auto& r, auto& z) {
+        solve_with_factor(r, z);
+        return vectors_.dot(r, z);
+      },
+      CpuVectors::Vector(rhs_.begin(), rhs_.end()), result, kOptions, NegativeCurvature::reflected);
+  if (cg.status != CgStatus::not_finite) std::copy(result.begin(), result.end(), x.begin());
 }
 
 void TangentSolver::build_block_jacobi() {

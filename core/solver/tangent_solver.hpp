@@ -63,6 +63,7 @@ class TangentSolver {
   bool shift_until_definite(const Relinearize& relinearize);
   std::optional<int> factorize_any();
   bool factor_is_cheap(long made);
+  void finish_shifted(std::span<double> x);
   TangentReport solve_cg(std::span<const double> b, std::span<double> x);
   void build_block_jacobi();
   void apply_matrix(std::span<const double> local, std::span<double> out);
@@ -83,7 +84,8 @@ class TangentSolver {
   std::optional<bool> direct_;
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;
-  double shift_ = 0;  ///< of the last factorisation that needed one
+  double shift_ = 0;      ///< of the last factorisation that needed one
+  bool shifted_ = false;  ///< the last factor is such
   std::vector<double> inverse_blocks_, work_, rhs_, solution_, chunk_sums_;
 };
 

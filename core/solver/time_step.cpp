@@ -20,6 +20,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   increment_.Ds = start_.D;
   increment_.Ds.set_zero();
   increment_.turned = start_.turned;
+  has_taken_ = false;
   surfaces_.begin_step();
   executor_.start_from(start_);
   static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);
