@@ -40,15 +40,15 @@ class Blocks {
   template <class T>
   BlocksOf<T> view_of() const;
   Points<Space>& points() { return points_; }
+  const Elements<Space>& elements() const { return elements_; }
   /// As CpuExecutor has them: points, elements, shells.
   std::size_t strain_size() const { return points_.strain_size() + elements_.strain_size() + shells_.strain_size(); }
   /// Numbers that sum_quantities() writes.
   std::size_t report_size() const { return sums_.size() * at(parts_) * kQuantities; }
 
   void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
-  /// @param node_blocks  springs add theirs
-  void linearize(const NodesView& nodes, const PoseView& pose, const HistoryView& history, Tangent tangent,
-                 double* node_blocks);
+  /// All but springs, whose tangent is in the nodes' own blocks.
+  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken);
   void add_spring_blocks(const NodesView& nodes, const PoseView& pose, Tangent tangent, double* node_blocks) {
     if (!springs_.empty()) springs_.add_blocks(nodes, pose, tangent, node_blocks);
   }

@@ -47,12 +47,11 @@ void Blocks<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
 }
 
 template <class Space>
-void Blocks<Space>::linearize(const NodesView& nodes, const PoseView& pose, const HistoryView& history, Tangent tangent,
-                              double* node_blocks) {
-  if (!points_.empty()) points_.linearize(pose, history, tangent);
-  if (!elements_.empty()) elements_.linearize(pose, part_of(history, elements_begin()), tangent);
-  if (!shells_.empty()) shells_.linearize(pose, part_of(history, shells_begin()), tangent);
-  add_spring_blocks(nodes, pose, tangent, node_blocks);
+void Blocks<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent,
+                              const TakenStepView& taken) {
+  if (!points_.empty()) points_.linearize(pose, history, tangent, taken);
+  if (!elements_.empty()) elements_.linearize(pose, part_of(history, elements_begin()), tangent, taken);
+  if (!shells_.empty()) shells_.linearize(pose, part_of(history, shells_begin()), tangent, taken);
 }
 
 template <class Space>

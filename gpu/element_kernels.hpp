@@ -100,6 +100,10 @@ struct ElementPoints<4, T> {
     if (history.E == nullptr) return {};
     return rounded<T>(symmetric_matrix(history.E + at(batch) * 6 * kLanes, 0, lane));
   }
+  /// The extrapolated one; to be asked where there are such.
+  FASCIA_HD Mat3<T> stress(int) const {
+    return rounded<T>(symmetric_matrix(history.S + at(batch) * 6 * kLanes, 0, lane));
+  }
 };
 
 /// Points of a larger element, some or all: their H has been stored.
@@ -119,6 +123,9 @@ struct ElementPoints<0, T> {
   FASCIA_HD Mat3<T> old(int q) const {
     if (history.E == nullptr) return {};
     return rounded<T>(symmetric_matrix(history.E + point(q) * 6 * kLanes, 0, lane));
+  }
+  FASCIA_HD Mat3<T> stress(int q) const {
+    return rounded<T>(symmetric_matrix(history.S + point(q) * 6 * kLanes, 0, lane));
   }
 
  private:

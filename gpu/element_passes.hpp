@@ -242,6 +242,38 @@ struct DiagonalPass : ElementPass<L, N, T> {
   }
 };
 
+/// Stresses extrapolated along a step. Of several points, H at its start is in points_buffer.
+template <ElementLaw L, int N>
+struct ExtrapolationPass : ElementPass<L, N, double> {
+  using ElementPass<L, N, double>::block;
+  using ElementPass<L, N, double>::history;
+  TakenStepView taken;
+  double* S;
+
+  FASCIA_HD void operator()(int i) const {
+    const ElementPoints<N, double> x = this->points_of(i, taken.start.u, block.points_buffer);
+    const ElementAt<L, N, double> element(x, element_material(block, x.batch, x.lane, history.inverse_step),
+                                          turn_of<L>(x, false), 0, true);
+    for (int q = x.begin(); q < x.end(); ++q) {
+      const Mat3d dF = point_gradient(block, x.batch, q, x.lane, taken.direction.dx) * taken.length;
+      store_symmetric(S + (at(x.batch) * at(block.points) + at(q)) * 6 * kLanes, 0, x.lane,
+                      element.extrapolated_stress(q, dF));
+    }
+  }
+};
+
+/// The largest rotation of a motion at a point, to first order.
+struct SpinPass {
+  ElementBlockView block;
+  const Vec3d* dx;
+
+  FASCIA_HD int count() const { return block.lanes() * block.points; }
+  FASCIA_HD void operator()(int i, Sums<0, 1>& sums) const {
+    const int lane = i % kLanes, q = i / kLanes % block.points, batch = i / kLanes / block.points;
+    sums.note(0, 0.5 * norm(axl(point_gradient(block, batch, q, lane, dx))));
+  }
+};
+
 template <ElementLaw L, int N>
 struct StrainPass : ElementPass<L, N, double> {
   using ElementPass<L, N, double>::block;

@@ -86,6 +86,9 @@ class ElementAt {
     return penalised() ? volume_ * m_.penalty * swelling_ * swelling_ * std::abs(swelling_) / 3 : T(0);
   }
 
+  /// Total stress of a point after a step, to first order.
+  FASCIA_HD Mat3<T> extrapolated_stress(int q, const Mat3<T>& dF) const { return point(q).extrapolated_stress(dF, m_); }
+
   /// Strain that the law and its damping see.
   FASCIA_HD Mat3<T> strain(int q) const {
     if constexpr (kTurns)
@@ -151,7 +154,9 @@ class ElementAt {
   FASCIA_HD Mat3<T> sigma(int q) const { return element_.stress(strain(q), m_, old(q), damped()); }
   FASCIA_HD ElasticPoint<L, T> point(int q) const {
     const Mat3<T> H = x_.H(q);
-    return {H, m_, block_.averaged ? pressure_ : m_.lambda * volumetric_strain<L>(H), old(q), damped()};
+    ElasticPoint<L, T> p(H, m_, block_.averaged ? pressure_ : m_.lambda * volumetric_strain<L>(H), old(q), damped());
+    if (x_.history.S != nullptr) p.set_stress(x_.stress(q));
+    return p;
   }
 
   const Points& x_;

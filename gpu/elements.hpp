@@ -89,7 +89,9 @@ class Elements {
   /// quantities only where it is given
   void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
   /// Keeps what products need of a pose.
-  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent);
+  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken = {});
+  /// The largest rotation that a motion has in elements, to first order, into *out [rad].
+  void largest_spin(const Vec3d* dx, double* out) const;
   /// The tangent's product at the linearisation, for add_sums() of view_of<T>(). @tparam T  of the precision
   template <class T, class V>
   void product(const DirectionOf<T, V>& direction);
@@ -112,6 +114,7 @@ class Elements {
     Rows<double> wide;
     Rows<float> narrow;
     std::size_t strain_begin = 0;
+    bool extrapolates = false;  ///< ElementBlock::extrapolates()
 
     const ElementBlockView& view() const { return wide.view; }
     template <class T>
@@ -132,10 +135,13 @@ class Elements {
   /// Strains of one block. @param E  of all
   static HistoryView history_of(const Block& block, const double* E, double inverse_step);
   HistoryView kept_history(const Block& block) const {
-    return history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
+    HistoryView kept = history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
+    if (block.extrapolates && !S_.empty()) kept.S = S_.data() + block.strain_begin;
+    return kept;
   }
   template <class T>
   void linearize_as();
+  void extrapolate(const TakenStepView& taken);
   template <class T>
   void add_diagonal_as(const NodesView& nodes, double* blocks);
   /// Averages θ, or its derivative along dx, into node_pressure.
@@ -154,7 +160,7 @@ class Elements {
 
   // Of the linearisation.
   Array<Space, Vec3d> u_;
-  Array<Space, double> E_;
+  Array<Space, double> E_, S_;  ///< S: extrapolated stresses, or empty
   double inverse_step_ = 0;
   Tangent tangent_ = Tangent::full;
 };

@@ -7,6 +7,17 @@
 /// The bodies of Elements, for the files that instantiate it.
 namespace fascia::gpu {
 
+namespace kernels {
+
+struct KeepLargest {
+  double* out;
+  FASCIA_HD void operator()(const Sums<0, 1>& total) const {
+    if (!(total.largest[0] <= *out)) *out = total.largest[0];
+  }
+};
+
+}  // namespace kernels
+
 /// Runs a pass that knows how long it is.
 template <class Space, class Pass>
 void run(const Pass& pass) {
@@ -47,7 +58,8 @@ void Elements<Space>::forces(const NodesView& nodes, const PoseView& pose, const
 }
 
 template <class Space>
-void Elements<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
+void Elements<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent,
+                                const TakenStepView& taken) {
   if (empty()) return;
   inverse_step_ = history.inverse_step;
   tangent_ = tangent;
@@ -55,7 +67,33 @@ void Elements<Space>::linearize(const PoseView& pose, const HistoryView& history
   Space::copy(u_.data(), pose.u, u_.size() * sizeof(Vec3d));
   E_.resize(history.E == nullptr ? 0 : strain_size_);
   if (history.E != nullptr) Space::copy(E_.data(), history.E, E_.size() * sizeof(double));
+  S_.resize(taken.known() ? strain_size_ : 0);
+  if (taken.known()) extrapolate(taken);
   is_narrow_ ? linearize_as<float>() : linearize_as<double>();
+}
+
+template <class Space>
+void Elements<Space>::extrapolate(const TakenStepView& taken) {
+  for (Block& block : blocks_) {
+    if (!block.extrapolates) continue;
+    const ElementBlockView& view = block.view();
+    if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, taken.start.u, view.points_buffer});
+    const HistoryView past = history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
+    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
+      if constexpr (L == ElementLaw::st_venant_kirchhoff || L == ElementLaw::neo_hookean)
+        run<Space>(kernels::ExtrapolationPass<L, N>{{view, past, false}, taken, S_.data() + block.strain_begin});
+    });
+  }
+}
+
+template <class Space>
+void Elements<Space>::largest_spin(const Vec3d* dx, double* out) const {
+  Space::set_zero(out, sizeof(double));
+  for (const Block& block : blocks_) {
+    if (block.view().law == ElementLaw::linear) continue;
+    const kernels::SpinPass pass{block.view(), dx};
+    Space::template sum<0, 1>(pass.count(), pass, kernels::KeepLargest{out});
+  }
 }
 
 template <class Space>

@@ -78,6 +78,7 @@ inline std::vector<double> squared_gradients(const ElementBlock& block) {
 template <class Space>
 auto Elements<Space>::make_block(const ElementBlock& block, int nodes_of_model, bool narrow) -> Block {
   Block out;
+  out.extrapolates = block.extrapolates();
   out.node.upload(nodes_of_lanes(block));
   if (block.nodes != 4) out.squared_gradient.upload(squared_gradients(block));
   fill_rows(block, !narrow, out, out.wide);

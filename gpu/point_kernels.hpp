@@ -80,6 +80,32 @@ FASCIA_HD inline Mat3d old_strain(const HistoryView& history, int group, int lan
   return symmetric_matrix(history.E + static_cast<std::size_t>(group) * 6 * kGroupSize, 0, lane);
 }
 
+/// What a linearisation kept of a point.
+template <class T>
+FASCIA_HD const T* linearized_rows(const PointsOf<T>& set, int group) {
+  return set.motion + static_cast<std::size_t>(group) * kPointRows * kGroupSize;
+}
+template <bool Blend, class T>
+FASCIA_HD PointMotion<T> linearized_motion(const T* rows, int lane) {
+  return {matrix(rows, 0, lane), Blend ? matrix(rows, 9, lane) : Mat3<T>{}};
+}
+template <bool Drilling, class T>
+FASCIA_HD TangentStress<T> linearized_stress(const T* rows, int lane) {
+  TangentStress<T> s{symmetric_matrix(rows, 18, lane), {}};
+  if constexpr (Drilling)
+    for (int k = 0; k < 3; ++k) s.drilling[k] = row(rows, 24 + k, lane);
+  return s;
+}
+
+/// dP and dY of a direction at the linearisation.
+template <PointKind Kind, class T, class Material>
+FASCIA_HD PointStressDifferential<T> differential_of(const T* rows, int lane, const Material& m, Tangent tangent,
+                                                     const PointMotion<T>& d) {
+  constexpr Stabilization kTie = Kind.stabilization;
+  return point_stress_differential<kTie>(linearized_motion<kTie != Stabilization::none>(rows, lane),
+                                         linearized_stress<kTie == Stabilization::drilling>(rows, lane), m, tangent, d);
+}
+
 template <class T>
 FASCIA_HD void store_stress(const PointsOf<T>& set, int group, int lane, const Mat3<T>& P, const Mat3<T>& Y) {
   T* out = set.stress + static_cast<std::size_t>(group) * 18 * kGroupSize;
@@ -123,13 +149,11 @@ FASCIA_HD void add_slot_column(const PointsOf<T>& set, int slot, FrameKind kind,
                                double inverse_step, Tangent tangent, double* column) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const int group = set.slot_group[slot];
-  const T *point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize, *shape = shape_of(set, slot);
+  const T *rows = linearized_rows(set, group), *shape = shape_of(set, slot);
   for (int lane = 0; lane < kGroupSize; ++lane) {
     const auto m = material<Kind.matter>(set, group, lane, inverse_step);
-    const PointMotion<T> x{matrix(point, 0, lane), matrix(point, 9, lane)},
-        unit = unit_motion<kBlend>(kind, k, shape, lane, rounded<T>(Q));
-    const auto d = point_stress_differential<Kind.stabilization>(x, symmetric_matrix(point, 18, lane), m, tangent,
-                                                                 unit.H, unit.Dbar);
+    const PointMotion<T> unit = unit_motion<kBlend>(kind, k, shape, lane, rounded<T>(Q));
+    const auto d = differential_of<Kind>(rows, lane, m, tangent, unit);
     add_column<kBlend>(kind, shape, lane, Q, d.dP * m.volume, d.dY * m.volume, column);
   }
 }

@@ -12,6 +12,9 @@
 
 namespace fascia::gpu {
 
+/// Rows that a linearisation keeps of a group: H (9), Dbar (9), S (6), drilling (3).
+inline constexpr int kPointRows = 27;
+
 /// The point groups of a PointSet, in the same layout (core/model/point_set.hpp), with constants and what passes leave
 /// of a scalar T.
 template <class T>
@@ -25,7 +28,7 @@ struct PointsOf {
   const double* targets = nullptr;  ///< of tethers
   T* stress = nullptr;              ///< (groups × 18 × 8): v P, v Y of the last pass
   T* slot_sums = nullptr;           ///< (slots × 12): Σ v P g, Σ v (P Bᵀ + w Y)
-  T* motion = nullptr;              ///< (groups × 24 × 8): H, Dbar, S of the linearisation
+  T* motion = nullptr;              ///< (groups × kPointRows × 8), of the linearisation
   double* quantities = nullptr;     ///< (groups × 8 × kQuantities)
 
   /// Adds what the last pass gave a node: all of it, or what tethers pull.
@@ -74,8 +77,8 @@ class Points {
   /// The gradient of the energy at a pose, for add_sums(). @param part_motion  largest motion of each part (parts) [m];
   /// quantities only where it is given
   void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
-  /// Keeps what products need of a pose.
-  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent);
+  /// Keeps what products need of a pose. Where a step led to it, add_sums() gives what acts with extrapolated stresses.
+  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken = {});
   /// The tangent's product at the linearisation, for add_sums() of view_of<T>(). @tparam T  of the precision
   template <class T, class V>
   void product(const DirectionOf<T, V>& direction);
@@ -112,7 +115,7 @@ class Points {
   template <class T>
   void upload(const PointSet& set);
   template <class T>
-  void linearize_as(const PoseView& pose, const HistoryView& history);
+  void linearize_as(const PoseView& pose, const HistoryView& history, const TakenStepView& taken);
   template <class T>
   void add_diagonal_as(const NodesView& nodes, const Mat3d* Q, double* blocks);
 

@@ -56,7 +56,7 @@ void Points<Space>::upload(const PointSet& set) {
   r.stress.resize(lanes * 18);
   r.stress.set_zero();
   r.slot_sums.resize(at(set.slot_count()) * 12);
-  if (is_narrow_ != std::is_same_v<T, double>) r.motion.resize(lanes * 24);
+  if (is_narrow_ != std::is_same_v<T, double>) r.motion.resize(lanes * kPointRows);
   r.view = {set.group_count(),  set.slot_count(),        slot_begin_.data(), slot_node_.data(),
             slot_group_.data(), node_slot_begin_.data(), node_slot_.data(),  r.shape.data(),
             r.material.data(),  r.axes.data(),           rule_.data(),       blends_.data(),
@@ -144,6 +144,7 @@ struct PointLinearization {
   PointsView set;
   PoseView pose;
   HistoryView history;
+  TakenStepView taken;
   const int* groups;
   T* motion;  ///< as PointsOf has it
 
@@ -151,10 +152,30 @@ struct PointLinearization {
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<double> x = motion_of<true>(set, group, lane, pose.u, pose.D);
     const auto m = material<Kind.matter>(set, group, lane, history.inverse_step);
-    T* point = motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
-    store_matrix(point, 0, lane, x.H);
-    store_matrix(point, 9, lane, x.Dbar);
-    store_symmetric(point, 18, lane, point_stress<Stabilization::none>(x, m, old_strain(history, group, lane)).S);
+    const Mat3d E_old = old_strain(history, group, lane);
+    TangentStress<double> stress;
+    if (!is_tether(m)) stress = stress_of(x, m, group, lane, E_old);
+    T* rows = motion + static_cast<std::size_t>(group) * kPointRows * kGroupSize;
+    store_matrix(rows, 0, lane, x.H);
+    store_matrix(rows, 9, lane, x.Dbar);
+    store_symmetric(rows, 18, lane, stress.S);
+    for (int k = 0; k < 3; ++k) rows[(24 + k) * kGroupSize + lane] = static_cast<T>(stress.drilling[k]);
+    if (!taken.known()) return;
+    const PointStress<double> p =
+        is_tether(m) ? point_stress<Kind.stabilization>(x, m, E_old) : point_stress<Kind.stabilization>(x, m, stress);
+    store_stress(set, group, lane, p.P * m.volume, p.Y * m.volume);
+  }
+
+ private:
+  template <class Material>
+  FASCIA_HD TangentStress<double> stress_of(const PointMotion<double>& x, const Material& m, int group, int lane,
+                                            const Mat3d& E_old) const {
+    if (!taken.known()) return tangent_stress<Kind.stabilization>(x, m, E_old);
+    PointMotion<double> step = motion_of<true>(set, group, lane, taken.direction.dx, taken.direction.dA);
+    step.H *= taken.length;
+    step.Dbar *= taken.length;
+    return extrapolated_stress<Kind.stabilization>(motion_of<true>(set, group, lane, taken.start.u, taken.start.D),
+                                                   step, m, E_old);
   }
 };
 
@@ -170,11 +191,8 @@ struct PointProduct {
     constexpr bool kBlend = Kind.stabilization != Stabilization::none;
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<T> d = motion_of<kBlend>(set, group, lane, direction.dx, direction.dA);
-    const T* point = set.motion + static_cast<std::size_t>(group) * 24 * kGroupSize;
-    const PointMotion<T> x{matrix(point, 0, lane), kBlend ? matrix(point, 9, lane) : Mat3<T>{}};
     const auto m = material<Kind.matter>(set, group, lane, inverse_step);
-    const auto r =
-        point_stress_differential<Kind.stabilization>(x, symmetric_matrix(point, 18, lane), m, tangent, d.H, d.Dbar);
+    const auto r = differential_of<Kind>(linearized_rows(set, group), lane, m, tangent, d);
     store_stress(set, group, lane, r.dP * m.volume, r.dY * m.volume);
   }
 };
@@ -212,18 +230,22 @@ void Points<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
 }
 
 template <class Space>
-void Points<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
+void Points<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent,
+                              const TakenStepView& taken) {
   inverse_step_ = history.inverse_step;
   tangent_ = tangent;
-  is_narrow_ ? linearize_as<float>(pose, history) : linearize_as<double>(pose, history);
+  is_narrow_ ? linearize_as<float>(pose, history, taken) : linearize_as<double>(pose, history, taken);
+  if (!taken.known()) return;
+  Space::template sum_lanes<12>(view().slots, kernels::SlotTerm<double>{view()},
+                                kernels::StoreSlot<double>{view().slot_sums});
 }
 
 template <class Space>
 template <class T>
-void Points<Space>::linearize_as(const PoseView& pose, const HistoryView& history) {
+void Points<Space>::linearize_as(const PoseView& pose, const HistoryView& history, const TakenStepView& taken) {
   T* motion = rows<T>().motion.data();
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
-    Space::for_each(lanes, kernels::PointLinearization<K, T>{view(), pose, history, groups, motion});
+    Space::for_each(lanes, kernels::PointLinearization<K, T>{view(), pose, history, taken, groups, motion});
   });
 }
 

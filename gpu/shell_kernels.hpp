@@ -123,13 +123,16 @@ struct ShellStiffness {
   ShellBlockOf<T> block;
   HistoryView history;
   PoseView pose;
+  TakenStepView taken;
+  const int* dof;
   bool full;
 
   FASCIA_HD void operator()(int i) const {
     const int b = i / kLanes % 3, lane = i % kLanes, batch = i / kLanes / 3, element = batch * kLanes + lane;
     const ShellLane shell(block, element, pose, history.inverse_step);
     ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
-    triangle.prepare_products(total_stress(shell, triangle.strain(), old_strain(history, element)));
+    triangle.prepare_products(taken.known() ? extrapolated(element)
+                                            : total_stress(shell, triangle.strain(), old_strain(history, element)));
     const Mat3d axes = present_axes(shell, triangle);
     T* rows = block.stiffness + at(batch) * kShellStiffness * kLanes + at(lane);
     for (int k = 0; k < 6; ++k) {
@@ -146,6 +149,21 @@ struct ShellStiffness {
             rows[stiffness_row(6 * a + r, 6 * b + k) * kLanes] = static_cast<T>(r < 3 ? force[r] : torque[r - 3]);
       }
     }
+  }
+
+ private:
+  /// Stress extrapolated along the step that led here.
+  FASCIA_HD ShellStrain<double> extrapolated(int element) const {
+    const ShellLane shell(block, element, taken.start, history.inverse_step);
+    const ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
+    const Mat3d axes = present_axes(shell, triangle);
+    ShellNodes<double> motion;
+    for (int a = 0; a < 3; ++a) {
+      const double* d = taken.direction.d + dof[shell.node[a]];
+      motion.x[a] = transpose(axes) * Vec3d{{d[0], d[1], d[2]}} * taken.length;
+      motion.r[a] = transpose(axes) * Vec3d{{d[3], d[4], d[5]}} * taken.length;
+    }
+    return total_stress(shell, triangle.strain() + triangle.strain_differential(motion), old_strain(history, element));
   }
 };
 

@@ -75,7 +75,7 @@ class Shells {
   /// quantities only where it is given
   void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
   /// Keeps the tangents at a pose.
-  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent);
+  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken = {});
   /// The tangent's product at the linearisation, for add_sums() of view_of<T>(). @tparam T  of the precision
   template <class T, class V>
   void product(const DirectionOf<T, V>& direction);
@@ -116,7 +116,7 @@ class Shells {
   template <class T>
   void place_rows(std::size_t lanes, bool products, Rows<T>& rows, ShellBlockOf<T> Block::*view);
   template <class T>
-  void linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent);
+  void linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken);
   void find_corners(const PointSet& set);
   /// Strains of one block. @param E  of all
   static HistoryView history_of(const Block& block, const double* E, double inverse_step) {

@@ -98,18 +98,20 @@ void Shells<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
 }
 
 template <class Space>
-void Shells<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent) {
-  is_narrow_ ? linearize_as<float>(pose, history, tangent) : linearize_as<double>(pose, history, tangent);
+void Shells<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent,
+                              const TakenStepView& taken) {
+  is_narrow_ ? linearize_as<float>(pose, history, tangent, taken) : linearize_as<double>(pose, history, tangent, taken);
 }
 
 template <class Space>
 template <class T>
-void Shells<Space>::linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent) {
+void Shells<Space>::linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent,
+                                 const TakenStepView& taken) {
   for (const Block& block : blocks_)
     Space::for_each(
         3 * block.view.batches * kElementLanes,
         kernels::ShellStiffness<T>{block.template view_of<T>(), history_of(block, history.E, history.inverse_step),
-                                   pose, tangent == Tangent::full});
+                                   pose, taken, dof_.data(), tangent == Tangent::full});
 }
 
 template <class Space>

@@ -239,6 +239,18 @@ struct StrainFromSteps {
   }
 };
 
+/// N Qᵀ of frames, of what points pull with extrapolated stresses.
+struct ExtrapolatedMoments {
+  StepView s;
+  PointsView points;
+  Mat3d* L;
+  FASCIA_HD void operator()(int i) const {
+    NodeSums sums;
+    points.add_sums(i, sums);
+    L[i] = sums.N + times_transpose(sums.N, s.D_now(i));
+  }
+};
+
 /// The tangent's terms of one node alone.
 struct NodeBlocks {
   StepView s;

@@ -114,6 +114,8 @@ class System {
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn);
   void linearize_tiles(Tangent tangent);
+  const Mat3d* linearize_blocks(Tangent tangent);
+  double note_direction();
   template <class T, class V>
   void apply_tangent(const CgView<V>& v);
   template <class T, class V>
@@ -165,6 +167,9 @@ class System {
   Array<Space, Vec3d> du_, saved_du_, u_, moved_u_;
   Array<Space, Mat3d> Ds_, saved_Ds_, D_, moved_D_;
   Array<Space, double> turned_, saved_turned_;
+  Array<Space, Vec3d> taken_u_;  ///< where the last step of Newton's method started
+  Array<Space, Mat3d> taken_D_;
+  double taken_length_ = 0;  ///< 0: none led to the present state
   Array<Space, PoseMotion> q_, w_;
   Array<Space, PoseMotion> before_;  ///< motion in the step before
   Array<Space, Tether> tethers_;
@@ -174,13 +179,13 @@ class System {
 
   Array<Space, double> gradient_, load_, inertia_, node_energy_, report_, part_motion_, start_motion_;
   Array<Space, double> dependent_forces_;
-  Array<Space, Mat3d> L_, tether_L_;
+  Array<Space, Mat3d> L_, tether_L_, extrapolated_L_;
   Array<Space, double> prescribed_;  ///< what is still to go, in constraint axes
   std::vector<double> report_values_;
 
   Array<Space, Mat3d> Q_, dA_;
   Array<Space, Vec3d> dx_;
-  Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, direction_, still_, still_Ap_, slope_;
+  Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, direction_, still_, still_Ap_, slope_, spin_;
   Array<Space, float> narrow_blocks_, narrow_inverse_, narrow_d_;
   Array<Space, Vec3<float>> narrow_dx_;
   Array<Space, Mat3<float>> narrow_dA_;

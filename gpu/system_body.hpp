@@ -64,6 +64,8 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
     narrow_dx_.resize(n);
   }
   slope_.resize(3);
+  spin_.resize(1);
+  spin_.set_zero();
   idle_.resize(1);
   factors_ = reached_factors_ = zero_factors(model);
   data_.set_factors(factors_);
@@ -265,6 +267,11 @@ void System<Space>::evaluate_loads() {
 template <class Space>
 void System<Space>::apply(double step) {
   known_.reset();
+  if (!use_tiles() && settings_.tangent == Tangent::full) {
+    taken_u_.copy_from(u_);
+    taken_D_.copy_from(D_);
+    taken_length_ = step;
+  }
   if (!surfaces_.empty()) surfaces_.approach(step);
   Space::for_each(model_.node_count(), kernels::Advance{step_view(), direction_.data(), step});
   place_dependents();
@@ -280,6 +287,7 @@ void System<Space>::save() {
 
 template <class Space>
 void System<Space>::restore() {
+  taken_length_ = 0;
   du_.copy_from(saved_du_);
   Ds_.copy_from(saved_Ds_);
   turned_.copy_from(saved_turned_);

@@ -4,6 +4,7 @@
 #include "gpu/boundary_kernels.hpp"
 #include "gpu/system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -38,14 +39,15 @@ template <class Space>
 void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   const NodesView& nodes = data_.view().nodes;
   tangent_ = tangent;
+  const Mat3d* L = linearize_blocks(tangent);
   const Mat3d* taken_off = tethers_turn ? nullptr : tether_L_.data();
-  Space::for_each(nodes.count, kernels::NodeBlocks{step_view(), L_.data(), taken_off, Q_.data(), node_blocks_.data(),
+  Space::for_each(nodes.count, kernels::NodeBlocks{step_view(), L, taken_off, Q_.data(), node_blocks_.data(),
                                                    tangent == Tangent::full});
   if (use_tiles()) {
     linearize_tiles(tangent);
     return;
   }
-  blocks_.linearize(nodes, pose(), history(), tangent, node_blocks_.data());
+  blocks_.add_spring_blocks(nodes, pose(), tangent, node_blocks_.data());
   if (!dependents_.empty() && tangent == Tangent::full && tethers_turn)
     dependents_.add_turning(nodes, dependent_forces_.data(), node_blocks_.data());
   if (!surfaces_.empty()) {
@@ -63,6 +65,23 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   const int entries = static_cast<int>(node_blocks_.size());
   Space::for_each(entries, kernels::Round<float>{node_blocks_.data(), narrow_blocks_.data()});
   Space::for_each(entries, kernels::Round<float>{inverse_.data(), narrow_inverse_.data()});
+}
+
+/// Blocks, with stresses extrapolated along the step that led here; what note_direction() left of it is good once.
+/// Tiles take the stresses of the state. @return  N Qᵀ of frames with these stresses
+template <class Space>
+const Mat3d* System<Space>::linearize_blocks(Tangent tangent) {
+  if (use_tiles()) return L_.data();
+  TakenStepView taken;
+  if (taken_length_ > 0 && tangent == Tangent::full)
+    taken = {{taken_u_.data(), taken_D_.data()}, {world_d_.data(), dx_.data(), dA_.data()}, taken_length_};
+  taken_length_ = 0;
+  blocks_.linearize(pose(), history(), tangent, taken);
+  if (!taken.known() || blocks_.points().empty()) return L_.data();
+  extrapolated_L_.resize(L_.size());
+  Space::for_each(model_.node_count(),
+                  kernels::ExtrapolatedMoments{step_view(), blocks_.points().view(), extrapolated_L_.data()});
+  return extrapolated_L_.data();
 }
 
 template <class Space>
@@ -235,10 +254,23 @@ DirectionReport System<Space>::direction() {
   double values[3];
   slope_.download(values);
   report.slope = values[0];
-  report.largest_rotation = values[1];
+  report.largest_rotation = std::max(values[1], note_direction());
   report.usable = std::isfinite(values[2]);
   if (!report.usable) report.trouble = "the linear solver returned a number that is not finite";
   return report;
+}
+
+/// Keeps the motion of the direction by nodes. @return  its largest rotation in elements [rad]
+template <class Space>
+double System<Space>::note_direction() {
+  if (use_tiles()) return 0;
+  world_d_.copy_from(direction_);
+  Space::for_each(model_.node_count(), kernels::SplitDirection{product_view<double, double>()});
+  if (blocks_.elements().empty()) return 0;
+  blocks_.elements().largest_spin(dx_.data(), spin_.data());
+  double spin = 0;
+  spin_.download(std::span(&spin, 1));
+  return spin;
 }
 
 template <class Space>

@@ -37,10 +37,20 @@ struct DirectionOf {
 };
 using DirectionView = DirectionOf<double, double>;
 
+/// A step of Newton's method that led to a pose, along which its tangent extrapolates stresses. None: no start.
+struct TakenStepView {
+  PoseView start;
+  DirectionView direction;
+  double length = 0;  ///< in directions
+
+  FASCIA_HD bool known() const { return start.u != nullptr; }
+};
+
 /// Strains of one block at the start of a step, and 1/dt of viscous stress; no strains where nothing is damped.
 struct HistoryView {
   const double* E = nullptr;
   double inverse_step = 0;
+  const double* S = nullptr;  ///< extrapolated stresses of a tangent, in the layout of E; none: those of the state
 };
 
 /// What a node feels: a force, N conjugate to Q or A, and a torque beside it.

@@ -261,7 +261,7 @@ DirectionReport MechanicalSystem::direction() {
   const TangentReport solved = tangent_.solve(
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
         const bool material = kind == TamerTangent::material;
-        executor_.linearize(state_, history_, material ? Tangent::material : settings_.tangent, fallback, false, taken);
+        executor_.linearize(state_, history_, material ? Tangent::material : settings_.tangent, fallback, false);
         add_node_blocks(fallback, false);
         return fallback;
       });

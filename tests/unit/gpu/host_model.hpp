@@ -127,7 +127,7 @@ class Comparison {
  public:
   /// @param dt  above 0: with viscous stress
   Comparison(const Model& model, const State& state, const State& old, double dt)
-      : host_(model, state), own_(model.points), cpu_(model.points, pool_) {
+      : host_(model, state), start_(model, old), own_(model.points), cpu_(model.points, pool_) {
     if (dt <= 0) return;
     history_.inverse_step = 1 / dt;
     cpu_.store_strain(old, history_);
@@ -138,6 +138,7 @@ class Comparison {
     expect_same_strains();
     expect_same_forces();
     for (const Tangent tangent : {Tangent::full, Tangent::material}) expect_same_tangent(tangent);
+    expect_same_extrapolation();
   }
 
   void expect_same_strains() {
@@ -170,16 +171,28 @@ class Comparison {
   }
 
   /// Products and diagonals, also after forces at another pose.
-  void expect_same_tangent(Tangent tangent) {
+  void expect_same_tangent(Tangent tangent) { expect_same_tangent(tangent, nullptr, {}); }
+
+  /// With stresses extrapolated from the old state.
+  void expect_same_extrapolation() {
+    constexpr double kLength = 0.3;
+    const std::vector<double> d = random_direction(host_.model());
+    TakenStep taken{start_.state().u, start_.state().D, d};
+    for (double& v : taken.d) v *= kLength;
+    expect_same_tangent(Tangent::full, &taken, {start_.pose(), start_.direction(d), kLength});
+  }
+
+ private:
+  void expect_same_tangent(Tangent tangent, const TakenStep* taken, const gpu::TakenStepView& own_taken) {
     std::vector<double> unused(at(host_.model().dof_count())), Kd = unused;
     cpu_.gradient(host_.state(), history_, unused);
     Linearization lin;
-    cpu_.linearize(host_.state(), history_, tangent, lin);
+    cpu_.linearize(host_.state(), history_, tangent, lin, true, taken);
     const std::vector<double> d = random_direction(host_.model());
     cpu_.multiply(lin, d, Kd);
     BlockMatrix matrix(host_.model().points);
     cpu_.assemble(lin, matrix);
-    own_.linearize(host_.pose(), own_history_, tangent);
+    own_.linearize(host_.pose(), own_history_, tangent, own_taken);
     const HostModel rest(host_.model(), State::at_rest(host_.model()));
     own_.forces(rest.nodes(), rest.pose(), {}, nullptr);
     own_.product(host_.direction(d));
@@ -190,8 +203,7 @@ class Comparison {
     expect_near(diagonal, diagonal_blocks(matrix, dofs), "diagonal");
   }
 
- private:
-  HostModel host_;
+  HostModel host_, start_;
   Class own_;
   ThreadPool pool_{1};
   CpuExecutor cpu_;
