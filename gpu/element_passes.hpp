@@ -2,6 +2,7 @@
 
 #include "core/math/polar.hpp"
 #include "gpu/element_state.hpp"
+#include "gpu/space.hpp"
 
 /// Loops over elements, and over the points and corners of those with several points: what passes between these loops
 /// is in points_buffer.

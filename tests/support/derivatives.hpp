@@ -100,16 +100,40 @@ class DerivativeTest : public testing::TestWithParam<Case> {
   }
 
   void expect_assembled_equals_product() {
-    for (const Tangent tangent : {Tangent::full, Tangent::material}) {
-      const Linearization lin = linearization(tangent);
-      BlockMatrix matrix(built_.model.points);
-      executor_.assemble(lin, matrix);
-      const std::vector<double> d = random_direction(built_.model), free = product(lin, d);
-      std::vector<double> assembled(size());
-      matrix.multiply(pool_, d, assembled);
-      for (std::size_t i = 0; i < size(); ++i) assembled[i] -= free[i];
-      EXPECT_LT(norm(assembled), 1e-12 * norm(free)) << tested().name;
-    }
+    for (const Tangent tangent : {Tangent::full, Tangent::material})
+      expect_assembled_equals_product(linearization(tangent));
+  }
+  void expect_assembled_equals_product(const Linearization& lin) {
+    BlockMatrix matrix(built_.model.points);
+    executor_.assemble(lin, matrix);
+    const std::vector<double> d = random_direction(built_.model), free = product(lin, d);
+    std::vector<double> assembled(size());
+    matrix.multiply(pool_, d, assembled);
+    for (std::size_t i = 0; i < size(); ++i) assembled[i] -= free[i];
+    EXPECT_LT(norm(assembled), 1e-12 * norm(free)) << tested().name;
+  }
+
+  /// Where a step led, products with stresses extrapolated along it miss those with the stresses there by its square.
+  void expect_extrapolation_of_second_order() {
+    const std::vector<double> d = random_direction(built_.model), probe = random_direction(built_.model, 5);
+    const auto error = [&](double length) {
+      const State end = moved(built_.model, state_, d, length);
+      gradient(end);
+      Linearization there, extrapolated;
+      executor_.linearize(end, history_, Tangent::full, there);
+      TakenStep taken{state_.u, state_.D, d};
+      for (double& v : taken.d) v *= length;
+      executor_.linearize(end, history_, Tangent::full, extrapolated, true, &taken);
+      expect_assembled_equals_product(extrapolated);
+      const std::vector<double> exact = product(there, probe);
+      std::vector<double> difference = product(extrapolated, probe);
+      for (std::size_t i = 0; i < size(); ++i) difference[i] -= exact[i];
+      return norm(difference) / norm(exact);
+    };
+    const double whole = error(0.02), half = error(0.01);
+    std::printf("%-28s extrapolated tangent, a step and its half: %.1e %.1e\n", tested().name.c_str(), whole, half);
+    EXPECT_LT(whole, 0.05);
+    if (whole > 1e-12) EXPECT_NEAR(whole / half, 4, 0.4);  // 0: a law without stress in its tangent
   }
 
   void expect_symmetric_and_not_negative() {

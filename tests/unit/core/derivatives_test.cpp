@@ -124,6 +124,8 @@ TEST_P(Derivatives, DifferencesOfTheGradientAreTangentMinusHalfTorque) {
 
 TEST_P(Derivatives, AssembledMatrixEqualsTheProduct) { expect_assembled_equals_product(); }
 
+TEST_P(Derivatives, ExtrapolatedStressesAreOfSecondOrder) { expect_extrapolation_of_second_order(); }
+
 TEST_P(Derivatives, MaterialTangentIsSymmetricAndNotNegative) { expect_symmetric_and_not_negative(); }
 
 INSTANTIATE_TEST_SUITE_P(Terms, Derivatives, testing::ValuesIn(cases()), [](const auto& parameter) {
@@ -131,6 +133,44 @@ INSTANTIATE_TEST_SUITE_P(Terms, Derivatives, testing::ValuesIn(cases()), [](cons
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 });
+
+/// A turn to first order stretches a body by the square of its angle. That stress is not in an extrapolated tangent,
+/// which has no geometric part then.
+TEST(ExtrapolatedTangent, HasNoStressAfterATurnOfFirstOrder) {
+  const BuiltModel built = block();
+  ThreadPool pool(1);
+  CpuExecutor executor(built.model.points, pool);
+  const State rest = State::at_rest(built.model);
+  TakenStep turn{rest.u, rest.D, std::vector<double>(at(built.model.dof_count()), 0.0)};
+  const Vec3d angle{{0.1, 0.4, -0.3}};
+  for (int node = 0; node < built.model.node_count(); ++node) {
+    double* d = turn.d.data() + built.model.points.dofs.begin(node);
+    const Vec3d u = cross(angle, built.model.rest_position[at(node)]);
+    for (int k = 0; k < 3; ++k) {
+      d[k] = u[k];
+      d[3 + k] = angle[k];
+    }
+  }
+  const State end = moved(built.model, rest, turn.d, 1);
+  std::vector<double> unused(turn.d.size()), material = unused, extrapolated = unused, plain = unused;
+  executor.gradient(end, {}, unused);
+  const std::vector<double> d = random_direction(built.model);
+  Linearization lin;
+  executor.linearize(end, {}, Tangent::material, lin);
+  executor.multiply(lin, d, material);
+  executor.linearize(end, {}, Tangent::full, lin);
+  executor.multiply(lin, d, plain);
+  executor.linearize(end, {}, Tangent::full, lin, true, &turn);
+  executor.multiply(lin, d, extrapolated);
+  const auto distance = [&](std::vector<double> a) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] -= material[i];
+    return norm(a) / norm(material);
+  };
+  std::printf("geometric part after a turn by 0.51 rad: %.1e of the material part, extrapolated %.1e\n",
+              distance(plain), distance(extrapolated));
+  EXPECT_GT(distance(plain), 0.01);
+  EXPECT_LT(distance(extrapolated), 1e-14);
+}
 
 /// The slow reference: F of one point from the formula, against differences and against the executor's strain energy.
 TEST(Reference, DeformationGradientAgainstDifferences) {

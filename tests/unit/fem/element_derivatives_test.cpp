@@ -95,6 +95,8 @@ TEST_P(ElementDerivatives, TangentIsTheDerivativeOfTheGradient) {
 
 TEST_P(ElementDerivatives, AssembledMatrixEqualsTheProduct) { expect_assembled_equals_product(); }
 
+TEST_P(ElementDerivatives, ExtrapolatedStressesAreOfSecondOrder) { expect_extrapolation_of_second_order(); }
+
 TEST_P(ElementDerivatives, MaterialTangentIsSymmetricAndNotNegative) { expect_symmetric_and_not_negative(); }
 
 TEST_P(ElementDerivatives, ForcesWithoutEnergiesAreTheSame) {

@@ -51,6 +51,8 @@ TEST_P(ShellDerivatives, DifferencesOfTheGradientAreTangentMinusHalfTorque) {
 
 TEST_P(ShellDerivatives, AssembledMatrixEqualsTheProduct) { expect_assembled_equals_product(); }
 
+TEST_P(ShellDerivatives, ExtrapolatedStressesAreOfSecondOrder) { expect_extrapolation_of_second_order(); }
+
 TEST_P(ShellDerivatives, MaterialTangentIsSymmetricAndNotNegative) { expect_symmetric_and_not_negative(); }
 
 INSTANTIATE_TEST_SUITE_P(Shells, ShellDerivatives, testing::ValuesIn(cases()), [](const auto& parameter) {

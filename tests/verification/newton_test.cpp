@@ -1,0 +1,148 @@
+// Newton's method on what is hard for it: slender bodies that turn far in one step, buckling, great stretch. Tables of
+// its residuals.
+#include "app/scene/parse.hpp"
+#include "app/simulation.hpp"
+#include "app/solver_settings.hpp"
+#include "core/solver/mechanical_system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace fascia {
+namespace {
+
+/// A system that keeps the residual of each evaluation, relative to what acts.
+struct Recorder {
+  MechanicalSystem& system;
+  std::vector<double> residuals;
+
+  Evaluation evaluate() {
+    const Evaluation e = system.evaluate();
+    residuals.push_back(e.relative);
+    return e;
+  }
+  DirectionReport direction() { return system.direction(); }
+  void apply(double step) { system.apply(step); }
+  void save() { system.save(); }
+  void restore() { system.restore(); }
+  bool has_prescribed_increment() const { return system.has_prescribed_increment(); }
+  bool conservative() const { return system.conservative(); }
+};
+
+/// Residuals of each load step, printed.
+std::vector<std::vector<double>> residuals_of(const std::string& name, const std::string& text, int load_steps) {
+  app::Scene scene = app::parse_scene_text(text, name, {});
+  app::Simulation simulation = app::build_simulation(std::move(scene));
+  app::add_imperfection(simulation);
+  const SolverSettings settings = app::settings_of(simulation.scene.solver);
+  ThreadPool pool(1);
+  MechanicalSystem system(simulation.model, pool, settings);
+  State state = simulation.initial;
+  std::vector<std::vector<double>> all;
+  std::printf("%s\n", name.c_str());
+  for (int step = 1; step <= load_steps; ++step) {
+    const double load = static_cast<double>(step) / load_steps;
+    system.begin_step(state, 0);
+    system.set_factors(simulation.factors(load));
+    Recorder recorder{system, {}};
+    Newton newton(recorder, settings);
+    const NewtonReport report = newton.solve();
+    EXPECT_EQ(report.status, NewtonStatus::converged) << name << ", load step " << step;
+    std::printf("  load %.2f, %2d iterations:", load, report.iterations);
+    for (const double r : recorder.residuals) std::printf(" %.0e", r);
+    std::printf("\n");
+    all.push_back(recorder.residuals);
+    state = system.finish_step(load);
+  }
+  return all;
+}
+
+/// Each of the last two residuals above rounding is at most the power 1.5 of the one before, in units of the first.
+void expect_fast_end(const std::vector<double>& r) {
+  ASSERT_GE(r.size(), 3u);
+  const std::size_t n = r.size();
+  const double first = *std::max_element(r.begin(), r.end());
+  if (r[n - 1] > 1e-12) EXPECT_LE(r[n - 1] / first, std::pow(r[n - 2] / first, 1.3));
+}
+
+constexpr const char* kBeam = R"(
+[bodies.b]
+model = "MODEL"
+KEYS
+density = 1000
+material = { young = 1e6, poisson = 0.3 }
+[[constraints]]
+body = "b"
+where = { box = { min = [-0.1, -1, -1], max = [0.0001, 2, 2] } }
+fix = "all"
+[[loads]]
+body = "b"
+where = { box = { min = [0.9999, -1, -1], max = [1.1, 2, 2] } }
+total_force = FORCE
+[solver]
+kind = "static"
+EXTRA
+)";
+
+struct Beam {
+  std::string model, keys;
+  double inertia;  ///< I [m⁴]: Euler's load is π² E I / 4
+};
+
+const Beam kLine{"meshless",
+                 "domain = { line = { from = [0, 0, 0], to = [1, 0, 0] } }\nradius = 0.01\nframes = { grid = [21] }",
+                 7.854e-9};
+const Beam kBlock{"hexahedra",
+                  "order = 2\ndomain = { box = { min = [0, -0.025, -0.025], max = [1, 0.025, 0.025], cells = [20, 1, "
+                  "1] } }",
+                  5.208e-7};
+const Beam kShell{"shell",
+                  "domain = { rectangle = { origin = [0, -0.05, 0], edge_u = [1, 0, 0], edge_v = [0, 0.1, 0], cells = "
+                  "[20, 2] } }\nthickness = 0.01",
+                  8.333e-9};
+const Beam kFrames{"meshless",
+                   "domain = { box = { min = [0, -0.025, -0.025], max = [1, 0.025, 0.025] } }\nframes = { grid = [21, "
+                   "2, 2] }",
+                   5.208e-7};
+
+std::string scene_of(const Beam& beam, const std::string& force, const std::string& extra) {
+  std::string text = kBeam;
+  const auto put = [&](const std::string& key, const std::string& value) {
+    text.replace(text.find(key), key.size(), value);
+  };
+  put("MODEL", beam.model);
+  put("KEYS", beam.keys);
+  put("FORCE", force);
+  put("EXTRA", extra);
+  return text;
+}
+
+/// A tip force of 10 E I / L² across bends a cantilever until its tip is 0.81 L aside (elastica: Bisshopp and Drucker
+/// 1945), in one load step.
+TEST(NewtonResiduals, ACantileverBentFarInOneStep) {
+  for (const Beam& beam : {kLine, kBlock, kFrames, kShell}) {
+    const std::string force = "[0, 0, " + std::to_string(10 * 1e6 * beam.inertia) + "]";
+    const auto all = residuals_of("cantilever, " + beam.model, scene_of(beam, force, ""), 1);
+    EXPECT_LE(all[0].size(), 12u);
+    expect_fast_end(all[0]);
+  }
+}
+
+/// Twice Euler's load on columns that are bent by 1e-4 of their length at rest.
+TEST(NewtonResiduals, AColumnPushedToTwiceItsEulerLoad) {
+  for (const Beam& beam : {kLine, kBlock, kShell}) {
+    const double euler = 2.4674 * 1e6 * beam.inertia;
+    const std::string force = "[" + std::to_string(-2 * euler) + ", 0, 0]";
+    const auto all = residuals_of("column, " + beam.model,
+                                  scene_of(beam, force, "imperfection = 1e-4\nnewton = { max_iterations = 100 }"), 10);
+    for (const auto& r : all) expect_fast_end(r);
+  }
+}
+
+}  // namespace
+}  // namespace fascia
