@@ -67,7 +67,7 @@ class Newton {
       if (!moving && !current_.converged() && stagnates(d)) return finish_at_best(Convergence::stagnation);
       if (current_.finite() && (moving || better_than_mark())) {
         mark();
-      } else if (!current_.finite() || ++detour_ > kDetour) {
+      } else if (!current_.finite() || (++detour_ > kDetour && current_.residual > kFalls * before)) {
         if (const NewtonStatus status = search_from_mark(); status != NewtonStatus::converged) return give_up(status);
       }
     }
