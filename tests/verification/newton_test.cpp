@@ -62,12 +62,13 @@ std::vector<std::vector<double>> residuals_of(const std::string& name, const std
   return all;
 }
 
-/// Each of the last two residuals above rounding is at most the power 1.5 of the one before, in units of the first.
+/// The last residual above rounding is at most the power 1.3 of the one before, in units of the largest met: faster
+/// than any linear convergence.
 void expect_fast_end(const std::vector<double>& r) {
   ASSERT_GE(r.size(), 3u);
-  const std::size_t n = r.size();
-  const double first = *std::max_element(r.begin(), r.end());
-  if (r[n - 1] > 1e-12) EXPECT_LE(r[n - 1] / first, std::pow(r[n - 2] / first, 1.3));
+  const std::size_t last = r.back() > 1e-11 ? r.size() - 1 : r.size() - 2;
+  const double largest = *std::max_element(r.begin(), r.end());
+  EXPECT_LE(r[last] / largest, std::pow(r[last - 1] / largest, 1.3));
 }
 
 constexpr const char* kBeam = R"(
@@ -123,24 +124,64 @@ std::string scene_of(const Beam& beam, const std::string& force, const std::stri
 }
 
 /// A tip force of 10 E I / L² across bends a cantilever until its tip is 0.81 L aside (elastica: Bisshopp and Drucker
-/// 1945), in one load step.
+/// 1945), in one load step. With the stress of the state in the tangent it took 19, 23, 18 and 23 iterations.
 TEST(NewtonResiduals, ACantileverBentFarInOneStep) {
   for (const Beam& beam : {kLine, kBlock, kFrames, kShell}) {
     const std::string force = "[0, 0, " + std::to_string(10 * 1e6 * beam.inertia) + "]";
     const auto all = residuals_of("cantilever, " + beam.model, scene_of(beam, force, ""), 1);
-    EXPECT_LE(all[0].size(), 12u);
+    EXPECT_LE(all[0].size(), 18u);
     expect_fast_end(all[0]);
   }
 }
 
-/// Twice Euler's load on columns that are bent by 1e-4 of their length at rest.
+/// Twice Euler's load on columns that are bent by 1e-4 of their length at rest. One load step leads past the
+/// bifurcation, from a column that is straight but for 1e-4 to one that is bent by half a radian. With the stress of
+/// the state in the tangent the block's column did not converge; the others took 262 and 88 iterations.
 TEST(NewtonResiduals, AColumnPushedToTwiceItsEulerLoad) {
+  constexpr int kLoadSteps = 10;
   for (const Beam& beam : {kLine, kBlock, kShell}) {
-    const double euler = 2.4674 * 1e6 * beam.inertia;
-    const std::string force = "[" + std::to_string(-2 * euler) + ", 0, 0]";
-    const auto all = residuals_of("column, " + beam.model,
-                                  scene_of(beam, force, "imperfection = 1e-4\nnewton = { max_iterations = 100 }"), 10);
-    for (const auto& r : all) expect_fast_end(r);
+    const std::string force = "[" + std::to_string(-2 * 2.4674 * 1e6 * beam.inertia) + ", 0, 0]";
+    const auto all = residuals_of("column, " + beam.model, scene_of(beam, force, "imperfection = 1e-4"), kLoadSteps);
+    std::size_t evaluations = 0;
+    for (const auto& r : all) {
+      expect_fast_end(r);
+      evaluations += r.size() - 1;
+    }
+    EXPECT_LE(evaluations, 10u * kLoadSteps);
+  }
+}
+
+/// A thick ball's cavity, filled until it has ten times its volume, past the greatest pressure that the wall bears.
+TEST(NewtonResiduals, ABallBlownToTenTimesItsVolume) {
+  const std::string mesh = std::string(FASCIA_SOURCE_DIR) + "/scenes/meshes/hollow_sphere.vtk";
+  std::string text = R"(
+[bodies.ball]
+model = "hexahedra"
+order = 2
+domain = { file = ")" +
+                     mesh +
+                     R"(" }
+density = 1000
+material = { young = 1e5, poisson = 0.3, law = "neo-hookean" }
+fluid = { bulk_modulus = 1e6, volume = 5.16e-3 }
+)";
+  for (const std::string axis : {"x", "y", "z"}) {
+    const auto span = [&](const std::string& sign) {
+      std::string values;
+      for (const std::string other : {"x", "y", "z"})
+        values += (values.empty() ? "" : ", ") + sign + (other == axis ? "1e-6" : "1");
+      return "[" + values + "]";
+    };
+    text += "[[constraints]]\nbody = \"ball\"\nwhere = { box = { min = " + span("-") + ", max = " + span("") +
+            " } }\nfix = [\"" + axis + "\"]\n";
+  }
+  text += "[solver]\nkind = \"static\"\n";
+  for (const int load_steps : {1, 4}) {
+    const auto all = residuals_of("ball, " + std::to_string(load_steps) + " load steps", text, load_steps);
+    for (const auto& r : all) {
+      EXPECT_LE(r.size(), 11u);
+      expect_fast_end(r);
+    }
   }
 }
 
