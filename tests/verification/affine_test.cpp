@@ -158,7 +158,8 @@ TEST(AffineMotion, AWholeTwistIsNotForgotten) {
                         "constraints=[{body='beam',where={box={min=[-0.01,-1,-1],max=[0.01,1,1]}},fix='all'},"
                         "{body='beam',where={box={min=[0.99,-1,-1],max=[1.01,1,1]}},"
                         "move={rotate={axis=[1,0,0],angle='360 degree',center=[1,0.15,0.1]}}}]",
-                        std::string("solver.load_steps=") + steps, "solver.accept=['unstable','inverted']"});
+                        std::string("solver.load_steps=") + steps, "solver.newton.max_iterations=100",
+                        "solver.accept=['unstable','inverted']"});
     std::printf("360 degrees, %-6s load_steps = %-6s energy %.6f J, %d Newton iterations\n", kind, steps,
                 run.number("energy"), run.newton_iterations());
     return run.number("energy");
