@@ -90,6 +90,8 @@ class Elements {
   void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
   /// Keeps what products need of a pose.
   void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken = {});
+  /// The last linearisation has extrapolated stresses: its products are other loops.
+  bool extrapolated() const { return extrapolated_; }
   /// The largest rotation that a motion has in elements, to first order, into *out [rad].
   void largest_spin(const Vec3d* dx, double* out) const;
   /// The tangent's product at the linearisation, for add_sums() of view_of<T>(). @tparam T  of the precision
@@ -136,7 +138,7 @@ class Elements {
   static HistoryView history_of(const Block& block, const double* E, double inverse_step);
   HistoryView kept_history(const Block& block) const {
     HistoryView kept = history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
-    if (block.extrapolates && !S_.empty()) kept.S = S_.data() + block.strain_begin;
+    if (block.extrapolates && extrapolated_) kept.S = S_.data() + block.strain_begin;
     return kept;
   }
   template <class T>
@@ -160,7 +162,8 @@ class Elements {
 
   // Of the linearisation.
   Array<Space, Vec3d> u_;
-  Array<Space, double> E_, S_;  ///< S: extrapolated stresses, or empty
+  Array<Space, double> E_, S_;  ///< S: extrapolated stresses
+  bool extrapolated_ = false;   ///< the linearisation has them
   double inverse_step_ = 0;
   Tangent tangent_ = Tangent::full;
 };

@@ -67,13 +67,14 @@ void Elements<Space>::linearize(const PoseView& pose, const HistoryView& history
   Space::copy(u_.data(), pose.u, u_.size() * sizeof(Vec3d));
   E_.resize(history.E == nullptr ? 0 : strain_size_);
   if (history.E != nullptr) Space::copy(E_.data(), history.E, E_.size() * sizeof(double));
-  S_.resize(taken.known() ? strain_size_ : 0);
-  if (taken.known()) extrapolate(taken);
+  extrapolated_ = taken.known();
+  if (extrapolated_) extrapolate(taken);
   is_narrow_ ? linearize_as<float>() : linearize_as<double>();
 }
 
 template <class Space>
 void Elements<Space>::extrapolate(const TakenStepView& taken) {
+  if (S_.empty()) S_.resize(strain_size_);
   for (Block& block : blocks_) {
     if (!block.extrapolates) continue;
     const ElementBlockView& view = block.view();

@@ -137,7 +137,7 @@ template <class Space>
 std::uint64_t System<Space>::operator_key() const {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &inverse_step_, sizeof bits);
-  return bits * 2 + (tangent_ == Tangent::full ? 1 : 0);
+  return bits * 4 + (tangent_ == Tangent::full ? 2 : 0) + (blocks_.elements().extrapolated() ? 1 : 0);
 }
 
 /// What is left of the right-hand side is not what tiles judge by: it takes one more product.

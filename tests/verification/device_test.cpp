@@ -5,6 +5,7 @@
 #include "app/solver_settings.hpp"
 #include "core/model/errors.hpp"
 #include "gpu/run.hpp"
+#include "gpu/tile_points.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -205,7 +206,11 @@ void expect_solution_of_processor(const Simulation& s, Where where, const Solver
   std::printf("%-30s |du|/|u| %8.1e  Newton %3d %3d  CG %6d %6d\n", s.scene.path.stem().c_str(), error,
               there.newton_iterations, on_cpu.newton_iterations, there.linear_iterations, on_cpu.linear_iterations);
   EXPECT_LE(error, std::max(kSameSolution, 1e3 * std::numeric_limits<double>::epsilon() * condition(on_cpu)));
-  EXPECT_LE(std::abs(there.newton_iterations - on_cpu.newton_iterations), 2);
+  // In tiles the tangent has the stress of the state, and Newton's method takes more iterations.
+  const bool in_tiles = where == Where::device && gpu::not_for_tiles(s.model.points).empty();
+  const int more = in_tiles ? std::max(2, on_cpu.newton_iterations) : 2;
+  EXPECT_LE(there.newton_iterations, on_cpu.newton_iterations + more);
+  EXPECT_GE(there.newton_iterations, on_cpu.newton_iterations - 2);
 }
 
 TEST_P(DeviceSolution, IsThatOfTheProcessor) {
