@@ -9,10 +9,10 @@ using namespace kernels;
 
 namespace {
 
-std::vector<Mat3d> turned(const FrameMatrices& D) {
-  std::vector<Mat3d> Q(D.size());
+/// I + D of each node.
+void turn(const FrameMatrices& D, std::vector<Mat3d>& Q) {
+  Q.resize(D.size());
   for (std::size_t i = 0; i < Q.size(); ++i) Q[i] = Mat3d::identity() + D[i];
-  return Q;
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   if (tangent == Tangent::material) taken = nullptr;
   linearize_points(state, history, taken, out);
   const std::vector<Mat3d>& turning = taken != nullptr && set_.group_count() > 0 ? extrapolated_L_ : node_L_;
-  out.Q = turned(state.D);
+  turn(state.D, out.Q);
   out.node_blocks.assign(set_.dofs.block_total(), 0.0);
   for (int node = 0; node < set_.node_count(); ++node) {
     if (tangent == Tangent::material || set_.dofs.kind(node) != FrameKind::rigid) continue;
@@ -49,7 +49,10 @@ void CpuExecutor::linearize_points(const State& state, const StrainHistory& hist
                                    Linearization& out) {
   out.points.resize(at(set_.group_count()) * Linearization::kRows * kGroupSize);
   if (set_.group_count() == 0) return;
-  if (taken != nullptr) spread_direction(taken->d, turned(taken->D));
+  if (taken != nullptr) {
+    turn(taken->D, out.Q);  // those of the state follow
+    spread_direction(taken->d, out.Q);
+  }
   pool_.for_ranges(set_.group_count(), 32, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
       with_kind(group, [&](auto kind) { linearize_group<kind.value>(state, history, group, taken, out); });
