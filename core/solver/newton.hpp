@@ -137,11 +137,12 @@ class Newton {
     const DirectionReport d = direction();
     if (!d.usable) return NewtonStatus::linear_failure;
     double step = std::min(1.0, 0.25 * kRotationCap / std::max(d.largest_rotation, 1e-300));
+    const bool moving = system_.has_prescribed_increment();  // then the mark's residual is no measure
     for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
       system_.apply(step);
       current_ = system_.evaluate();
       if (current_.finite() &&
-          (current_.residual <= (1 - 0.1 * step) * marked_.residual ||
+          (moving || current_.residual <= (1 - 0.1 * step) * marked_.residual ||
            (system_.conservative() && current_.energy <= marked_.energy + 1e-4 * step * d.slope))) {
         mark();
         return NewtonStatus::converged;
@@ -166,9 +167,10 @@ class Newton {
     return finish(NewtonStatus::converged);
   }
 
-  /// What is kept of a solve that failed is the best state that it met.
+  /// What is kept of a solve that failed is the best state that it met. Where a boundary has not arrived, no state is
+  /// an equilibrium, however well its forces balance.
   NewtonReport give_up(NewtonStatus status) {
-    if (system_.has_prescribed_increment() && status != NewtonStatus::stalled) return finish(status);
+    if (system_.has_prescribed_increment()) return finish(status);
     if (status == NewtonStatus::stalled && marked_.converged()) return finish_at_best(Convergence::rounding);
     const bool small = last_decrement_ <= kSmallDecrement * marked_.energy_scale;
     if (status == NewtonStatus::stalled && small && marked_.left_of_load <= kLargestShare)

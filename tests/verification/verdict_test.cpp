@@ -231,6 +231,51 @@ quantity = "stress"
   EXPECT_NE(run.message().find("not finite"), std::string::npos) << run.message();
 }
 
+/// A neo-Hookean cube whose one face must pass through the other: no state has arrived, and none is an equilibrium,
+/// though that at rest balances its forces. A pull that it can follow arrives, with the force of several steps.
+TEST(Failure, ABoundaryThatDoesNotArriveIsNotConverged) {
+  const auto pushed = [](const std::string& kind, const std::string& cells, double by, int load_steps) {
+    return Ended(R"(
+[bodies.b]
+model = ")" + kind + R"("
+domain = { box = { min = [0, 0, 0], max = [0.02, 0.1, 0.1])" +
+                     cells +
+                     R"( } }
+density = 1000
+material = { young = 1e5, poisson = 0.3, law = "neo-hookean" }
+[[constraints]]
+body = "b"
+where = { box = { min = [-0.1, -1, -1], max = [0.0001, 1, 1] } }
+fix = "all"
+[[constraints]]
+body = "b"
+where = { box = { min = [0.0199, -1, -1], max = [2, 1, 1] } }
+move = { translate = [)" +
+                     std::to_string(by) +
+                     R"(, 0, 0] }
+[solver]
+kind = "static"
+[probes.force]
+body = "b"
+where = { box = { min = [-0.1, -1, -1], max = [0.0001, 1, 1] } }
+quantity = "force"
+)" + (kind == "meshless" ? "[bodies.b.frames]\ngrid = [3, 3, 3]\n" : ""),
+                 {"solver.load_steps=" + std::to_string(load_steps)});
+  };
+  for (const std::string kind : {"tetrahedra", "hexahedra", "meshless"}) {
+    const std::string cells = kind == "meshless" ? "" : ", cells = [2, 2, 2]";
+    const Ended crushed = pushed(kind, cells, -0.025, 1);
+    EXPECT_EQ(crushed.status, 3) << kind;
+    EXPECT_EQ(crushed.said(), "not-converged") << kind;
+    const Ended once = pushed(kind, cells, 0.02, 1), slowly = pushed(kind, cells, 0.02, 4);
+    EXPECT_EQ(once.said(), "converged") << kind << once.message();
+    EXPECT_LT(once.component("force", 0), -700) << kind;  // 1e5 Pa on 0.01 m2, twice as long: 745 N and more
+    EXPECT_NEAR(once.component("force", 0) / slowly.component("force", 0), 1, 1e-6) << kind;
+    std::printf("%-10s %.4f N, in four load steps %.4f N\n", kind.c_str(), once.component("force", 0),
+                slowly.component("force", 0));
+  }
+}
+
 /// One end of a line comes nearer and aside: shifts of an indefinite tangent that start too large do not get there.
 TEST(Shifts, ASlackLineIsSolved) {
   const Ended run(R"(
