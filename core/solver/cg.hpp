@@ -13,8 +13,8 @@ struct CgOptions {
 
 enum class CgStatus { converged, limit, negative_curvature, not_finite };
 
-/// What a solve does at a direction of negative curvature: it stops before it; or goes along it as far as if the
-/// curvature were positive.
+/// A solve stops before a direction of negative curvature; or it goes along it as far as if the curvature were
+/// positive.
 enum class NegativeCurvature { stops, reflected };
 
 struct CgReport {
@@ -37,7 +37,10 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
                              const typename Space::Vector& b, typename Space::Vector& x, const CgOptions& options,
                              NegativeCurvature negative = NegativeCurvature::stops) {
   using Vector = typename Space::Vector;
-  constexpr double kLeast = 1e-12;  // of a curvature that is all but zero
+  // Reflected, a softer direction than this part of the preconditioner counts as one of negative curvature, so that a
+  // direction without stiffness does not take all of the step.
+  constexpr double kLeast = 1e-4;
+  const bool reflects = negative == NegativeCurvature::reflected;
   CgReport report;
   Vector r = b, z = space.zeros(b.size()), p = z, Ap = z;
   const auto stop = [&](CgStatus status, double residual) {
@@ -56,8 +59,8 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
     apply(p, Ap);
     const double curvature = space.dot(p, Ap);
     if (!std::isfinite(curvature)) return stop(CgStatus::not_finite, std::sqrt(rz / rz_start));
-    if (curvature <= 0) {
-      if (negative == NegativeCurvature::reflected)
+    if (curvature <= (reflects ? kLeast * rz : 0.0)) {
+      if (reflects)
         space.advance(rz / std::max(-curvature, kLeast * rz), p, Ap, x, r);
       else if (report.iterations == 0)
         x = p;

@@ -23,7 +23,7 @@ constexpr double kMostFactorBytes = 2e9;
 
 constexpr int kNodeChunk = 512;
 
-/// Of an indefinite tangent, relative to its material part's diagonal.
+/// An indefinite tangent is shifted by this part of its material diagonal first.
 constexpr double kSmallestShift = 1e-6;
 
 /// y = B x; returns x · y.
@@ -217,7 +217,9 @@ void TangentSolver::finish_shifted(std::span<double> x) {
         return vectors_.dot(r, z);
       },
       CpuVectors::Vector(rhs_.begin(), rhs_.end()), result, kOptions, NegativeCurvature::reflected);
-  if (cg.status != CgStatus::not_finite) std::copy(result.begin(), result.end(), x.begin());
+  const double descent = vectors_.dot(rhs_, result);  // else the shifted solution stays
+  if (cg.status != CgStatus::not_finite && std::isfinite(descent) && descent > 0)
+    std::copy(result.begin(), result.end(), x.begin());
 }
 
 void TangentSolver::build_block_jacobi() {
