@@ -80,7 +80,7 @@ FASCIA_HD inline Mat3d old_strain(const HistoryView& history, int group, int lan
   return symmetric_matrix(history.E + static_cast<std::size_t>(group) * 6 * kGroupSize, 0, lane);
 }
 
-/// What a linearisation kept of a point.
+/// Rows that a linearisation kept of a group.
 template <class T>
 FASCIA_HD const T* linearized_rows(const PointsOf<T>& set, int group) {
   return set.motion + static_cast<std::size_t>(group) * kPointRows * kGroupSize;

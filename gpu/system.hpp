@@ -112,9 +112,10 @@ class System {
   void stretch_tethers(double time);
   void store_strain_at(const Pose& pose, Array<Space, double>& E);
   void find_prescribed();
-  void linearize(Tangent tangent, bool tethers_turn);
+  void linearize(Tangent tangent, bool tethers_turn, const TakenStepView& taken = {});
+  TakenStepView taken_step() const;
   void linearize_tiles(Tangent tangent);
-  const Mat3d* linearize_blocks(Tangent tangent);
+  const Mat3d* linearize_blocks(Tangent tangent, const TakenStepView& taken);
   double note_direction();
   template <class T, class V>
   void apply_tangent(const CgView<V>& v);
@@ -129,7 +130,7 @@ class System {
   bool use_tiles() const {
     return tiles_ != nullptr && (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
   }
-  std::uint64_t operator_key() const;
+  std::uint64_t operator_key();
   template <class V>
   auto& solver() {
     if constexpr (std::is_same_v<V, double>)
@@ -156,7 +157,7 @@ class System {
   ConjugateGradients<Space, float> narrow_cg_;
   std::vector<std::uint8_t> held_;     ///< degrees of freedom that tiles hold, by node
   std::unique_ptr<TileSolver> tiles_;  ///< of meshless solids alone; none where they cannot hold them
-  bool conservative_, turning_, damped_;
+  bool conservative_, extrapolates_, turning_, damped_;
   MotionSizes motions_;
   std::vector<double> masses_;  ///< part_masses()
 
@@ -191,6 +192,14 @@ class System {
   Array<Space, Mat3<float>> narrow_dA_;
   Array<Space, CgProgress> idle_;
   Tangent tangent_ = Tangent::full;
+  /// All that the loops of a product are recorded with.
+  struct Operator {
+    double inverse_step = 0;
+    Tangent tangent = Tangent::full;
+    bool extrapolated = false;
+    bool operator==(const Operator&) const = default;
+  } operator_;
+  std::uint64_t operator_count_ = 0;  ///< operators that differed from the one before
 
   std::optional<Evaluation> known_;
   std::optional<std::pair<long, double>> reached_;  ///< a state reached, and its internal energy

@@ -26,6 +26,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
       cg_(settings.precision == Precision::single ? 0 : at(model.dof_count())),
       narrow_cg_(settings.precision == Precision::single ? at(model.dof_count()) : 0),
       conservative_(model.loads_are_conservative()),
+      extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
       turning_(model.has_frames()),
       damped_(model.points.damped),
       motions_(motion_sizes(model)),
@@ -267,7 +268,7 @@ void System<Space>::evaluate_loads() {
 template <class Space>
 void System<Space>::apply(double step) {
   known_.reset();
-  if (!use_tiles() && settings_.tangent == Tangent::full) {
+  if (extrapolates_ && !use_tiles()) {
     taken_u_.copy_from(u_);
     taken_D_.copy_from(D_);
     taken_length_ = step;

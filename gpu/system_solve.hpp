@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 /// Newton's directions of System.
@@ -36,10 +35,10 @@ kernels::ProductView<T, V> System<Space>::product_view() {
 }
 
 template <class Space>
-void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
+void System<Space>::linearize(Tangent tangent, bool tethers_turn, const TakenStepView& taken) {
   const NodesView& nodes = data_.view().nodes;
   tangent_ = tangent;
-  const Mat3d* L = linearize_blocks(tangent);
+  const Mat3d* L = linearize_blocks(tangent, taken);
   const Mat3d* taken_off = tethers_turn ? nullptr : tether_L_.data();
   Space::for_each(nodes.count, kernels::NodeBlocks{step_view(), L, taken_off, Q_.data(), node_blocks_.data(),
                                                    tangent == Tangent::full});
@@ -67,17 +66,19 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn) {
   Space::for_each(entries, kernels::Round<float>{inverse_.data(), narrow_inverse_.data()});
 }
 
-/// Blocks, with stresses extrapolated along the step that led here; what note_direction() left of it is good once.
-/// Tiles take the stresses of the state. @return  N Qᵀ of frames with these stresses
+/// The step that led to the present state, as note_direction() and apply() left it: good until the next product.
 template <class Space>
-const Mat3d* System<Space>::linearize_blocks(Tangent tangent) {
+TakenStepView System<Space>::taken_step() const {
+  if (taken_length_ == 0) return {};
+  return {{taken_u_.data(), taken_D_.data()}, {world_d_.data(), dx_.data(), dA_.data()}, taken_length_};
+}
+
+/// All but springs. Tiles take the stresses of the state. @return  N Qᵀ of frames with the tangent's stresses
+template <class Space>
+const Mat3d* System<Space>::linearize_blocks(Tangent tangent, const TakenStepView& taken) {
   if (use_tiles()) return L_.data();
-  TakenStepView taken;
-  if (taken_length_ > 0 && tangent == Tangent::full)
-    taken = {{taken_u_.data(), taken_D_.data()}, {world_d_.data(), dx_.data(), dA_.data()}, taken_length_};
-  taken_length_ = 0;
   blocks_.linearize(pose(), history(), tangent, taken);
-  if (!taken.known() || blocks_.points().empty()) return L_.data();
+  if (!taken.known() || !turning_ || blocks_.points().empty()) return L_.data();
   extrapolated_L_.resize(L_.size());
   Space::for_each(model_.node_count(),
                   kernels::ExtrapolatedMoments{step_view(), blocks_.points().view(), extrapolated_L_.data()});
@@ -132,12 +133,13 @@ void System<Space>::gather_product(const kernels::ProductView<T, V>& w) {
   if (!surfaces_.empty()) surfaces_.add_volume_product(direction.d, w.y);
 }
 
-/// Of what the loops of a product have been recorded with.
+/// Another one wherever the loops of a product must be recorded anew.
 template <class Space>
-std::uint64_t System<Space>::operator_key() const {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &inverse_step_, sizeof bits);
-  return bits * 4 + (tangent_ == Tangent::full ? 2 : 0) + (blocks_.elements().extrapolated() ? 1 : 0);
+std::uint64_t System<Space>::operator_key() {
+  const Operator now{inverse_step_, tangent_, blocks_.elements().extrapolated()};
+  if (now != operator_) ++operator_count_;
+  operator_ = now;
+  return operator_count_;
 }
 
 /// What is left of the right-hand side is not what tiles judge by: it takes one more product.
@@ -201,7 +203,7 @@ SoftestDirection System<Space>::softest() {
 
 template <class Space>
 DirectionReport System<Space>::direction() {
-  linearize(settings_.tangent, true);
+  linearize(settings_.tangent, true, taken_step());
   const int n = model_.node_count();
   const double* moved = nullptr;
   if (prescribed_left_) {

@@ -95,7 +95,9 @@ double ElementExecutor::largest_spin(std::span<const Vec3d> dx) {
     gather_patch(dx, patch, slot_d_);
     patch_spin_[at(patch)] = block_.nodes == 4 ? spin_of_patch<4>(patch) : spin_of_patch<0>(patch);
   });
-  return *std::max_element(patch_spin_.begin(), patch_spin_.end());
+  double largest = 0;
+  for (const double spin : patch_spin_) largest = std::max(largest, spin);
+  return largest;
 }
 
 void ElementExecutor::compute_product(const At& state, std::span<const Vec3d> dx) {

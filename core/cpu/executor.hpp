@@ -36,7 +36,7 @@ struct TakenStep {
 
 /// The second derivative of the internal energy at a state. It stays valid as long as it is held.
 struct Linearization {
-  static constexpr int kRows = 27;
+  static constexpr int kRows = 27;  ///< of a group
   Tangent tangent = Tangent::full;
   double inverse_step = 0;          ///< of the viscous stress
   std::vector<Mat3d> Q;             ///< I + D of each frame
@@ -45,7 +45,8 @@ struct Linearization {
   std::vector<Vec3d> u;             ///< displacements, where there are elements or shells
   std::vector<Mat3d> D;             ///< rotations − I, where there are shells
   AlignedVector<double> E;          ///< StrainHistory::E, where elements or shells are damped
-  AlignedVector<double> stress;     ///< extrapolated, of elements and shells in the layout of E; or empty
+  bool extrapolated = false;        ///< stresses are extrapolated
+  AlignedVector<double> stress;     ///< such stresses of elements and shells, in the layout of E
   std::vector<SurfaceTangent> surfaces;  ///< of surface loads; added by who knows them, as to node_blocks
   std::vector<RankOne> low_rank;         ///< terms that no matrix holds; products have them
 };
@@ -105,7 +106,7 @@ class CpuExecutor {
   static Vec3d spring_force(const Spring& spring, const State& state);
 
   /// What a range of groups adds to the gradient of a node at the last call of gradient(): force, and what is conjugate
-  /// to A.
+  /// to A. Products and tangents with extrapolated stresses overwrite it.
   struct NodeGradient {
     Vec3d force{};
     Mat3d N{};
@@ -124,8 +125,8 @@ class CpuExecutor {
  private:
   /// @param block  of elements, then of shells
   std::span<const double> strain_of_block(const AlignedVector<double>& E, std::size_t block) const;
-  /// Of Linearization::stress, which has no points; empty where the block's stresses are those of the state.
-  std::span<const double> stress_of_block(const AlignedVector<double>& stress, std::size_t block) const;
+  /// Extrapolated stresses of a block; empty where the tangent takes those of the state.
+  std::span<const double> stress_of_block(const Linearization& lin, std::size_t block) const;
   ElementExecutor::At element_at(const Linearization& lin, std::size_t block) const;
   ShellExecutor::At shell_at(const Linearization& lin, std::size_t shell) const;
   /// @param all  with energies, rounding, and what linearize() needs

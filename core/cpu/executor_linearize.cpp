@@ -2,7 +2,7 @@
 #include "core/cpu/group_kernels.hpp"
 #include "core/math/index.hpp"
 
-/// What products with the tangent need of a state.
+/// Linearization: all that products with the tangent need of a state.
 namespace fascia {
 
 using namespace kernels;
@@ -23,8 +23,8 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   out.inverse_step = history.inverse_step;
   out.surfaces.clear();
   out.low_rank.clear();
-  out.stress.clear();
   if (tangent == Tangent::material) taken = nullptr;
+  out.extrapolated = taken != nullptr;
   linearize_points(state, history, taken, out);
   const std::vector<Mat3d>& turning = taken != nullptr && set_.group_count() > 0 ? extrapolated_L_ : node_L_;
   turn(state.D, out.Q);
@@ -61,6 +61,7 @@ void CpuExecutor::linearize_points(const State& state, const StrainHistory& hist
   extrapolated_L_.resize(at(set_.node_count()));
   pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
+      if (set_.dofs.kind(node) != FrameKind::rigid) continue;
       const Mat3d N = gradient_of_groups(0, set_.group_count(), node).N;
       extrapolated_L_[at(node)] = N + times_transpose(N, state.D[at(node)]);  // N Qᵀ
     }
@@ -116,7 +117,8 @@ void CpuExecutor::extrapolate_blocks(const StrainHistory& history, const TakenSt
   };
   const std::span<const Vec3d> dx = translations(taken.d);
   for (std::size_t b = 0; b < elements_.size(); ++b)
-    elements_[b].extrapolate({taken.u, strain_of_block(history.E, b), history.inverse_step}, dx, part(b));
+    if (set_.blocks[b].extrapolates())
+      elements_[b].extrapolate({taken.u, strain_of_block(history.E, b), history.inverse_step}, dx, part(b));
   for (std::size_t s = 0; s < shells_.size(); ++s) {
     const std::size_t b = elements_.size() + s;
     shells_[s].extrapolate({taken.u, taken.D.values(), strain_of_block(history.E, b), history.inverse_step}, taken.d,
@@ -124,11 +126,11 @@ void CpuExecutor::extrapolate_blocks(const StrainHistory& history, const TakenSt
   }
 }
 
-std::span<const double> CpuExecutor::stress_of_block(const AlignedVector<double>& stress, std::size_t block) const {
-  const bool extrapolated = block >= elements_.size() || set_.blocks[block].extrapolates();
-  if (stress.empty() || !extrapolated) return {};
-  return std::span(stress).subspan(strain_begin_[block] - block_strains_begin(),
-                                   strain_begin_[block + 1] - strain_begin_[block]);
+std::span<const double> CpuExecutor::stress_of_block(const Linearization& lin, std::size_t block) const {
+  const bool extrapolates = block >= elements_.size() || set_.blocks[block].extrapolates();
+  if (!lin.extrapolated || !extrapolates) return {};
+  return std::span(lin.stress)
+      .subspan(strain_begin_[block] - block_strains_begin(), strain_begin_[block + 1] - strain_begin_[block]);
 }
 
 }  // namespace fascia

@@ -53,13 +53,12 @@ void CpuExecutor::multiply_group(const Linearization& lin, int group) {
 }
 
 ElementExecutor::At CpuExecutor::element_at(const Linearization& lin, std::size_t block) const {
-  return {lin.u, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent, stress_of_block(lin.stress, block)};
+  return {lin.u, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent, stress_of_block(lin, block)};
 }
 
 ShellExecutor::At CpuExecutor::shell_at(const Linearization& lin, std::size_t shell) const {
   const std::size_t block = elements_.size() + shell;
-  return {
-      lin.u, lin.D, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent, stress_of_block(lin.stress, block)};
+  return {lin.u, lin.D, strain_of_block(lin.E, block), lin.inverse_step, lin.tangent, stress_of_block(lin, block)};
 }
 
 /// Motions of the nodes for products of points: dx, and dA of frames that stand at Q.

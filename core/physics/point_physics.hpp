@@ -57,7 +57,7 @@ FASCIA_HD Mat3<T> tether_stress(const ThinMaterial<T>& material, const Vec3<T>& 
   return P;
 }
 
-/// Of a point at a state; not of a tether, whose tangent has none.
+/// These stresses of a point at a state. A tether's tangent has none.
 ///
 /// @param E_old  strain at the start of the time step, used where material.viscosity is not zero
 template <Stabilization Tie, class T, template <class> class Material>

@@ -28,6 +28,13 @@ void place_dependent_rates(const PointSet& set, State& state) {
   }
 }
 
+bool forces_turn_hosts(const PointSet& set) {
+  return std::any_of(set.dependents.begin(), set.dependents.end(), [&](const DependentNode& d) {
+    return std::any_of(d.hosts.begin(), d.hosts.end(),
+                       [&](int host) { return set.dofs.kind(host) == FrameKind::rigid; });
+  });
+}
+
 DependentNodes::DependentNodes(const PointSet& set) : set_(set) {
   if (empty()) return;
   dependent_.assign(at(set.node_count()), -1);

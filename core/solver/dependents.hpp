@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/model/model.hpp"
+#include "core/physics/point_physics.hpp"
 #include "core/solver/block_matrix.hpp"
 
 #include <span>
@@ -12,6 +13,14 @@ namespace fascia {
 void place_dependents(const PointSet& set, State& state);
 /// Velocities of dependent nodes, du/dt = Σ w du_a/dt + dQ_a/dt b_a.
 void place_dependent_rates(const PointSet& set, State& state);
+
+/// Some dependent node has a host that is a rigid frame, which forces on the node turn: add_turning() has what to add.
+bool forces_turn_hosts(const PointSet& set);
+/// Newton's tangent extrapolates stresses. Forces on dependent nodes are those of the state, and what these do to the
+/// turning of hosts must not meet extrapolated stresses elsewhere: such models keep the stresses of the state.
+inline bool extrapolates_stresses(const PointSet& set, Tangent tangent) {
+  return tangent == Tangent::full && !forces_turn_hosts(set);
+}
 
 /// The dependent nodes of a model at a state, where small motions of their hosts move them by
 ///

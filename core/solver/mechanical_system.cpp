@@ -20,6 +20,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       tangent_(model, executor_, filter_, settings),
       dependents_(model.points),
       conservative_(model.loads_are_conservative()),
+      extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
       surfaces_(model),
       masses_(part_masses(model)),
       state_(State::at_rest(model)) {
@@ -291,7 +292,7 @@ std::vector<double> MechanicalSystem::product(std::span<const double> d) {
 
 /// Keeps where a step starts, and along what it goes.
 void MechanicalSystem::note_step(double step) {
-  has_taken_ = settings_.tangent == Tangent::full;
+  has_taken_ = extrapolates_;
   if (!has_taken_) return;
   taken_.u = state_.u;
   taken_.D = state_.D;

@@ -174,7 +174,7 @@ class MechanicalSystem {
   CpuExecutor executor_;
   TangentSolver tangent_;
   DependentNodes dependents_;  ///< at the present state
-  bool conservative_;
+  bool conservative_, extrapolates_;
   SurfaceLoads surfaces_;
   std::vector<double> masses_;  ///< part_masses()
 
