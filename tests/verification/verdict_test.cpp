@@ -267,9 +267,9 @@ quantity = "force"
     const Ended crushed = pushed(kind, cells, -0.025, 1);
     EXPECT_EQ(crushed.status, 3) << kind;
     EXPECT_EQ(crushed.said(), "not-converged") << kind;
-    const Ended once = pushed(kind, cells, 0.02, 1), slowly = pushed(kind, cells, 0.02, 4);
+    const Ended once = pushed(kind, cells, 0.005, 1), slowly = pushed(kind, cells, 0.005, 4);
     EXPECT_EQ(once.said(), "converged") << kind << once.message();
-    EXPECT_LT(once.component("force", 0), -700) << kind;  // 1e5 Pa on 0.01 m2, twice as long: 745 N and more
+    EXPECT_LT(once.component("force", 0), -250) << kind;  // 1e5 Pa on 0.01 m2, a quarter longer
     EXPECT_NEAR(once.component("force", 0) / slowly.component("force", 0), 1, 1e-6) << kind;
     std::printf("%-10s %.4f N, in four load steps %.4f N\n", kind.c_str(), once.component("force", 0),
                 slowly.component("force", 0));
