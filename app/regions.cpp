@@ -84,16 +84,19 @@ bool in_cylinder(const CylinderRegion& c, const Vec3d& X, double t) {
          norm(across_axis(c, X)) <= (c.radius + t) * length;
 }
 
-int nearest_point(const Vec3d& target, std::span<const Vec3d> points) {
+/// |Y − p| − |X − p|: how much nearer X is.
+double nearer_by(const NearestRegion& n, const Vec3d& X, const Vec3d& Y) {
+  PreciseSum sum;
+  for (int a = 0; a < 3; ++a) sum.add(Y[a], Y[a]).add(-X[a], X[a]).add(-2 * Y[a], n.point[a]).add(2 * X[a], n.point[a]);
+  const double both = norm(X - n.point) + norm(Y - n.point);
+  return both > 0 ? sum.value() / both : 0.0;
+}
+
+/// The first of those that are nearest but for what is forgiven.
+int nearest_point(const NearestRegion& n, std::span<const Vec3d> points, const Forgiving& forgiving) {
   int best = -1;
-  double least = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double distance = squared_norm(points[i] - target);
-    if (distance < least * (1 - 1e-12)) {
-      least = distance;
-      best = static_cast<int>(i);
-    }
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (best < 0 || nearer_by(n, points[i], points[at(best)]) > forgiving.at(points[i])) best = static_cast<int>(i);
   return best;
 }
 
@@ -164,7 +167,8 @@ std::vector<bool> select(const Region& region, const Selectable& from, const For
                  [&](const CylinderRegion& c) { by_position(in_cylinder, c); },
                  [&](const HalfspaceRegion& h) { by_position(in_halfspace, h); },
                  [&](const NearestRegion& n) {
-                   if (const int i = nearest_point(n.point, points); i >= 0) chosen[static_cast<std::size_t>(i)] = true;
+                   if (const int i = nearest_point(n, points, forgiving); i >= 0)
+                     chosen[static_cast<std::size_t>(i)] = true;
                  },
                  [&](const GroupRegion& g) { select_group(region, g.name, from, chosen); },
                  [&](const IdsRegion& ids) {

@@ -1,4 +1,4 @@
-#include "tests/robustness/scene_runs.hpp"
+#include "tests/robustness/element_scenes.hpp"
 
 #include <array>
 #include <cmath>
@@ -124,6 +124,9 @@ const BodyKind kBodies[] = {
     {"tetrahedra",
      "model = \"tetrahedra\"\ndomain = { box = { min = [0, 0, 0], max = [1, 0.2, 0.2], cells = [6, 2, 2] "
      "} }\n"},
+    {"hexahedra",
+     "model = \"hexahedra\"\norder = 2\ndomain = { box = { min = [0, 0, 0], max = [1, 0.2, 0.2], cells = [4, 1, 1] "
+     "} }\n"},
     {"sheet",
      "model = \"meshless\"\ndomain = { rectangle = { origin = [0, 0, 0.1], edge_u = [1, 0, 0], edge_v = [0, "
      "0.2, 0] } }\nthickness = 0.1\nframes = { poisson_disk = 0.1 }\n"},
@@ -168,6 +171,41 @@ TEST_P(SimilarBodies, HeldByGenerousRegions) {
 TEST_P(SimilarBodies, FarFromTheOrigin) {
   const std::string near = bar(GetParam().text, kFace);
   expect_same(values(near), values(moved(near, {4e6, -3e6, 1e6})), 1e-6);
+}
+
+TEST_F(Similarity, AMeshFileFarFromTheOrigin) {
+  const auto at = [&](const std::array<double, 3>& by) {
+    FileMesh mesh = hexahedra_beam(4);
+    for (auto& node : mesh.nodes)
+      for (std::size_t a = 0; a < 3; ++a) node[a] += by[a];
+    write("beam.msh", mesh.text());
+    return values(moved(bar("model = \"hexahedra\"\ndomain = { file = \"beam.msh\" }\n", kFace), by));
+  };
+  expect_same(at({0, 0, 0}), at({4e6, -3e6, 1e6}), 1e-6);
+}
+
+/// A bar that ends in a rigid block on which the load acts: arms and moments are differences of coordinates.
+TEST_F(Similarity, ARigidEndFarFromTheOrigin) {
+  const std::string scene = with(bar(kBodies[3].text, kFace), "body = \"bar\"\nwhere = { box = { min = [0.99",
+                                 "body = \"block\"\nwhere = { box = { min = [1.19");
+  const std::string ended = with(scene, "max = [1.01, 1, 1]", "max = [1.21, 1, 1]") +
+                            "[bodies.block]\nmodel = \"rigid\"\ndomain = { box = { min = [1, 0, 0], max = [1.2, 0.2, "
+                            "0.2] } }\ndensity = 1000\n[couplings.end]\nkind = \"weld\"\nbody = \"bar\"\nwhere = { "
+                            "box = { min = [0.999, -1, -1], max = [1.001, 1, 1] } }\nto = \"block\"\n";
+  expect_same(values(ended), values(moved(ended, {4e6, -3e6, 1e6})), 1e-6);
+}
+
+/// Distances to a far point differ by less than they are rounded to.
+TEST_F(Similarity, TheNodeNearestToAFarPoint) {
+  const auto pulled = [&](const std::string& point) {
+    return values(bar(kBodies[3].text, kFace) + "[[loads]]\nbody = \"bar\"\nwhere = { nearest = " + point +
+                  " }\ntotal_force = [1, 2, 3]\n");
+  };
+  const auto corner = pulled("[1, 0.2, 0]");
+  for (const double far : {10.0, 1e6, 1e9, 1e15}) {
+    SCOPED_TRACE(far);
+    expect_same(corner, pulled(vector(far, 0.3 * far, -0.5 * far)), 1e-12);
+  }
 }
 
 TEST_P(SimilarBodies, InOtherUnits) {
