@@ -78,15 +78,19 @@ class Newton {
  private:
   static constexpr double kRotationCap = 0.8;    ///< largest rotation of a frame or a cell in one iteration [rad]
   static constexpr double kIndefiniteCap = 0.4;  ///< the same along a direction that no minimum gave
+  static constexpr double kShorterLeap = 0.25;   ///< such a step, after one that led to no better state
   static constexpr int kDetour = 4, kHalvings = 14;
   static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
   static constexpr double kReduced = kLargestShare;
 
-  static double capped(const DirectionReport& d) {
-    const double cap = d.trouble.empty() ? kRotationCap : kIndefiniteCap;
-    return std::min(1.0, cap / std::max(d.largest_rotation, 1e-300));
+  double capped(const DirectionReport& d) {
+    const bool leaps = !d.trouble.empty();
+    const double cap = leaps ? leap_cap_ : kRotationCap;
+    const double step = std::min(1.0, cap / std::max(d.largest_rotation, 1e-300));
+    if (detour_ == 0) leap_ = leaps ? step * d.largest_rotation : 0;
+    return step;
   }
 
   /// Rounding excuses a residual only where Newton's method has reduced it, or has tried to and cannot.
@@ -118,6 +122,8 @@ class Newton {
   }
 
   void mark() {
+    if (leap_ > 0) leap_cap_ = std::min(kIndefiniteCap, 2 * leap_cap_);
+    leap_ = 0;
     system_.save();
     marked_ = current_;
     detour_ = 0;
@@ -130,6 +136,8 @@ class Newton {
   }
 
   NewtonStatus search_from_mark() {
+    if (leap_ > 0) leap_cap_ = kShorterLeap * leap_;
+    leap_ = 0;
     system_.restore();
     standing_ = 0;
     current_ = system_.evaluate();
@@ -190,6 +198,8 @@ class Newton {
   NewtonReport report_;
   Evaluation current_, marked_;
   int detour_ = 0, standing_ = 0;
+  double leap_ = 0;                   ///< rotation of the indefinite step that left the mark; 0 of a definite one
+  double leap_cap_ = kIndefiniteCap;  ///< what such a step may be now
   double first_residual_ = 0;
   double last_decrement_ = 0;  ///< of a search that found nothing better [J]
 };

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fascia {
@@ -108,6 +109,16 @@ const Beam kFrames{"meshless",
                    "2, 2] }",
                    5.208e-7};
 
+/// The same with a weak axis.
+const Beam kPlank{"hexahedra",
+                  "order = 2\ndomain = { box = { min = [0, -0.025, -0.04], max = [1, 0.025, 0.04], cells = [20, 1, "
+                  "1] } }",
+                  8.333e-7};
+const Beam kPlankOfFrames{"meshless",
+                          "domain = { box = { min = [0, -0.025, -0.04], max = [1, 0.025, 0.04] } }\nframes = { grid = "
+                          "[21, 2, 2] }",
+                          8.333e-7};
+
 std::string scene_of(const Beam& beam, const std::string& force, const std::string& extra) {
   std::string text = kBeam;
   const auto put = [&](const std::string& key, const std::string& value) {
@@ -131,20 +142,36 @@ TEST(NewtonResiduals, ACantileverBentFarInOneStep) {
   }
 }
 
-/// Twice Euler's load on columns that are bent by 1e-4 of their length at rest. One load step leads past the
-/// bifurcation, from a column that is straight but for 1e-4 to one that is bent by half a radian. With the stress of
-/// the state in the tangent the block's column did not converge; the others took 262 and 88 iterations.
+/// Twice Euler's load on a column that is bent by 1e-4 of its length at rest. One load step leads past the bifurcation,
+/// from a column that is straight but for 1e-4 to one that is bent by half a radian.
+std::vector<std::vector<double>> pushed(const Beam& beam, int load_steps) {
+  const std::string force = "[" + std::to_string(-2 * 2.4674 * 1e6 * beam.inertia) + ", 0, 0]";
+  return residuals_of("column, " + beam.model + ", " + std::to_string(load_steps) + " load steps",
+                      scene_of(beam, force, "imperfection = 1e-4"), load_steps);
+}
+
+/// The load step that crosses the bifurcation takes 8 to 34 iterations, as it ends nearer or farther beyond it, the
+/// others 3 to 6.
 TEST(NewtonResiduals, AColumnPushedToTwiceItsEulerLoad) {
-  constexpr int kLoadSteps = 10;
-  for (const Beam& beam : {kLine, kBlock, kShell}) {
-    const std::string force = "[" + std::to_string(-2 * 2.4674 * 1e6 * beam.inertia) + ", 0, 0]";
-    const auto all = residuals_of("column, " + beam.model, scene_of(beam, force, "imperfection = 1e-4"), kLoadSteps);
+  for (const auto& [beam, load_steps] : {std::pair{kPlank, 10}, {kPlankOfFrames, 9}, {kShell, 10}})
+    for (const auto& r : pushed(beam, load_steps)) {
+      expect_fast_end(r);
+      EXPECT_LE(r.size() - 1, 10u);
+    }
+}
+
+/// A round or square section is as soft in every direction: nothing but the imperfection says in which plane it bends,
+/// and turning that plane costs iterations. With the stress of the state in the tangent the block's column did not
+/// converge in ten load steps, and the line's took 262.
+TEST(NewtonResiduals, AColumnAsSoftInEveryDirection) {
+  constexpr unsigned kLoadSteps = 10;
+  for (const Beam& beam : {kLine, kBlock}) {
     std::size_t evaluations = 0;
-    for (const auto& r : all) {
+    for (const auto& r : pushed(beam, kLoadSteps)) {
       expect_fast_end(r);
       evaluations += r.size() - 1;
     }
-    EXPECT_LE(evaluations, 10u * kLoadSteps);
+    EXPECT_LE(evaluations, 10 * kLoadSteps);
   }
 }
 
