@@ -126,6 +126,11 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   const bool judged = is_judged(s, run);
   if (judged) judge_stability(s, end, run, warnings);
   warnings.insert(warnings.end(), run.events.begin(), run.events.end());
+  if (run.indefinite_steps > 0)
+    warnings.push_back(fmt::format(
+        "in {} time step{}, first at t = {:.4g} s, the stiffness became indefinite on the way: so long a step may have "
+        "several solutions, of which one was found; compare with a smaller time_step",
+        run.indefinite_steps, run.indefinite_steps == 1 ? "" : "s", run.first_indefinite));
   if (run.residual_floor > 1e-3 && !(s.model.loads.empty() && s.model.surfaces.empty()))
     warnings.push_back(fmt::format(
         "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));

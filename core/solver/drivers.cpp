@@ -29,9 +29,9 @@ std::string convergence_sentence(const NewtonReport& r, const SolverSettings& se
 std::string passed_sentence(double from, double to) {
   std::ostringstream out;
   out << "between load factors " << from << " and " << to
-      << " the structure passed a limit point or a bifurcation (its tangent stiffness became indefinite): what follows "
-         "may "
-         "be another equilibrium than the one that the path leads to; use control = \"arc-length\" to follow it";
+      << " the tangent stiffness became indefinite: the structure may have passed a limit point or a bifurcation, and "
+         "what follows may be another equilibrium than the path leads to; compare with more load_steps, or follow the "
+         "path with control = \"arc-length\"";
   return out.str();
 }
 

@@ -39,6 +39,9 @@ struct RunReport {
   std::string trouble;              ///< of a followed path: its end may be unstable
   std::string convergence;          ///< why the last step counts as converged, in words
   Stability stability;              ///< of the end of statics under load control
+  int indefinite_solves = 0;        ///< in which a tangent was not positive definite
+  int indefinite_steps = 0;         ///< time steps with such solves
+  double first_indefinite = 0;      ///< end of the first of them [s]
   std::vector<std::string> events;  ///< limit points and bifurcations that were passed, a sentence each
   std::string message;              ///< one sentence on what went wrong, where, and what to try
 };

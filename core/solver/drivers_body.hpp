@@ -21,6 +21,13 @@ constexpr int kMostFailures = 16, kMostHalvings = 8;
 inline void count(RunReport& run, const NewtonReport& newton) {
   run.newton_iterations += newton.iterations;
   run.linear_iterations += newton.linear_iterations;
+  run.indefinite_solves += newton.indefinite ? 1 : 0;
+}
+
+/// A time step during which some tangent was not positive definite: at its length it may have several solutions.
+inline void note_indefinite(RunReport& run, int solves_before, double end) {
+  if (run.indefinite_solves == solves_before) return;
+  if (run.indefinite_steps++ == 0) run.first_indefinite = end;
 }
 
 inline bool acceptable(const NewtonReport& newton, const SolverSettings& settings) {
@@ -173,7 +180,9 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
     const double end = dynamics.end_of(step), dt = dynamics.length_of(step);
     typename System::Pose before = state;
     stepper.failures = 0;
+    const int solves = run.indefinite_solves;
     const NewtonReport report = stepper.advance(state, end, dt, kMostHalvings);
+    note_indefinite(run, solves, end);
     if (!acceptable(report, settings)) {
       state = before;
       std::ostringstream message;

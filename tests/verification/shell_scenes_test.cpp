@@ -181,7 +181,7 @@ TEST(ShellScenes, LoadControlSaysWhereTheRoofHasItsLimitPoint) {
   // Beyond it the roof snaps to an equilibrium that hangs, which is stable, and is told of.
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find("limit point"), std::string::npos) << r.err;
-  EXPECT_NE(r.err.find("use control = \"arc-length\""), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("control = \"arc-length\""), std::string::npos) << r.err;
   double from = 0, to = 0;
   const std::string between = "between load factors ";
   ASSERT_NE(r.err.find(between), std::string::npos) << r.err;
