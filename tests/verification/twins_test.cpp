@@ -1,0 +1,184 @@
+// Scenes drawn at random, solved with Cholesky, with conjugate gradients and by what runs on a GPU: the same end, or a
+// status or a warning that says that there are several.
+#include "app/backend.hpp"
+#include "app/scene/parse.hpp"
+#include "app/simulation.hpp"
+#include "app/solver_settings.hpp"
+#include "core/solver/drivers.hpp"
+#include "gpu/device.hpp"
+#include "gpu/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fascia {
+namespace {
+
+std::string number(double value) {
+  char out[32];
+  std::snprintf(out, sizeof out, "%.6e", value);
+  return out;
+}
+
+std::string vector(double x, double y, double z) { return "[" + number(x) + ", " + number(y) + ", " + number(z) + "]"; }
+
+/// A bar of any model, clamped at one end or free, loaded by its weight and at its other end.
+struct RandomScene {
+  std::string text;
+
+  explicit RandomScene(unsigned seed) : random_(seed) {
+    const double length = std::pow(10, uniform(-3, 1)), width = length * uniform(0.05, 0.4);
+    const double young = std::pow(10, uniform(3, 10)), density = 1000;
+    const int model = pick(7), kind = pick(5);
+    const bool thin = model >= 5, free = kind > 0 && pick(4) == 0;
+    const bool hyperelastic = !thin && pick(2) == 0;
+    text += "[bodies.b]\n" + body(model, length, width) + "density = " + number(density) +
+            "\nmaterial = { young = " + number(young) + ", poisson = " + number(pick(2) == 0 ? 0.3 : 0.45) +
+            ", law = \"" + (hyperelastic ? "neo-hookean" : "st-venant-kirchhoff") + "\"";
+    const double slowest = length * std::sqrt(density / young);  // seconds that a wave takes along the bar
+    if (kind > 0 && pick(2) == 0)
+      text += ", damping = { mass = " + number(0.1 / slowest) + ", stiffness = " + number(0.01 * slowest) + " }";
+    text += " }\n";
+    if (free)
+      text += "initial = { velocity = " + directed(0.01 * length / slowest) +
+              ", angular_velocity = " + directed(0.1 / slowest) + " }\n";
+    else
+      text += "[[constraints]]\nbody = \"b\"\nwhere = " + region(-1, 1e-6 * length) + "\nfix = \"all\"\n";
+    const double section = thin ? 0.01 * width * width : width * width;
+    text += "[world]\ngravity = " + directed(std::pow(10, uniform(-6, -2)) * young / (density * length)) + "\n";
+    text += "[[loads]]\nbody = \"b\"\nwhere = " + region((1 - 1e-6) * length, 1.1 * length) +
+            "\ntotal_force = " + directed(std::pow(10, uniform(-5, -1.5)) * young * section) + "\n";
+    const std::array<const char*, 5> kinds{"static", "implicit-euler", "bdf2", "newmark", "midpoint"};
+    text += std::string("[solver]\nkind = \"") + kinds[static_cast<std::size_t>(kind)] + "\"\n";
+    if (kind > 0)
+      text += "steps = 3\ntime_step = " + number(std::pow(10, uniform(-1, 1.5)) * slowest) + "\n";
+    else
+      text += "load_steps = " + std::to_string(1 + pick(3)) + "\n";
+  }
+
+ private:
+  std::string body(int model, double length, double width) {
+    const std::string box = "box = { min = [0, 0, 0], max = " + vector(length, width, width);
+    const std::string cells = ", cells = [5, 2, 2] } }\n";
+    switch (model) {
+      case 0:
+      case 1:
+        return "model = \"tetrahedra\"\norder = " + std::to_string(1 + model) + "\ndomain = { " + box + cells;
+      case 2:
+        return "model = \"hexahedra\"\norder = " + std::to_string(1 + pick(2)) + "\ndomain = { " + box + cells;
+      case 3:
+      case 4:
+        return "model = \"meshless\"\ndomain = { " + box + " } }\nframes = { grid = [6, 3, 2], kind = \"" +
+               (model == 3 ? "rigid" : "affine") + "\" }\n";
+      case 5:
+        return "model = \"meshless\"\ndomain = { line = { from = [0, 0, 0], to = " + vector(length, 0, 0) +
+               " } }\nradius = " + number(0.1 * width) + "\nframes = { grid = [8] }\n";
+      default:
+        return "model = \"shell\"\ndomain = { rectangle = { origin = [0, 0, 0], edge_u = " + vector(length, 0, 0) +
+               ", edge_v = " + vector(0, width, 0) + ", cells = [6, 2] } }\nthickness = " + number(0.05 * width) + "\n";
+    }
+  }
+  double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
+  int pick(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
+  std::string directed(double size) {
+    const double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1), n = std::sqrt(x * x + y * y + z * z);
+    return vector(size * x / n, size * y / n, size * z / n);
+  }
+  static std::string region(double from, double to) {
+    return "{ box = { min = [" + number(from) + ", -1e3, -1e3], max = [" + number(to) + ", 1e3, 1e3] } }";
+  }
+
+  std::mt19937 random_;
+};
+
+struct End {
+  State state;
+  RunReport report;
+
+  /// It is called converged, and nothing says that there are other ends.
+  bool claimed() const {
+    return report.status == RunStatus::converged && report.events.empty() && report.indefinite_steps == 0 &&
+           report.stability.unstable == 0 && !report.stability.near_limit;
+  }
+};
+
+/// What solves: on the processor, or in the GPU's code.
+enum class Where { processor, host, device };
+
+End solved(const app::Simulation& s, Where where, LinearMethod linear) {
+  SolverSettings settings = app::settings_of(s.scene.solver);
+  settings.linear = linear;
+  settings.cg.max_iterations = 20000;
+  const FactorFunction factors = [&](double t) { return s.factors(t); };
+  const auto& solver = s.scene.solver;
+  End end{s.initial, {}};
+  const StaticsSettings statics{solver.load_steps};
+  if (where == Where::processor) {
+    ThreadPool pool(1);
+    MechanicalSystem system(s.model, pool, settings);
+    end.report = solver.kind == app::SolverKind::statics
+                     ? run_statics(system, end.state, factors, settings, statics, {})
+                     : run_implicit(system, end.state, factors, settings,
+                                    {app::scheme_of(solver.kind), solver.time_step, solver.steps}, {});
+    return end;
+  }
+  const bool host = where == Where::host;
+  if (solver.kind == app::SolverKind::statics)
+    end.report =
+        (host ? gpu::run_statics_on_host : gpu::run_statics)(s.model, end.state, factors, settings, statics, {});
+  else
+    end.report = (host ? gpu::run_implicit_on_host : gpu::run_implicit)(
+        s.model, end.state, factors, settings, {app::scheme_of(solver.kind), solver.time_step, solver.steps}, {});
+  return end;
+}
+
+/// Largest difference of displacements over the largest displacement.
+double difference(const State& a, const State& b) {
+  double largest = 0, error = 0;
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    largest = std::max(largest, norm(b.u[i]));
+    error = std::max(error, norm(a.u[i] - b.u[i]));
+  }
+  return error / std::max(largest, 1e-300);
+}
+
+TEST(RandomTwins, EndAlikeOrSayThatThereAreSeveralEnds) {
+  std::string reason;
+  const bool device = gpu::find_device(reason);
+  int compared = 0, warned = 0, failed = 0;
+  double worst = 0;
+  for (unsigned seed = 1; seed <= FASCIA_CASES; ++seed) {
+    const RandomScene scene(seed);
+    const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
+    ASSERT_EQ(app::not_on_gpu(s), "");
+    const End direct = solved(s, Where::processor, LinearMethod::cholesky);
+    std::vector<std::pair<const char*, End>> others{{"cg", solved(s, Where::processor, LinearMethod::cg)},
+                                                    {"host", solved(s, Where::host, LinearMethod::cg)}};
+    if (device) others.emplace_back("device", solved(s, Where::device, LinearMethod::cg));
+    for (const auto& [name, other] : others) {
+      if (!direct.claimed() || !other.claimed()) {
+        const auto fails = [](const End& end) { return end.report.status != RunStatus::converged; };
+        ++(fails(direct) || fails(other) ? failed : warned);
+        continue;
+      }
+      ++compared;
+      const double error = difference(other.state, direct.state);
+      worst = std::max(worst, error);
+      EXPECT_LE(error, 1e-6) << "seed " << seed << ", " << name << "\n" << scene.text;
+    }
+  }
+  std::printf("%d ends compared, displacements differ by %.1e at most; %d warned of, %d not converged\n", compared,
+              worst, warned, failed);
+  EXPECT_GE(compared, 3 * (warned + failed));
+}
+
+}  // namespace
+}  // namespace fascia
