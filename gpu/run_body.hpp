@@ -8,14 +8,11 @@
 /// The bodies of runs, for the files that instantiate them.
 namespace fascia::gpu {
 
-/// Larger models are not worth a factorisation that only makes a message better.
-inline constexpr int kMostOfLimitPoint = 15000;
-
 /// As of a MechanicalSystem, by one of the host.
 template <class Space>
 bool near_limit_point(System<Space>& system, const DeviceState<Space>& pose, const FactorFunction& factors,
                       double reached) {
-  if (system.model().free_dof_count() > kMostOfLimitPoint) return false;
+  if (system.model().free_dof_count() > System<Space>::kMostOfFactor) return false;
   ThreadPool pool(0);
   MechanicalSystem host(system.model(), pool, system.settings());
   State state = State::at_rest(system.model());
@@ -28,7 +25,7 @@ bool near_limit_point(System<Space>& system, const DeviceState<Space>& pose, con
 template <class Space>
 Stability end_stability(System<Space>& system, const DeviceState<Space>& end, const RunReport& run, bool) {
   const Model& model = system.model();
-  if (model.free_dof_count() > kMostOfLimitPoint) return system.stability(end);
+  if (model.free_dof_count() > System<Space>::kMostOfFactor) return system.stability(end);
   ThreadPool pool(0);
   SolverSettings settings = system.settings();
   settings.linear = LinearMethod::cholesky;

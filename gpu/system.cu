@@ -1,6 +1,7 @@
 #include "gpu/blocks_body.hpp"
 #include "gpu/cuda_space.cuh"
 #include "gpu/system_body.hpp"
+#include "gpu/system_host.hpp"
 #include "gpu/system_solve.hpp"
 #include "gpu/system_step.hpp"
 

@@ -28,6 +28,9 @@ namespace fascia::gpu {
 template <class Space>
 class System {
  public:
+  /// Unknowns of a model that the host factorises in seconds at most.
+  static constexpr int kMostOfFactor = 15000;
+
   using Pose = DeviceState<Space>;
   using Memory = DeviceMemory<Space>;
 
@@ -139,7 +142,13 @@ class System {
       return narrow_cg_;
   }
   CgReport solve(const CgOptions& options);
+  bool limit_is_guessed() const {
+    return settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations == CgOptions{}.max_iterations;
+  }
   CgOptions solve_options() const;
+  bool host_may_solve() const;
+  StepInProgress step_in_progress() const;
+  DirectionReport direction_of_host();
   SoftestDirection softest();
   CgReport solve_in_tiles(const CgOptions& options);
   void place_tethers();
@@ -207,6 +216,16 @@ class System {
   double load_energy_ = 0, inertia_energy_ = 0;
   bool prescribed_left_ = false;
   long steps_ = 0;
+
+  /// A system of the host that solves where conjugate gradients meet an indefinite tangent, or do not get there.
+  struct Host {
+    ThreadPool pool{0};
+    MechanicalSystem system;
+    Host(const Model& model, const SolverSettings& settings) : system(model, pool, settings) {}
+  };
+  std::unique_ptr<Host> host_;
+  bool indefinite_ = false;  ///< the last direction was the host's, and its tangent indefinite
+  bool too_slow_ = false;    ///< conjugate gradients reached their limit, so that the host solves from there on
 };
 
 }  // namespace fascia::gpu

@@ -169,13 +169,11 @@ CgReport System<Space>::solve(const CgOptions& options) {
   });
 }
 
-/// A limit that nobody set is no reason to stop: there is no direct solver here that could take over.
+/// A limit that nobody set is no reason to stop.
 template <class Space>
 CgOptions System<Space>::solve_options() const {
   CgOptions options = settings_.cg;
-  const bool guessed =
-      settings_.linear == LinearMethod::automatic && options.max_iterations == CgOptions{}.max_iterations;
-  if (guessed) options.max_iterations *= kPatience;
+  if (limit_is_guessed()) options.max_iterations *= kPatience;
   return options;
 }
 
@@ -203,6 +201,7 @@ SoftestDirection System<Space>::softest() {
 
 template <class Space>
 DirectionReport System<Space>::direction() {
+  if (indefinite_ || too_slow_) return direction_of_host();
   linearize(settings_.tangent, true, taken_step());
   const int n = model_.node_count();
   const double* moved = nullptr;
@@ -229,6 +228,13 @@ DirectionReport System<Space>::direction() {
   const Clock::time_point start = Clock::now();
   const CgOptions options = solve_options();
   CgReport cg = solve(options);
+  const bool slow = cg.status == CgStatus::limit && limit_is_guessed();
+  if ((slow || cg.status == CgStatus::negative_curvature) && host_may_solve()) {
+    too_slow_ = slow;
+    DirectionReport report = direction_of_host();
+    report.linear_iterations += cg.iterations;
+    return report;
+  }
   if (cg.status == CgStatus::negative_curvature && !model_.tethers.empty()) {
     linearize(settings_.tangent, false);
     right_hand_side();

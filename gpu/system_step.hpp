@@ -22,6 +22,7 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
   Ds_.set_zero();
   turned_.copy_from(start_.turned);
   taken_length_ = 0;
+  indefinite_ = false;
   if (!surfaces_.empty()) surfaces_.begin_step();
   step_ = StepConstants::of(scheme, dt, memory.step);
   inverse_step_ = 0;

@@ -24,6 +24,16 @@ struct PathDirections {
   double largest_rotation = 0;  ///< in d_f [rad]
 };
 
+/// A step that another system takes, in the midst of Newton's method.
+struct StepInProgress {
+  State start;
+  State increment;  ///< since then, in u, D and turned
+  StepForm form;
+  StrainHistory history;        ///< of the viscous stress
+  std::vector<double> factors;  ///< of all schedules
+  TakenStep taken;              ///< that led to the present state; without entries where none did
+};
+
 /// The equilibrium of a model in a load or time step, as Newton's method sees it: internal energy, loads, and in
 /// dynamics the inertia of the step as a potential (incremental potential), in the form of time_scheme.hpp.
 ///
@@ -112,6 +122,12 @@ class MechanicalSystem {
   /// @param before   the state at its start
   /// @param earlier  the one as long before that, or empty: the strain rate is then that of the middle of the step
   void look_back(const State& state, const State& before, const State& earlier, double dt);
+
+  /// Stands where another system does within its step, for direction(). The model has no fluids, whose pressures
+  /// Newton's method follows by itself.
+  void stand_in(const StepInProgress& step);
+  /// By degrees of freedom in world axes.
+  std::span<const double> last_direction() const { return direction_; }
 
   /// Largest rotation [rad] by which a boundary motion would turn a frame from its present place.
   double prescribed_rotation() const;

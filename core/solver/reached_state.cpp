@@ -59,6 +59,18 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
   });
 }
 
+void MechanicalSystem::stand_in(const StepInProgress& step) {
+  begin_step(step.start, 0);
+  set_factors(step.factors);
+  form_ = step.form;
+  history_ = step.history;
+  increment_ = {step.increment.u, step.increment.D, step.increment.turned};
+  rebuild_state();
+  has_taken_ = extrapolates_ && !step.taken.d.empty();
+  if (has_taken_) taken_ = step.taken;
+  evaluate();
+}
+
 /// @param state  whose dependent nodes may not be placed yet
 void MechanicalSystem::store_strain_at(State state, StrainHistory& history) {
   place_dependents(model_.points, state);

@@ -180,5 +180,28 @@ TEST(RandomTwins, EndAlikeOrSayThatThereAreSeveralEnds) {
   EXPECT_GE(compared, 3 * (warned + failed));
 }
 
+/// Where a tangent is indefinite the GPU's direction is that of the host's factor, and the way is the processor's.
+TEST(RandomTwins, GoTheProcessorsWayThroughIndefiniteTangents) {
+  std::string reason;
+  std::vector<std::pair<const char*, Where>> places{{"host", Where::host}};
+  if (gpu::find_device(reason)) places.emplace_back("device", Where::device);
+  int met = 0, alike = 0;
+  for (unsigned seed = 1; seed <= FASCIA_CASES; ++seed) {
+    const RandomScene scene(seed);
+    const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
+    const End direct = solved(s, Where::processor, LinearMethod::cholesky);
+    if (direct.report.indefinite_solves == 0) continue;
+    for (const auto& [name, where] : places) {
+      const End other = solved(s, where, LinearMethod::automatic);
+      ++met;
+      const bool same = direct.report.status == other.report.status && difference(other.state, direct.state) <= 1e-6;
+      alike += same ? 1 : 0;
+      if (!same) std::printf("seed %u, %s: another end\n", seed, name);
+    }
+  }
+  std::printf("%d of %d ends alike\n", alike, met);
+  EXPECT_GE(alike, 0.95 * met);
+}
+
 }  // namespace
 }  // namespace fascia

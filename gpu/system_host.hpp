@@ -1,0 +1,57 @@
+#pragma once
+
+#include "gpu/system.hpp"
+
+/// Newton's directions of System that the host solves.
+namespace fascia::gpu {
+
+/// Conjugate gradients stop at the first direction of negative curvature, and many such steps lead nowhere; of a
+/// slender body they may reach their limit. Where a factorisation takes seconds at most, the host's, with its shifts,
+/// gives the direction instead.
+template <class Space>
+bool System<Space>::host_may_solve() const {
+  return settings_.linear == LinearMethod::automatic && model_.free_dof_count() <= kMostOfFactor &&
+         model_.surfaces.empty();
+}
+
+template <class Space>
+StepInProgress System<Space>::step_in_progress() const {
+  StepInProgress out;
+  State& start = out.start = State::at_rest(model_);
+  start_.download(start);
+  State& increment = out.increment = State::at_rest(model_);
+  du_.download(increment.u);
+  if (turning_) Ds_.download(std::span(&*increment.D.begin(), Ds_.size()));
+  increment.turned.resize(model_.constraints.size());
+  if (!increment.turned.empty()) turned_.download(std::span(increment.turned[0].data(), turned_.size()));
+  static_cast<StepConstants&>(out.form) = step_;
+  out.form.q = q_.downloaded();
+  out.form.w = w_.downloaded();
+  out.history = strain_history();
+  out.factors = factors_;
+  if (taken_length_ == 0) return out;
+  out.taken.u = taken_u_.downloaded();
+  out.taken.D = start.D;
+  if (turning_) taken_D_.download(std::span(&*out.taken.D.begin(), taken_D_.size()));
+  out.taken.d = direction_.downloaded();
+  for (double& d : out.taken.d) d *= taken_length_;
+  return out;
+}
+
+template <class Space>
+DirectionReport System<Space>::direction_of_host() {
+  if (!host_) {
+    SolverSettings settings = settings_;
+    settings.linear = LinearMethod::cholesky;
+    host_ = std::make_unique<Host>(model_, settings);
+  }
+  MechanicalSystem& host = host_->system;
+  host.stand_in(step_in_progress());
+  const DirectionReport report = host.direction();
+  indefinite_ = !report.trouble.empty();
+  direction_.upload(host.last_direction());
+  note_direction();
+  return report;
+}
+
+}  // namespace fascia::gpu
