@@ -34,6 +34,9 @@ struct TakenStep {
   std::vector<double> d;  ///< its direction times its length, by degrees of freedom
 };
 
+/// What an assembly must fill: all blocks, or at least those of the diagonal.
+enum class Entries { all, diagonal };
+
 /// The second derivative of the internal energy at a state. It stays valid as long as it is held.
 struct Linearization {
   static constexpr int kRows = 27;  ///< of a group
@@ -84,7 +87,7 @@ class CpuExecutor {
   double largest_spin(std::span<const double> direction);
 
   /// Fills a matrix made from the same point set.
-  void assemble(const Linearization& at, BlockMatrix& matrix);
+  void assemble(const Linearization& at, BlockMatrix& matrix, Entries entries = Entries::all);
 
   /// Keeps the strains of a state.
   void store_strain(const State& state, StrainHistory& history);
@@ -149,7 +152,7 @@ class CpuExecutor {
   template <PointKind Kind>
   void multiply_group(const Linearization& at, int group);
   template <PointKind Kind>
-  void assemble_group(const Linearization& at, int group, BlockMatrix& matrix) const;
+  void assemble_group(const Linearization& at, int group, Entries entries, BlockMatrix& matrix) const;
   /// Calls act with the kind of a group as a constant.
   template <class Act>
   void with_kind(int group, const Act& act) const;

@@ -190,7 +190,7 @@ void add_column(FrameKind kind, const double* shape, int batch, const Mat3d& Q, 
 /// Column by column: the unit motion of one degree of freedom of slot b gives dP and dY, and these the forces on slots
 /// a ≥ b.
 template <PointKind Kind>
-void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatrix& matrix_out) const {
+void CpuExecutor::assemble_group(const Linearization& lin, int group, Entries entries, BlockMatrix& matrix_out) const {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
@@ -205,7 +205,8 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
       A[at(a)] = broadcast(lin.Q[at(nodes[at(a)])]) * kernels::matrix(set_.shape_of_slot(first_slot + a), 4, batch);
     for (int b = 0; b < n; ++b) {
       const int column_node = nodes[at(b)], columns = set_.dofs.size(column_node);
-      for (int a = b; a < n; ++a)
+      const int end = entries == Entries::all ? n : b + 1;
+      for (int a = b; a < end; ++a)
         block[at(a)] = matrix_out.block(upper ? matrix_out.find(column_node, nodes[at(a)])
                                               : matrix_out.find(nodes[at(a)], column_node));
       for (int k = 0; k < columns; ++k) {
@@ -214,7 +215,7 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
                                 lin.Q[at(column_node)], A[at(b)]);
         const auto d = point_stress_differential<Kind.stabilization>(x, stress, m, lin.tangent, unit);
         const Mat3<Lanes> dP = d.dP * m.volume, dY = d.dY * m.volume;
-        for (int a = b; a < n; ++a)
+        for (int a = b; a < end; ++a)
           add_column<kBlend>(set_.dofs.kind(nodes[at(a)]), set_.shape_of_slot(first_slot + a), batch,
                              lin.Q[at(nodes[at(a)])], A[at(a)], dP, dY,
                              block[at(a)] + (upper ? k * set_.dofs.size(nodes[at(a)]) : k), upper ? 1 : columns);
@@ -223,14 +224,14 @@ void CpuExecutor::assemble_group(const Linearization& lin, int group, BlockMatri
   }
 }
 
-void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out) {
+void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out, Entries entries) {
   matrix_out.set_zero();
   for (std::size_t c = 0; c + 1 < set_.color_begin.size(); ++c) {
     const int first = set_.color_begin[c];
     pool_.for_ranges(set_.color_begin[c + 1] - first, 8, [&](int begin, int end) {
       for (int i = first + begin; i < first + end; ++i) {
         const int group = set_.color_group[at(i)];
-        with_kind(group, [&](auto kind) { assemble_group<kind.value>(lin, group, matrix_out); });
+        with_kind(group, [&](auto kind) { assemble_group<kind.value>(lin, group, entries, matrix_out); });
       }
     });
   }

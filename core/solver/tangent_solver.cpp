@@ -82,8 +82,8 @@ bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
   return true;
 }
 
-void TangentSolver::assemble(const Linearization& lin, BlockMatrix& out) {
-  executor_.assemble(lin, out);
+void TangentSolver::assemble(const Linearization& lin, BlockMatrix& out, Entries entries) {
+  executor_.assemble(lin, out, dependents_.empty() ? entries : Entries::all);
   if (dependents_.empty()) return;
   dependents_.turn(lin.Q);
   dependents_.condense(out);
@@ -193,7 +193,7 @@ std::optional<int> TangentSolver::factorize_any() {
 bool TangentSolver::shift_until_definite(const Relinearize& relinearize) {
   constexpr double kLargest = 1e3, kDown = 0.1, kUp = 4;
   if (!material_matrix_) material_matrix_.emplace(model_.points);
-  assemble(relinearize(TamerTangent::material), *material_matrix_);
+  assemble(relinearize(TamerTangent::material), *material_matrix_, Entries::diagonal);
   for (shift_ = std::max(kSmallestShift, kDown * shift_); shift_ < kLargest; shift_ *= kUp)
     if (factor().factorize(matrix(), shift_, &*material_matrix_)) return true;
   return false;

@@ -56,7 +56,7 @@ class TangentSolver {
   BlockCholesky& factor();
 
  private:
-  void assemble(const Linearization& at, BlockMatrix& matrix);
+  void assemble(const Linearization& at, BlockMatrix& matrix, Entries entries = Entries::all);
   bool cg_is_too_slow(const TangentReport& report);
   bool factorize(const Relinearize& relinearize, TangentReport& report);
   bool definite_with_low_rank();
