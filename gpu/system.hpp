@@ -147,6 +147,8 @@ class System {
   }
   CgOptions solve_options() const;
   bool host_may_solve() const;
+  bool host_is_faster(int iterations);
+  MechanicalSystem& host();
   StepInProgress step_in_progress() const;
   DirectionReport direction_of_host();
   SoftestDirection softest();
@@ -217,7 +219,8 @@ class System {
   bool prescribed_left_ = false;
   long steps_ = 0;
 
-  /// A system of the host that solves where conjugate gradients meet an indefinite tangent, or do not get there.
+  /// A system of the host that solves where conjugate gradients meet an indefinite tangent, or take longer than it
+  /// does.
   struct Host {
     ThreadPool pool{0};
     MechanicalSystem system;
@@ -225,7 +228,7 @@ class System {
   };
   std::unique_ptr<Host> host_;
   bool indefinite_ = false;  ///< the last direction was the host's, and its tangent indefinite
-  bool too_slow_ = false;    ///< conjugate gradients reached their limit, so that the host solves from there on
+  bool too_slow_ = false;    ///< conjugate gradients took so long that the host solves from there on
 };
 
 }  // namespace fascia::gpu

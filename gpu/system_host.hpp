@@ -5,13 +5,33 @@
 /// Newton's directions of System that the host solves.
 namespace fascia::gpu {
 
-/// Conjugate gradients stop at the first direction of negative curvature, and many such steps lead nowhere; of a
-/// slender body they may reach their limit. Where a factorisation takes seconds at most, the host's, with its shifts,
-/// gives the direction instead.
+/// Conjugate gradients stop at the first direction of negative curvature, and many such steps lead nowhere. Where a
+/// factorisation takes seconds at most, the host's, with its shifts, gives the direction instead.
 template <class Space>
 bool System<Space>::host_may_solve() const {
   return settings_.linear == LinearMethod::automatic && model_.free_dof_count() <= kMostOfFactor &&
          model_.surfaces.empty();
+}
+
+/// So many iterations take more than twice as long as the host, assembly and factorisation. Counts tell, not clocks,
+/// which would make runs differ.
+template <class Space>
+bool System<Space>::host_is_faster(int iterations) {
+  constexpr double kIteration = 2e-5, kUnknown = 3e-6, kOperation = 2e-10;  // seconds each
+  if (too_slow_ || !host_may_solve() || !limit_is_guessed()) return false;
+  const double iterating = kIteration * iterations, assembling = kUnknown * model_.free_dof_count();
+  if (iterating < 2 * assembling) return false;
+  return iterating > 2 * (assembling + kOperation * host().tangent().factor().factor_flops());
+}
+
+template <class Space>
+MechanicalSystem& System<Space>::host() {
+  if (!host_) {
+    SolverSettings settings = settings_;
+    settings.linear = LinearMethod::cholesky;
+    host_ = std::make_unique<Host>(model_, settings);
+  }
+  return host_->system;
 }
 
 template <class Space>
@@ -40,16 +60,11 @@ StepInProgress System<Space>::step_in_progress() const {
 
 template <class Space>
 DirectionReport System<Space>::direction_of_host() {
-  if (!host_) {
-    SolverSettings settings = settings_;
-    settings.linear = LinearMethod::cholesky;
-    host_ = std::make_unique<Host>(model_, settings);
-  }
-  MechanicalSystem& host = host_->system;
-  host.stand_in(step_in_progress());
-  const DirectionReport report = host.direction();
+  MechanicalSystem& solver = host();
+  solver.stand_in(step_in_progress());
+  const DirectionReport report = solver.direction();
   indefinite_ = !report.trouble.empty();
-  direction_.upload(host.last_direction());
+  direction_.upload(solver.last_direction());
   note_direction();
   return report;
 }

@@ -228,9 +228,9 @@ DirectionReport System<Space>::direction() {
   const Clock::time_point start = Clock::now();
   const CgOptions options = solve_options();
   CgReport cg = solve(options);
-  const bool slow = cg.status == CgStatus::limit && limit_is_guessed();
-  if ((slow || cg.status == CgStatus::negative_curvature) && host_may_solve()) {
-    too_slow_ = slow;
+  const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;
+  if (host_is_faster(cg.iterations)) too_slow_ = true;
+  if ((too_slow_ || cg.status == CgStatus::negative_curvature) && failed && host_may_solve()) {
     DirectionReport report = direction_of_host();
     report.linear_iterations += cg.iterations;
     return report;
