@@ -6,11 +6,11 @@
 namespace fascia::gpu {
 
 /// Conjugate gradients stop at the first direction of negative curvature, and many such steps lead nowhere. Where a
-/// factorisation takes seconds at most, the host's, with its shifts, gives the direction instead.
+/// factorisation takes seconds at most, the host's, with its shifts, gives the direction instead; not where the user
+/// asked for conjugate gradients or set their limit.
 template <class Space>
 bool System<Space>::host_may_solve() const {
-  return settings_.linear == LinearMethod::automatic && model_.free_dof_count() <= kMostOfFactor &&
-         model_.surfaces.empty();
+  return limit_is_guessed() && model_.free_dof_count() <= kMostOfFactor && model_.surfaces.empty();
 }
 
 /// So many iterations take more than twice as long as the host, assembly and factorisation. Counts tell, not clocks,
@@ -18,7 +18,7 @@ bool System<Space>::host_may_solve() const {
 template <class Space>
 bool System<Space>::host_is_faster(int iterations) {
   constexpr double kIteration = 2e-5, kUnknown = 3e-6, kOperation = 2e-10;  // seconds each
-  if (too_slow_ || !host_may_solve() || !limit_is_guessed()) return false;
+  if (too_slow_ || !host_may_solve()) return false;
   const double iterating = kIteration * iterations, assembling = kUnknown * model_.free_dof_count();
   if (iterating < 2 * assembling) return false;
   return iterating > 2 * (assembling + kOperation * host().tangent().factor().factor_flops());
