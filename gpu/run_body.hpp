@@ -13,11 +13,9 @@ template <class Space>
 bool near_limit_point(System<Space>& system, const DeviceState<Space>& pose, const FactorFunction& factors,
                       double reached) {
   if (system.model().free_dof_count() > System<Space>::kMostOfFactor) return false;
-  ThreadPool pool(0);
-  MechanicalSystem host(system.model(), pool, system.settings());
   State state = State::at_rest(system.model());
   pose.download(state);
-  return fascia::near_limit_point(host, state, factors, reached);
+  return fascia::near_limit_point(system.host(), state, factors, reached);
 }
 
 /// Of the equilibrium at the end of statics: by a factorisation on the host where that is cheap, as of a
@@ -26,12 +24,9 @@ template <class Space>
 Stability end_stability(System<Space>& system, const DeviceState<Space>& end, const RunReport& run, bool) {
   const Model& model = system.model();
   if (model.free_dof_count() > System<Space>::kMostOfFactor) return system.stability(end);
-  ThreadPool pool(0);
-  SolverSettings settings = system.settings();
-  settings.linear = LinearMethod::cholesky;
-  MechanicalSystem host(model, pool, settings);
   State state = State::at_rest(model);
   end.download(state);
+  MechanicalSystem& host = system.host();
   host.set_factors(system.factors());
   host.begin_step(state, 0);
   host.evaluate();

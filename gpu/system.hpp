@@ -74,6 +74,8 @@ class System {
   std::vector<double> tether_targets();
   /// K d at the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);
+  /// A system of the host with Cholesky's factors, made when it is first asked for.
+  MechanicalSystem& host();
   /// As MechanicalSystem::stability(), by conjugate gradients.
   Stability stability(const Pose& end) {
     return stability_of(*this, end, Pose(State::at_rest(model_)), [&](bool) { return softest(); });
@@ -148,7 +150,6 @@ class System {
   CgOptions solve_options() const;
   bool host_may_solve() const;
   bool host_is_faster(int iterations);
-  MechanicalSystem& host();
   StepInProgress step_in_progress() const;
   DirectionReport direction_of_host();
   SoftestDirection softest();

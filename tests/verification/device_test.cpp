@@ -7,6 +7,7 @@
 #include "gpu/run.hpp"
 #include "gpu/tile_points.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/solve_where.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +23,6 @@ namespace fascia::test {
 namespace {
 
 using app::Simulation;
-
-enum class Where { host, device };
 
 /// Energy, forces and products agree to this; rounding of sums in another order leaves 1e-14 to 1e-13.
 constexpr double kSameState = 1e-12;
@@ -131,37 +130,6 @@ TEST_P(DeviceState, HasTheProductRounded) {
 
 using DeviceSolution = Device;
 
-struct Solved {
-  State state;
-  RunReport report;
-};
-
-/// A scene on the device, twenty steps of dynamics at most.
-Solved solve(const Simulation& s, Where where, const SolverSettings& settings) {
-  const FactorFunction factors = [&](double t) { return s.factors(t); };
-  const auto& solver = s.scene.solver;
-  Solved out{s.initial, {}};
-  if (solver.kind == app::SolverKind::statics) {
-    const auto run = where == Where::host ? gpu::run_statics_on_host : gpu::run_statics;
-    out.report = run(s.model, out.state, factors, settings, {solver.load_steps}, {});
-  } else {
-    const auto run = where == Where::host ? gpu::run_implicit_on_host : gpu::run_implicit;
-    const DynamicsSettings dynamics{app::scheme_of(solver.kind), solver.time_step, std::min(solver.steps, 20)};
-    out.report = run(s.model, out.state, factors, settings, dynamics, {});
-  }
-  return out;
-}
-
-/// Largest difference of displacements over the largest displacement.
-double difference(const State& a, const State& b) {
-  double largest = 0, error = 0;
-  for (std::size_t i = 0; i < a.u.size(); ++i) {
-    largest = std::max(largest, norm(b.u[i]));
-    error = std::max(error, norm(a.u[i] - b.u[i]));
-  }
-  return error / std::max(largest, 1e-300);
-}
-
 TEST_P(DeviceSolution, IsThatOfEveryPrecision) {
   const std::optional<Simulation> simulation = loaded({"solver.linear.kind=cg", "solver.linear.max_iterations=100000"});
   if (!simulation) GTEST_SKIP() << why_not;
@@ -173,7 +141,7 @@ TEST_P(DeviceSolution, IsThatOfEveryPrecision) {
   for (const Precision precision : {Precision::mixed, Precision::single}) {
     settings.precision = precision;
     const Solved got = solve(s, where(), settings);
-    const double error = difference(got.state, expected.state);
+    const double error = displacement_difference(got.state, expected.state);
     std::printf("  %s: |du|/|u| %8.1e Newton %3d CG %6d", precision == Precision::mixed ? "mixed" : "single", error,
                 got.report.newton_iterations, got.report.linear_iterations);
     EXPECT_EQ(got.report.message, expected.report.message);
@@ -188,21 +156,11 @@ const std::vector<std::string> kToRounding = {"solver.linear.kind=cg", "solver.l
 
 /// Solves on the processor, and compares.
 void expect_solution_of_processor(const Simulation& s, Where where, const SolverSettings& settings) {
-  const FactorFunction factors = [&](double t) { return s.factors(t); };
-  ThreadPool pool(0);
-  MechanicalSystem system(s.model, pool, settings);
-  State expected = s.initial;
-  RunReport on_cpu;
-  const auto& solver = s.scene.solver;
-  if (solver.kind == app::SolverKind::statics)
-    on_cpu = run_statics(system, expected, factors, settings, {solver.load_steps}, {});
-  else
-    on_cpu = run_implicit(system, expected, factors, settings,
-                          {app::scheme_of(solver.kind), solver.time_step, std::min(solver.steps, 20)}, {});
+  const auto [expected, on_cpu] = solve(s, Where::processor, settings);
   const auto [got, there] = solve(s, where, settings);
   EXPECT_EQ(there.message, on_cpu.message);
   EXPECT_EQ(there.steps, on_cpu.steps);
-  const double error = difference(got, expected);
+  const double error = displacement_difference(got, expected);
   std::printf("%-30s |du|/|u| %8.1e  Newton %3d %3d  CG %6d %6d\n", s.scene.path.stem().c_str(), error,
               there.newton_iterations, on_cpu.newton_iterations, there.linear_iterations, on_cpu.linear_iterations);
   EXPECT_LE(error, std::max(kSameSolution, 1e3 * std::numeric_limits<double>::epsilon() * condition(on_cpu)));

@@ -4,9 +4,8 @@
 #include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
-#include "core/solver/drivers.hpp"
 #include "gpu/device.hpp"
-#include "gpu/run.hpp"
+#include "tests/support/solve_where.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace fascia {
+namespace fascia::test {
 namespace {
 
 std::string number(double value) {
@@ -99,55 +98,17 @@ struct RandomScene {
   std::mt19937 random_;
 };
 
-struct End {
-  State state;
-  RunReport report;
+/// It is called converged, and nothing says that there are other ends.
+bool claimed(const RunReport& r) {
+  return r.status == RunStatus::converged && r.events.empty() && r.indefinite_steps == 0 && r.stability.unstable == 0 &&
+         !r.stability.near_limit;
+}
 
-  /// It is called converged, and nothing says that there are other ends.
-  bool claimed() const {
-    return report.status == RunStatus::converged && report.events.empty() && report.indefinite_steps == 0 &&
-           report.stability.unstable == 0 && !report.stability.near_limit;
-  }
-};
-
-/// What solves: on the processor, or in the GPU's code.
-enum class Where { processor, host, device };
-
-End solved(const app::Simulation& s, Where where, LinearMethod linear) {
+Solved solved(const app::Simulation& s, Where where, LinearMethod linear) {
   SolverSettings settings = app::settings_of(s.scene.solver);
   settings.linear = linear;
   if (linear == LinearMethod::cg) settings.cg.max_iterations = 20000;
-  const FactorFunction factors = [&](double t) { return s.factors(t); };
-  const auto& solver = s.scene.solver;
-  End end{s.initial, {}};
-  const StaticsSettings statics{solver.load_steps};
-  if (where == Where::processor) {
-    ThreadPool pool(1);
-    MechanicalSystem system(s.model, pool, settings);
-    end.report = solver.kind == app::SolverKind::statics
-                     ? run_statics(system, end.state, factors, settings, statics, {})
-                     : run_implicit(system, end.state, factors, settings,
-                                    {app::scheme_of(solver.kind), solver.time_step, solver.steps}, {});
-    return end;
-  }
-  const bool host = where == Where::host;
-  if (solver.kind == app::SolverKind::statics)
-    end.report =
-        (host ? gpu::run_statics_on_host : gpu::run_statics)(s.model, end.state, factors, settings, statics, {});
-  else
-    end.report = (host ? gpu::run_implicit_on_host : gpu::run_implicit)(
-        s.model, end.state, factors, settings, {app::scheme_of(solver.kind), solver.time_step, solver.steps}, {});
-  return end;
-}
-
-/// Largest difference of displacements over the largest displacement.
-double difference(const State& a, const State& b) {
-  double largest = 0, error = 0;
-  for (std::size_t i = 0; i < a.u.size(); ++i) {
-    largest = std::max(largest, norm(b.u[i]));
-    error = std::max(error, norm(a.u[i] - b.u[i]));
-  }
-  return error / std::max(largest, 1e-300);
+  return solve(s, where, settings);
 }
 
 TEST(RandomTwins, EndAlikeOrSayThatThereAreSeveralEnds) {
@@ -159,18 +120,18 @@ TEST(RandomTwins, EndAlikeOrSayThatThereAreSeveralEnds) {
     const RandomScene scene(seed);
     const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
     ASSERT_EQ(app::not_on_gpu(s), "");
-    const End direct = solved(s, Where::processor, LinearMethod::cholesky);
-    std::vector<std::pair<const char*, End>> others{{"cg", solved(s, Where::processor, LinearMethod::cg)},
-                                                    {"host", solved(s, Where::host, LinearMethod::cg)}};
+    const Solved direct = solved(s, Where::processor, LinearMethod::cholesky);
+    std::vector<std::pair<const char*, Solved>> others{{"cg", solved(s, Where::processor, LinearMethod::cg)},
+                                                       {"host", solved(s, Where::host, LinearMethod::cg)}};
     if (device) others.emplace_back("device", solved(s, Where::device, LinearMethod::cg));
     for (const auto& [name, other] : others) {
-      if (!direct.claimed() || !other.claimed()) {
-        const auto fails = [](const End& end) { return end.report.status != RunStatus::converged; };
+      if (!claimed(direct.report) || !claimed(other.report)) {
+        const auto fails = [](const Solved& end) { return end.report.status != RunStatus::converged; };
         ++(fails(direct) || fails(other) ? failed : warned);
         continue;
       }
       ++compared;
-      const double error = difference(other.state, direct.state);
+      const double error = displacement_difference(other.state, direct.state);
       worst = std::max(worst, error);
       EXPECT_LE(error, 1e-6) << "seed " << seed << ", " << name << "\n" << scene.text;
     }
@@ -189,12 +150,13 @@ TEST(RandomTwins, GoTheProcessorsWayThroughIndefiniteTangents) {
   for (unsigned seed = 1; seed <= FASCIA_CASES; ++seed) {
     const RandomScene scene(seed);
     const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
-    const End direct = solved(s, Where::processor, LinearMethod::cholesky);
+    const Solved direct = solved(s, Where::processor, LinearMethod::cholesky);
     if (direct.report.indefinite_solves == 0) continue;
     for (const auto& [name, where] : places) {
-      const End other = solved(s, where, LinearMethod::automatic);
+      const Solved other = solved(s, where, LinearMethod::automatic);
       ++met;
-      const bool same = direct.report.status == other.report.status && difference(other.state, direct.state) <= 1e-6;
+      const bool same =
+          direct.report.status == other.report.status && displacement_difference(other.state, direct.state) <= 1e-6;
       alike += same ? 1 : 0;
       if (!same) std::printf("seed %u, %s: another end\n", seed, name);
     }
@@ -226,14 +188,15 @@ kind = "static"
 load_steps = 3
 )",
                                                                         "slender.toml", {}));
-  const End iterated = solved(s, Where::host, LinearMethod::cg), left = solved(s, Where::host, LinearMethod::automatic);
+  const Solved iterated = solved(s, Where::host, LinearMethod::cg),
+               left = solved(s, Where::host, LinearMethod::automatic);
   std::printf("iterations of conjugate gradients: %d, and %d until the host took over\n",
               iterated.report.linear_iterations, left.report.linear_iterations);
   EXPECT_EQ(left.report.status, RunStatus::converged);
   EXPECT_LT(5 * left.report.linear_iterations, iterated.report.linear_iterations);
-  EXPECT_LE(difference(left.state, iterated.state), 1e-6);
+  EXPECT_LE(displacement_difference(left.state, iterated.state), 1e-6);
   EXPECT_NEAR(left.report.newton_iterations, iterated.report.newton_iterations, 2);
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::test
