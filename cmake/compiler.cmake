@@ -1,16 +1,27 @@
-# Warnings, tuning and sanitizers of every target: link to fascia_flags.
+# Warnings, tuning, caching and sanitizers of every target: link to fascia_flags.
+include(native)
+
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
+
+# Objects go into libfascia.so; nobody replaces its functions at load time, so that calls within it need no detour.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# Compilations are taken from ccache where it is installed: see ccache.in for what makes them independent of the folder.
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  configure_file(${CMAKE_SOURCE_DIR}/cmake/ccache.in ${CMAKE_BINARY_DIR}/tools/ccache @ONLY)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_BINARY_DIR}/tools/ccache)
+  set(CMAKE_CUDA_COMPILER_LAUNCHER ${CMAKE_BINARY_DIR}/tools/ccache)
 endif()
 
 add_library(fascia_flags INTERFACE)
 target_include_directories(fascia_flags INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(fascia_flags INTERFACE
-  $<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
+  $<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow;-fno-semantic-interposition>
+  # No path of this folder in what is built: two builds in two folders are equal.
+  $<$<COMPILE_LANGUAGE:C,CXX>:-ffile-prefix-map=${CMAKE_SOURCE_DIR}/=>
   $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;--extended-lambda;-Xcompiler=-Wall,-Wextra,-Wshadow>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns inside its own headers: AVX-512 (bug 105593), std::string (bugs 105329, 105651).
@@ -18,7 +29,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 if(FASCIA_NATIVE)
   # Not for nvcc's host pass, whose front end does not know every instruction that the host compiler does.
-  target_compile_options(fascia_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-march=native>)
+  native_flags(FASCIA_NATIVE_FLAGS)
+  target_compile_options(fascia_flags INTERFACE "$<$<COMPILE_LANGUAGE:C,CXX>:${FASCIA_NATIVE_FLAGS}>")
 endif()
 if(FASCIA_SANITIZE)
   target_compile_options(fascia_flags INTERFACE -fsanitize=${FASCIA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -1,3 +1,5 @@
+#include "tests/support/paths.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = FASCIA_SOURCE_DIR;
+const fs::path kRoot = fascia::test::source_dir();
 constexpr std::size_t kMostLines = 400;
 
 /// What each folder may include of the project, beside itself. The six in the middle of the star see only core.

@@ -1,4 +1,5 @@
 #include "tests/robustness/scene_runs.hpp"
+#include "tests/support/paths.hpp"
 
 #include <regex>
 #include <set>
@@ -22,7 +23,7 @@ class Results : public SceneRuns {
   ProgramResult fascia_on_a_full_disk(const std::string& arguments) const {
     ProgramOptions options;
     options.directory = folder_;
-    options.environment = {"PROGRAM=" FASCIA_EXECUTABLE};
+    options.environment = {"PROGRAM=" + fascia::test::program()};
     return run_program({"sh", "-c", "trap '' XFSZ; ulimit -f 1; exec \"$PROGRAM\" " + arguments}, options);
   }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <gtest/gtest.h>
@@ -104,7 +105,7 @@ class SceneRuns : public ::testing::Test {
     return fascia(std::move(args), options);
   }
   ProgramResult fascia(std::vector<std::string> args, ProgramOptions options) const {
-    args.insert(args.begin(), FASCIA_EXECUTABLE);
+    args.insert(args.begin(), fascia::test::program());
     options.directory = folder_;
     ProgramResult result = run_program(args, options);
     EXPECT_FALSE(result.timed_out) << result.err;

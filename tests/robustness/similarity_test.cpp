@@ -1,4 +1,5 @@
 #include "tests/robustness/element_scenes.hpp"
+#include "tests/support/paths.hpp"
 
 #include <array>
 #include <cmath>
@@ -221,7 +222,7 @@ TEST_P(SimilarBodies, InOtherUnits) {
 /// rounding, and the strains by 7e-4 of their size.
 TEST_F(Similarity, ScatteredStretchInOtherUnits) {
   const std::string scene =
-      with(read_text(std::string(FASCIA_SOURCE_DIR) + "/scenes/scattered_stretch.toml"), "\"20 mm\"", "0.02");
+      with(read_text(fascia::test::source_dir().string() + "/scenes/scattered_stretch.toml"), "\"20 mm\"", "0.02");
   const auto metres = values(scene);
   for (const double unit : {1e-6, 1e-3, 1e3}) {
     SCOPED_TRACE(unit);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <gtest/gtest.h>
@@ -37,8 +38,6 @@ struct TemporaryFolder {
 };
 
 /// One run of a scene of this project by the program, in a directory of its own that goes with this object.
-///
-/// The test that includes this defines FASCIA_EXECUTABLE and FASCIA_SOURCE_DIR.
 class SceneRun {
  public:
   /// @param scene     name of a file under scenes/, without ".toml"
@@ -46,9 +45,9 @@ class SceneRun {
   /// @param options   further options of the command line
   explicit SceneRun(const std::string& scene, const Settings& settings = {},
                     const std::vector<std::string>& options = {}) {
-    const std::filesystem::path file = std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (scene + ".toml");
-    std::vector<std::string> command{FASCIA_EXECUTABLE, "run",      file.string(),
-                                     "--json",          "--output", directory().string()};
+    const std::filesystem::path file = fascia::test::source_dir() / "scenes" / (scene + ".toml");
+    std::vector<std::string> command{fascia::test::program(), "run", file.string(), "--json", "--output",
+                                     directory().string()};
     for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
     command.insert(command.end(), options.begin(), options.end());
     ProgramOptions how;

@@ -1,4 +1,5 @@
 // Frames of 12 degrees of freedom: accuracy, exactness under rigid and uniform motions, beside rigid frames.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -225,7 +226,7 @@ TEST(AffineBesideRigid, EachBodyIsTheSameAsAlone) {
   const SceneRun both("affine_beside_rigid", tight);
   const char *names[] = {"rigid", "affine"}, *others[] = {"affine", "rigid"};
   for (std::size_t k = 0; k < 2; ++k) {
-    std::ifstream file(std::string(FASCIA_SOURCE_DIR) + "/scenes/affine_beside_rigid.toml");
+    std::ifstream file(fascia::test::source_dir().string() + "/scenes/affine_beside_rigid.toml");
     std::string text{std::istreambuf_iterator<char>(file), {}}, alone, block;
     const auto keep = [&] {
       if (block.find(std::string("[bodies.") + others[k] + "]") == std::string::npos &&

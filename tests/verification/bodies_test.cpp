@@ -1,4 +1,5 @@
 // Organs: bodies immersed in a grid of frames.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -58,7 +59,7 @@ void report(const SceneRun& run, double exact) {
 }
 
 TEST(Bodies, LiverFromASurfaceFile) {
-  const std::filesystem::path mesh = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / "liver_sofa_surface.obj";
+  const std::filesystem::path mesh = fascia::test::shared_dir() / "meshes" / "liver_sofa_surface.obj";
   if (!std::filesystem::exists(mesh))
     GTEST_SKIP() << "the surface " << mesh << " is not part of the project and is not here";
   const SceneRun run("liver_surface", {"bodies.liver.domain.file='" + mesh.string() + "'"});

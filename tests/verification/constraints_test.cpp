@@ -1,3 +1,4 @@
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -90,7 +91,7 @@ TEST(Constraints, ContradictionsOnScatteredMaterialAreRefused) {
   const std::filesystem::path file = folder.path / "case.toml";
   std::ofstream(file) << bar(kFrames[2], move_end("fix = \"position\"") +
                                              move_end("move = { translate = [0.02, 0, 0], axes = [\"x\", \"y\"] }"));
-  const ProgramResult r = run_program({FASCIA_EXECUTABLE, "check", file.string()}, {});
+  const ProgramResult r = run_program({fascia::test::program(), "check", file.string()}, {});
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("constraints[2]: prescribes another value than an earlier constraint"), std::string::npos)
       << r.err;

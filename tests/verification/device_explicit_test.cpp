@@ -7,6 +7,7 @@
 #include "gpu/explicit.hpp"
 #include "gpu/run.hpp"
 #include "gpu/space.hpp"
+#include "tests/support/paths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +37,7 @@ std::vector<std::string> settings(const std::string& scene) {
 }
 
 Simulation load(const std::string& scene) {
-  const auto path = std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (scene + ".toml");
+  const auto path = fascia::test::source_dir() / "scenes" / (scene + ".toml");
   return app::build_simulation(app::parse_scene_file(path, settings(scene)));
 }
 

@@ -3,6 +3,7 @@
 #include "app/scene/parse.hpp"
 #include "app/solver_settings.hpp"
 #include "gpu/device.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/verification/break_device.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ class DeviceLost : public ::testing::TestWithParam<std::string> {
     std::string reason;
     if (!gpu::find_device(reason)) GTEST_SKIP() << reason;
     simulation_.emplace(app::build_simulation(
-        app::parse_scene_file(std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (GetParam() + ".toml"), {})));
+        app::parse_scene_file(fascia::test::source_dir() / "scenes" / (GetParam() + ".toml"), {})));
     state_ = simulation_->initial;
   }
   std::optional<app::GpuRun> run(const std::string& backend, const gpu::DeviceObserver& observe) {

@@ -7,6 +7,7 @@
 #include "gpu/run.hpp"
 #include "gpu/tile_points.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/solve_where.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +39,7 @@ double condition(const RunReport& report) {
 
 Simulation load(const std::string& scene, const std::vector<std::string>& settings = {}) {
   return app::build_simulation(
-      app::parse_scene_file(std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (scene + ".toml"), settings));
+      app::parse_scene_file(fascia::test::source_dir() / "scenes" / (scene + ".toml"), settings));
 }
 
 double difference(const std::vector<double>& a, const std::vector<double>& b) {

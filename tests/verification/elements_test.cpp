@@ -1,4 +1,5 @@
 // Finite elements: other programs' results on the same meshes, the soft cantilever, closed forms, frequencies.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +60,7 @@ TEST(LiverTetrahedra, SameMeshAsOtherPrograms) {
   for (const Mesh& m : meshes)
     for (const char* version : {"_v22", "_v41"}) {
       const std::filesystem::path file =
-          std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / (m.name + std::string(version) + ".msh");
+          fascia::test::shared_dir() / "meshes" / (m.name + std::string(version) + ".msh");
       if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
       const SceneRun liver = run("liver_tetrahedra", {"bodies.liver.domain.file='" + file.string() + "'",
                                                       "probes.farthest.at=[" + number(m.place[0]) + "," +

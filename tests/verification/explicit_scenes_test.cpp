@@ -1,4 +1,5 @@
 // Central differences through scenes: against implicit kinds, the stable step, what ends a run early, what is written.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ Settings with(Settings settings, const Settings& more) {
   return settings;
 }
 
-const std::string kScene = std::string(FASCIA_SOURCE_DIR) + "/scenes/explicit_cantilever.toml";
+const std::string kScene = fascia::test::source_dir().string() + "/scenes/explicit_cantilever.toml";
 
 /// The beam of the scene as a meshless body with this domain, thickness or radius, and frames.
 Settings meshless(const std::string& rest) {
@@ -102,8 +103,8 @@ struct Refusal {
 };
 
 ProgramResult run_with(const Settings& settings, const std::filesystem::path& out, const ProgramOptions& how = {}) {
-  std::vector<std::string> command{FASCIA_EXECUTABLE, "run", kScene,     "--quiet",
-                                   "--threads",       "1",   "--output", out.string()};
+  std::vector<std::string> command{
+      fascia::test::program(), "run", kScene, "--quiet", "--threads", "1", "--output", out.string()};
   for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
   return run_program(command, how);
 }

@@ -1,4 +1,5 @@
 // Lines of frames against rod theory: L = 1, R = 0.01, E = 100 kPa, nu = 0.3 unless said otherwise.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -366,7 +367,7 @@ TEST(Line, SwingsWithFallingEnergy) {
 
 /// Exit status 2, one line that names the key, no results.
 TEST(Line, RefusesWhatIsNoRod) {
-  const std::string scene = (std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / "line_cantilever.toml").string();
+  const std::string scene = (fascia::test::source_dir() / "scenes" / "line_cantilever.toml").string();
   const struct {
     const char* setting;
     const char* said;
@@ -378,8 +379,8 @@ TEST(Line, RefusesWhatIsNoRod) {
                {"bodies.line.thickness=0.1", "bodies.line.thickness: "}};
   for (const auto& c : cases) {
     const TemporaryFolder folder;
-    const ProgramResult r = run_program(
-        {FASCIA_EXECUTABLE, "run", scene, "--set", c.setting, "--output", (folder.path / "out").string(), "--quiet"});
+    const ProgramResult r = run_program({fascia::test::program(), "run", scene, "--set", c.setting, "--output",
+                                         (folder.path / "out").string(), "--quiet"});
     EXPECT_EQ(r.status, 2) << c.setting;
     EXPECT_FALSE(std::filesystem::exists(folder.path / "out")) << c.setting;
     EXPECT_NE(r.err.find(c.said), std::string::npos) << c.setting << ": " << r.err;
@@ -389,7 +390,7 @@ TEST(Line, RefusesWhatIsNoRod) {
   std::string text = body_text({});
   text.erase(text.find("radius"), text.find("material") - text.find("radius"));
   std::ofstream(file) << text;
-  const ProgramResult r = run_program({FASCIA_EXECUTABLE, "check", file});
+  const ProgramResult r = run_program({fascia::test::program(), "check", file});
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.err.find("bodies.line.radius: is missing"), std::string::npos) << r.err;
 }

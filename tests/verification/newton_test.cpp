@@ -4,6 +4,7 @@
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "tests/support/paths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -177,7 +178,7 @@ TEST(NewtonResiduals, AColumnAsSoftInEveryDirection) {
 
 /// A thick ball's cavity, filled until it has ten times its volume, past the greatest pressure that the wall bears.
 TEST(NewtonResiduals, ABallBlownToTenTimesItsVolume) {
-  const std::string mesh = std::string(FASCIA_SOURCE_DIR) + "/scenes/meshes/hollow_sphere.vtk";
+  const std::string mesh = fascia::test::source_dir().string() + "/scenes/meshes/hollow_sphere.vtk";
   std::string text = R"(
 [bodies.ball]
 model = "hexahedra"

@@ -1,4 +1,5 @@
 // Static paths past limit points against closed forms and a published limit load.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -153,8 +154,8 @@ TEST(Path, DisplacementControlStopsAtSnapBack) {
   const TemporaryFolder folder;
   const std::string out = (folder.path / "out").string();
   const ProgramResult result =
-      run_program({FASCIA_EXECUTABLE, "run", std::string(FASCIA_SOURCE_DIR) + "/scenes/snap_back.toml", "--output", out,
-                   "--set", "solver.control=displacement"});
+      run_program({fascia::test::program(), "run", fascia::test::source_dir().string() + "/scenes/snap_back.toml",
+                   "--output", out, "--set", "solver.control=displacement"});
   EXPECT_EQ(result.status, 3);
   EXPECT_NE(result.err.find("snap-back"), std::string::npos) << result.err;
   std::ifstream file(folder.path / "out" / "probes.csv");

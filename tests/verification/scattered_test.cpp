@@ -1,4 +1,5 @@
 // Solids on scattered frames: moving least squares against the reference, the 2014 paper's weights, a real surface.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -16,13 +17,13 @@ using Vector = std::array<double, 3>;
 constexpr const char* kScene = "scattered_cantilever";
 
 std::string scene_file(const std::string& name) {
-  return (std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (name + ".toml")).string();
+  return (fascia::test::source_dir() / "scenes" / (name + ".toml")).string();
 }
 
 /// How the program ends where it need not succeed.
 ProgramResult call(const std::string& command, const std::string& scene, const Settings& settings) {
   const TemporaryFolder folder;
-  std::vector<std::string> line{FASCIA_EXECUTABLE, command, scene_file(scene)};
+  std::vector<std::string> line{fascia::test::program(), command, scene_file(scene)};
   for (const std::string& s : settings) line.insert(line.end(), {"--set", s});
   ProgramOptions how;
   how.directory = folder.path;
@@ -182,7 +183,7 @@ class ScatteredLiver : public ::testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(file_)) GTEST_SKIP() << "no mesh " << file_;
   }
-  std::filesystem::path file_ = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / "liver_sofa_surface.obj";
+  std::filesystem::path file_ = fascia::test::shared_dir() / "meshes" / "liver_sofa_surface.obj";
 };
 
 TEST_F(ScatteredLiver, HangsAndMovesRigidlyWithoutEnergy) {

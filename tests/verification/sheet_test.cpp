@@ -1,4 +1,5 @@
 // Sheets: plate theory, solid elements, the 2014 paper's figure 4, organs' walls, matter that thins out.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -325,18 +326,18 @@ TEST(Sheet, AThicknessAboveTheCurvatureRadiusIsRefused) {
                     "time_step = 0.01\nsteps = 1\n");
   ProgramOptions how;
   how.directory = folder.path;
-  const ProgramResult result = run_program({FASCIA_EXECUTABLE, "run", "thick.toml"}, how);
+  const ProgramResult result = run_program({fascia::test::program(), "run", "thick.toml"}, how);
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("larger than its curvature radius"), std::string::npos) << result.err;
 }
 
 /// The liver's surface, or a skip where it is not.
 Settings liver_settings() {
-  return {"bodies.liver.domain.file='" +
-          (std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / "liver_sofa_surface.obj").string() + "'"};
+  return {"bodies.liver.domain.file='" + (fascia::test::shared_dir() / "meshes" / "liver_sofa_surface.obj").string() +
+          "'"};
 }
 bool liver_is_here() {
-  return std::filesystem::exists(std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / "liver_sofa_surface.obj");
+  return std::filesystem::exists(fascia::test::shared_dir() / "meshes" / "liver_sofa_surface.obj");
 }
 
 TEST(Sheet, LiverWall) {

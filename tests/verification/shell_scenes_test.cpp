@@ -1,4 +1,5 @@
 // The shell scenes, run by the program, against published tables, closed forms and the meshless sheet.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -174,10 +175,10 @@ TEST(ShellScenes, AHingedRoofSnapsThrough) {
 
 TEST(ShellScenes, LoadControlSaysWhereTheRoofHasItsLimitPoint) {
   const TemporaryFolder folder;
-  const ProgramResult r =
-      run_program({FASCIA_EXECUTABLE, "run", std::string(FASCIA_SOURCE_DIR) + "/scenes/shell_hinged_roof.toml",
-                   "--output", (folder.path / "out").string(), "--set", "solver.control=load", "--set",
-                   "bodies.roof.domain.cylinder.cells=[8,8]", "--set", "loads[0].force_per_node=[0,0,-560]"});
+  const ProgramResult r = run_program(
+      {fascia::test::program(), "run", fascia::test::source_dir().string() + "/scenes/shell_hinged_roof.toml",
+       "--output", (folder.path / "out").string(), "--set", "solver.control=load", "--set",
+       "bodies.roof.domain.cylinder.cells=[8,8]", "--set", "loads[0].force_per_node=[0,0,-560]"});
   // Beyond it the roof snaps to an equilibrium that hangs, which is stable, and is told of.
   EXPECT_EQ(r.status, 0);
   EXPECT_NE(r.err.find("limit point"), std::string::npos) << r.err;
@@ -233,7 +234,7 @@ TEST(ShellScenes, ABladderKeepsItsVolume) {
 }
 
 TEST(ShellScenes, TheCapsuleOfALiver) {
-  const std::filesystem::path mesh = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / "liver_sofa_surface.obj";
+  const std::filesystem::path mesh = fascia::test::shared_dir() / "meshes" / "liver_sofa_surface.obj";
   if (!std::filesystem::exists(mesh))
     GTEST_SKIP() << "the surface " << mesh << " is not part of the project and is not here";
   const SceneRun run("shell_liver", {"bodies.capsule.domain.file='" + mesh.string() + "'"});

@@ -1,4 +1,5 @@
 // What a run says of its end: stable or not, inside out, within tolerance, and what it keeps where it fails.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -19,9 +20,8 @@ struct Ended {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.path / "scene.toml";
     std::ofstream(scene) << text;
-    std::vector<std::string> command{FASCIA_EXECUTABLE, "run",      scene.string(),
-                                     "--json",          "--output", (folder.path / "out").string(),
-                                     "--backend",       "cpu"};
+    std::vector<std::string> command{fascia::test::program(),        "run",       scene.string(), "--json", "--output",
+                                     (folder.path / "out").string(), "--backend", "cpu"};
     for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
     const ProgramResult run = run_program(command, {});
     status = run.status;
@@ -104,7 +104,7 @@ TEST(Stability, NearABifurcationIsToldAlikeByEverySolver) {
 /// At a limit point the lowest stiffness falls as the square root of what is left of the load: 22 %, 7 % and 0.2 %
 /// here.
 TEST(Stability, NearALimitPointIsToldAlikeByEverySolver) {
-  std::ifstream file(std::string(FASCIA_SOURCE_DIR) + "/scenes/shell_hinged_roof.toml");
+  std::ifstream file(fascia::test::source_dir().string() + "/scenes/shell_hinged_roof.toml");
   const std::string roof{std::istreambuf_iterator<char>(file), {}};
   for (const auto& [part, expected] : std::initializer_list<std::pair<double, const char*>>{
            {0.95, "converged"}, {0.999, "converged"}, {0.99995, "near"}}) {

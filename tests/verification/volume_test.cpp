@@ -1,4 +1,5 @@
 // Volume of finite elements: rotation and swelling, nearly incompressible material.
+#include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -152,7 +153,7 @@ constexpr double kRatios[] = {0.3, 0.45, 0.49, 0.499, 0.4999};
 
 /// The scene with other elements; `locking` is a key of tetrahedra alone.
 std::string with_elements(const std::string& scene, const std::string& model, const Element& e) {
-  std::ifstream file(std::filesystem::path(FASCIA_SOURCE_DIR) / "scenes" / (scene + ".toml"));
+  std::ifstream file(fascia::test::source_dir() / "scenes" / (scene + ".toml"));
   std::string text, line;
   while (std::getline(file, line)) {
     const std::string key = line.substr(0, line.find(' '));
@@ -230,8 +231,8 @@ TEST(VolumetricLocking, CookMembrane) {
 // An irregular mesh: plain tetrahedra lose most of the sag of the hanging liver, averaged ones that of no Poisson
 // ratio. The quadratic tetrahedra of a coarser mesh are the reference: their own error, by refinement, is about 1 %.
 TEST(VolumetricLocking, HangingLiver) {
-  const auto mesh = [](const char* name) { return std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / name; };
-  if (!std::filesystem::exists(mesh("liver_m_v22.msh"))) GTEST_SKIP() << "no meshes in " << FASCIA_SHARED_DIR;
+  const auto mesh = [](const char* name) { return fascia::test::shared_dir() / "meshes" / name; };
+  if (!std::filesystem::exists(mesh("liver_m_v22.msh"))) GTEST_SKIP() << "no meshes in " << fascia::test::shared_dir();
   const auto sag = [&](const char* file, const std::string& changes, double nu) {
     return run("liver_tetrahedra", {"bodies.liver.domain.file=" + mesh(file).string(), changes,
                                     "materials.liver.poisson=" + number(nu), "probes.farthest.at=[0,0,0]"})

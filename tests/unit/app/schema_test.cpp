@@ -1,4 +1,5 @@
 #include "app/scene/schema_export.hpp"
+#include "tests/support/paths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@ namespace fascia::app {
 namespace {
 
 std::string file_text(const std::string& name) {
-  std::ifstream file(std::string(FASCIA_SOURCE_DIR) + "/" + name);
+  std::ifstream file(fascia::test::source_dir().string() + "/" + name);
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
@@ -18,7 +19,7 @@ std::string file_text(const std::string& name) {
 
 /// With FASCIA_UPDATE_REFERENCE in the environment the files are written anew.
 void expect_up_to_date(const std::string& name, const std::string& text) {
-  if (std::getenv("FASCIA_UPDATE_REFERENCE")) std::ofstream(std::string(FASCIA_SOURCE_DIR) + "/" + name) << text;
+  if (std::getenv("FASCIA_UPDATE_REFERENCE")) std::ofstream(fascia::test::source_dir().string() + "/" + name) << text;
   EXPECT_TRUE(file_text(name) == text) << name
                                        << " is not what the schema says; run this test with FASCIA_UPDATE_REFERENCE=1";
 }

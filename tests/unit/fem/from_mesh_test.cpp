@@ -3,6 +3,7 @@
 #include "fem/locator.hpp"
 #include "fem/quality.hpp"
 #include "io/mesh_reader.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/fem/fem_samples.hpp"
 
 #include <filesystem>
@@ -132,7 +133,7 @@ TEST(FromMesh, parts_that_meet_in_an_edge_leave_a_message) {
 class LiverElements : public testing::TestWithParam<const char*> {};
 
 TEST_P(LiverElements, volume_quality_and_places) {
-  const std::filesystem::path file = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / GetParam();
+  const std::filesystem::path file = fascia::test::shared_dir() / "meshes" / GetParam();
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "absent: " << file;
   const Mesh mesh = io::read_mesh(file);
   const ElementMesh linear = element_mesh(mesh, ElementFamily::tetrahedra, 1);

@@ -3,6 +3,7 @@
 #include "core/geometry/primitives.hpp"
 #include "core/geometry/surface.hpp"
 #include "io/mesh_reader.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <cmath>
@@ -96,7 +97,7 @@ TEST(InsideTest, ellipsoid_and_cylinder) {
 }
 
 TEST(InsideTest, liver_surface) {
-  const std::filesystem::path file = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / "liver_sofa_surface.obj";
+  const std::filesystem::path file = fascia::test::shared_dir() / "meshes" / "liver_sofa_surface.obj";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "absent: " << file;
   const TriangleMesh mesh = closed_surface(io::read_mesh(file)).mesh;
   Vec3d low = mesh.points[0], high = low;

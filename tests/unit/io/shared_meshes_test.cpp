@@ -1,5 +1,6 @@
 #include "core/geometry/surface.hpp"
 #include "io/mesh_reader.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <cmath>
@@ -22,7 +23,7 @@ double sum_of_tetrahedra(const Mesh& mesh) {
 class SharedMesh : public testing::TestWithParam<const char*> {};
 
 TEST_P(SharedMesh, surface_encloses_the_cells) {
-  const std::filesystem::path file = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / GetParam();
+  const std::filesystem::path file = fascia::test::shared_dir() / "meshes" / GetParam();
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "absent: " << file;
   const Mesh mesh = io::read_mesh(file);
   const ClosedSurface s = closed_surface(mesh);
@@ -42,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Livers, SharedMesh,
                                          "liver_sofa_surface.obj"));
 
 TEST(SharedMeshes, groups_are_the_same_in_both_versions) {
-  const std::filesystem::path folder = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes";
+  const std::filesystem::path folder = fascia::test::shared_dir() / "meshes";
   if (!std::filesystem::exists(folder / "liver_c_v22.msh")) GTEST_SKIP() << "absent: " << folder;
   const Mesh old_version = io::read_mesh(folder / "liver_c_v22.msh"), mesh = io::read_mesh(folder / "liver_c_v41.msh");
   for (const Mesh* m : {&old_version, &mesh}) {

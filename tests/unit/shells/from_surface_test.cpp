@@ -3,6 +3,7 @@
 #include "io/mesh_reader.hpp"
 #include "shells/shell_mesh.hpp"
 #include "shells/surface_checks.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <algorithm>
@@ -184,7 +185,7 @@ struct Organ {
 class ShellOfAnOrgan : public testing::TestWithParam<Organ> {};
 
 TEST_P(ShellOfAnOrgan, IsClosedAndOutward) {
-  const std::filesystem::path file = std::filesystem::path(FASCIA_SHARED_DIR) / "meshes" / GetParam().file;
+  const std::filesystem::path file = fascia::test::shared_dir() / "meshes" / GetParam().file;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "absent: " << file;
   const ShellMesh shell = shell_mesh(io::read_mesh(file));
   EXPECT_EQ(shell.nodes.size(), GetParam().nodes);

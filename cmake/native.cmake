@@ -1,0 +1,27 @@
+# native_flags(RESULT): what -march=native means on this machine, written out. A compiler cache sees the processor in
+# them, and never serves code for another one; -march=native looks alike everywhere.
+function(native_flags result)
+  set(flags "")
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -march=native -\#\#\# -c -x c++ /dev/null ERROR_VARIABLE text OUTPUT_QUIET)
+  string(REPLACE "\"" "" text "${text}")
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    if(text MATCHES "-target-cpu ([^ \n]+)")
+      set(flags -march=${CMAKE_MATCH_1})
+    endif()
+    # Features that this processor has beyond its name, and lacks (a virtual machine may hide some).
+    string(REGEX MATCHALL "-target-feature [+-]avx[^ \n]*" features "${text}")
+    foreach(feature IN LISTS features)
+      string(REGEX REPLACE ".* \\+" "-m" feature "${feature}")
+      string(REGEX REPLACE ".* -" "-mno-" feature "${feature}")
+      list(APPEND flags ${feature})
+    endforeach()
+  else()
+    string(REGEX MATCHALL " -m[a-z0-9.=-]+" flags "${text}")
+    list(TRANSFORM flags STRIP)
+  endif()
+  if(NOT flags MATCHES "-march=")
+    set(flags -march=native)  # a compiler of another kind
+  endif()
+  list(REMOVE_DUPLICATES flags)
+  set(${result} "${flags}" PARENT_SCOPE)
+endfunction()
