@@ -1,4 +1,5 @@
 #include "app/results.hpp"
+#include "app/version.hpp"
 
 #include <sys/resource.h>
 #include <nlohmann/json.hpp>
@@ -58,6 +59,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, c
   j["gpus"] = gpus;
   j["precision"] = precision_of(s, backend);
   j["threads"] = threads;
+  j["library"] = tuning();
   j["bodies"] = nlohmann::ordered_json::object();
   for (const SimulatedBody& b : s.bodies) {
     j["bodies"][b.name] = {

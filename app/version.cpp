@@ -1,17 +1,22 @@
 #include "app/version.hpp"
 
+#include "gpu/device_functions.hpp"
+
 #include <fmt/format.h>
 
 namespace fascia::app {
 
 std::string backend_list() {
-#if defined(FASCIA_CUDA)
-  return fmt::format("cpu, cuda ({})", FASCIA_CUDA);
-#else
-  return "cpu";
-#endif
+  std::string reason;
+  const gpu::DeviceFunctions* cuda = gpu::device_functions(reason);
+  return cuda == nullptr ? "cpu" : fmt::format("cpu, cuda ({})", cuda->description);
 }
 
-std::string version_text() { return fmt::format("fascia {}\nbackends: {}", FASCIA_VERSION, backend_list()); }
+const char* tuning() { return FASCIA_TUNING; }
+
+std::string version_text() {
+  return fmt::format("fascia {}\nbackends: {}\ndirect solver: {}\nprocessor: {}", FASCIA_VERSION, backend_list(),
+                     FASCIA_DIRECT_SOLVER, tuning());
+}
 
 }  // namespace fascia::app

@@ -8,9 +8,15 @@ namespace fascia::app {
 ///
 ///     fascia 0.1.0
 ///     backends: cpu, cuda (toolkit 13.0, for 90-real)
+///     direct solver: CHOLMOD of SuiteSparse (GPL)
+///     processor: x86-64-v4
 std::string version_text();
 
-/// Its second half: "cpu, cuda (toolkit 13.0, for 90-real)".
+/// The processor that the library in use is compiled for: "x86-64", "x86-64-v3", "x86-64-v4", or, of a build for its own
+/// machine, "native (znver3)". Of an installed library the loader picks the highest level that the processor has.
+const char* tuning();
+
+/// The backends that there are: "cpu, cuda (toolkit 13.0, for 90-real)".
 std::string backend_list();
 
 }  // namespace fascia::app

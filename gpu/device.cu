@@ -1,5 +1,4 @@
-#include "gpu/device.hpp"
-
+#include "gpu/cuda_functions.hpp"
 #include "gpu/cuda_space.cuh"
 
 #include <string>
@@ -29,7 +28,7 @@ bool runs() {
 
 }  // namespace
 
-std::vector<int> find_devices(int wanted, std::string& reason) {
+std::vector<int> find_cuda_devices(int wanted, std::string& reason) {
   std::vector<int> found;
   int driver = 0, runtime = 0, count = 0;
   cudaDriverGetVersion(&driver);
@@ -67,11 +66,6 @@ std::vector<int> find_devices(int wanted, std::string& reason) {
   if (reason.empty() && static_cast<int>(found.size()) < wanted)
     reason = "this machine has " + std::to_string(count) + (count == 1 ? " GPU" : " GPUs");
   return found;
-}
-
-void require_device() {
-  std::string reason;
-  if (!find_device(reason)) throw NoDevice(reason + "; use --backend auto, or cpu");
 }
 
 }  // namespace fascia::gpu

@@ -1,27 +1,20 @@
+#include "gpu/cuda_functions.hpp"
 #include "gpu/cuda_space.cuh"
 #include "gpu/explicit_run.hpp"
+#include "gpu/interface_tag.hpp"
 #include "gpu/run_body.hpp"
 
 namespace fascia::gpu {
 
-RunReport run_statics(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                      const StaticsSettings& statics, const DeviceObserver& observe) {
-  return run_statics_in<CudaSpace>(model, state, factors, settings, statics, observe);
-}
-
-RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                       const DynamicsSettings& dynamics, const DeviceObserver& observe) {
-  return run_implicit_in<CudaSpace>(model, state, factors, settings, dynamics, observe);
-}
-
-RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
-                       const ExplicitSettings& dynamics, const DeviceObserver& observe) {
-  return run_explicit_in<CudaSpace>(model, state, factors, settings, dynamics, observe);
-}
-
-DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
-                          const SolverSettings& settings, std::span<const double> direction) {
-  return evaluate_in<CudaSpace>(model, state, factors, settings, direction);
+const DeviceFunctions& cuda_functions() {
+  static const DeviceFunctions functions{FASCIA_INTERFACE_TAG,
+                                         FASCIA_CUDA,
+                                         find_cuda_devices,
+                                         run_statics_in<CudaSpace>,
+                                         run_implicit_in<CudaSpace>,
+                                         run_explicit_in<CudaSpace>,
+                                         evaluate_in<CudaSpace>};
+  return functions;
 }
 
 }  // namespace fascia::gpu

@@ -1,0 +1,18 @@
+# Writes OUTPUT, which defines FASCIA_INTERFACE_TAG: a digest of every header that CUDA's module and the library share.
+# Run by the build: cmake -DSOURCE=... -DOUTPUT=... -P interface_tag.cmake
+file(GLOB_RECURSE headers ${SOURCE}/core/*.hpp ${SOURCE}/gpu/*.hpp)
+list(SORT headers)
+set(digests "")
+foreach(header IN LISTS headers)
+  file(SHA256 ${header} digest)
+  string(APPEND digests ${digest})
+endforeach()
+string(SHA256 tag "${digests}")
+string(SUBSTRING ${tag} 0 16 tag)
+set(text "#pragma once\n\n#define FASCIA_INTERFACE_TAG \"${tag}\"\n")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} before)
+endif()
+if(NOT "${before}" STREQUAL "${text}")
+  file(WRITE ${OUTPUT} "${text}")
+endif()

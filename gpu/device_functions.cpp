@@ -1,0 +1,96 @@
+#include "gpu/device_functions.hpp"
+
+#include "gpu/interface_tag.hpp"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+
+namespace fascia::gpu {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Loaded {
+  const DeviceFunctions* functions = nullptr;
+  std::string reason;
+};
+
+/// The folder of the library or program that holds this function; of one that is chosen by the processor
+/// (glibc-hwcaps/LEVEL), the folder that all levels share.
+fs::path own_folder() {
+  Dl_info found{};
+  if (dladdr(reinterpret_cast<const void*>(&device_functions), &found) == 0 || found.dli_fname == nullptr) return ".";
+  std::error_code ignored;
+  const fs::path folder = fs::canonical(found.dli_fname, ignored).parent_path();
+  return folder.parent_path().filename() == "glibc-hwcaps" ? folder.parent_path().parent_path() : folder;
+}
+
+Loaded load() {
+  const fs::path module = own_folder() / "fascia-cuda.so";
+  if (!fs::exists(module))
+    return {nullptr, "this build has no CUDA backend: there is no " + module.string() +
+                         " (of the package fascia-cuda; in a checkout ./run builds it where there is a CUDA toolkit)"};
+  void* library = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) return {nullptr, std::string("the CUDA backend cannot be loaded: ") + dlerror()};
+  const auto entry = reinterpret_cast<ModuleEntry>(dlsym(library, kModuleEntry));
+  const DeviceFunctions* functions = entry == nullptr ? nullptr : entry();
+  if (functions == nullptr || std::string(functions->build) != interface_tag())
+    return {nullptr, module.string() + " is of another build than this program: build the target fascia-cuda again"};
+  return {functions, ""};
+}
+
+const DeviceFunctions* linked = nullptr;  ///< see use_device_functions()
+
+/// @throws NoDevice
+const DeviceFunctions& needed() {
+  std::string reason;
+  if (const DeviceFunctions* f = device_functions(reason)) return *f;
+  throw NoDevice(reason + "; use --backend auto, or cpu");
+}
+
+}  // namespace
+
+const char* interface_tag() { return FASCIA_INTERFACE_TAG; }
+
+const DeviceFunctions* device_functions(std::string& reason) {
+  if (linked != nullptr) return linked;
+  static const Loaded found = load();
+  if (found.functions == nullptr) reason = found.reason;
+  return found.functions;
+}
+
+void use_device_functions(const DeviceFunctions& functions) { linked = &functions; }
+
+std::vector<int> find_devices(int count, std::string& reason) {
+  const DeviceFunctions* f = device_functions(reason);
+  return f == nullptr ? std::vector<int>{} : f->find_devices(count, reason);
+}
+
+void require_device() {
+  std::string reason;
+  if (!find_device(reason)) throw NoDevice(reason + "; use --backend auto, or cpu");
+}
+
+RunReport run_statics(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                      const StaticsSettings& statics, const DeviceObserver& observe) {
+  return needed().run_statics(model, state, factors, settings, statics, observe);
+}
+
+RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                       const DynamicsSettings& dynamics, const DeviceObserver& observe) {
+  return needed().run_implicit(model, state, factors, settings, dynamics, observe);
+}
+
+RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                       const ExplicitSettings& dynamics, const DeviceObserver& observe) {
+  return needed().run_explicit(model, state, factors, settings, dynamics, observe);
+}
+
+DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
+                          const SolverSettings& settings, std::span<const double> direction) {
+  return needed().evaluate(model, state, factors, settings, direction);
+}
+
+}  // namespace fascia::gpu
