@@ -5,8 +5,8 @@
 
 /// What computes on a GPU, as a module that is loaded: fascia-cuda.so.
 ///
-/// The functions of device.hpp and run.hpp call it. A run that asks for no GPU waits neither for its compiler nor for its
-/// runtime.
+/// The functions of device.hpp and run.hpp call it. A run that asks for no GPU waits neither for its compiler nor for
+/// its runtime.
 namespace fascia::gpu {
 
 struct DeviceFunctions {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace fascia::architecture_test {
+
 // The rules of docs/architecture.md that a machine can check: who includes whom, what only one folder knows, file
 // sizes.
 namespace {
@@ -166,3 +168,5 @@ TEST(Architecture, NothingIsLeftForLater) {
 }
 
 }  // namespace
+
+}  // namespace fascia::architecture_test

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+namespace fascia::bad_couplings_test {
+
 // Couplings that contradict themselves or hold too little. One line that names the key and the place; status 2, nothing
 // written. And those that look odd but are sound: they run, without a NaN.
 namespace {
@@ -352,3 +354,5 @@ TEST_F(BadCouplings, MassesThatNothingMoves) {
 }
 
 }  // namespace
+
+}  // namespace fascia::bad_couplings_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+namespace fascia::bad_elements_test {
+
 // Finite elements from wrong scenes and wrong mesh files: one line an error, status 2 (4: a file that cannot be read),
 // nothing written, nothing computed.
 namespace {
@@ -369,3 +371,5 @@ TEST_F(BadElements, GroupsThatANumberOrNameDoesNotTellApartAreRefused) {
 }
 
 }  // namespace
+
+}  // namespace fascia::bad_elements_test

@@ -2,6 +2,8 @@
 
 #include <array>
 
+namespace fascia::bad_mesh_test {
+
 // Mesh files as domains: what is wrong with one is said in one line that names the file; status 2, nothing written.
 namespace {
 
@@ -145,3 +147,5 @@ TEST_F(BadMesh, FilesOfSomethingElseAreRefused) {
 }
 
 }  // namespace
+
+}  // namespace fascia::bad_mesh_test

@@ -2,6 +2,8 @@
 
 #include <regex>
 
+namespace fascia::bad_scene_test {
+
 // Wrong scenes: every error on a line of its own with its place, status 2, nothing written.
 namespace {
 
@@ -245,3 +247,5 @@ TEST_F(BadScenes, GridTooLargeIsRefusedAtOnce) {
 }
 
 }  // namespace
+
+}  // namespace fascia::bad_scene_test

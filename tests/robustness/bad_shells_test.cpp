@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+namespace fascia::bad_shells_test {
+
 // Shells: surfaces and scenes that none can be made of. One line that names the file's own cell and the place; status
 // 2, nothing written.
 namespace {
@@ -159,3 +161,5 @@ TEST_F(BadShells, TooManyCells) {
 }
 
 }  // namespace
+
+}  // namespace fascia::bad_shells_test

@@ -1,5 +1,7 @@
 #include "tests/robustness/scene_runs.hpp"
 
+namespace fascia::bench_test {
+
 // fascia bench as scripts meet it: the list, wrong names, files, and a small run.
 namespace {
 
@@ -66,3 +68,5 @@ TEST_F(Bench, SaysWhereItCannotWrite) {
 }
 
 }  // namespace
+
+}  // namespace fascia::bench_test

@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+namespace fascia::command_line_test {
+
 // What scripts rely on: exit statuses, what goes to which output, options.
 namespace {
 
@@ -216,3 +218,5 @@ TEST_F(CommandLine, StopsAtControlC) {
 }
 
 }  // namespace
+
+}  // namespace fascia::command_line_test

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+namespace fascia::element_inputs_test {
+
 // Finite elements from unusual but sound input: the answer must be right, or the input refused; never silently wrong.
 namespace {
 
@@ -245,3 +247,5 @@ TEST_F(ElementInputs, PartsThatMeetInANodeAreAWarning) {
 }
 
 }  // namespace
+
+}  // namespace fascia::element_inputs_test

@@ -1,5 +1,7 @@
 #include "tests/robustness/scene_runs.hpp"
 
+namespace fascia::path_runs_test {
+
 // Static paths as scripts meet them: what is refused before anything is computed, and what a path that ends early says.
 namespace {
 
@@ -110,3 +112,5 @@ TEST_F(PathRuns, LoadControlNamesTheLimitPoint) {
 }
 
 }  // namespace
+
+}  // namespace fascia::path_runs_test

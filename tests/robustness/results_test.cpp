@@ -4,6 +4,8 @@
 #include <regex>
 #include <set>
 
+namespace fascia::results_test {
+
 // What a result directory holds, and that an older result is lost only to a complete new one.
 namespace {
 
@@ -151,3 +153,5 @@ TEST_F(Results, FolderThatCannotBeMadeIsNamed) {
 }
 
 }  // namespace
+
+}  // namespace fascia::results_test

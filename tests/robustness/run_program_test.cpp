@@ -4,6 +4,8 @@
 
 #include <csignal>
 
+namespace fascia::run_program_test {
+
 namespace {
 
 using fascia::test::lines_of;
@@ -65,3 +67,5 @@ TEST(LinesOf, KeepsEmptyLinesWithinATextOnly) {
 }
 
 }  // namespace
+
+}  // namespace fascia::run_program_test

@@ -7,6 +7,8 @@
 #include <set>
 #include <sstream>
 
+namespace fascia::similarity_test {
+
 // The same body elsewhere, in another unit of length, or held by a more generous region: the same answer.
 namespace {
 
@@ -260,3 +262,5 @@ INSTANTIATE_TEST_SUITE_P(Bodies, SimilarBodies, ::testing::ValuesIn(kBodies),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 }  // namespace
+
+}  // namespace fascia::similarity_test

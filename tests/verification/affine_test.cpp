@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::affine_test {
 namespace {
 
 using Grid = std::array<int, 3>;
@@ -268,4 +268,4 @@ TEST(AffineModes, AFreeGridHasSixZeroFrequencies) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::affine_test

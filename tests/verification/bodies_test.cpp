@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::bodies_test {
 namespace {
 
 /// Volume that the triangles of an OBJ file enclose, by the divergence theorem.
@@ -79,4 +79,4 @@ TEST(Bodies, LiverLikeEllipsoid) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::bodies_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::cantilever_test {
 namespace {
 
 using Grid = std::array<int, 3>;
@@ -170,4 +170,4 @@ TEST(ThreeBeams, StifferHangsLess) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::cantilever_test

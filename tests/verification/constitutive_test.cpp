@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::constitutive_test {
 namespace {
 
 constexpr double kYoung = 1000, kPoisson = 0.3, kTolerance = 1e-8;
@@ -137,4 +137,4 @@ TEST(Constitutive, Equibiaxial) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::constitutive_test

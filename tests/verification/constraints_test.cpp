@@ -9,7 +9,7 @@
 
 /// What constraints and loads do to bodies whose weights do not interpolate, or whose frames are affine, where a
 /// plausible program goes wrong in silence.
-namespace fascia::test {
+namespace fascia::test::constraints_test {
 namespace {
 
 constexpr const char* kFrames[] = {"grid = [9, 3, 3]", "grid = [9, 3, 3], kind = \"affine\"", "poisson_disk = 0.12"};
@@ -202,4 +202,4 @@ TEST(Constraints, DroppedFramesLeaveNoHoleInTheField) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::constraints_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::convergence_test {
 namespace {
 
 constexpr double kLength = 2, kYoung = 40e3, kPoisson = 0.3;
@@ -72,4 +72,4 @@ TEST(Convergence, SoftCantileverAtATenthOfGravity) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::convergence_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::cook_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -287,4 +287,4 @@ TEST(ElementLaws, StrongCompression) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::cook_test

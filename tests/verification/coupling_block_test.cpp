@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <map>
 
-namespace fascia::test {
+namespace fascia::test::coupling_block_test {
 namespace {
 
 constexpr double kTiny = 1e-3;
@@ -156,4 +156,4 @@ TEST(CouplingBlock, AWallOnACore) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::coupling_block_test

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::coupling_invariance_test {
 namespace {
 
 /// Turn about (1, 2, 3) by 0.7.
@@ -101,4 +101,4 @@ TEST(CouplingInvariance, OrderUnitsAndTurns) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::coupling_invariance_test

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::coupling_motion_test {
 namespace {
 
 std::string at_x(double x) { return box({x - 1e-3, -1, -1}, {x + 1e-3, 2, 2}); }
@@ -122,4 +122,4 @@ TEST(CouplingMotion, ASurfaceRides) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::coupling_motion_test

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::coupling_patch_test {
 namespace {
 
 constexpr double kTiny = 1e-3, kStretch = 1.1;
@@ -168,4 +168,4 @@ TEST(CouplingPatch, UniformStrains) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::coupling_patch_test

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::coupling_plates_test {
 namespace {
 
 const std::string kTop = "[materials.soft]\nyoung=1e4\npoisson=0.3\n[solver.newton]\ntolerance=1e-10\n";
@@ -134,4 +134,4 @@ TEST(CouplingPlates, Resolutions) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::coupling_plates_test

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <string>
 
-namespace fascia::test {
+namespace fascia::test::coupling_scenes_test {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -147,4 +147,4 @@ TEST(CouplingScenes, SoftSpringsLetGoAndStiffOnesHold) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::coupling_scenes_test

@@ -17,7 +17,7 @@
 
 /// Central differences as the device steps them, against the processor's own: in the space of the host always, on the
 /// device where there is one.
-namespace fascia::test {
+namespace fascia::test::device_explicit_test {
 namespace {
 
 using app::Simulation;
@@ -228,4 +228,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ExplicitEnergies,
                          [](const auto& param) { return "host_" + param.param; });
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::device_explicit_test

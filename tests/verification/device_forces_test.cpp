@@ -16,7 +16,7 @@
 
 /// Forces at supports and in couplings after steps of the device, against those after the processor's: in the space of
 /// the host always, on the device where there is one.
-namespace fascia::test {
+namespace fascia::test::device_forces_test {
 namespace {
 
 using app::Simulation;
@@ -189,4 +189,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, DeviceForces,
                          });
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::device_forces_test

@@ -11,7 +11,7 @@
 #include <filesystem>
 
 /// A device that fails or has no memory; each test in a process of its own.
-namespace fascia::test {
+namespace fascia::test::device_lost_test {
 namespace {
 
 using app::Simulation;
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(device, DeviceLost, ::testing::Values("tumbling_box", "
                          [](const auto& scene) { return scene.param; });
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::device_lost_test

@@ -20,7 +20,7 @@
 
 /// Scenes by what runs on the device, against the processor's own code: in the space of the host always, on the device
 /// where there is one.
-namespace fascia::test {
+namespace fascia::test::device_test {
 namespace {
 
 using app::Simulation;
@@ -239,4 +239,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
                          ::testing::Combine(::testing::Values(Where::host, Where::device), kSolutions), name_of);
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::device_test

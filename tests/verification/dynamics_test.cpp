@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::dynamics_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -107,4 +107,4 @@ TEST(Dynamics, TumblingBox) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::dynamics_test

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace fascia::test {
+namespace fascia::test::elements_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -352,4 +352,4 @@ quantity = "frequency"
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::elements_test

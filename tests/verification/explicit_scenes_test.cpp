@@ -9,7 +9,7 @@
 #include <csignal>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::explicit_scenes_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -329,4 +329,4 @@ TEST(ExplicitScenes, DrivenBodiesAreNotCalledUnstable) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::explicit_scenes_test

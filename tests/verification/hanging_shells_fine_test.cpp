@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace fascia::test {
+namespace fascia::test::hanging_shells_fine_test {
 namespace {
 
 /// @param tissue  frames along a side of the tied square
@@ -45,4 +45,4 @@ TEST(HangingShellsFine, SagConverges) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::hanging_shells_fine_test

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::hanging_shells_test {
 namespace {
 
 /// What the solid meshes of hanging_shells_fine_test.cpp settle at, within 1 % [m].
@@ -24,4 +24,4 @@ TEST(HangingShells, LowerWallSagsAsInOneMeshOfSolids) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::hanging_shells_test

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::line_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -396,4 +396,4 @@ TEST(Line, RefusesWhatIsNoRod) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::line_test

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::manufactured_test {
 namespace {
 
 using namespace test;
@@ -305,4 +305,4 @@ TEST(Manufactured, AveragedTetrahedraAreOfSecondOrder) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::manufactured_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::modes_test {
 namespace {
 
 TEST(Modes, SteelCantilever) {
@@ -57,4 +57,4 @@ TEST(Modes, FreeMotionsAloneSettle) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::modes_test

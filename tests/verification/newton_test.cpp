@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace fascia {
+namespace fascia::newton_test {
 namespace {
 
 /// A system that keeps the residual of each evaluation, relative to what acts.
@@ -211,4 +211,4 @@ fluid = { bulk_modulus = 1e6, volume = 5.16e-3 }
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::newton_test

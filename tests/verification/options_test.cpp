@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::options_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -151,4 +151,4 @@ TEST(Options, ResultsDoNotDependOnTheUnitOfLength) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::options_test

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::path_test {
 namespace {
 
 /// The bar of snap_through.toml at a size: lengths `scale` times, the load of the same load factor scale² times.
@@ -220,4 +220,4 @@ TEST(Path, ADeepArchHasThePublishedLimitLoad) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::path_test

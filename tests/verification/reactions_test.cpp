@@ -9,7 +9,7 @@
 #include <functional>
 #include <map>
 
-namespace fascia::test {
+namespace fascia::test::reactions_test {
 namespace {
 
 constexpr const char* kImplicit[] = {"implicit-euler", "bdf2", "newmark", "midpoint"};
@@ -222,4 +222,4 @@ TEST(Reactions, OfCouplingsAgree) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::reactions_test

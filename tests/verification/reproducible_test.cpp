@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <ostream>
 
-namespace fascia::test {
+namespace fascia::test::reproducible_test {
 namespace {
 
 struct Case {
@@ -47,4 +47,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& c) { return std::string(c.param.name); });
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::reproducible_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::rigid_motion_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -82,4 +82,4 @@ TEST(RigidMotion, LedByOneEnd) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::rigid_motion_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <sstream>
 
-namespace fascia::test {
+namespace fascia::test::scattered_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -325,4 +325,4 @@ TEST(ScatteredErrors, NameThePlaceAndARemedy) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::scattered_test

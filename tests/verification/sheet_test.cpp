@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::sheet_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -396,4 +396,4 @@ TEST(Sheet, AFreeSheetFallsWithoutStrain) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::sheet_test

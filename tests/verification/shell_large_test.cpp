@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::shell_large_test {
 namespace {
 
 using namespace test;
@@ -220,4 +220,4 @@ TEST(ShellLarge, PinchedCylinder) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shell_large_test

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::shell_obstacle_test {
 namespace {
 
 using namespace test;
@@ -206,4 +206,4 @@ TEST(ShellObstacles, FormulationsCompared) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shell_obstacle_test

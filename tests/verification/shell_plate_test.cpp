@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::shell_plate_test {
 namespace {
 
 using namespace test;
@@ -193,4 +193,4 @@ TEST(ShellPlates, SizesAndStiffnessesDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shell_plate_test

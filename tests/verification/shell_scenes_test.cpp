@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::shell_scenes_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -338,4 +338,4 @@ TEST(ShellScenes, ARoofAsAShellAndAsASheet) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::shell_scenes_test

@@ -7,7 +7,7 @@
 #include <numbers>
 
 /// Cases in which a plausible solver returns a wrong number: each is held against a closed form or against itself.
-namespace fascia::test {
+namespace fascia::test::solutions_test {
 namespace {
 
 /// A beam of 1 × 0.2 × 0.2 m, 100 kPa, ν 0.3, clamped at x = 0, with more tables behind.
@@ -234,4 +234,4 @@ TEST(Solutions, AnInvertedBodyIsToldOf) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::solutions_test

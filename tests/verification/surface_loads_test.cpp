@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::surface_loads_test {
 namespace {
 
 constexpr double kCavity = 5.229826088854298e-4;  // at rest [m³]; 0.1 % below the sphere's
@@ -168,4 +168,4 @@ TEST(LineForce, IsTheForceTimesTheLengthOfTheEdges) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::surface_loads_test

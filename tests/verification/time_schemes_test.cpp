@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::time_schemes_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -355,4 +355,4 @@ TEST(TimeSchemes, ThreadsDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::time_schemes_test

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia::test {
+namespace fascia::test::traction_test {
 namespace {
 
 constexpr double kForce = 1e6 * std::numbers::pi * 3e-3 / 6;  // E A eps [N]
@@ -45,4 +45,4 @@ TEST(Traction, ClampedEnds) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::traction_test

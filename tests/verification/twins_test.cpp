@@ -5,6 +5,7 @@
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "gpu/device.hpp"
+#include "tests/support/cases.hpp"
 #include "tests/support/solve_where.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace fascia::test {
+namespace fascia::test::twins_test {
 namespace {
 
 std::string number(double value) {
@@ -116,7 +117,7 @@ TEST(RandomTwins, EndAlikeOrSayThatThereAreSeveralEnds) {
   const bool device = gpu::find_device(reason);
   int compared = 0, warned = 0, failed = 0;
   double worst = 0;
-  for (unsigned seed = 1; seed <= FASCIA_CASES; ++seed) {
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(cases(30)); ++seed) {
     const RandomScene scene(seed);
     const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
     ASSERT_EQ(app::not_on_gpu(s), "");
@@ -147,7 +148,7 @@ TEST(RandomTwins, GoTheProcessorsWayThroughIndefiniteTangents) {
   std::vector<std::pair<const char*, Where>> places{{"host", Where::host}};
   if (gpu::find_device(reason)) places.emplace_back("device", Where::device);
   int met = 0, alike = 0;
-  for (unsigned seed = 1; seed <= FASCIA_CASES; ++seed) {
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(cases(30)); ++seed) {
     const RandomScene scene(seed);
     const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
     const Solved direct = solved(s, Where::processor, LinearMethod::cholesky);
@@ -199,4 +200,4 @@ load_steps = 3
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::twins_test

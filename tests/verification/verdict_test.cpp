@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
-namespace fascia::test {
+namespace fascia::test::verdict_test {
 namespace {
 
 /// A scene from text, run to any end.
@@ -350,4 +350,4 @@ TEST(Accept, OfUnknownStatesAndOfPathsIsRefused) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::verdict_test

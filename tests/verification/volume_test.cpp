@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia::test {
+namespace fascia::test::volume_test {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -386,4 +386,4 @@ TEST(FreeModes, ExactlySixZeros) {
 }
 
 }  // namespace
-}  // namespace fascia::test
+}  // namespace fascia::test::volume_test

@@ -13,7 +13,7 @@
 #include <sstream>
 
 // fascia bench: the cases, which of them are timed, and the three forms of the result.
-namespace fascia::app {
+namespace fascia::app::bench_test {
 namespace {
 
 Scene parsed(const BenchmarkCase& c) { return parse_scene_text(c.scene, c.name + ".toml", {}); }
@@ -271,4 +271,4 @@ TEST(BenchReport, TheJsonHasTheMachineAndNullForWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::bench_test

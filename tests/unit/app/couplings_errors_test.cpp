@@ -4,7 +4,7 @@
 
 // What is wrong with rigid bodies, surfaces, the space between bodies, shared nodes and couplings. What follows the
 // beam starts at line 10.
-namespace fascia::app {
+namespace fascia::app::couplings_errors_test {
 namespace {
 
 using test::errors_of_beam;
@@ -350,4 +350,4 @@ TEST(CouplingErrors, Values) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::couplings_errors_test

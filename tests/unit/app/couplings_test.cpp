@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 // Rigid bodies, surfaces, the space between bodies, shared nodes and couplings as they are read.
-namespace fascia::app {
+namespace fascia::app::couplings_test {
 namespace {
 
 using test::parse;
@@ -215,4 +215,4 @@ TEST(Couplings, OverridesReachThem) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::couplings_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 // Kinds of solvers and their time. The table [solver] starts at line 10 of the beam.
-namespace fascia::app {
+namespace fascia::app::dynamics_test {
 namespace {
 
 std::string solver_text(const std::string& kind, const std::string& more) {
@@ -97,4 +97,4 @@ TEST(DynamicsErrors, OutputEveryNeedsTime) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::dynamics_test

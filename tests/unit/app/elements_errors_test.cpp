@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 // What is wrong with tetrahedra and hexahedra. The domain starts at column 12 of line 6, further keys at line 9.
-namespace fascia::app {
+namespace fascia::app::elements_errors_test {
 namespace {
 
 using test::beam_with;
@@ -225,4 +225,4 @@ TEST(ElementErrors, BlocksAreNeitherInvertedNorFlat) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::elements_errors_test

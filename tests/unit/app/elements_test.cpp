@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 // What the reader makes of tetrahedra, hexahedra and their materials.
-namespace fascia::app {
+namespace fascia::app::elements_test {
 namespace {
 
 using test::mesh_body;
@@ -122,4 +122,4 @@ TEST(Elements, ReadsTractions) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::elements_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 // What is wrong with domains, frames, points and weights. The beam's frames stand at column 12 of line 9.
-namespace fascia::app {
+namespace fascia::app::frames_errors_test {
 namespace {
 
 using test::beam_with;
@@ -234,4 +234,4 @@ TEST(WeightErrors, HalfBlendNeedsLinearConsistency) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::frames_errors_test

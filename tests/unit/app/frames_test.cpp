@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 // Keys of domains, frames, points and weights, as they are read.
-namespace fascia::app {
+namespace fascia::app::frames_test {
 namespace {
 
 using test::beam_with;
@@ -156,4 +156,4 @@ TEST(Frames, PlacesOfWhatIsLeftOutAreThoseOfTheBody) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::frames_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fascia::app {
+namespace fascia::app::overrides_test {
 namespace {
 
 using test::parse_beam;
@@ -87,4 +87,4 @@ TEST(Overrides, ErrorsOfTheFileComeFirst) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::overrides_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fascia::app {
+namespace fascia::app::path_test {
 namespace {
 
 using namespace test;
@@ -72,4 +72,4 @@ TEST(PathKeys, SolversThatDoNotGoWithThem) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::path_test

@@ -7,7 +7,7 @@
 #include <vector>
 
 // What a region selects follows from the body and the region's border, not from how large or far away the region is.
-namespace fascia::app {
+namespace fascia::app::regions_test {
 namespace {
 
 /// A lattice of 5 × 3 × 3 points on [0, 1] × [0, 0.2]², scaled and moved.
@@ -90,4 +90,4 @@ TEST(Regions, ForgiveABillionthOfTheBody) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::regions_test

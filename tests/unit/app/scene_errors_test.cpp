@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace fascia::app {
+namespace fascia::app::scene_errors_test {
 namespace {
 
 using test::beam_with;
@@ -360,4 +360,4 @@ TEST(SceneErrors, FilesThatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::scene_errors_test

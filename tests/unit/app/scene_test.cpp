@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace fascia::app {
+namespace fascia::app::scene_test {
 namespace {
 
 using test::parse_beam;
@@ -277,4 +277,4 @@ picture = { view = [0, 0, 1], size = [640, 480], field = "displacement" }
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::scene_test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace fascia::app {
+namespace fascia::app::schema_test {
 namespace {
 
 std::string file_text(const std::string& name) {
@@ -29,4 +29,4 @@ TEST(Schema, ReferencePageIsUpToDate) { expect_up_to_date("docs/scene-reference.
 TEST(Schema, JsonSchemaIsUpToDate) { expect_up_to_date("schemas/scene.schema.json", schema_as_json_schema()); }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::schema_test

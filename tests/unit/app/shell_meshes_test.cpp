@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 // From the scene's body to its triangles, their thickness and material.
-namespace fascia::app {
+namespace fascia::app::shell_meshes_test {
 namespace {
 
 using test::shell_body;
@@ -159,4 +159,4 @@ TEST_F(ShellMeshFile, NeedlesAreReported) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::shell_meshes_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 // What is wrong with shells. The domain starts at column 12 of line 6, further keys at line 7.
-namespace fascia::app {
+namespace fascia::app::shells_errors_test {
 namespace {
 
 using test::errors_of;
@@ -133,4 +133,4 @@ TEST(ShellErrors, OthersTakeNoKeysOfSurfaces) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::shells_errors_test

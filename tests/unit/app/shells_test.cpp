@@ -5,7 +5,7 @@
 #include <numbers>
 
 // Keys of shells as they are read.
-namespace fascia::app {
+namespace fascia::app::shells_test {
 namespace {
 
 using test::shell_body;
@@ -109,4 +109,4 @@ TEST(Shells, FilesAndLists) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::shells_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 // Pressure, line forces and fluids in scene files.
-namespace fascia::app {
+namespace fascia::app::surface_loads_errors_test {
 namespace {
 
 using test::errors_of_beam;
@@ -52,4 +52,4 @@ TEST(SurfaceLoads, PressureFollowsUnlessItIsToldNotTo) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::surface_loads_errors_test

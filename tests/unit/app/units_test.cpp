@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-namespace fascia::app {
+namespace fascia::app::units_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -106,4 +106,4 @@ TEST(Units, KnowEveryUnitOfTheSchema) {
 }
 
 }  // namespace
-}  // namespace fascia::app
+}  // namespace fascia::app::units_test

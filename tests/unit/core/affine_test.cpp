@@ -9,7 +9,7 @@
 #include <cstdio>
 
 /// What affine frames, thin bodies and tethers add to loads, inertia and coordinates, against differences and by hand.
-namespace fascia {
+namespace fascia::affine_test {
 namespace {
 
 using namespace test;
@@ -158,4 +158,4 @@ TEST(PositiveInverse, InvertsAndStaysPositive) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::affine_test

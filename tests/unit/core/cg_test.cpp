@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace fascia {
+namespace fascia::cg_test {
 namespace {
 
 struct Solved {
@@ -68,4 +68,4 @@ TEST(ConjugateGradients, ADefiniteMatrixIsSolvedAlikeEitherWay) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::cg_test

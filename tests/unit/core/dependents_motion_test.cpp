@@ -11,7 +11,7 @@
 #include <cstdio>
 
 /// What solvers make of dependent nodes: equilibria, paths, modes and motions.
-namespace fascia {
+namespace fascia::dependents_motion_test {
 namespace {
 
 using namespace test;
@@ -363,4 +363,4 @@ TEST_P(DependentMotionTest, SameBitsWithTwoThreads) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::dependents_motion_test

@@ -11,7 +11,7 @@
 #include <cstdio>
 
 /// Dependent nodes: energy, gradient, tangent and inertia on the degrees of freedom of their hosts.
-namespace fascia {
+namespace fascia::dependents_test {
 namespace {
 
 using namespace test;
@@ -217,4 +217,4 @@ TEST(DependentNodes, MassesThatNothingMovesMayBeNegative) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::dependents_test

@@ -9,7 +9,7 @@
 #include <functional>
 #include <string>
 
-namespace fascia {
+namespace fascia::derivatives_test {
 namespace {
 
 using namespace test;
@@ -250,4 +250,4 @@ TEST(Reference, EnergyAndForcesFromPlainLoops) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::derivatives_test

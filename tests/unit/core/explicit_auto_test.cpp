@@ -7,7 +7,7 @@
 #include <cstdio>
 
 /// Central differences with steps of unequal length: a last one that is cut, and steps that follow the state.
-namespace fascia {
+namespace fascia::explicit_auto_test {
 namespace {
 
 using namespace test;
@@ -217,4 +217,4 @@ TEST(LastStep, IsWholeUpToRounding) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::explicit_auto_test

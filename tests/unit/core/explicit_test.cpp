@@ -7,7 +7,7 @@
 #include <cstdio>
 
 /// Central differences: what they keep, their limit, their order, and what holds, drives and damps a body.
-namespace fascia {
+namespace fascia::explicit_test {
 namespace {
 
 using namespace test;
@@ -258,4 +258,4 @@ TEST(Explicit, ObserverSeesChosenSteps) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::explicit_test

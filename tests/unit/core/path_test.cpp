@@ -7,7 +7,7 @@
 
 #include <cstdio>
 
-namespace fascia {
+namespace fascia::path_test {
 namespace {
 
 using namespace test;
@@ -139,4 +139,4 @@ TEST(Path, ControlledDisplacementHasItsDerivative) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::path_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-using namespace fascia;
+namespace fascia::polar_test {
 
 namespace {
 
@@ -128,3 +128,5 @@ TEST(Polar, IsNotFiniteWhereTheMatrixIsNot) {
 }
 
 }  // namespace
+
+}  // namespace fascia::polar_test

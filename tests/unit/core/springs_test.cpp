@@ -8,7 +8,7 @@
 #include <numbers>
 
 /// Springs to fixed points: their law by differences, alone and on nodes of a body, and what solvers make of them.
-namespace fascia {
+namespace fascia::springs_test {
 namespace {
 
 using namespace test;
@@ -125,4 +125,4 @@ TEST(Springs, HoldAFrameAlone) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::springs_test

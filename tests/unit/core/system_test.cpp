@@ -8,7 +8,7 @@
 
 #include <cstdio>
 
-namespace fascia {
+namespace fascia::system_test {
 namespace {
 
 using namespace test;
@@ -229,4 +229,4 @@ TEST(ImplicitEuler, FreeFallIsExactForTheScheme) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::system_test

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace fascia {
+namespace fascia::threads_test {
 namespace {
 
 using namespace test;
@@ -56,4 +56,4 @@ TEST(Results, DoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::threads_test

@@ -11,7 +11,7 @@
 #include <string>
 
 /// Implicit schemes: order in time, what each does exactly, and what it keeps.
-namespace fascia {
+namespace fascia::time_scheme_test {
 namespace {
 
 using namespace test;
@@ -247,4 +247,4 @@ TEST(TimeScheme, CutStepsEndOnTheirTargets) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::time_scheme_test

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace fascia {
+namespace fascia::verdict_test {
 namespace {
 
 constexpr double kTolerance = 1e-8;
@@ -175,4 +175,4 @@ TEST(NewtonVerdict, RoundingExcusesOnlyWhatNewtonTriedToReduce) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::verdict_test

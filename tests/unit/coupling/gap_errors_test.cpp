@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fascia {
+namespace fascia::gap_errors_test {
 namespace {
 
 using namespace test;
@@ -78,4 +78,4 @@ TEST(GapErrors, SheetWithoutALength) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::gap_errors_test

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-namespace fascia {
+namespace fascia::gap_lines_test {
 namespace {
 
 using namespace test;
@@ -104,4 +104,4 @@ TEST(GapStrands, LeaveOutWhatTouches) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::gap_lines_test

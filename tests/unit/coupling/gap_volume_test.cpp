@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace fascia {
+namespace fascia::gap_volume_test {
 namespace {
 
 using namespace test;
@@ -238,4 +238,4 @@ TEST(GapVolume, PartsOfASide) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::gap_volume_test

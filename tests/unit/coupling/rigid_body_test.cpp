@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::rigid_body_test {
 namespace {
 
 struct Built {
@@ -199,4 +199,4 @@ TEST(RigidBody, RefusesWhatNoBodyIs) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::rigid_body_test

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fascia {
+namespace fascia::surface_body_test {
 namespace {
 
 TEST(SurfaceBody, PlacesFollowTheirTriangle) {
@@ -57,4 +57,4 @@ TEST(SurfaceBody, TriangleWithoutAreaFollowsItsNearestCorner) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::surface_body_test

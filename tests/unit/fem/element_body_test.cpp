@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <numeric>
 
-namespace fascia {
+namespace fascia::element_body_test {
 namespace {
 
 using namespace test;
@@ -173,4 +173,4 @@ TEST(ElementBody, TensorsOfAveragedElementsAddUpToTheEnergy) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::element_body_test

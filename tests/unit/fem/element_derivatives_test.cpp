@@ -7,7 +7,7 @@
 #include <ostream>
 #include <string>
 
-namespace fascia {
+namespace fascia::element_derivatives_test {
 namespace {
 
 using namespace test;
@@ -227,4 +227,4 @@ TEST(ElementReference, CorotationalElementsSurviveInversion) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::element_derivatives_test

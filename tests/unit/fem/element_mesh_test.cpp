@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fascia {
+namespace fascia::element_mesh_test {
 namespace {
 
 using namespace samples;
@@ -91,4 +91,4 @@ TEST(ElementMesh, groups_receive_the_middle_nodes_of_their_own_cells_only) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::element_mesh_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace fascia {
+namespace fascia::element_shape_test {
 namespace {
 
 using namespace samples;
@@ -128,4 +128,4 @@ TEST(Quadrature, rules_are_exact_to_their_degree) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::element_shape_test

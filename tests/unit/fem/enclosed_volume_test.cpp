@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace fascia {
+namespace fascia::enclosed_volume_test {
 namespace {
 
 using namespace test;
@@ -91,4 +91,4 @@ TEST(StiffVolume, ConjugateGradientsAndCholeskyAgree) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::enclosed_volume_test

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-namespace fascia {
+namespace fascia::from_mesh_errors_test {
 namespace {
 
 using namespace samples;
@@ -131,4 +131,4 @@ TEST(FromMeshErrors, faces_of_three_elements_and_overlaps) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::from_mesh_errors_test

@@ -8,7 +8,7 @@
 
 #include <filesystem>
 
-namespace fascia {
+namespace fascia::from_mesh_test {
 namespace {
 
 using namespace samples;
@@ -154,4 +154,4 @@ TEST_P(LiverElements, volume_quality_and_places) {
 INSTANTIATE_TEST_SUITE_P(Livers, LiverElements, testing::Values("liver_c_v22.msh", "liver_c_v41.msh"));
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::from_mesh_test

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::generate_test {
 namespace {
 
 using namespace samples;
@@ -169,4 +169,4 @@ TEST(Generate, wrong_input_is_refused) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::generate_test

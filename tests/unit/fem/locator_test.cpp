@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fascia {
+namespace fascia::locator_test {
 namespace {
 
 using namespace samples;
@@ -112,4 +112,4 @@ TEST(Locator, holes_between_elements_are_outside) {
 TEST(Locator, no_elements) { EXPECT_EQ(ElementLocator(ElementMesh{}).locate({{1, 2, 3}}).element, -1); }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::locator_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace fascia {
+namespace fascia::quality_test {
 namespace {
 
 using namespace samples;
@@ -66,4 +66,4 @@ TEST(Quality, round_solids_have_sound_cells) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::quality_test

@@ -9,7 +9,7 @@
 #include <functional>
 #include <map>
 
-namespace fascia {
+namespace fascia::surface_load_test {
 namespace {
 
 using namespace test;
@@ -275,4 +275,4 @@ TEST(ConnectedFaces, ArePartsOfASurface) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::surface_load_test

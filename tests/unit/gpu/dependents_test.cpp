@@ -9,7 +9,7 @@
 #include <algorithm>
 
 /// Dependent nodes in a space against those of the solver.
-namespace fascia::gpu::test {
+namespace fascia::gpu::test::dependents_test {
 namespace {
 
 using namespace fascia::test;
@@ -185,4 +185,4 @@ TEST(RowSums, AreTheSameForEveryLengthOfRows) {
 }
 
 }  // namespace
-}  // namespace fascia::gpu::test
+}  // namespace fascia::gpu::test::dependents_test

@@ -6,7 +6,7 @@
 #include <string>
 
 /// Elements of the GPU backend, run on the processor, against the executor.
-namespace fascia {
+namespace fascia::elements_test {
 namespace {
 
 using namespace test;
@@ -138,4 +138,4 @@ TEST(GpuElementBodies, AreNoneOfAModelWithoutThem) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::elements_test

@@ -10,7 +10,7 @@
 #include <numeric>
 
 /// Followers in a space against those of the model.
-namespace fascia::gpu::test {
+namespace fascia::gpu::test::followers_test {
 namespace {
 
 using namespace fascia::test;
@@ -80,4 +80,4 @@ TEST(FollowersTest, AreNone) {
 }
 
 }  // namespace
-}  // namespace fascia::gpu::test
+}  // namespace fascia::gpu::test::followers_test

@@ -6,7 +6,7 @@
 #include <string>
 
 /// Shells of the GPU backend, run on the processor, against the executor.
-namespace fascia {
+namespace fascia::shells_test {
 namespace {
 
 using namespace test;
@@ -56,4 +56,4 @@ TEST(GpuShellBodies, OfTwo) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shells_test

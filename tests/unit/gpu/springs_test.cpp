@@ -3,7 +3,7 @@
 #include "tests/unit/gpu/host_model.hpp"
 
 /// Springs of the GPU backend, run on the processor, against the executor.
-namespace fascia {
+namespace fascia::springs_test {
 namespace {
 
 using namespace test;
@@ -59,4 +59,4 @@ TEST(GpuSprings, AgreeWithTheExecutor) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::springs_test

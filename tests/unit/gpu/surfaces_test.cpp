@@ -11,7 +11,7 @@
 #include <memory>
 
 /// Surface loads in a space against those of the solver.
-namespace fascia {
+namespace fascia::surfaces_test {
 namespace {
 
 using namespace test;
@@ -186,4 +186,4 @@ TEST(Surfaces, AreNone) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::surfaces_test

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-namespace fascia {
+namespace fascia::tile_layout_test {
 namespace {
 
 using test::BlockOptions;
@@ -173,4 +173,4 @@ TEST(TileLayout, RefusesPointsOfTooManyFrames) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::tile_layout_test

@@ -9,7 +9,7 @@
 #include <random>
 
 /// Tiles on a GPU against the processor's executor; skipped where there is none.
-namespace fascia {
+namespace fascia::tile_solver_test {
 namespace {
 
 struct TileCase {
@@ -182,4 +182,4 @@ std::vector<TileCase> cases() {
 INSTANTIATE_TEST_SUITE_P(Cases, TileSolverTest, testing::ValuesIn(cases()));
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::tile_solver_test

@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-namespace fascia {
+namespace fascia::tile_split_test {
 namespace {
 
 TileLayout layout_of_block() {
@@ -130,4 +130,4 @@ TEST(TileSplit, ExportsOwnBlocksOfSharedFrames) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::tile_split_test

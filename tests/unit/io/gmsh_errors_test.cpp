@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace fascia::io {
+namespace fascia::io::gmsh_errors_test {
 namespace {
 
 std::string error_of(const std::string& text) {
@@ -131,4 +131,4 @@ TEST(GmshErrors, every_truncation_and_many_mutations) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::gmsh_errors_test

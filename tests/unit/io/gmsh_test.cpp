@@ -5,7 +5,7 @@
 #include "tests/unit/io/gmsh_samples.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
-namespace fascia::io {
+namespace fascia::io::gmsh_test {
 namespace {
 
 const CellBlock& block_of(const Mesh& mesh, CellType type) {
@@ -112,4 +112,4 @@ TEST(ReadMesh, empty_and_huge_files) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::gmsh_test

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-namespace fascia {
+namespace fascia::inside_test {
 namespace {
 
 /// Solid angle of the surface seen from x, over 4π: 1 inside, 0 outside, by brute force.
@@ -132,4 +132,4 @@ TEST(InsideTest, empty_surface) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::inside_test

@@ -7,7 +7,7 @@
 #include <random>
 
 /// Files that are cut off, damaged or something else altogether: an InputError each, nothing printed, no crash.
-namespace fascia::io {
+namespace fascia::io::mesh_garbage_test {
 namespace {
 
 /// Reads and makes the surface; true where both work. What VTK prints fails the test.
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(Formats, VtkGarbage, testing::ValuesIn(samples::vtk_sam
 });
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::mesh_garbage_test

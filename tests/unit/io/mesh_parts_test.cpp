@@ -10,7 +10,7 @@
 #include <map>
 #include <random>
 
-namespace fascia {
+namespace fascia::mesh_parts_test {
 namespace {
 
 using samples::cube_points;
@@ -247,4 +247,4 @@ TEST(MeshParts, nothing_to_use) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::mesh_parts_test

@@ -15,7 +15,7 @@
 #include <sstream>
 
 // Mid-side nodes of quadratic cells: each must lie half-way between the corners of its edge.
-namespace fascia::io {
+namespace fascia::io::mid_nodes_test {
 namespace {
 
 using samples::input_error;
@@ -210,4 +210,4 @@ TEST(MidNodes, of_a_cell_with_too_few_nodes) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::mid_nodes_test

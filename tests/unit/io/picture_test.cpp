@@ -8,7 +8,7 @@
 #include <vtkPointData.h>
 
 // What a picture shows of a result; no display is needed for it.
-namespace fascia::io {
+namespace fascia::io::picture_test {
 namespace {
 
 using samples::row_of_cubes;
@@ -102,4 +102,4 @@ TEST(PictureBody, unknown_field_names_those_there_are) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::picture_test

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <random>
 
-namespace fascia::io {
+namespace fascia::io::point_table_test {
 namespace {
 
 std::string error_of(const std::string& text) {
@@ -113,4 +113,4 @@ TEST(PointTable, GarbageIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::point_table_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::primitives_test {
 namespace {
 
 using samples::mesh_of;
@@ -65,4 +65,4 @@ TEST(Primitives, ellipsoid) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::primitives_test

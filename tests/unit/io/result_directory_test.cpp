@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-namespace fascia::io {
+namespace fascia::io::result_directory_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -160,4 +160,4 @@ TEST(ResultDirectory, puts_back_the_result_of_a_process_that_died_in_commit) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::result_directory_test

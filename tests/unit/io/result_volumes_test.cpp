@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fascia::io {
+namespace fascia::io::result_volumes_test {
 namespace {
 
 using samples::row_of_cubes;
@@ -133,4 +133,4 @@ TEST(WriteVolumes, refuses_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::result_volumes_test

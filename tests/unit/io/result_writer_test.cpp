@@ -16,7 +16,7 @@
 
 #include <limits>
 
-namespace fascia::io {
+namespace fascia::io::result_writer_test {
 namespace {
 
 using samples::content;
@@ -211,4 +211,4 @@ TEST(WritePvd, lists_times_and_parts) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::result_writer_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace fascia {
+namespace fascia::shared_meshes_test {
 namespace {
 
 double sum_of_tetrahedra(const Mesh& mesh) {
@@ -63,4 +63,4 @@ TEST(SharedMeshes, groups_are_the_same_in_both_versions) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shared_meshes_test

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fascia {
+namespace fascia::surface_orientation_test {
 namespace {
 
 using samples::input_error;
@@ -105,4 +105,4 @@ TEST(SurfaceOrientation, no_volume) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::surface_orientation_test

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace fascia {
+namespace fascia::surface_test {
 namespace {
 
 using samples::input_error;
@@ -134,4 +134,4 @@ TEST(ClosedSurface, far_from_the_origin) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::surface_test

@@ -2,7 +2,7 @@
 #include "io/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
-namespace fascia::io {
+namespace fascia::io::vtk_groups_test {
 namespace {
 
 using samples::input_error;
@@ -91,4 +91,4 @@ TEST(VtkGroups, of_xml_files) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::vtk_groups_test

@@ -3,7 +3,7 @@
 #include "tests/unit/io/mesh_samples.hpp"
 #include "tests/unit/io/vtk_samples.hpp"
 
-namespace fascia::io {
+namespace fascia::io::vtk_reader_test {
 namespace {
 
 using samples::input_error;
@@ -121,4 +121,4 @@ TEST(ObjReader, errors_name_the_line) {
 }
 
 }  // namespace
-}  // namespace fascia::io
+}  // namespace fascia::io::vtk_reader_test

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace fascia {
+namespace fascia::body_test {
 namespace {
 
 using namespace test;
@@ -177,4 +177,4 @@ TEST(ModelBody, DoesNotDependOnPlaceOrientationOrNumbering) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::body_test

@@ -11,7 +11,7 @@
 #include <numbers>
 
 /// Bodies of scattered frames and thin grids: what must hold whatever the sampling.
-namespace fascia {
+namespace fascia::cloud_test {
 namespace {
 
 using namespace test;
@@ -302,4 +302,4 @@ TEST(CloudErrors, ASheetThickerThanItIsCurvedIsRefused) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::cloud_test

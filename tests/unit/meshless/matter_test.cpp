@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace fascia {
+namespace fascia::matter_test {
 namespace {
 
 using namespace test;
@@ -163,4 +163,4 @@ TEST(Matter, RefusesWhatCannotBeCut) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::matter_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-namespace fascia {
+namespace fascia::neighbours_test {
 namespace {
 
 std::vector<Vec3d> lattice(int n) {
@@ -121,4 +121,4 @@ TEST(Coincident, ListsPairsInOrder) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::neighbours_test

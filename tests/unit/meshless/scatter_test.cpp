@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace fascia {
+namespace fascia::scatter_test {
 namespace {
 
 using namespace test;
@@ -281,4 +281,4 @@ TEST(Shares, TakePositionsOfAUser) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::scatter_test

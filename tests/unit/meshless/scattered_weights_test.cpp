@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-namespace fascia {
+namespace fascia::scattered_weights_test {
 namespace {
 
 static_assert(ScatteredWeightFunction<MlsWeights>);
@@ -392,4 +392,4 @@ TEST(Consistency, OfTheWeightFunctionsIsThatMeasured) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::scattered_weights_test

@@ -7,7 +7,7 @@
 #include <string>
 
 /// What becomes of frames where others share their nodes: which are replaced, left out or refused.
-namespace fascia {
+namespace fascia::shared_choices_test {
 namespace {
 
 using namespace test;
@@ -279,4 +279,4 @@ TEST(SharedChoices, DenseNodesMayLieInside) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shared_choices_test

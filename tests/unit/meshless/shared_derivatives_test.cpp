@@ -4,7 +4,7 @@
 #include <ostream>
 
 /// Forces and tangents of meshless bodies that share nodes, and of finite elements whose nodes turn for them.
-namespace fascia {
+namespace fascia::shared_derivatives_test {
 namespace {
 
 using namespace test;
@@ -84,4 +84,4 @@ INSTANTIATE_TEST_SUITE_P(All, SharedDerivatives, testing::ValuesIn(cases()),
                          [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shared_derivatives_test

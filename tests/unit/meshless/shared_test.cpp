@@ -8,7 +8,7 @@
 #include <functional>
 
 /// Meshless bodies whose frames are nodes of other bodies too.
-namespace fascia {
+namespace fascia::shared_test {
 namespace {
 
 using namespace test;
@@ -209,4 +209,4 @@ INSTANTIATE_TEST_SUITE_P(All, Shared, testing::ValuesIn(cases()),
                          [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shared_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fascia {
+namespace fascia::weights_test {
 namespace {
 
 static_assert(GridWeights<TrilinearWeights>);
@@ -78,4 +78,4 @@ TEST(GaussLegendre, IsExactUpToItsDegree) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::weights_test

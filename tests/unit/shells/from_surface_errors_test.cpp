@@ -10,7 +10,7 @@
 #include <utility>
 
 // Surfaces that no shell can be made of: the file's own numbers, the place, and what would be right.
-namespace fascia {
+namespace fascia::from_surface_errors_test {
 namespace {
 
 using samples::mesh_of;
@@ -126,4 +126,4 @@ TEST(ShellFromSurfaceErrors, AnythingIsRefusedOrSound) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::from_surface_errors_test

@@ -10,7 +10,7 @@
 #include <utility>
 
 // From a mesh as a file holds it to a shell's surface: what is kept, what is repaired and said.
-namespace fascia {
+namespace fascia::from_surface_test {
 namespace {
 
 using samples::cube_points;
@@ -206,4 +206,4 @@ INSTANTIATE_TEST_SUITE_P(Files, ShellOfAnOrgan,
                          });
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::from_surface_test

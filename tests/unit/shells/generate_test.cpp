@@ -10,7 +10,7 @@
 #include <functional>
 #include <set>
 
-namespace fascia {
+namespace fascia::generate_test {
 namespace {
 
 using samples::input_error;
@@ -274,4 +274,4 @@ TEST(ShellGenerators, RefuseWhatIsNoSurface) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::generate_test

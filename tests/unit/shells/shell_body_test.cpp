@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace fascia {
+namespace fascia::shell_body_test {
 namespace {
 
 using namespace test;
@@ -221,4 +221,4 @@ TEST(ShellBody, StressAtTheFaces) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shell_body_test

@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-namespace fascia {
+namespace fascia::shell_derivatives_test {
 namespace {
 
 using namespace test;
@@ -79,4 +79,4 @@ TEST(HalfAngle, DerivativesAgreeAcrossTheJoint) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shell_derivatives_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace fascia {
+namespace fascia::shell_patch_test {
 namespace {
 
 using namespace test;
@@ -146,4 +146,4 @@ TEST(ShellPatch, BendingInThePlaneIsExact) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::shell_patch_test

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace fascia {
+namespace fascia::surface_checks_test {
 namespace {
 
 using Messages = std::vector<std::string>;
@@ -124,4 +124,4 @@ TEST(ShellChecks, ThicknessAgainstTheMesh) {
 }
 
 }  // namespace
-}  // namespace fascia
+}  // namespace fascia::surface_checks_test

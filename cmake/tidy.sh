@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# clang-tidy on the project's sources, as build/release compiles them. What passed is remembered in the user's cache by
+# what it really read: the file, its headers, the rules, the tool. Any clone profits.
+set -uo pipefail
+root=$(cd -P "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root" || exit 1
+
+usage() {
+  cat <<'TEXT'
+usage: cmake/tidy.sh [--all] [ITEMS]
+
+  Looks at the files that did not pass as they are: of these, the sources that the last 50 commits and the working tree
+  changed, and for each header that they changed a source that includes it. --all: every file that did not pass.
+  ITEMS gets a line "SECONDS FILE" for each file that was looked at. Needs a build in build/release.
+TEXT
+}
+
+all=no
+case "${1:-}" in
+  -h | --help) usage; exit 0 ;;
+  --all) all=yes; shift ;;
+esac
+items=${1:-/dev/null}
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+passed=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/fascia/tidy
+if ! { mkdir -p "$passed" && [ -r "$passed" ] && [ -w "$passed" ] && [ -x "$passed" ]; } 2>/dev/null; then
+  echo "tidy: $passed cannot be used; remembering in build/check/tidy"
+  passed=build/check/tidy
+  mkdir -p "$passed"
+fi
+find "$passed" -type f -mtime +90 -delete 2>/dev/null
+
+# "SOURCE HEADER", a line for each file that the compiler read for a source of ours; paths of ours without the root.
+ninja -C build/release -t deps 2>/dev/null | awk -v root="$root/" '
+  /^[^ ].*: #deps/ { source = ""; next }
+  /^ / {
+    path = $1
+    if (index(path, root) == 1) path = substr(path, length(root) + 1)
+    sub(/^\.\.\/\.\.\//, "", path)
+    if (source == "") {
+      source = path
+      ours = source ~ /^(core|meshless|fem|shells|coupling|gpu|io|app)\/.*\.cpp$/ && !(source in seen)
+      seen[source] = 1
+    }
+    if (ours) print source, path
+  }' >"$work/includes"
+[ -s "$work/includes" ] || { echo "tidy: build/release knows no sources; build it with ninja first"; exit 1; }
+
+# Each file's content, or for a system's header, whose packages are many files, its size and date.
+cut -d' ' -f2 "$work/includes" | sort -u >"$work/files"
+{ grep -v '^/' "$work/files" | grep -v '^build/' | xargs -d '\n' sha256sum 2>/dev/null | awk '{ print $2, $1 }'
+  grep '^/' "$work/files" | xargs -d '\n' stat -L -c '%n %s-%Y' 2>/dev/null; } >"$work/digests"
+
+# A key for each source: of all that decides what clang-tidy says of it.
+mkdir "$work/keys"
+{ clang-tidy --version; cat .clang-tidy; grep -o '"command": ".* -o ' build/release/compile_commands.json |
+  sed "s|$root||g" | sort -u; } | sha256sum >"$work/rules"
+awk -v keys="$work/keys/" '
+  NR == FNR { digest[$1] = $2; next }
+  { name = $1; gsub(/\//, "%", name); print $2, digest[$2] >(keys name)
+    if ($1 != last) { if (last != "") close(keys file); last = $1; file = name } }' "$work/digests" "$work/includes"
+(cd "$work/keys" && for file in *; do cat ../rules >>"$file"; done; sha256sum -- *) |
+  awk '{ name = $2; gsub(/%/, "/", name); print name, $1 }' >"$work/sources"
+
+while read -r source key; do
+  if [ -e "$passed/$key" ]; then echo "$source"; touch -c "$passed/$key"; fi
+done <"$work/sources" >"$work/remembered"
+
+# Of the others: what changed lately, and a source for each changed header that no other one shows.
+if [ "$all" = no ] && git log -50 --format= --name-only >"$work/log" 2>/dev/null; then
+  git status --porcelain | cut -c4- >>"$work/log"
+  sort -u "$work/log" >"$work/changed"
+  awk -v remembered="$work/remembered" -v changed="$work/changed" '
+    BEGIN { while ((getline line < remembered) > 0) done[line] = 1
+            while ((getline line < changed) > 0) new[line] = 1 }
+    { includes[NR] = $0; lines = NR }
+    ($1 in new) && !($1 in done) { todo[$1] = 1 }
+    END {
+      for (i = 1; i <= lines; ++i) { split(includes[i], p, " "); if ((p[1] in todo) || (p[1] in done)) shown[p[2]] = 1 }
+      for (pass = 0; pass < 2; ++pass)  # a header of the same name first
+        for (i = 1; i <= lines; ++i) {
+          split(includes[i], p, " ")
+          if (!(p[2] in new) || (p[2] in shown) || p[2] !~ /\.hpp$/) continue
+          stem = p[2]; sub(/hpp$/, "cpp", stem)
+          if (pass == 0 && stem != p[1]) continue
+          todo[p[1]] = 1
+          for (k = 1; k <= lines; ++k) { split(includes[k], q, " "); if (q[1] == p[1]) shown[q[2]] = 1 }
+        }
+      for (s in todo) print s
+    }' "$work/includes" | sort >"$work/todo"
+else
+  cut -d' ' -f1 "$work/sources" | grep -vxFf "$work/remembered" >"$work/todo"
+fi
+
+tidy_file() {
+  local started=$EPOCHREALTIME key status=0
+  clang-tidy --quiet -p build/release "$1" 2>"$work/$$.err" || { status=1; cat "$work/$$.err"; }
+  if [ $status = 0 ]; then
+    key=$(awk -v source="$1" '$1 == source { print $2 }' "$work/sources")
+    : >"$passed/$key" || true
+  fi
+  awk -v a="$started" -v b="$EPOCHREALTIME" -v file="$1" 'BEGIN { printf "%.1f %s\n", b - a, file }' >>"$items"
+  return $status
+}
+export -f tidy_file
+export work passed items
+of=$(wc -l <"$work/sources")
+looked=$(wc -l <"$work/todo")
+known=$(wc -l <"$work/remembered")
+echo "tidy: $looked of $of files looked at, $known passed before, $((of - looked - known)) left to --all"
+# shellcheck disable=SC2016 # expanded by the shell that it starts
+xargs -a "$work/todo" -d '\n' -r -P "$(nproc)" -I {} bash -c 'tidy_file "$1"' tidy {}
