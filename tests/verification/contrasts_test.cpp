@@ -5,6 +5,7 @@
 #include "app/solver_settings.hpp"
 #include "core/solver/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "tests/support/cases.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +64,7 @@ struct HangingBar {
 };
 
 TEST(RandomContrasts, AreInEquilibriumWhereTheyConverge) {
-  const int kCases = cases(100);
+  const int kCases = test::cases(100);
   int converged = 0, iterations = 0;
   double worst = 0;
   for (int seed = 1; seed <= kCases; ++seed) {
