@@ -3,7 +3,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(VTK 9.1 REQUIRED
-  COMPONENTS CommonCore CommonDataModel IOXML IOLegacy IOGeometry IOPLY
+  COMPONENTS CommonCore CommonDataModel IOXML IOLegacy IOPLY
   OPTIONAL_COMPONENTS FiltersCore FiltersGeometry FiltersSources IOImage RenderingAnnotation RenderingFreeType RenderingOpenGL2)
 
 find_path(UDUNITS2_INCLUDE udunits2.h REQUIRED)

@@ -4,6 +4,7 @@
 #include "io/files.hpp"
 #include "io/isolated.hpp"
 #include "io/obj_reader.hpp"
+#include "io/stl_reader.hpp"
 #include "io/vtk_cells.hpp"
 #include "io/vtk_errors.hpp"
 
@@ -11,7 +12,6 @@
 #include <vtkErrorCode.h>
 #include <vtkPLYReader.h>
 #include <vtkPolyData.h>
-#include <vtkSTLReader.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
@@ -27,8 +27,6 @@ namespace {
                    "; it may be cut off or of another format: write it again");
 }
 
-/// Triangles keep their own points: closed_surface() welds, and says so.
-void configure(vtkSTLReader& reader) { reader.MergingOff(); }
 /// Any array of the file may number the groups.
 void configure(vtkDataSetReader& reader) {
   reader.ReadAllScalarsOn();
@@ -50,7 +48,6 @@ vtkSmartPointer<vtkDataSet> read_data(const std::string& file, const std::string
   if (ending == ".vtk") return read_with<vtkDataSetReader>(file);
   if (ending == ".vtu") return read_with<vtkXMLUnstructuredGridReader>(file);
   if (ending == ".vtp") return read_with<vtkXMLPolyDataReader>(file);
-  if (ending == ".stl") return read_with<vtkSTLReader>(file);
   return read_with<vtkPLYReader>(file);
 }
 
@@ -61,8 +58,7 @@ Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mi
     if (!data || !errors.first().empty()) fail(file, ending, errors.first());
     if (!vtkPolyData::SafeDownCast(data) && !vtkUnstructuredGrid::SafeDownCast(data))
       fail(file, ending, "must hold an unstructured grid or polygonal data");
-    const int first = ending == ".stl" ? 1 : 0;
-    return mesh_of_vtk(*data, file, first, first, mid_nodes);
+    return mesh_of_vtk(*data, file, 0, 0, mid_nodes);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {
@@ -74,9 +70,10 @@ Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mi
 
 Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending, MidNodes mid_nodes) {
   const std::string file = path.string();
-  if (ending == ".obj") {
+  if (ending == ".obj" || ending == ".stl") {
     VtkErrors silence;
-    return mesh_of_vtk(*parse_obj(read_file(path), file), file, 1, 1, mid_nodes);
+    const auto parse = ending == ".obj" ? parse_obj : parse_stl;
+    return mesh_of_vtk(*parse(read_file(path), file), file, 1, 1, mid_nodes);
   }
   return read_isolated(file, [&] { return read_by_vtk(file, ending, mid_nodes); });
 }
