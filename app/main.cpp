@@ -1,4 +1,5 @@
 #include "app/bench/benchmark.hpp"
+#include "app/completion.hpp"
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
 #include "app/version.hpp"
@@ -61,7 +62,25 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
-bool is_command(std::string_view word) { return word == "run" || word == "check" || word == "bench"; }
+bool is_command(std::string_view word) {
+  return word == "run" || word == "check" || word == "bench" || word == "completion";
+}
+
+/// Prints the script; what it completes is read off the commands themselves.
+int print_completion(const CLI::App& app) {
+  std::vector<CommandWords> commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    CommandWords& words = commands.emplace_back();
+    words.name = command->get_name();
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& name : option->get_lnames()) words.options.push_back("--" + name);
+    if (words.name == "completion") words.arguments = {"bash"};
+    if (words.name == "bench")
+      for (const Benchmark& b : all_benchmarks()) words.arguments.push_back(b.name);
+  }
+  fmt::print("{}", bash_completion(commands));
+  return kDone;
+}
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"fascia: simulator of connective tissue and the organs that it ties together", "fascia"};
@@ -78,18 +97,22 @@ int dispatch(int argc, char** argv) {
   CLI::App* check = app.add_subcommand("check", "read and validate a scene, and say what would be simulated");
   add_scene_options(*check, options);
   if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
-    fmt::print(stderr, "fascia: \"{}\" is no command; must be run, check or bench, as in: fascia run {}\n", argv[1],
-               std::string_view(argv[1]).ends_with(".toml") ? argv[1] : "SCENE");
+    fmt::print(stderr, "fascia: \"{}\" is no command; must be run, check, bench or completion, as in: fascia run {}\n",
+               argv[1], std::string_view(argv[1]).ends_with(".toml") ? argv[1] : "SCENE");
     return kWrongInput;
   }
   BenchOptions bench_options;
   const CLI::App* bench = add_bench(app, bench_options);
+  CLI::App* completion = app.add_subcommand("completion", "print a script that completes commands, options and keys");
+  std::string shell;
+  completion->add_option("shell", shell, "bash")->required()->check(CLI::IsMember({"bash"}));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e, std::cout, std::cerr);
     return code == 0 ? kDone : kWrongInput;
   }
+  if (completion->parsed()) return print_completion(app);
   if (bench->parsed()) return run_bench(bench_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }

@@ -23,3 +23,9 @@ if(FASCIA_WITH_CHOLMOD)
   target_include_directories(cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE})
   target_link_libraries(cholmod INTERFACE ${CHOLMOD_LIBRARY} ${CMAKE_DL_LIBS})
 endif()
+
+# Said by --version and by packages.
+set(FASCIA_DIRECT_SOLVER "CHOLMOD of SuiteSparse (GPL)")
+if(NOT FASCIA_WITH_CHOLMOD)
+  set(FASCIA_DIRECT_SOLVER "Eigen's LDLT (no part of this build is under the GPL)")
+endif()

@@ -3,6 +3,7 @@
 #include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
+#include "core/solver/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "tests/support/paths.hpp"
 
@@ -162,17 +163,30 @@ TEST(NewtonResiduals, AColumnPushedToTwiceItsEulerLoad) {
 }
 
 /// A round or square section is as soft in every direction: nothing but the imperfection says in which plane it bends,
-/// and turning that plane costs iterations. With the stress of the state in the tangent the block's column did not
-/// converge in ten load steps, and the line's took 262.
+/// and turning that plane costs iterations, how many hangs on the last digit of the imperfection and on the processor:
+/// 56 to 368 for the block. Whatever they are, all ends are the same bent column. With the stress of the state in the
+/// tangent the block's column did not converge in ten load steps.
 TEST(NewtonResiduals, AColumnAsSoftInEveryDirection) {
-  constexpr unsigned kLoadSteps = 10;
   for (const Beam& beam : {kLine, kBlock}) {
-    std::size_t evaluations = 0;
-    for (const auto& r : pushed(beam, kLoadSteps)) {
-      expect_fast_end(r);
-      evaluations += r.size() - 1;
+    std::vector<double> energies;
+    for (const char* imperfection : {"0.98e-4", "0.99e-4", "1e-4", "1.01e-4", "1.02e-4"}) {
+      const std::string force = "[" + std::to_string(-2 * 2.4674 * 1e6 * beam.inertia) + ", 0, 0]";
+      app::Simulation simulation = app::build_simulation(app::parse_scene_text(
+          scene_of(beam, force, std::string("imperfection = ") + imperfection), "column, " + beam.model, {}));
+      app::add_imperfection(simulation);
+      const SolverSettings settings = app::settings_of(simulation.scene.solver);
+      ThreadPool pool(1);
+      MechanicalSystem system(simulation.model, pool, settings);
+      State state = simulation.initial;
+      const RunReport run = run_statics(
+          system, state, [&](double t) { return simulation.factors(t); }, settings, StaticsSettings{10},
+          [](const StepInfo&, const State&, MechanicalSystem&) { return true; });
+      EXPECT_EQ(run.status, RunStatus::converged) << imperfection << ": " << run.message;
+      energies.push_back(system.internal_energy().elastic);
+      std::printf("column, %s, imperfection %s: %d iterations, energy %.9g J\n", beam.model.c_str(), imperfection,
+                  run.newton_iterations, energies.back());
+      EXPECT_NEAR(energies.back(), energies.front(), 1e-4 * energies.front());
     }
-    EXPECT_LE(evaluations, 10 * kLoadSteps);
   }
 }
 

@@ -1,0 +1,62 @@
+# What is installed, in the components of which cmake/debian.cmake makes packages: fascia, picture, cuda.
+include(GNUInstallDirs)
+set(FASCIA_LEVELS "" CACHE STRING
+  "Builds of the library beside this one, of which the loader picks by processor, for example x86-64-v3;x86-64-v4")
+set(private ${CMAKE_INSTALL_LIBDIR}/fascia)
+
+file(RELATIVE_PATH to_private ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/fascia)
+set_target_properties(fascia PROPERTIES INSTALL_RPATH "$ORIGIN/${to_private}")
+install(TARGETS fascia RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fascia)
+install(TARGETS libfascia LIBRARY DESTINATION ${private} COMPONENT fascia)
+if(TARGET fascia-picture)
+  install(TARGETS fascia-picture RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT picture)
+endif()
+if(TARGET fascia-cuda)
+  set_target_properties(fascia-cuda PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(TARGETS fascia-cuda LIBRARY DESTINATION ${private} COMPONENT cuda)
+endif()
+
+# The same library for newer processors: the dynamic loader looks into glibc-hwcaps before the folder itself.
+include(ExternalProject)
+foreach(level IN LISTS FASCIA_LEVELS)
+  ExternalProject_Add(libfascia-${level}
+    SOURCE_DIR ${CMAKE_SOURCE_DIR} BINARY_DIR ${CMAKE_BINARY_DIR}/${level} PREFIX ${CMAKE_BINARY_DIR}/${level}/made
+    CMAKE_ARGS -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+      -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DFASCIA_LEVEL=${level} -DFASCIA_TESTS=OFF -DFASCIA_CUDA=OFF
+      -DFASCIA_WITH_CHOLMOD=${FASCIA_WITH_CHOLMOD}
+    BUILD_COMMAND ${CMAKE_COMMAND} --build <BINARY_DIR> --target libfascia
+    INSTALL_COMMAND "" BUILD_ALWAYS ON)
+  install(FILES ${CMAKE_BINARY_DIR}/${level}/libfascia.so DESTINATION ${private}/glibc-hwcaps/${level} COMPONENT fascia)
+endforeach()
+
+set(shared ${CMAKE_INSTALL_DATADIR}/fascia)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes ${CMAKE_SOURCE_DIR}/schemas DESTINATION ${shared} COMPONENT fascia)
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/docs/manual.md ${CMAKE_SOURCE_DIR}/docs/scene-reference.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT fascia)
+
+# Pages that the program itself describes, where help2man is installed; its completion always.
+add_custom_command(OUTPUT fascia.bash DEPENDS fascia VERBATIM
+  COMMAND sh -c "\"$0\" completion bash >fascia.bash" $<TARGET_FILE:fascia>)
+set(described ${CMAKE_CURRENT_BINARY_DIR}/fascia.bash)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fascia.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+  RENAME fascia COMPONENT fascia)
+find_program(HELP2MAN help2man)
+if(HELP2MAN)
+  foreach(program fascia fascia-picture)
+    if(TARGET ${program})
+      add_custom_command(OUTPUT ${program}.1.gz
+        COMMAND ${HELP2MAN} --no-info --section 1 --version-string ${PROJECT_VERSION} --include ${CMAKE_SOURCE_DIR}/docs/man/${program}.h2m
+                --output ${program}.1 $<TARGET_FILE:${program}>
+        COMMAND gzip -9nf ${program}.1
+        DEPENDS ${program} ${CMAKE_SOURCE_DIR}/docs/man/${program}.h2m VERBATIM)
+      list(APPEND described ${CMAKE_CURRENT_BINARY_DIR}/${program}.1.gz)
+    endif()
+  endforeach()
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fascia.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT fascia)
+  if(TARGET fascia-picture)
+    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fascia-picture.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT picture)
+  endif()
+endif()
+add_custom_target(fascia_described ALL DEPENDS ${described})
+
+include(debian)
