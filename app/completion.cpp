@@ -65,13 +65,13 @@ std::string key_table() {
   return table;
 }
 
-constexpr const char* kFunctions = R"(
+constexpr const char* kFunctions = R"bash(
 # The keys of the scene format, one a line with the values that it takes; * stands for a name, # for a number.
 _fascia_keys() {
   cat <<'KEYS'
-)";
+)bash";
 
-constexpr const char* kRest = R"(KEYS
+constexpr const char* kRest = R"bash(KEYS
 }
 
 # What the scene file $1 puts in the place of the * or # in the key $2: names or numbers of its tables.
@@ -136,20 +136,20 @@ _fascia() {
     --output) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
   esac
   case $command in
-)";
+)bash";
 
 }  // namespace
 
 std::string bash_completion(const std::vector<CommandWords>& commands) {
   std::string names, cases;
   for (const CommandWords& c : commands) {
-        names += (names.empty() ? "" : " ") + c.name;
-        cases +=
-            fmt::format("    {}) words=('{} {}') ;;\n", c.name, fmt::join(c.options, " "), fmt::join(c.arguments, " "));
-      }
-    return "# bash completion for fascia; made by: fascia completion bash" + std::string(kFunctions) + key_table() +
-           kRest + cases + fmt::format("    *) words=('{} --help --version') ;;\n", names) +
-           R"(  esac
+    names += (names.empty() ? "" : " ") + c.name;
+    cases +=
+        fmt::format("    {}) words=('{} {}') ;;\n", c.name, fmt::join(c.options, " "), fmt::join(c.arguments, " "));
+  }
+  return "# bash completion for fascia; made by: fascia completion bash" + std::string(kFunctions) + key_table() +
+         kRest + cases + fmt::format("    *) words=('{} --help --version') ;;\n", names) +
+         R"bash(  esac
   mapfile -t COMPREPLY < <(compgen -W "${words[0]}" -- "$current")
   if [ "$command" != bench ] && [[ $current != -* ]]; then
     mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -d -S / -- "$current"; compgen -f -X '!*.toml' -- "$current")
@@ -157,7 +157,7 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
   fi
 }
 complete -F _fascia fascia
-)";
+)bash";
 }
 
 }  // namespace fascia::app
