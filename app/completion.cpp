@@ -74,7 +74,7 @@ _fascia_keys() {
 constexpr const char* kRest = R"bash(KEYS
 }
 
-# What the scene file $1 puts in the place of the * or # in the key $2: names or numbers of its tables.
+# What the scene file $1 has in the place of the * or # at the end of $2: names or numbers of its tables.
 _fascia_names() {
   local section=${2%%.*} count
   [ -f "$1" ] || return
@@ -84,7 +84,7 @@ _fascia_names() {
   esac
 }
 
-# The keys, with the scene's names in them.
+# The keys, with the names and numbers of the scene $1 in them.
 _fascia_scene_keys() {
   local key stem name
   while read -r key _; do
@@ -99,24 +99,22 @@ _fascia_scene_keys() {
   done < <(_fascia_keys) | sort -u
 }
 
-# The values of a key whose names and numbers stand as the scene has them.
+# The values that the key $1 takes, with names and numbers as a scene has them.
 _fascia_values() {
-  local key values
+  local key values pattern
   while read -r key values; do
-    # shellcheck disable=SC2254 # a pattern: a name has no dots
-    case $1 in ${key//\#/*}) [ "$(tr -cd . <<<"$1")" = "$(tr -cd . <<<"$key")" ] && echo "$values" ;
-;
-esac done < < (_fascia_keys)
-}  // namespace
+    pattern=${key//\#/*}
+    # shellcheck disable=SC2053 # a pattern; a name has no dots
+    if [[ $1 == $pattern ]] && [ "$(tr -cd . <<<"$1")" = "$(tr -cd . <<<"$key")" ]; then echo "$values"; fi
+  done < <(_fascia_keys)
+}
 
 _fascia() {
-  local line = ${COMP_LINE : 0 : COMP_POINT} current previous scene word words command current =
-      ${line##* } read - ra words < < < "${line%" $current "}" previous = $ {
-    words[-1]
-  }
-  for
-    word in "${words[@]:1}";
-  do
+  local line=${COMP_LINE:0:COMP_POINT} current previous scene='' word words command=''
+  current=${line##* }
+  read -ra words <<<"${line%"$current"}"
+  previous=${words[-1]}
+  for word in "${words[@]:1}"; do
     case $word in
       *.toml) scene=$word ;;
       -*) ;;
@@ -129,7 +127,7 @@ _fascia() {
         mapfile -t COMPREPLY < <(compgen -W "$(_fascia_values "${current%%=*}")" -- "${current#*=}")
       else
         mapfile -t COMPREPLY < <(compgen -W "$(_fascia_scene_keys "$scene")" -S = -- "$current")
-        compopt -o nospace
+        compopt -o nospace 2>/dev/null
       fi
       return ;;
     --backend) mapfile -t COMPREPLY < <(compgen -W 'auto cpu cuda' -- "$current"); return ;;
