@@ -19,25 +19,33 @@ struct Path {
   std::string values;  ///< words that the key takes
 };
 
-/// The keys that --set may name below `shape`.
-void add_paths(const Shape& shape, const std::string& path, int depth, std::vector<Path>& all) {
+/// The keys that --set may name below `shape`. @param inside  the reference that led here, which is not followed twice
+void add_paths(const Shape& shape, const std::string& path, int depth, std::vector<Path>& all,
+               const std::string& inside = "") {
   if (depth > kDeepest) return;
   switch (shape.type) {
     case Type::table:
       for (const Key& key : shape.keys)
-        if (key.refusal.empty()) add_paths(key.shape, path.empty() ? key.name : path + "." + key.name, depth + 1, all);
+        if (key.refusal.empty())
+          add_paths(key.shape, path.empty() ? key.name : path + "." + key.name, depth + 1, all, inside);
       return;
     case Type::named_tables:
-      add_paths(shape.items.front(), path + ".*", depth + 1, all);
+      add_paths(shape.items.front(), path + ".*", depth + 1, all, inside);
       return;
     case Type::array:
       if (shape.items.front().type == Type::table && depth == 1)
-        add_paths(shape.items.front(), path + ".#", depth + 1, all);
+        add_paths(shape.items.front(), path + ".#", depth + 1, all, inside);
       else
         all.push_back({path, ""});
       return;
     case Type::one_of:
-      for (const Shape& alternative : shape.items) add_paths(alternative, path, depth, all);
+      for (const Shape& alternative : shape.items) add_paths(alternative, path, depth, all, inside);
+      return;
+    case Type::reference:
+      if (shape.name == inside)
+        all.push_back({path, ""});
+      else
+        add_paths(shape.target(), path, depth, all, shape.name);
       return;
     case Type::choice:
       all.push_back({path, fmt::format("{}", fmt::join(supported_values(shape), " "))});
@@ -86,14 +94,13 @@ _fascia_names() {
 
 # The keys, with the names and numbers of the scene $1 in them.
 _fascia_scene_keys() {
-  local key stem name
+  local key stem='' before name names
   while read -r key _; do
     case $key in
       *[*#]*)
-        stem=${key%%[*#]*}
-        for name in $(_fascia_names "$1" "${key:0:$((${#stem} + 1))}"); do
-          echo "$stem$name${key:$((${#stem} + 1))}"
-        done ;;
+        before=$stem stem=${key%%[*#]*}
+        [ "$stem" = "$before" ] || mapfile -t names < <(_fascia_names "$1" "${key:0:$((${#stem} + 1))}")
+        for name in "${names[@]}"; do echo "$stem$name${key:$((${#stem} + 1))}"; done ;;
       *) echo "$key" ;;
     esac
   done < <(_fascia_keys) | sort -u
@@ -101,11 +108,11 @@ _fascia_scene_keys() {
 
 # The values that the key $1 takes, with names and numbers as a scene has them.
 _fascia_values() {
-  local key values pattern
+  local key values pattern dots=${1//[^.]/}
   while read -r key values; do
     pattern=${key//\#/*}
     # shellcheck disable=SC2053 # a pattern; a name has no dots
-    if [[ $1 == $pattern ]] && [ "$(tr -cd . <<<"$1")" = "$(tr -cd . <<<"$key")" ]; then echo "$values"; fi
+    if [[ $1 == $pattern && ${key//[^.]/} == "$dots" ]]; then echo "$values"; fi
   done < <(_fascia_keys)
 }
 
