@@ -59,4 +59,13 @@ if(HELP2MAN)
 endif()
 add_custom_target(fascia_described ALL DEPENDS ${described})
 
+# For ./run: what it may build beside the program when a scene asks for it.
+set(optional_parts "")
+foreach(part fascia-cuda fascia-picture)
+  if(TARGET ${part})
+    list(APPEND optional_parts ${part})
+  endif()
+endforeach()
+set(FASCIA_OPTIONAL_PARTS "${optional_parts}" CACHE INTERNAL "Targets that the program uses where they are there")
+
 include(debian)
