@@ -25,7 +25,7 @@ foreach(level IN LISTS FASCIA_LEVELS)
       -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DFASCIA_LEVEL=${level} -DFASCIA_TESTS=OFF -DFASCIA_CUDA=OFF
       -DFASCIA_WITH_CHOLMOD=${FASCIA_WITH_CHOLMOD}
     BUILD_COMMAND ${CMAKE_COMMAND} --build <BINARY_DIR> --target libfascia
-    INSTALL_COMMAND "" BUILD_ALWAYS ON)
+    INSTALL_COMMAND "" BUILD_ALWAYS ON USES_TERMINAL_BUILD ON)  # one after the other
   install(FILES ${CMAKE_BINARY_DIR}/${level}/libfascia.so DESTINATION ${private}/glibc-hwcaps/${level} COMPONENT fascia)
 endforeach()
 
