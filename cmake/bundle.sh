@@ -71,6 +71,8 @@ libc=$(libraries "$build/${programs[0]}" | awk '$1 == "libc.so.6" { print $2 }')
 for name in libdl.so.2 libpthread.so.0 librt.so.1 libm.so.6 libutil.so.1 libresolv.so.2 libtbbmalloc.so.2 libiomp5.so; do
   [ ! -e "$(dirname "$libc")/$name" ] || cp -L "$(dirname "$libc")/$name" "$out/lib/"
 done
+# The GPU part, which the library loads from its own folder.
+if [ -e "$out/lib/libfascia.so" ] && [ -e "$build/fascia-cuda.so" ]; then cp "$build/fascia-cuda.so" "$out/lib/"; fi
 chmod u+w "$out"/lib/* "$out"/programs/*
 strip --strip-unneeded "$out"/programs/* 2>/dev/null || true
 find "$out/lib" -type f ! -name 'ld-linux*' -exec strip --strip-unneeded {} + 2>/dev/null || true
@@ -86,7 +88,7 @@ cat >"$out/bin/${programs[0]}" <<SH
 #!/bin/sh
 case \$0 in */*) here=\${0%/*} ;; *) here=. ;; esac
 here=\$(cd "\$here/.." && pwd -P)
-export UDUNITS2_XML_PATH="\$here/share/udunits/udunits2.xml"
+export UDUNITS2_XML_PATH="\$here/share/udunits/udunits2.xml" FASCIA_SOURCE_DIR="\${FASCIA_SOURCE_DIR:-\$here}"
 exec "\$here/lib/$loader" --argv0 "\$0" --library-path "\$here/lib\${LD_LIBRARY_PATH:+:\$LD_LIBRARY_PATH}" \\
   "\$here/programs/\${0##*/}" "\$@"
 SH
@@ -95,7 +97,7 @@ for program in "${programs[@]:1}"; do cp "$out/bin/${programs[0]}" "$out/bin/$pr
 
 tar -C "$(dirname "$out")" -czf "$out.tar.gz" "$(basename "$out")"
 if grep -qs '^FASCIA_NATIVE:BOOL=ON' "$build/CMakeCache.txt"; then
-  echo "bundle.sh: tuned for this machine's processor; elsewhere, a build with -DFASCIA_NATIVE=OFF" \
-    "-DCMAKE_CXX_FLAGS=-march=x86-64-v3 runs on most processors since 2015" >&2
+  echo "bundle.sh: tuned for this machine's processor; elsewhere, a build with" \
+    "-DFASCIA_LEVEL=x86-64-v3 runs on most processors since 2015" >&2
 fi
 du -sh "$out" "$out.tar.gz" | awk '{ print $2 ": " $1 }'
