@@ -16,34 +16,39 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CUDA_COMPILER_LAUNCHER ${CMAKE_BINARY_DIR}/tools/ccache)
 endif()
 
+# fascia_plain_flags: for what starts on any processor; fascia_flags: tuned.
+add_library(fascia_plain_flags INTERFACE)
 add_library(fascia_flags INTERFACE)
-target_include_directories(fascia_flags INTERFACE ${CMAKE_SOURCE_DIR})
-target_compile_options(fascia_flags INTERFACE
+target_link_libraries(fascia_flags INTERFACE fascia_plain_flags)
+target_include_directories(fascia_plain_flags INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(fascia_plain_flags INTERFACE
   $<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow;-fno-semantic-interposition>
   # No path of this folder in what is built: two builds in two folders are equal.
   $<$<COMPILE_LANGUAGE:C,CXX>:-ffile-prefix-map=${CMAKE_SOURCE_DIR}/=>
   $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;--extended-lambda;-Xcompiler=-Wall,-Wextra,-Wshadow>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns inside its own headers: AVX-512 (bug 105593), std::string (bugs 105329, 105651).
-  target_compile_options(fascia_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-Wno-psabi;-Wno-maybe-uninitialized;-Wno-restrict;-Wno-stringop-overflow>)
+  target_compile_options(fascia_plain_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-Wno-psabi;-Wno-maybe-uninitialized;-Wno-restrict;-Wno-stringop-overflow>)
 endif()
 # Not for nvcc's host pass, whose front end does not know every instruction that the host compiler does.
 if(FASCIA_LEVEL)
   set(FASCIA_TUNING ${FASCIA_LEVEL})
-  target_compile_options(fascia_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-march=${FASCIA_LEVEL}>)
+  set(tuning -march=${FASCIA_LEVEL})
 elseif(FASCIA_NATIVE)
-  native_flags(native)
-  string(REGEX REPLACE "^-march=([^;]+).*" "native (\\1)" FASCIA_TUNING "${native}")
-  target_compile_options(fascia_flags INTERFACE "$<$<COMPILE_LANGUAGE:C,CXX>:${native}>")
+  native_flags(tuning)
+  string(REGEX REPLACE "^-march=([^;]+).*" "native (\\1)" FASCIA_TUNING "${tuning}")
 else()
   set(FASCIA_TUNING x86-64)
+  set(tuning "")
 endif()
+target_compile_options(fascia_flags INTERFACE "$<$<COMPILE_LANGUAGE:C,CXX>:${tuning}>")
+processor_checks(FASCIA_PROCESSOR_CHECKS "${tuning}")
 if(FASCIA_SANITIZE)
-  target_compile_options(fascia_flags INTERFACE -fsanitize=${FASCIA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  target_link_options(fascia_flags INTERFACE -fsanitize=${FASCIA_SANITIZE})
+  target_compile_options(fascia_plain_flags INTERFACE -fsanitize=${FASCIA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(fascia_plain_flags INTERFACE -fsanitize=${FASCIA_SANITIZE})
 endif()
 find_package(Threads REQUIRED)
-target_link_libraries(fascia_flags INTERFACE Threads::Threads)
+target_link_libraries(fascia_plain_flags INTERFACE Threads::Threads)
 
 # Adds a library of the project: fascia_library(NAME sources... LINK targets...).
 function(fascia_library name)
