@@ -3,13 +3,14 @@
 
 say() { printf 'fascia: %s\n' "$*" >&2; }
 
-# Packages of packages.txt that are needed for $1 (run or check), one a line.
+# Packages of packages.txt that are needed for $1 (run, check or all), one a line.
 packages_for() {
   local needed_by package proof
   while read -r needed_by package proof _; do
     case "$needed_by" in
       run) echo "$package $proof" ;;
       check) [ "$1" = run ] || echo "$package $proof" ;;
+      all) [ "$1" != all ] || echo "$package $proof" ;;
     esac
   done <"${root:?}/cmake/packages.txt"
 }
@@ -42,7 +43,7 @@ apt_knows() {
   done
 }
 
-# Installs what $1 (run or check) needs and this system lacks; says what and why. $2: log file.
+# Installs what $1 (run, check or all) needs and this system lacks; says what and why. $2: log file.
 install_missing() {
   local missing log=$2
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -100,5 +101,10 @@ configure() {
 build_release() {
   local started
   started=$(mktemp "$root/build/started.XXXXXX")
-  cmake --build "$root/build/release" "$@" && mv "$started" "$root/build/release/.up_to_date" || { rm -f "$started"; return 1; }
+  if cmake --build "$root/build/release" "$@"; then
+    mv "$started" "$root/build/release/.up_to_date"
+  else
+    rm -f "$started"
+    return 1
+  fi
 }
