@@ -2,6 +2,7 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME fascia)
 set(CPACK_PACKAGE_CONTACT "The fascia authors <fascia@users.noreply.github.com>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
@@ -14,6 +15,11 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
 
+set(note "")
+if(FASCIA_WITH_CHOLMOD)
+  set(note "\nThe program is linked to CHOLMOD of SuiteSparse, parts of which are under the GNU General Public License, version 2 or\nlater, and is distributed under its terms: see /usr/share/common-licenses/GPL-2. A build with FASCIA_WITH_CHOLMOD=OFF is\nunder the licence above alone.\n")
+endif()
+
 # fascia_package(COMPONENT PACKAGE DEPENDS depends SUMMARY line TEXT lines): the package of a component.
 set(CPACK_COMPONENTS_ALL "")
 macro(fascia_package component package depends summary text)
@@ -25,7 +31,7 @@ macro(fascia_package component package depends summary text)
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}")
   # What Debian wants of each: who may use it, and what is new.
   file(READ ${CMAKE_SOURCE_DIR}/LICENSE license)
-  file(WRITE ${CMAKE_BINARY_DIR}/debian/${package}/copyright "${license}\nDirect solver: ${FASCIA_DIRECT_SOLVER}.\n")
+  file(WRITE ${CMAKE_BINARY_DIR}/debian/${package}/copyright "${license}${note}")
   configure_file(${CMAKE_SOURCE_DIR}/cmake/changelog.in ${CMAKE_BINARY_DIR}/debian/${package}/changelog @ONLY)
   execute_process(COMMAND gzip -9nf ${CMAKE_BINARY_DIR}/debian/${package}/changelog)
   install(FILES ${CMAKE_BINARY_DIR}/debian/${package}/copyright ${CMAKE_BINARY_DIR}/debian/${package}/changelog.gz

@@ -25,8 +25,10 @@ foreach(level IN LISTS FASCIA_LEVELS)
       -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DFASCIA_LEVEL=${level} -DFASCIA_TESTS=OFF -DFASCIA_CUDA=OFF
       -DFASCIA_WITH_CHOLMOD=${FASCIA_WITH_CHOLMOD}
     BUILD_COMMAND ${CMAKE_COMMAND} --build <BINARY_DIR> --target libfascia
-    INSTALL_COMMAND "" BUILD_ALWAYS ON USES_TERMINAL_BUILD ON)  # one after the other
-  install(FILES ${CMAKE_BINARY_DIR}/${level}/libfascia.so DESTINATION ${private}/glibc-hwcaps/${level} COMPONENT fascia)
+    INSTALL_COMMAND ${CMAKE_STRIP} --strip-unneeded -o <BINARY_DIR>/stripped.so <BINARY_DIR>/libfascia.so
+    BUILD_ALWAYS ON USES_TERMINAL_BUILD ON)  # one after the other
+  install(FILES ${CMAKE_BINARY_DIR}/${level}/stripped.so DESTINATION ${private}/glibc-hwcaps/${level}
+    RENAME libfascia.so COMPONENT fascia)
 endforeach()
 
 set(shared ${CMAKE_INSTALL_DATADIR}/fascia)
