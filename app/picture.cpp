@@ -50,7 +50,10 @@ void make_picture(const Simulation& s, const fs::path& directory, const std::str
   const Picture& p = *s.scene.output.picture;
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "fascia-picture";
   if (!fs::exists(program)) {
-    fmt::print(stderr, "no picture: {} was not built (it needs VTK's rendering)\n", program.string());
+    fmt::print(stderr,
+               "no picture: there is no {} (of the package fascia-picture; in a checkout ./run builds it where VTK can "
+               "render)\n",
+               program.string());
     return;
   }
   std::vector<std::string> command;
