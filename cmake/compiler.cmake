@@ -30,6 +30,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns inside its own headers: AVX-512 (bug 105593), std::string (bugs 105329, 105651).
   target_compile_options(fascia_plain_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-Wno-psabi;-Wno-maybe-uninitialized;-Wno-restrict;-Wno-stringop-overflow>)
 endif()
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  # Part of -Wconversion there, not of g++'s.
+  target_compile_options(fascia_plain_flags INTERFACE -Wno-sign-conversion)
+endif()
 # Not for nvcc's host pass, whose front end does not know every instruction that the host compiler does.
 if(FASCIA_LEVEL)
   set(FASCIA_TUNING ${FASCIA_LEVEL})

@@ -18,8 +18,7 @@ constexpr int kNodeGrain = 256;
 }  // namespace
 
 ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double dt, std::span<const double> factors)
-    : system_(system),
-      model_(system.model()),
+    : model_(system.model()),
       executor_(system.executor()),
       filter_(system.filter()),
       surfaces_(system.model()),

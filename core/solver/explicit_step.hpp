@@ -61,7 +61,6 @@ class ExplicitStepper {
   ExplicitNode node_at(int node) const;
   double tether_work(std::span<const double> factors);
 
-  MechanicalSystem& system_;
   const Model& model_;
   CpuExecutor& executor_;
   const DofFilter& filter_;

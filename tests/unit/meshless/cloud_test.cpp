@@ -133,7 +133,6 @@ TEST_P(Cloud, RigidMotionHasNoEnergyAndItsExactMomentum) {
   const State turned = rigid_state(b.model, rotation_increment({{0.7, -1.1, 2.0}}), {{1, 2, 3}});
   EXPECT_LT(executor.gradient(turned, {}, unused).total(), 1e-24 * 1e4 * GetParam().volume);
 
-  FrameInertia total;
   Momentum momentum;
   const Vec3d spin{{0.3, 0.5, -0.2}}, velocity{{1, 0.5, 2}};
   for (std::size_t i = 0; i < b.model.inertia.size(); ++i) {

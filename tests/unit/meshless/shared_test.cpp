@@ -54,7 +54,7 @@ std::vector<Case> cases() {
                                                              {ScatteredKind::cubic_spline, "spline"},
                                                              {ScatteredKind::shepard, "shepard"}};
     for (const auto& [weights, kernel] : kernels)
-      all.push_back({name + "_" + kernel, host, [weights](SharedModel& s) {
+      all.push_back({name + "_" + kernel, host, [weights = weights](SharedModel& s) {
                        BlockOptions o;
                        o.half_blend = false;
                        add_cloud(s, unit_scatter(SpacedChoice{0.34, 1}, weights), o);
