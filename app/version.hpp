@@ -12,8 +12,8 @@ namespace fascia::app {
 ///     processor: x86-64-v4
 std::string version_text();
 
-/// The processor that the library in use is compiled for: "x86-64", "x86-64-v3", "x86-64-v4", or, of a build for its own
-/// machine, "native (znver3)". Of an installed library the loader picks the highest level that the processor has.
+/// The processor that the library in use is compiled for: "x86-64", "x86-64-v3", "x86-64-v4", or, of a build for its
+/// own machine, "native (znver3)". Of an installed library the loader picks the highest level that the processor has.
 const char* tuning();
 
 /// The backends that there are: "cpu, cuda (toolkit 13.0, for 90-real)".
