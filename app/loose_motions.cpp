@@ -1,11 +1,11 @@
 #include "app/loose_motions.hpp"
 
+#include "core/math/dense.hpp"
 #include "core/math/index.hpp"
 #include "core/math/mat3.hpp"
 #include "core/model/disjoint_sets.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 
@@ -76,10 +76,10 @@ Dense null_space_of_one(const std::vector<const Tie*>& ties, const RigidPiece& b
     const Motion6 row = row_of(*t, body, body.size);
     resistance += row * row.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(resistance);
+  const Eigenpairs eigen = symmetric_eigen(resistance);
   Eigen::Index dimension = 0;
-  while (dimension < 6 && eigen.eigenvalues()[dimension] < kFree) ++dimension;
-  return eigen.eigenvectors().leftCols(dimension);
+  while (dimension < 6 && eigen.values[dimension] < kFree) ++dimension;
+  return eigen.vectors.leftCols(dimension);
 }
 
 struct NullSpace {
@@ -91,9 +91,9 @@ NullSpace null_space(const Sparse& K) {
   const Eigen::Index n = K.rows();
   NullSpace null;
   if (n <= kDense) {
-    const Eigen::SelfAdjointEigenSolver<Dense> eigen{Dense(K)};
-    while (null.dimension < n && eigen.eigenvalues()[null.dimension] < kFree) ++null.dimension;
-    null.basis = eigen.eigenvectors().leftCols(null.dimension);
+    const Eigenpairs eigen = symmetric_eigen(Dense(K));
+    while (null.dimension < n && eigen.values[null.dimension] < kFree) ++null.dimension;
+    null.basis = eigen.vectors.leftCols(null.dimension);
     return null;
   }
   Sparse unit(n, n);
@@ -108,7 +108,7 @@ NullSpace null_space(const Sparse& K) {
   constexpr int kRounds = 4;
   for (int round = 0; round < kRounds && count > 0; ++round) {
     const Dense next = above.solve(null.basis);
-    null.basis = Eigen::HouseholderQR<Dense>(next).householderQ() * Dense::Identity(n, count);
+    null.basis = orthonormal(next);
   }
   return null;
 }
@@ -184,8 +184,7 @@ class Clusters {
     }
     bool joined = false;
     for (const auto& [pair, resistance] : between) {
-      if (Eigen::SelfAdjointEigenSolver<Matrix6>(resistance, Eigen::EigenvaluesOnly).eigenvalues()[0] < kJoined)
-        continue;
+      if (symmetric_eigen(resistance).values[0] < kJoined) continue;
       sets.join(pair.first, pair.second);
       joined = true;
     }
@@ -199,6 +198,14 @@ class Clusters {
   std::vector<RigidPiece> bodies_;
 };
 
+/// The `count` directions in which columns (orthonormal ones, projected) reach farthest, orthonormal, farthest first.
+Dense largest_directions(const Dense& columns, Eigen::Index count) {
+  const Eigenpairs gram = symmetric_eigen(columns.transpose() * columns);
+  Dense directions = columns * gram.vectors.rightCols(count).rowwise().reverse();
+  directions.colwise().normalize();
+  return directions;
+}
+
 /// Takes the motions of everything as one body out of a null space. @return how many are left
 Eigen::Index take_out(const Clusters& clusters, const RigidPiece& whole, const Dense& rigid, NullSpace& null) {
   if (rigid.cols() == 0) return null.dimension;
@@ -210,7 +217,7 @@ Eigen::Index take_out(const Clusters& clusters, const RigidPiece& whole, const D
           moved = v + cross(w, clusters.body(k).center - whole.center), turned = w * clusters.body(k).size;
       all.block<6, 1>(6 * k, m) << moved[0], moved[1], moved[2], turned[0], turned[1], turned[2];
     }
-  all = Eigen::HouseholderQR<Dense>(all).householderQ() * Dense::Identity(all.rows(), all.cols());
+  all = orthonormal(all);
   null.basis -= all * (all.transpose() * null.basis);
   return std::max<Eigen::Index>(0, null.dimension - rigid.cols());
 }
@@ -248,8 +255,7 @@ LooseMotions loose_motions(const std::vector<RigidPiece>& pieces, const std::vec
   const Eigen::Index left = take_out(clusters, whole, null_space_of_one(ties, whole), null);
   loose.count = static_cast<int>(left);
   if (left == 0) return loose;
-  Dense motions =
-      Eigen::JacobiSVD<Dense>(null.basis, Eigen::ComputeThinU).matrixU().leftCols(std::min(left, null.basis.cols()));
+  Dense motions = largest_directions(null.basis, std::min(left, null.basis.cols()));
   for (Eigen::Index first = 0; first < motions.cols();) {
     Eigen::Index most = 0;
     double largest = 0;

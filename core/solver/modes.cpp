@@ -1,14 +1,13 @@
 #include "core/solver/modes.hpp"
 
 #include "core/cpu/executor.hpp"
+#include "core/math/dense.hpp"
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/dependents.hpp"
 #include "core/solver/dof_filter.hpp"
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -194,16 +193,16 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
       problem.multiply_mass(X.col(k), column);
       factor.solve({column.data(), static_cast<std::size_t>(n)}, {X.col(k).data(), static_cast<std::size_t>(n)});
     }
-    X = Eigen::HouseholderQR<Dense>(X).householderQ() * Dense::Identity(n, block);
+    X = orthonormal(X);
     for (int k = 0; k < block; ++k) {
       problem.multiply_stiffness(X.col(k), column);
       KX.col(k) = column;
       problem.multiply_mass(X.col(k), column);
       MX.col(k) = column;
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Dense> ritz(X.transpose() * KX, X.transpose() * MX);
-    const Eigen::VectorXd& next = ritz.eigenvalues();
-    X = X * ritz.eigenvectors();
+    const Eigenpairs ritz = symmetric_eigen(X.transpose() * KX, X.transpose() * MX);
+    const Eigen::VectorXd& next = ritz.values;
+    X = X * ritz.vectors;
     modes.converged = true;
     for (int k = 0; k < wanted; ++k) {
       const double allowed = std::max({1e-10 * std::abs(next[k]), 1e-12 * std::abs(next[wanted - 1]), rounding});
