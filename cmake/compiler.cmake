@@ -54,9 +54,19 @@ endif()
 find_package(Threads REQUIRED)
 target_link_libraries(fascia_plain_flags INTERFACE Threads::Threads)
 
-# Adds a library of the project: fascia_library(NAME sources... LINK targets...).
+# Where there is no compiler cache, headers that most files of a library include are read once for all of them.
+set(precompile ON)
+if(CCACHE)
+  set(precompile OFF)
+endif()
+option(FASCIA_PRECOMPILE "Precompile headers of the library: faster without a compiler cache, in the way of one" ${precompile})
+
+# Adds a library of the project: fascia_library(NAME sources... LINK targets... [PRECOMPILE headers...]).
 function(fascia_library name)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINK;PRECOMPILE" ${ARGN})
   add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PUBLIC fascia_flags ${ARG_LINK})
+  if(FASCIA_PRECOMPILE AND ARG_PRECOMPILE)
+    target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
+  endif()
 endfunction()

@@ -36,6 +36,7 @@ Shells<Space>::Shells(const PointSet& set, Precision precision)
   place_rows(lanes, !is_narrow_, wide_, &Block::view);
   if (is_narrow_) place_rows(lanes, true, narrow_, &Block::narrow);
   std::vector<int> dof;
+  dof.reserve(at(nodes_));
   for (int node = 0; node < nodes_; ++node) dof.push_back(set.dofs.begin(node));
   dof_.upload(dof);
   find_corners(set);

@@ -18,8 +18,8 @@ namespace fascia::gpu {
 /// K sums and M maxima of values that are not negative, which a loop builds up.
 template <int K, int M = 0>
 struct Sums {
-  double v[K == 0 ? 1 : K]{};
-  double largest[M == 0 ? 1 : M]{};
+  double v[std::max(K, 1)]{};
+  double largest[std::max(M, 1)]{};
 
   FASCIA_HD void add(const Sums& other) {
     for (int k = 0; k < K; ++k) v[k] += other.v[k];

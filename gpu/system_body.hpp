@@ -78,7 +78,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
 template <class Space>
 std::string System<Space>::not_in_tiles() const {
   const Preconditioner kind = settings_.preconditioner;
-  if (const std::string refusal = not_for_tiles(model_.points); !refusal.empty()) return refusal;
+  if (std::string refusal = not_for_tiles(model_.points); !refusal.empty()) return refusal;
   if (settings_.precision == Precision::single) return "precision is single";
   if (kind != Preconditioner::automatic && kind != Preconditioner::block_jacobi && kind != Preconditioner::none)
     return "the preconditioner is not block-Jacobi";

@@ -62,7 +62,7 @@ template <class Space>
 DirectionReport System<Space>::direction_of_host() {
   MechanicalSystem& solver = host();
   solver.stand_in(step_in_progress());
-  const DirectionReport report = solver.direction();
+  DirectionReport report = solver.direction();
   indefinite_ = !report.trouble.empty();
   direction_.upload(solver.last_direction());
   note_direction();
