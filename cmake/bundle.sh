@@ -71,6 +71,11 @@ libc=$(libraries "$build/${programs[0]}" | awk '$1 == "libc.so.6" { print $2 }')
 for name in libdl.so.2 libpthread.so.0 librt.so.1 libm.so.6 libutil.so.1 libresolv.so.2 libtbbmalloc.so.2 libiomp5.so; do
   [ ! -e "$(dirname "$libc")/$name" ] || cp -L "$(dirname "$libc")/$name" "$out/lib/"
 done
+if grep -qs '^FASCIA_CUDA_OPTIMIZE:BOOL=OFF' "$build/CMakeCache.txt"; then
+  echo "bundle.sh: the GPU part of $build is not optimised, as ./check leaves it; cmake $build -DFASCIA_CUDA_OPTIMIZE=ON" \
+    "and build it again" >&2
+  exit 2
+fi
 # The GPU part, which the library loads from its own folder.
 if [ -e "$out/lib/libfascia.so" ] && [ -e "$build/fascia-cuda.so" ]; then cp "$build/fascia-cuda.so" "$out/lib/"; fi
 chmod u+w "$out"/lib/* "$out"/programs/*
