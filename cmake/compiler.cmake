@@ -61,6 +61,11 @@ if(CCACHE)
 endif()
 option(FASCIA_PRECOMPILE "Precompile headers of the library: faster without a compiler cache, in the way of one" ${precompile})
 
+if(FASCIA_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 forgets that what it precompiled are system headers, inside which it warns (bug 105329 and its like).
+  target_compile_options(fascia_plain_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-Wno-array-bounds>)
+endif()
+
 # Adds a library of the project: fascia_library(NAME sources... LINK targets... [PRECOMPILE headers...]).
 function(fascia_library name)
   cmake_parse_arguments(ARG "" "" "LINK;PRECOMPILE" ${ARGN})
