@@ -87,7 +87,7 @@ _fascia_names() {
   local section=${2%%.*} count
   [ -f "$1" ] || return
   case $2 in
-    *.\*) sed -nE "s/^[[:space:]]*\[+${section}\.\"?([^].\"]+).*/\1/p" "$1" | sort -u ;;
+    *.\*) sed -nE "s/^[[:space:]]*\[+${section}\.([A-Za-z0-9_-]+)[].].*/\1/p" "$1" | sort -u ;;
     *) count=$(grep -cE "^[[:space:]]*\[\[${section}\]\]" "$1"); [ "$count" -gt 0 ] && seq 0 $((count - 1)) ;;
   esac
 }
@@ -103,7 +103,16 @@ _fascia_scene_keys() {
         for name in "${names[@]}"; do echo "$stem$name${key:$((${#stem} + 1))}"; done ;;
       *) echo "$key" ;;
     esac
-  done < <(_fascia_keys) | sort -u
+  done < <(_fascia_keys) | sed 's/$/=/' | sort -u
+}
+
+# Offers those lines of the input that begin with $1, as they are: nothing of a scene is expanded.
+_fascia_offer() {
+  local word
+  COMPREPLY=()
+  while IFS= read -r word; do
+    if [[ $word == "$1"* ]]; then COMPREPLY+=("$word"); fi
+  done
 }
 
 # The values that the key $1 takes, with names and numbers as a scene has them.
@@ -112,7 +121,7 @@ _fascia_values() {
   while read -r key values; do
     pattern=${key//\#/*}
     # shellcheck disable=SC2053 # a pattern; a name has no dots
-    if [[ $1 == $pattern && ${key//[^.]/} == "$dots" ]]; then echo "$values"; fi
+    if [[ $1 == $pattern && ${key//[^.]/} == "$dots" ]]; then tr ' ' '\n' <<<"$values"; fi
   done < <(_fascia_keys)
 }
 
@@ -131,9 +140,9 @@ _fascia() {
   case $previous in
     --set)
       if [[ $current == *=* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "$(_fascia_values "${current%%=*}")" -- "${current#*=}")
+        _fascia_offer "${current#*=}" < <(_fascia_values "${current%%=*}")
       else
-        mapfile -t COMPREPLY < <(compgen -W "$(_fascia_scene_keys "$scene")" -S = -- "$current")
+        _fascia_offer "$current" < <(_fascia_scene_keys "$scene")
         compopt -o nospace 2>/dev/null
       fi
       return ;;

@@ -84,7 +84,7 @@ int print_completion(const CLI::App& app) {
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"fascia: simulator of connective tissue and the organs that it ties together", "fascia"};
-  app.set_version_flag("--version", version_text());
+  app.set_version_flag("--version", [] { return version_text(); });
   app.require_subcommand(1);
   RunOptions options;
   CLI::App* run = app.add_subcommand("run", "simulate a scene and write its results");

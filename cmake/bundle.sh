@@ -43,6 +43,12 @@ if [ -e "$out" ] && [ ! -x "$out/bin/${programs[0]}" ]; then
   exit 2
 fi
 
+if [ -e "$build/fascia-cuda.so" ] && grep -qs '^FASCIA_CUDA_OPTIMIZE:BOOL=OFF' "$build/CMakeCache.txt"; then
+  echo "bundle.sh: the GPU part of $build is not optimised, as ./check leaves it; cmake $build -DFASCIA_CUDA_OPTIMIZE=ON" \
+    "and build it again" >&2
+  exit 2
+fi
+
 is_left_out() {
   local glob
   for glob in "${left_out[@]}"; do
@@ -54,7 +60,7 @@ is_left_out() {
 
 # Libraries of a program and theirs, as "NAME PATH", the loader among them.
 libraries() {
-  ldd "$1" | awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 } $1 ~ /^\// { n = split($1, part, "/"); print part[n], $1 }'
+  ldd "$1" | sed -nE 's|^\s*(\S+) => (/.*) \(0x.*|\1 \2|p; s|^\s*(/.*/)([^/ ]+) \(0x.*|\2 \1\2|p'
 }
 
 rm -rf "$out"
@@ -67,15 +73,10 @@ done | sort -u | while read -r name path; do
 done
 
 # The rest of the C library, of the version that a driver's library must find; and what TBB loads where it is there.
-libc=$(libraries "$build/${programs[0]}" | awk '$1 == "libc.so.6" { print $2 }')
+libc=$(libraries "$build/${programs[0]}" | sed -n 's/^libc.so.6 //p')
 for name in libdl.so.2 libpthread.so.0 librt.so.1 libm.so.6 libutil.so.1 libresolv.so.2 libtbbmalloc.so.2 libiomp5.so; do
   [ ! -e "$(dirname "$libc")/$name" ] || cp -L "$(dirname "$libc")/$name" "$out/lib/"
 done
-if grep -qs '^FASCIA_CUDA_OPTIMIZE:BOOL=OFF' "$build/CMakeCache.txt"; then
-  echo "bundle.sh: the GPU part of $build is not optimised, as ./check leaves it; cmake $build -DFASCIA_CUDA_OPTIMIZE=ON" \
-    "and build it again" >&2
-  exit 2
-fi
 # The GPU part, which the library loads from its own folder.
 if [ -e "$out/lib/libfascia.so" ] && [ -e "$build/fascia-cuda.so" ]; then cp "$build/fascia-cuda.so" "$out/lib/"; fi
 chmod u+w "$out"/lib/* "$out"/programs/*
@@ -101,7 +102,7 @@ chmod +x "$out/bin/${programs[0]}"
 for program in "${programs[@]:1}"; do cp "$out/bin/${programs[0]}" "$out/bin/$program"; done
 
 tar -C "$(dirname "$out")" -czf "$out.tar.gz" "$(basename "$out")"
-if grep -qs '^FASCIA_NATIVE:BOOL=ON' "$build/CMakeCache.txt"; then
+if grep -qs '^FASCIA_NATIVE:BOOL=ON' "$build/CMakeCache.txt" && ! grep -qs '^FASCIA_LEVEL:STRING=.' "$build/CMakeCache.txt"; then
   echo "bundle.sh: tuned for this machine's processor; elsewhere, a build with" \
     "-DFASCIA_LEVEL=x86-64-v3 runs on most processors since 2015" >&2
 fi

@@ -47,8 +47,9 @@ if(HELP2MAN)
   foreach(program fascia fascia-picture)
     if(TARGET ${program})
       add_custom_command(OUTPUT ${program}.1.gz
-        COMMAND ${HELP2MAN} --no-info --section 1 --version-string ${PROJECT_VERSION} --include ${CMAKE_SOURCE_DIR}/docs/man/${program}.h2m
-                --output ${program}.1 $<TARGET_FILE:${program}>
+        COMMAND ${CMAKE_COMMAND} -E chdir $<TARGET_FILE_DIR:${program}>  # help2man wants no spaces in the program's name
+                ${HELP2MAN} --no-info --section 1 --version-string ${PROJECT_VERSION}
+                --include ${CMAKE_SOURCE_DIR}/docs/man/${program}.h2m --output ${CMAKE_CURRENT_BINARY_DIR}/${program}.1 ./${program}
         COMMAND gzip -9nf ${program}.1
         DEPENDS ${program} ${CMAKE_SOURCE_DIR}/docs/man/${program}.h2m VERBATIM)
       list(APPEND described ${CMAKE_CURRENT_BINARY_DIR}/${program}.1.gz)

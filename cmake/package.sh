@@ -18,8 +18,8 @@ fi
 SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || echo 1767225600)}
 export SOURCE_DATE_EPOCH
 umask 022
-configure package release -DFASCIA_NATIVE=OFF -DFASCIA_TESTS=OFF -DFASCIA_PRECOMPILE=OFF "-DFASCIA_LEVELS=x86-64-v3;x86-64-v4" \
-  -DCMAKE_INSTALL_PREFIX=/usr "$@"
+configure package release -DFASCIA_NATIVE=OFF -DFASCIA_TESTS=OFF -DFASCIA_PRECOMPILE=OFF -DFASCIA_CUDA_ARCHITECTURES=80-virtual \
+  "-DFASCIA_LEVELS=x86-64-v3;x86-64-v4" -DCMAKE_INSTALL_PREFIX=/usr "$@"
 cmake --build "$root/build/package"
 rm -f "$root"/build/package/*.deb
 (cd "$root/build/package" && cpack -G DEB)

@@ -96,10 +96,23 @@ configure() {
   (cd "$root" && cmake --preset "$preset" -B "$dir" "${generator[@]}" "${@:3}")
 }
 
-# Builds in build/release (further arguments go to the build) and notes when, for ./run: a source saved from here on is
-# newer than this build.
+# Optional parts that build/release has made: they must be of the same build as the program.
+made_parts() {
+  [ ! -e "$root/build/release/fascia-cuda.so" ] || echo fascia-cuda
+  [ ! -e "$root/build/release/fascia-picture" ] || echo fascia-picture
+}
+
+# True where there is an NVIDIA GPU (the second way is that of virtual machines that hide the driver's files).
+has_gpu() { [ -e /proc/driver/nvidia/version ] || nvidia-smi -L >/dev/null 2>&1; }
+
+# Builds targets in build/release, all of them where none is named, and notes when, for ./run: a source saved from here on
+# is newer than this build. The program and the parts that were made before always belong to them.
 build_release() {
   local started
+  if [ $# -gt 0 ]; then
+    # shellcheck disable=SC2046 # names of targets
+    set -- --target fascia $(made_parts) "$@"
+  fi
   started=$(mktemp "$root/build/started.XXXXXX")
   if cmake --build "$root/build/release" "$@"; then
     mv "$started" "$root/build/release/.up_to_date"

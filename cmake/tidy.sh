@@ -36,7 +36,8 @@ find "$passed" -type f -mtime +90 -delete 2>/dev/null
 ninja -C build/release -t deps 2>/dev/null | awk -v root="$root/" '
   /^[^ ].*: #deps/ { source = ""; next }
   /^ / {
-    path = $1
+    path = $0
+    sub(/^ +/, "", path)
     if (index(path, root) == 1) path = substr(path, length(root) + 1)
     sub(/^\.\.\/\.\.\//, "", path)
     if (source == "") {
@@ -44,20 +45,20 @@ ninja -C build/release -t deps 2>/dev/null | awk -v root="$root/" '
       ours = source ~ /^(core|meshless|fem|shells|coupling|gpu|io|app)\/.*\.cpp$/ && !(source in seen)
       seen[source] = 1
     }
-    if (ours) print source, path
+    if (ours) print source "\t" path
   }' >"$work/includes"
 [ -s "$work/includes" ] || { echo "tidy: build/release knows no sources; build it with ninja first"; exit 1; }
 
 # Each file's content, or for a system's header, whose packages are many files, its size and date.
-cut -d' ' -f2 "$work/includes" | sort -u >"$work/files"
-{ grep -v '^/' "$work/files" | grep -v '^build/' | xargs -d '\n' sha256sum 2>/dev/null | awk '{ print $2, $1 }'
-  grep '^/' "$work/files" | xargs -d '\n' stat -L -c '%n %s-%Y' 2>/dev/null; } >"$work/digests"
+cut -f2 "$work/includes" | sort -u >"$work/files"
+{ grep -v '^/' "$work/files" | grep -v '^build/' | xargs -d '\n' sha256sum 2>/dev/null | sed -E 's/^([^ ]+)  (.*)/\2\t\1/'
+  grep '^/' "$work/files" | xargs -d '\n' stat -L --printf '%n\t%s-%Y\n' 2>/dev/null; } >"$work/digests"
 
 # A key for each source: of all that decides what clang-tidy says of it.
 mkdir "$work/keys"
 { clang-tidy --version; cat .clang-tidy; grep -o '"command": ".* -o ' build/release/compile_commands.json |
   sed "s|$root||g" | sort -u; } | sha256sum >"$work/rules"
-awk -v keys="$work/keys/" '
+awk -F'\t' -v keys="$work/keys/" '
   NR == FNR { digest[$1] = $2; next }
   { name = $1; gsub(/\//, "%", name); print $2, digest[$2] >(keys name)
     if ($1 != last) { if (last != "") close(keys file); last = $1; file = name } }' "$work/digests" "$work/includes"
@@ -70,23 +71,23 @@ done <"$work/sources" >"$work/remembered"
 
 # Of the others: what changed lately, and a source for each changed header that no other one shows.
 if [ "$all" = no ] && git log -50 --format= --name-only >"$work/log" 2>/dev/null; then
-  git status --porcelain | cut -c4- >>"$work/log"
+  git status --porcelain --no-renames -uall | cut -c4- >>"$work/log"
   sort -u "$work/log" >"$work/changed"
-  awk -v remembered="$work/remembered" -v changed="$work/changed" '
+  awk -F'\t' -v remembered="$work/remembered" -v changed="$work/changed" '
     BEGIN { while ((getline line < remembered) > 0) done[line] = 1
             while ((getline line < changed) > 0) new[line] = 1 }
     { includes[NR] = $0; lines = NR }
     ($1 in new) && !($1 in done) { todo[$1] = 1 }
     END {
-      for (i = 1; i <= lines; ++i) { split(includes[i], p, " "); if ((p[1] in todo) || (p[1] in done)) shown[p[2]] = 1 }
+      for (i = 1; i <= lines; ++i) { split(includes[i], p, "\t"); if ((p[1] in todo) || (p[1] in done)) shown[p[2]] = 1 }
       for (pass = 0; pass < 2; ++pass)  # a header of the same name first
         for (i = 1; i <= lines; ++i) {
-          split(includes[i], p, " ")
+          split(includes[i], p, "\t")
           if (!(p[2] in new) || (p[2] in shown) || p[2] !~ /\.hpp$/) continue
           stem = p[2]; sub(/hpp$/, "cpp", stem)
           if (pass == 0 && stem != p[1]) continue
           todo[p[1]] = 1
-          for (k = 1; k <= lines; ++k) { split(includes[k], q, " "); if (q[1] == p[1]) shown[q[2]] = 1 }
+          for (k = 1; k <= lines; ++k) { split(includes[k], q, "\t"); if (q[1] == p[1]) shown[q[2]] = 1 }
         }
       for (s in todo) print s
     }' "$work/includes" | sort >"$work/todo"

@@ -47,8 +47,9 @@ class StlParser {
     return value;
   }
 
-  /// Some binary files begin with "solid" too: their length tells them apart.
+  /// Some binary files begin with "solid" too: their length tells them apart, or a zero byte, which no text has.
   bool is_binary() const {
+    if (bytes_.find('\0') != std::string_view::npos) return true;
     if (bytes_.size() >= kStart && bytes_.size() == kStart + kTriangle * at<std::uint32_t>(kHeader)) return true;
     const std::size_t begin = bytes_.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return false;

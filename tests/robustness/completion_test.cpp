@@ -9,7 +9,8 @@ class Completion : public SceneRuns {
   void SetUp() override {
     SceneRuns::SetUp();
     write("organs.toml",
-          "[materials.soft]\nyoung = 1\n[bodies.liver]\n[bodies.\"left kidney\"]\n[bodies.liver.domain]\n"
+          "[materials.soft]\nyoung = 1\n[bodies.liver]\n[bodies.\"left "
+          "kidney\"]\n[bodies.\"$(touch${IFS}pwned)\"]\n[bodies.liver.domain]\n"
           "[[loads]]\n[[loads]]\n");
     write("notes.txt", "");
   }
@@ -42,6 +43,7 @@ TEST_F(Completion, KeysWithTheNamesOfTheSceneOnTheLine) {
   const auto bodies = offered("fascia run organs.toml --set bodies.");
   EXPECT_TRUE(has(bodies, "bodies.liver.density="));
   EXPECT_FALSE(has(bodies, "bodies.*.density="));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pwned")) << "a name of the scene was run as a command";
   EXPECT_EQ(offered("fascia check organs.toml --set materials.soft.yo"),
             std::vector<std::string>{"materials.soft.young="});
   const auto loads = offered("fascia run organs.toml --set loads.");

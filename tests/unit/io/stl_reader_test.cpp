@@ -45,7 +45,7 @@ TEST(StlReader, BinaryFilesMayBeginWithSolid) {
   const TemporaryDirectory directory;
   for (const char* header : {"solid", "", "made by hand"})
     EXPECT_NEAR(closed_surface(read_mesh(directory.write("a.stl", binary(tetrahedron, header)))).volume, 1. / 6, 1e-15);
-  const std::string more = binary(tetrahedron, "with more behind") + "attributes";
+  const std::string more = binary(tetrahedron, "solid with more behind") + "attributes";
   EXPECT_NEAR(closed_surface(read_mesh(directory.write("a.stl", more))).volume, 1. / 6, 1e-15);
 }
 
