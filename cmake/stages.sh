@@ -23,12 +23,12 @@ use_cache() {
   rm -f "$folder/.fascia" 2>/dev/null || true
 }
 
-# Lines "SECONDS NAME" of what a stage's log, its build (of folder $2, from line $3 of its log on) and its tests took.
+# Lines "SECONDS NAME" of what a stage's log, its build (of folder $2: what its log did not say before) and its tests took.
 stage_items() {
-  local log=$1 build=$2 from=$3
+  local log=$1 build=$2
   cat "$items" 2>/dev/null
   if [ -n "$build" ] && [ -f "build/$build/.ninja_log" ]; then
-    tail -n +"$from" "build/$build/.ninja_log" | awk -F'\t' 'NF >= 4 { printf "%.1f %s\n", ($2 - $1) / 1000, $4 }' |
+    grep -vxFf "$items.before" "build/$build/.ninja_log" | awk -F'\t' 'NF >= 4 { printf "%.1f %s\n", ($2 - $1) / 1000, $4 }' |
       sed 's|CMakeFiles/[^/]*/||; s|\.o$||'
   fi
   sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: (.*[^ .]) \.+.* ([0-9.]+) sec$/\2 \1/p' "$log" 2>/dev/null
@@ -44,12 +44,12 @@ cache_hits() {
 # Runs stage_$1 with its output in a log and says how it went, with its three slowest items; the log's end where it
 # failed. $2: the folder under build/ in which it compiles.
 stage() {
-  local name=$1 build=${2:-} log=$logs/$1.log started=$EPOCHREALTIME from=1 state=passed
+  local name=$1 build=${2:-} log=$logs/$1.log started=$EPOCHREALTIME state=passed
   rm -f "$items" ${build:+"build/$build/ccache.log"}
-  if [ -n "$build" ] && [ -f "build/$build/.ninja_log" ]; then from=$(($(wc -l <"build/$build/.ninja_log") + 1)); fi
+  cat "build/$build/.ninja_log" >"$items.before" 2>/dev/null || echo none >"$items.before"
   printf 'check: %-8s ' "$name"
   "stage_$name" >"$log" 2>&1 </dev/null || state=FAILED
-  report_stage "$name" "$state" "$started" "$build" "$from" "$log"
+  report_stage "$name" "$state" "$started" "$build" "$log"
   [ "$state" = passed ] && return
   printf '  the end of %s:\n' "build/check/$name.log"
   tail -n 60 "$log"
@@ -61,7 +61,7 @@ report_stage() {
   local name=$1 state=$2 took slowest
   took=$(seconds_between "$3" "$EPOCHREALTIME")
   times+=("$name=$took")
-  slowest=$(stage_items "$6" "$4" "$5" | sort -rn | head -n 3 | awk '{ printf "%s%s %s s", (NR > 1 ? ", " : ""), $2, $1 }')
+  slowest=$(stage_items "$5" "$4" | sort -rn | head -n 3 | awk '{ printf "%s%s %s s", (NR > 1 ? ", " : ""), $2, $1 }')
   printf '%s %6.0f s%s%s\n' "$state" "$took" "$(cache_hits "$4")" "${slowest:+  slowest: $slowest}"
 }
 
@@ -72,7 +72,7 @@ end_stages() {
   rm -f "$items"
   printf 'check: %-8s ' "$name"
   case " ${failed[*]} " in *" $name "*) entry=FAILED ;; *) entry=passed ;; esac
-  report_stage "$name" "$entry" "$2" "" 1 "$logs/$name.log"
+  report_stage "$name" "$entry" "$2" "" "$logs/$name.log"
   [ "$(head -n 1 "$file" 2>/dev/null)" = "$columns" ] || echo "$columns" >"$file"
   row=$(date -u +%FT%TZ),$(git rev-parse --short HEAD 2>/dev/null || echo none),$stage_mode,"${failed[*]}",$(seconds_between "$stages_started" "$EPOCHREALTIME")
   for column in packages format release tidy asan fuzz tsan mit debian tests; do
