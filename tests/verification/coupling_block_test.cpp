@@ -1,4 +1,5 @@
 // A block cut in two whose halves share, embed or weld nodes, beside the block in one piece.
+#include "tests/support/cases.hpp"
 #include "tests/support/coupled_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <vector>
 
 namespace fascia::test::coupling_block_test {
 namespace {
@@ -66,6 +68,7 @@ TEST(CouplingBlock, CutInTwo) {
       {"tetrahedra embedded in hexahedra", Kind::tetrahedra, Kind::hexahedra, "", a_in_b},
       {"hexahedra embedded in tetrahedra", Kind::tetrahedra, Kind::hexahedra, "", b_in_a},
   };
+  const std::vector<int> cells = full_size() ? std::vector{2, 3, 4} : std::vector{2, 3};
   std::map<std::pair<Kind, int>, Vector> known;
   const auto of = [&](Kind kind, int n) {
     const auto found = known.find({kind, n});
@@ -73,14 +76,14 @@ TEST(CouplingBlock, CutInTwo) {
   };
   for (const Kind kind : {Kind::grid, Kind::scattered, Kind::tetrahedra, Kind::hexahedra}) {
     std::printf("%-12s in one piece:", name_of(kind));
-    for (const int n : {2, 3, 4}) std::printf("   %.5f %.5f", of(kind, n)[0], of(kind, n)[2]);
+    for (const int n : cells) std::printf("   %.5f %.5f", of(kind, n)[0], of(kind, n)[2]);
     std::printf("\n");
   }
   std::printf("%-36s deflection at 2, 3, 4 cells a metre, outside of the two blocks in one piece\n", "");
   for (const Cut& c : cuts) {
     std::printf("%-36s", c.name);
     double off = 0;
-    for (const int n : {2, 3, 4}) {
+    for (const int n : cells) {
       const Vector u = cut(c, n), l = of(c.left, n), r = of(c.right, n);
       off = outside(u[2], l[2], r[2]);
       std::printf("   %.5f %6.3f %%", u[2], 100 * off);
@@ -143,15 +146,16 @@ TEST(CouplingBlock, AWallOnACore) {
                                2 * n, n, frames))
         .vector("tip")[2];
   };
-  const double reference = solids(6);
+  const double reference = solids(full_size() ? 6 : 4);
   std::printf("a wall on a core: %.5f m\n", reference);
   const auto expect = [&](const char* name, double u, double bound) {
     std::printf("  %-22s %.5f, %+.2f %%\n", name, u, 100 * (u / reference - 1));
     EXPECT_NEAR(u, reference, bound * std::abs(reference)) << name;
   };
   expect("grid 9 x 5 x 5", coupled("grid=[9,5,5]", 4), 0.02);
-  expect("grid 17 x 9 x 9", coupled("grid=[17,9,9]", 8), 0.005);
   expect("scattered, 0.2", coupled("poisson_disk=0.2", 4), 0.02);
+  if (!full_size()) return;
+  expect("grid 17 x 9 x 9", coupled("grid=[17,9,9]", 8), 0.005);
   expect("scattered, 0.125", coupled("poisson_disk=0.125", 8), 0.01);
 }
 
