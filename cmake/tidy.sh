@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# clang-tidy on the project's sources, as build/release compiles them. What passed is remembered in the user's cache by
-# what it really read: the file, its headers, the rules, the tool. Any clone profits.
+# clang-tidy on the project's sources, as build/release compiles them, and its headers each by itself. What passed is
+# remembered in the user's cache by what was really read: the file, its headers, the rules, the tool. Any clone profits.
 set -uo pipefail
 root=$(cd -P "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
@@ -10,7 +10,8 @@ usage() {
 usage: cmake/tidy.sh [--all] [ITEMS]
 
   Looks at the files that did not pass as they are: of these, the sources that the last 50 commits and the working tree
-  changed, and for each header that they changed a source that includes it. --all: every file that did not pass.
+  changed, and for each header that they changed a source that includes it; and whether each such header compiles by
+  itself. --all: every file that did not pass.
   ITEMS gets a line "SECONDS FILE" for each file that was looked at. Needs a build in build/release.
 TEXT
 }
@@ -95,21 +96,48 @@ else
   cut -d' ' -f1 "$work/sources" | grep -vxFf "$work/remembered" >"$work/todo"
 fi
 
+# Headers that changed and did not pass: each includes what it uses.
+find core meshless fem shells coupling gpu io app -name '*.hpp' -print0 | xargs -0 grep -LZ 'cuda_runtime' |
+  xargs -0 sha256sum | sed -E 's/^([^ ]+)  (.*)/\2 header-\1/' >"$work/headers"
+while read -r header key; do
+  if [ -e "$passed/$key" ]; then touch -c "$passed/$key"; else echo "$header $key"; fi
+done <"$work/headers" >"$work/unknown_headers"
+if [ -e "$work/changed" ]; then
+  awk 'NR == FNR { new[$0] = 1; next } $1 in new' "$work/changed" "$work/unknown_headers" >"$work/todo_headers"
+else
+  cp "$work/unknown_headers" "$work/todo_headers"
+fi
+mapfile -t include_flags < <(grep -oE -- '-isystem [^ "]+' build/release/compile_commands.json | sort -u | tr ' ' '\n')
+
+header_alone() {
+  if c++ -std=c++20 -fsyntax-only -w -I. -Ibuild/release/generated "${@:3}" -x c++ "$1"; then
+    : >"$passed/$2" || true
+  else
+    echo "$1 does not compile by itself: it lacks an include"
+    return 1
+  fi
+}
+
 tidy_file() {
   local started=$EPOCHREALTIME key status=0
   clang-tidy --quiet -p build/release "$1" 2>"$work/$$.err" || { status=1; cat "$work/$$.err"; }
-  if [ $status = 0 ]; then
+  if [ "$status" = 0 ]; then
     key=$(awk -v source="$1" '$1 == source { print $2 }' "$work/sources")
     : >"$passed/$key" || true
   fi
   awk -v a="$started" -v b="$EPOCHREALTIME" -v file="$1" 'BEGIN { printf "%.1f %s\n", b - a, file }' >>"$items"
-  return $status
+  return "$status"
 }
-export -f tidy_file
+export -f tidy_file header_alone
 export work passed items
 of=$(wc -l <"$work/sources")
 looked=$(wc -l <"$work/todo")
 known=$(wc -l <"$work/remembered")
 echo "tidy: $looked of $of files looked at, $known passed before, $((of - looked - known)) left to --all"
+echo "tidy: $(wc -l <"$work/todo_headers") of $(wc -l <"$work/headers") headers compiled by themselves"
+status=0
 # shellcheck disable=SC2016 # expanded by the shell that it starts
-xargs -a "$work/todo" -d '\n' -r -P "$(nproc)" -I {} bash -c 'tidy_file "$1"' tidy {}
+xargs -a "$work/todo_headers" -d '\n' -r -P "$(nproc)" -I {} bash -c 'header_alone $1 "${@:2}"' headers {} "${include_flags[@]}" || status=1
+# shellcheck disable=SC2016
+xargs -a "$work/todo" -d '\n' -r -P "$(nproc)" -I {} bash -c 'tidy_file "$1"' tidy {} || status=1
+exit "$status"

@@ -2,6 +2,7 @@
 
 #include "core/solver/fastest_mode.hpp"
 #include "core/solver/node_mode.hpp"
+#include "gpu/device_state.hpp"
 #include "gpu/explicit_kernels.hpp"
 #include "gpu/step_kernels.hpp"
 
