@@ -16,6 +16,7 @@ struct TileMaterial {
   double lambda = 0, mu = 0;     ///< Lamé [Pa]
   double stabilization = 0;      ///< γ of drilling [Pa]
   double stiffness_damping = 0;  ///< β [s]
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 means what the compiler writes here
   friend auto operator<=>(const TileMaterial&, const TileMaterial&) = default;
 };
 
