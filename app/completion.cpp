@@ -82,7 +82,7 @@ _fascia_keys() {
 constexpr const char* kRest = R"bash(KEYS
 }
 
-# What the scene file $1 has in the place of the * or # at the end of $2: names or numbers of its tables.
+# Lists what the scene file $1 has in the place of the * or # at the end of $2: names or numbers of its tables.
 _fascia_names() {
   local section=${2%%.*} count
   [ -f "$1" ] || return

@@ -29,7 +29,7 @@ macro(fascia_package component package depends summary text)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${package})
   set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${depends}")
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}")
-  # What Debian wants of each: who may use it, and what is new.
+  # Debian wants two files of each package: who may use it, and what is new.
   file(READ ${CMAKE_SOURCE_DIR}/LICENSE license)
   file(WRITE ${CMAKE_BINARY_DIR}/debian/${package}/copyright "${license}${note}")
   configure_file(${CMAKE_SOURCE_DIR}/cmake/changelog.in ${CMAKE_BINARY_DIR}/debian/${package}/changelog @ONLY)

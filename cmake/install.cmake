@@ -1,4 +1,4 @@
-# What is installed, in the components of which cmake/debian.cmake makes packages: fascia, picture, cuda.
+# Installs in components, of which cmake/debian.cmake makes packages: fascia, picture, cuda.
 include(GNUInstallDirs)
 set(FASCIA_LEVELS "" CACHE STRING
   "Builds of the library beside this one, of which the loader picks by processor, for example x86-64-v3;x86-64-v4")
@@ -16,7 +16,7 @@ if(TARGET fascia-cuda)
   install(TARGETS fascia-cuda LIBRARY DESTINATION ${private} COMPONENT cuda)
 endif()
 
-# The same library for newer processors: the dynamic loader looks into glibc-hwcaps before the folder itself.
+# Builds the library again for newer processors: the dynamic loader looks into glibc-hwcaps before the folder itself.
 include(ExternalProject)
 foreach(level IN LISTS FASCIA_LEVELS)
   ExternalProject_Add(libfascia-${level}

@@ -70,7 +70,7 @@ while read -r source key; do
   if [ -e "$passed/$key" ]; then echo "$source"; touch -c "$passed/$key"; fi
 done <"$work/sources" >"$work/remembered"
 
-# Of the others: what changed lately, and a source for each changed header that no other one shows.
+# Chooses among the others: what changed lately, and a source for each changed header that no other one shows.
 if [ "$all" = no ] && git log -50 --format= --name-only >"$work/log" 2>/dev/null; then
   git status --porcelain --no-renames -uall | cut -c4- >>"$work/log"
   sort -u "$work/log" >"$work/changed"

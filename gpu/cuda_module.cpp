@@ -1,4 +1,4 @@
 #include "gpu/cuda_functions.hpp"
 
-/// What is looked up in fascia-cuda.so: kModuleEntry.
+/// The library looks this up in fascia-cuda.so, by the name kModuleEntry.
 extern "C" const fascia::gpu::DeviceFunctions* fascia_device_functions() { return &fascia::gpu::cuda_functions(); }

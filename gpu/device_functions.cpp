@@ -36,7 +36,7 @@ Loaded load() {
   if (library == nullptr) return {nullptr, std::string("the CUDA backend cannot be loaded: ") + dlerror()};
   const auto entry = reinterpret_cast<ModuleEntry>(dlsym(library, kModuleEntry));
   const DeviceFunctions* functions = entry == nullptr ? nullptr : entry();
-  if (functions == nullptr || std::string(functions->build) != interface_tag())
+  if (functions == nullptr || std::string(functions->build) != FASCIA_INTERFACE_TAG)
     return {nullptr, module.string() + " is of another build than this program: build the target fascia-cuda again"};
   return {functions, ""};
 }
@@ -51,8 +51,6 @@ const DeviceFunctions& needed() {
 }
 
 }  // namespace
-
-const char* interface_tag() { return FASCIA_INTERFACE_TAG; }
 
 const DeviceFunctions* device_functions(std::string& reason) {
   if (linked != nullptr) return linked;

@@ -3,14 +3,14 @@
 #include "gpu/device.hpp"
 #include "gpu/run.hpp"
 
-/// What computes on a GPU, as a module that is loaded: fascia-cuda.so.
+/// The code that computes on a GPU is a module that is loaded: fascia-cuda.so.
 ///
 /// The functions of device.hpp and run.hpp call it. A run that asks for no GPU waits neither for its compiler nor for
 /// its runtime.
 namespace fascia::gpu {
 
 struct DeviceFunctions {
-  const char* build;        ///< interface_tag() of the build that made the module
+  const char* build;        ///< FASCIA_INTERFACE_TAG: builds whose headers differ must not exchange modules
   const char* description;  ///< "toolkit 13.0, for 90-real"
   std::vector<int> (*find_devices)(int count, std::string& reason);
   decltype(&gpu::run_statics) run_statics;
@@ -25,9 +25,6 @@ const DeviceFunctions* device_functions(std::string& reason);
 
 /// Takes these in place of a module: for programs that CUDA's part is linked into. Before the first use of a device.
 void use_device_functions(const DeviceFunctions& functions);
-
-/// Tells apart builds whose headers differ, between which a module must not be exchanged.
-const char* interface_tag();
 
 /// The name by which a module hands out its functions, of type ModuleEntry.
 inline constexpr const char* kModuleEntry = "fascia_device_functions";

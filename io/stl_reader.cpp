@@ -59,7 +59,7 @@ class StlParser {
   void parse_binary() {
     const std::size_t count = bytes_.size() < kStart ? 0 : at<std::uint32_t>(kHeader);
     const std::size_t there = bytes_.size() < kStart ? 0 : (bytes_.size() - kStart) / kTriangle;
-    if (bytes_.size() < kStart || there < count)
+    if (bytes_.size() < kStart || there != count)  // fewer bytes than a triangle may follow
       throw InputError(name_ + ": is no readable .stl mesh (it should hold " + std::to_string(count) +
                        " triangles and holds " + std::to_string(there) +
                        "); it may be cut off or of another format: write it again");
@@ -80,6 +80,7 @@ class StlParser {
   void parse_text() {
     for (std::string_view word = next(); !word.empty(); word = next()) {
       if (is_word(word, "solid") || is_word(word, "endsolid")) {
+        ends_ = word.size() > std::string_view("solid").size();
         skip_line();  // a name of any words
       } else if (is_word(word, "facet")) {
         expect("normal");
@@ -94,6 +95,7 @@ class StlParser {
         fail("found " + quoted(word) + "; must be facet or endsolid");
       }
     }
+    if (!ends_) fail("the file ends without endsolid: it may be cut off; write it again");
   }
 
   [[noreturn]] void fail(const std::string& message) const {
@@ -139,7 +141,7 @@ class StlParser {
     points_->InsertNextPoint(x.data());
   }
 
-  /// Of the last three points.
+  /// Makes a triangle of the last three points.
   void add_triangle() {
     const vtkIdType count = points_->GetNumberOfPoints();
     const std::array<vtkIdType, 3> corners{count - 3, count - 2, count - 1};
@@ -150,6 +152,7 @@ class StlParser {
   std::string name_;
   std::size_t place_ = 0;
   int line_ = 1;
+  bool ends_ = false;  ///< the last solid of a text is complete
   vtkNew<vtkPoints> points_;
   vtkNew<vtkCellArray> faces_;
 };

@@ -3,7 +3,7 @@
 namespace fascia::test::completion_test {
 namespace {
 
-/// What bash offers where the cursor stands at the end of a line.
+/// Asks bash what it offers where the cursor stands at the end of a line.
 class Completion : public SceneRuns {
  protected:
   void SetUp() override {

@@ -10,7 +10,8 @@ inline int cases(int by_hand) {
   return said == nullptr ? by_hand : std::atoi(said);
 }
 
-/// Whether a test that takes long runs in its full size (ctest says FASCIA_FULL: ./check --all), or as a coarser twin.
+/// True where a test that takes long runs in its full size (ctest says FASCIA_FULL: ./check --all), not as a coarser
+/// twin.
 inline bool full_size() { return std::getenv("FASCIA_FULL") != nullptr; }
 
 }  // namespace fascia::test

@@ -16,7 +16,7 @@ std::string facet(const std::string& a, const std::string& b, const std::string&
   return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c + "\nendloop\nendfacet\n";
 }
 
-/// Of the unit tetrahedron, outward.
+/// Faces of the unit tetrahedron, outward.
 const Triangles tetrahedron{
     {0, 0, 0, 0, 1, 0, 1, 0, 0}, {0, 0, 0, 1, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 1, 0, 1, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
@@ -67,6 +67,10 @@ TEST(StlReader, ErrorsNameTheLineOrTheTriangle) {
       error(whole.substr(0, 150)),
       ": is no readable .stl mesh (it should hold 4 triangles and holds 1); it may be cut off or of another format: "
       "write it again");
+  std::string more = whole + std::string(50, ' ');
+  EXPECT_NE(error(more).find("should hold 4 triangles and holds 5"), std::string::npos) << "the count may be wrong";
+  EXPECT_EQ(error("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0")),
+            ":9: the file ends without endsolid: it may be cut off; write it again");
   Triangles wrong = tetrahedron;
   wrong[2][4] = std::numeric_limits<float>::infinity();
   EXPECT_EQ(error(binary(wrong)), ": a coordinate of triangle 3 is not finite; write the file again");
