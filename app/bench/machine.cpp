@@ -1,6 +1,7 @@
 #include "app/bench/machine.hpp"
 
 #include "app/version.hpp"
+#include "core/cpu/thread_pool.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 namespace fascia::app {
 namespace {
@@ -69,7 +69,7 @@ Machine this_machine() {
   utsname system{};
   if (uname(&system) == 0) m.system = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
   m.cpu = field_of("/proc/cpuinfo", "model name");
-  m.threads = static_cast<int>(std::thread::hardware_concurrency());
+  m.threads = available_processors();
   m.memory = total_memory();
   m.gpu = gpus();
   m.driver = driver_version();

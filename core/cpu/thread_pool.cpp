@@ -1,11 +1,21 @@
 #include "core/cpu/thread_pool.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 
 namespace fascia {
 
+int available_processors() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  // Fails where the machine has more processors than the set: then all count.
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 ThreadPool::ThreadPool(int threads) {
-  const int count = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int count = threads > 0 ? threads : available_processors();
   for (int i = 1; i < count; ++i) workers_.emplace_back([this] { worker_loop(); });
 }
 

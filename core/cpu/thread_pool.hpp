@@ -9,10 +9,13 @@
 
 namespace fascia {
 
+/// Processors that this process may run on: fewer than the machine has under taskset, a batch system or a container.
+int available_processors();
+
 /// Threads that share the fixed chunks of a loop. Which thread takes a chunk varies, what a chunk computes does not.
 class ThreadPool {
  public:
-  /// @param threads  0: as many as the machine has
+  /// @param threads  0: as many as there are processors to run on
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;

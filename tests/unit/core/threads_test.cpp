@@ -3,6 +3,7 @@
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <vector>
 
@@ -20,6 +21,19 @@ TEST(ThreadPool, TakesEachChunkOnce) {
   }
 }
 
+/// As under taskset, or in a batch job that gives a process one core of a machine.
+TEST(ThreadPool, UsesTheProcessorsThatTheProcessMayRunOn) {
+  cpu_set_t before, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+  EXPECT_EQ(ThreadPool(0).size(), CPU_COUNT(&before));
+  CPU_ZERO(&one);
+  for (int c = 0; c < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++c)
+    if (CPU_ISSET(c, &before)) CPU_SET(c, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+  EXPECT_EQ(ThreadPool(0).size(), 1);
+  ASSERT_EQ(sched_setaffinity(0, sizeof before, &before), 0);
+}
+
 TEST(ThreadPool, CoversARangeWithoutRemainder) {
   ThreadPool pool(3);
   std::vector<int> visits(1001, 0);
@@ -32,8 +46,8 @@ TEST(ThreadPool, CoversARangeWithoutRemainder) {
 
 TEST(Results, DoNotDependOnTheNumberOfThreads) {
   BlockOptions o;
-  o.grid = {20, 4, 4};
-  o.size = {{10, 1, 1}};
+  o.grid = {12, 4, 4};
+  o.size = {{6, 1, 1}};
   BuiltModel built = block(o);
   hold_face(built.model);
   add_gravity(built.model, {{0, -0.01, 0}});
