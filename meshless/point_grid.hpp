@@ -73,6 +73,27 @@ class PointGrid {
     return best.index;
   }
 
+  /// Calls visit(index) for each point at most `radius` away, for some of them more than once.
+  template <class Visit>
+  void visit_within(const Vec3d& x, double radius, Visit&& visit) const {
+    const double most = radius * radius;
+    const auto offer = [&](int i) {
+      if (squared_norm(points_[at(i)] - x) <= most) visit(i);
+    };
+    const Vec3d reach{{radius, radius, radius}};
+    const Cell low = cell_of(x - reach), high = cell_of(x + reach);
+    double cells = 1;
+    for (std::size_t a = 0; a < 3; ++a) cells *= static_cast<double>(high[a] - low[a] + 1);
+    if (cells > static_cast<double>(points_.size())) {  // looking at every point costs less
+      for (int i = 0; i < static_cast<int>(points_.size()); ++i) offer(i);
+      return;
+    }
+    for (std::int64_t a = low[0]; a <= high[0]; ++a)
+      for (std::int64_t b = low[1]; b <= high[1]; ++b)
+        for (std::int64_t c = low[2]; c <= high[2]; ++c)
+          for (int i = head_[slot({a, b, c})]; i >= 0; i = next_[at(i)]) offer(i);
+  }
+
  private:
   using Cell = std::array<std::int64_t, 3>;
   using Offset = std::array<int, 3>;

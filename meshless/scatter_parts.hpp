@@ -1,10 +1,12 @@
 #pragma once
 
+#include "meshless/block_search.hpp"
 #include "meshless/point_grid.hpp"
 #include "meshless/scatter.hpp"
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <span>
 #include <vector>
@@ -87,9 +89,9 @@ class OwnerSearch {
  public:
   OwnerSearch(const Matter& matter, std::span<const SamplePlace> samples);
   /// Of the piece's dimension, with like directions unless those are more than two spacings away; −1: none.
-  int owner(const MatterPiece& piece) const { return owner(piece, piece.x); }
+  int owner(const MatterPiece& piece) { return owner(piece, piece.x); }
   /// The same for another point of the piece.
-  int owner(const MatterPiece& piece, const Vec3d& x) const;
+  int owner(const MatterPiece& piece, const Vec3d& x);
 
  private:
   struct OneDimension {
@@ -98,7 +100,10 @@ class OwnerSearch {
     PointGrid grid{1};
   };
   std::span<const SamplePlace> samples_;
-  std::array<OneDimension, 4> dimension_;
+  std::array<OneDimension, 3> dimension_;  ///< of lines and faces
+  std::vector<int> solid_sample_;          ///< by point of the search
+  std::vector<Vec3d> solid_place_;
+  std::optional<BlockSearch> solid_;
 };
 
 /// Frames of a body at any spacing, from the same darts.

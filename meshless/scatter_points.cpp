@@ -76,7 +76,7 @@ std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int 
     std::vector<SamplePlace> samples =
         throw_about(matter, darts, dimension, spacing, wanted(measure[at(dimension)], dimension, spacing));
     for (int round = 0; round < kRounds; ++round) {
-      const OwnerSearch search(matter, samples);
+      OwnerSearch search(matter, samples);
       std::vector<int> owner;
       owner.reserve(pieces.size());
       for (const int p : pieces) owner.push_back(search.owner(matter.pieces[at(p)]));

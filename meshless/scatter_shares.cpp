@@ -11,21 +11,29 @@ OwnerSearch::OwnerSearch(const Matter& matter, std::span<const SamplePlace> samp
   const std::array<double, 4> measure = measures(matter);
   std::array<int, 4> count{};
   for (const SamplePlace& s : samples) ++count[at(s.dimension)];
-  for (int d = 1; d <= 3; ++d) {
+  const auto spacing = [&](int d) { return std::pow(measure[at(d)] / count[at(d)], 1.0 / d); };
+  for (int d = 1; d < 3; ++d) {
     OneDimension& one = dimension_[at(d)];
     if (count[at(d)] == 0 || !(measure[at(d)] > 0)) continue;
-    one.spacing = std::pow(measure[at(d)] / count[at(d)], 1.0 / d);
+    one.spacing = spacing(d);
     one.grid = PointGrid(one.spacing);
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].dimension == 3) {
+      solid_sample_.push_back(static_cast<int>(i));
+      solid_place_.push_back(samples[i].x);
+      continue;
+    }
     OneDimension& one = dimension_[at(samples[i].dimension)];
     if (!(one.spacing > 0)) continue;
     one.grid.insert(samples[i].x);
     one.sample.push_back(static_cast<int>(i));
   }
+  if (count[3] > 0 && measure[3] > 0) solid_.emplace(solid_place_, spacing(3));
 }
 
-int OwnerSearch::owner(const MatterPiece& piece, const Vec3d& x) const {
+int OwnerSearch::owner(const MatterPiece& piece, const Vec3d& x) {
+  if (piece.dimension == 3) return solid_ ? solid_sample_[at(solid_->nearest(x))] : -1;
   const OneDimension& one = dimension_[at(piece.dimension)];
   if (one.sample.empty()) return -1;
   const double reach = 2 * one.spacing;
@@ -43,7 +51,7 @@ void give(Share& share, const Vec3d& x, double volume) {
 }
 
 /// Divides a line's piece between the owners of its ends, at the plane halfway between them.
-void divide(const MatterPiece& piece, const OwnerSearch& search, std::span<const SamplePlace> samples,
+void divide(const MatterPiece& piece, OwnerSearch& search, std::span<const SamplePlace> samples,
             std::vector<Share>& shares) {
   const Vec3d half = piece.axes.column(0) * (0.5 * piece.measure);
   const Vec3d from = piece.x - half, to = piece.x + half;
@@ -60,7 +68,7 @@ void divide(const MatterPiece& piece, const OwnerSearch& search, std::span<const
 }  // namespace
 
 std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePlace> samples) {
-  const OwnerSearch search(matter, samples);
+  OwnerSearch search(matter, samples);
   std::vector<Share> shares(samples.size());
   for (std::size_t p = 0; p < matter.pieces.size(); ++p) {
     const MatterPiece& piece = matter.pieces[p];

@@ -1,6 +1,7 @@
 #include "meshless/neighbours.hpp"
 
 #include "core/math/index.hpp"
+#include "meshless/block_search.hpp"
 #include "meshless/point_grid.hpp"
 
 #include <gtest/gtest.h>
@@ -80,6 +81,28 @@ TEST(FrameSearch, FindsTheSameInEveryUnit) {
       EXPECT_EQ(grid.nearest(x * unit, INFINITY, any), old.nearest(x, INFINITY, any)) << unit;
     }
   }
+}
+
+/// Points at random, on a lattice (equals), and few that lie far apart; places between them and outside.
+TEST(BlockSearch, FindsTheNearestOfAll) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 7);
+  std::vector<Vec3d> scattered(300);
+  for (Vec3d& x : scattered) x = {{uniform(random), uniform(random), uniform(random)}};
+  const std::vector<Vec3d> few{{{0, 0, 0}}, {{6, 6, 6}}, {{6, 0, 0}}};
+  for (const double unit : {1e-4, 1.0, 1e4})
+    for (std::vector<Vec3d> points : {scattered, lattice(7), few, {few[0]}}) {
+      for (Vec3d& x : points) x = x * unit;
+      PointGrid grid(unit);
+      for (const Vec3d& x : points) grid.insert(x);
+      BlockSearch search(points, unit);
+      for (int k = 0; k < 500; ++k) {
+        Vec3d x{{uniform(random), uniform(random), uniform(random)}};
+        if (k % 3 == 0) x = {{std::round(2 * x[0]) / 2, std::round(2 * x[1]) / 2, std::round(2 * x[2]) / 2}};
+        EXPECT_EQ(search.nearest(x * unit), grid.nearest(x * unit, INFINITY, [](int) { return true; }));
+      }
+    }
+  EXPECT_EQ(BlockSearch({}, 1).nearest({}), -1);
 }
 
 TEST(FrameSearch, OfNothingFindsNothing) {
