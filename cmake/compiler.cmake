@@ -66,12 +66,15 @@ if(FASCIA_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(fascia_plain_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-Wno-array-bounds>)
 endif()
 
-# Adds a library of the project: fascia_library(NAME sources... LINK targets... [PRECOMPILE headers...]).
+# Adds a library of the project: fascia_library(NAME sources... LINK targets... [PRECOMPILE headers...]), or
+# PRECOMPILED_FOR another one that has the same flags and precompiles what both read.
 function(fascia_library name)
-  cmake_parse_arguments(ARG "" "" "LINK;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED_FOR" "LINK;PRECOMPILE" ${ARGN})
   add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PUBLIC fascia_flags ${ARG_LINK})
-  if(FASCIA_PRECOMPILE AND ARG_PRECOMPILE)
+  if(FASCIA_PRECOMPILE AND ARG_PRECOMPILED_FOR)
+    target_precompile_headers(${name} REUSE_FROM ${ARG_PRECOMPILED_FOR})
+  elseif(FASCIA_PRECOMPILE AND ARG_PRECOMPILE)
     list(TRANSFORM ARG_PRECOMPILE PREPEND ${CMAKE_SOURCE_DIR}/ REGEX "^[^<]")
     target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
   endif()
