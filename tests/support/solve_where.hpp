@@ -4,6 +4,7 @@
 #include "app/solver_settings.hpp"
 #include "core/solver/drivers.hpp"
 #include "gpu/run.hpp"
+#include "tests/support/cases.hpp"
 
 #include <algorithm>
 
@@ -17,14 +18,14 @@ struct Solved {
   RunReport report;
 };
 
-/// Statics, or twenty steps of implicit dynamics at most.
+/// Statics, or eight steps of implicit dynamics at most, twenty in full size.
 inline Solved solve(const app::Simulation& s, Where where, const SolverSettings& settings) {
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   const auto& solver = s.scene.solver;
   Solved out{s.initial, {}};
   const bool host = where == Where::host, statics = solver.kind == app::SolverKind::statics;
   const StaticsSettings loading{solver.load_steps};
-  DynamicsSettings dynamics{TimeScheme::implicit_euler, solver.time_step, std::min(solver.steps, 20)};
+  DynamicsSettings dynamics{TimeScheme::implicit_euler, solver.time_step, std::min(solver.steps, full_size() ? 20 : 8)};
   if (!statics) dynamics.scheme = app::scheme_of(solver.kind);
   if (where == Where::processor) {
     ThreadPool pool(1);

@@ -1,5 +1,4 @@
 #include "app/backend.hpp"
-#include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/solver/explicit_step.hpp"
@@ -7,13 +6,12 @@
 #include "gpu/explicit.hpp"
 #include "gpu/run.hpp"
 #include "gpu/space.hpp"
-#include "tests/support/paths.hpp"
+#include "tests/support/small_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 /// Central differences as the device steps them, against the processor's own: in the space of the host always, on the
 /// device where there is one.
@@ -36,10 +34,7 @@ std::vector<std::string> settings(const std::string& scene) {
   return {};
 }
 
-Simulation load(const std::string& scene) {
-  const auto path = fascia::test::source_dir() / "scenes" / (scene + ".toml");
-  return app::build_simulation(app::parse_scene_file(path, settings(scene)));
-}
+Simulation load(const std::string& scene) { return small_scene(scene, settings(scene)); }
 
 /// A part of the stable time step; where nothing is free there is none, and a ten thousandth of the whole.
 double time_step(const Simulation& s, MechanicalSystem& system, double part) {

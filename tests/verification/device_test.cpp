@@ -1,20 +1,18 @@
 #include "gpu/device.hpp"
 #include "app/backend.hpp"
-#include "app/scene/parse.hpp"
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/model/errors.hpp"
 #include "gpu/run.hpp"
 #include "gpu/tile_points.hpp"
 #include "tests/support/models.hpp"
-#include "tests/support/paths.hpp"
+#include "tests/support/small_scenes.hpp"
 #include "tests/support/solve_where.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <optional>
 
@@ -35,11 +33,6 @@ constexpr double kLinearTolerance = 1e-10;
 double condition(const RunReport& report) {
   const double each = static_cast<double>(report.linear_iterations) / std::max(report.newton_iterations, 1);
   return std::pow(2 * each / std::log(2 / kLinearTolerance), 2);
-}
-
-Simulation load(const std::string& scene, const std::vector<std::string>& settings = {}) {
-  return app::build_simulation(
-      app::parse_scene_file(fascia::test::source_dir() / "scenes" / (scene + ".toml"), settings));
 }
 
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -68,7 +61,7 @@ class Device : public ::testing::TestWithParam<std::tuple<Where, std::string>> {
   /// Some scenes use meshes that are not everywhere.
   static std::optional<Simulation> loaded(const std::vector<std::string>& settings = {}) {
     try {
-      return load(scene(), settings);
+      return small_scene(scene(), settings);
     } catch (const FileError& e) {
       why_not = e.what();
       return std::nullopt;
@@ -186,7 +179,7 @@ TEST_P(SharedSolution, IsThatOfTheProcessor) {
   std::string reason;
   const std::vector<int> devices = gpu::find_devices(kMostDevices, reason);
   if (devices.empty()) GTEST_SKIP() << reason;
-  const Simulation s = load(GetParam(), kToRounding);
+  const Simulation s = small_scene(GetParam(), kToRounding);
   SolverSettings settings = app::settings_of(s.scene.solver);
   for (const std::size_t shares : {2U, 3U}) {
     settings.devices.clear();
@@ -204,7 +197,7 @@ TEST(DeviceShares, RefuseWhatTheyCannotShare) {
   const std::vector<int> devices = gpu::find_devices(1, reason);
   if (devices.empty()) GTEST_SKIP() << reason;
   const auto refused = [&](const std::string& scene, const std::vector<std::string>& overrides) {
-    const Simulation s = load(scene, overrides);
+    const Simulation s = small_scene(scene, overrides);
     SolverSettings settings = app::settings_of(s.scene.solver);
     settings.devices = {devices[0], devices[0]};
     EXPECT_THROW(solve(s, Where::device, settings), gpu::NotShared) << scene;

@@ -69,7 +69,9 @@ TEST(Path, TheLoadMayBeAnyMultipleOfTheLimitLoad) {
     EXPECT_LT(off_the_curve(run, {}, load), 1e-8 * std::max(1.0, load));
     EXPECT_EQ(limit_points(run).size(), load < 59.5643 ? 0u : 2u) << load;
     // Below the limit load the first of three equilibria is met.
-    if (load < 59.5) EXPECT_GT(run.history().back()[2], -0.0423);
+    if (load < 59.5) {
+      EXPECT_GT(run.history().back()[2], -0.0423);
+    }
   }
 }
 

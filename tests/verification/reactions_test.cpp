@@ -17,8 +17,8 @@ constexpr const char* kAll[] = {"implicit-euler", "bdf2", "newmark", "midpoint",
 
 std::string solver(const std::string& kind, double dt, double duration) {
   const std::string step = dt > 0 ? fmt::format("{:.17g}", dt) : "\"auto\"";
-  return fmt::format("[solver]\nbackend=\"cpu\"\nkind=\"{}\"\ntime_step={}\nduration={}\n{}", kind, step, duration,
-                     kind == "explicit" ? "" : "newton={tolerance=1e-10}\n");
+  return fmt::format("[output]\nevery={}\n[solver]\nbackend=\"cpu\"\nkind=\"{}\"\ntime_step={}\nduration={}\n{}",
+                     duration, kind, step, duration, kind == "explicit" ? "" : "newton={tolerance=1e-10}\n");
 }
 
 std::string pull(const std::string& body, double length, double distance, const std::string& how) {

@@ -121,7 +121,7 @@ TEST(BenchCases, TableThreeIsThePaperThenGridsUpToTenMillionPoints) {
 TEST(BenchCases, TheSmallOnesHaveExactlyThePapersNumbers) {
   std::vector<BenchmarkCase> cases = of_setting(table2(), "paper");
   for (const BenchmarkCase& c : of_setting(table3(), "paper"))
-    if (c.size <= 2600) cases.push_back(c);
+    if (c.size <= 1000) cases.push_back(c);
   for (const BenchmarkCase& c : cases) {
     const Benchmark one{"one", "", "", 10000, {c}};
     const BenchmarkResult result = time_benchmark(one, {}, {pretended("cpu", 1, 1)}, [](const std::string&) {});

@@ -49,7 +49,7 @@ class SpringsTest : public DerivativeTest<SpringCase, BuiltModel> {
 INSTANTIATE_TEST_SUITE_P(, SpringsTest,
                          testing::Values(SpringCase{"rigid", FrameKind::rigid},
                                          SpringCase{"affine", FrameKind::affine}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& test) { return test.param.name; });
 
 TEST_P(SpringsTest, GradientOfTheEnergy) { expect_gradient_of_the_energy(); }
 TEST_P(SpringsTest, SecondDerivative) { expect_second_derivative_along_exponentials(); }

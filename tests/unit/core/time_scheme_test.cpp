@@ -103,7 +103,7 @@ TEST(TimeScheme, OrderInTime) {
     const Case c = make_case(name);
     for (const TimeScheme scheme : kSchemes) {
       State ends[3];
-      for (int k = 0; k < 3; ++k) ends[k] = run(c.model, c.start, scheme, 0.15, 60 << k, c.factors);
+      for (int k = 0; k < 3; ++k) ends[k] = run(c.model, c.start, scheme, 0.075, 30 << k, c.factors);
       const double coarse = distance(ends[0], ends[1], 0.3), fine = distance(ends[1], ends[2], 0.3);
       const double expected = scheme == TimeScheme::implicit_euler ? 2 : 4;
       std::printf("%-28s %-15s %10.2e %10.2e %7.2f\n", name, name_of(scheme), coarse, fine, coarse / fine);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "app/scene/parse.hpp"
+#include "app/simulation.hpp"
+#include "tests/support/cases.hpp"
+#include "tests/support/paths.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace fascia::test {
+
+/// A scene of this project for comparisons that any size of it serves: those whose solution takes seconds are a few
+/// times smaller, unless tests run in full size.
+/// @param scene     name of a file under scenes/, without ".toml"
+/// @param settings  as after --set
+/// @throws FileError  where a mesh is not there
+inline app::Simulation small_scene(const std::string& scene, const std::vector<std::string>& settings = {}) {
+  static const std::map<std::string, std::vector<std::string>> smaller{
+      {"affine_cantilever", {"bodies.beam.frames.grid=[11,3,3]"}},
+      {"bone_plate", {"bodies.bone.domain.cylinder.cells=[8,12]", "bodies.cushion.frames.poisson_disk=0.01"}},
+      {"roll_up", {"bodies.line.frames.grid=[21]"}},
+      {"soft_cantilever_tetrahedra", {"bodies.beam.domain.box.cells=[8,2,2]"}},
+      {"uterus_bladder",
+       {"bodies.uterus.domain.ellipsoid.cells=[12]", "bodies.bladder.domain.ellipsoid.cells=[12]",
+        "bodies.tissue.points.count=300"}}};
+  std::vector<std::string> all;
+  if (const auto found = smaller.find(scene); !full_size() && found != smaller.end()) all = found->second;
+  all.insert(all.end(), settings.begin(), settings.end());
+  return app::build_simulation(app::parse_scene_file(source_dir() / "scenes" / (scene + ".toml"), all));
+}
+
+}  // namespace fascia::test
