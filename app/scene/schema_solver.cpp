@@ -126,7 +126,8 @@ Key solver_schema() {
            key("gpus", integer(between(1, kMostDevices)),
                "GPUs of this machine that share the integration points of meshless solids; other models take one.")
                .defaults("1"),
-           key("threads", integer(between(0, 4096)), "Threads of the processor; 0: as many as the process may run on.").defaults("0")},
+           key("threads", integer(between(0, 4096)), "Threads of the processor; 0: as many as the process may run on.")
+               .defaults("0")},
           {{{"duration", "steps"}, false}}, "kind"),
       "How it is computed.");
 }
