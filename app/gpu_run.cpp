@@ -1,4 +1,5 @@
 #include "app/gpu_run.hpp"
+#include "app/messages.hpp"
 
 #include "app/run_scene.hpp"
 #include "app/solver_settings.hpp"
@@ -23,7 +24,7 @@ RunReport broken_off(RunReport seen, const std::string& why) {
 }
 
 void warn(const Simulation& s, const std::string& text, std::vector<std::string>& warnings) {
-  fmt::print(stderr, "{}: warning: {}\n", s.scene.path.string(), text);
+  say("{}: warning: {}\n", s.scene.path.string(), text);
   warnings.push_back(text);
 }
 

@@ -1,15 +1,22 @@
 #include "app/bench/benchmark.hpp"
 #include "app/completion.hpp"
+#include "app/messages.hpp"
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
 #include "app/version.hpp"
 #include "core/model/errors.hpp"
 #include "core/solver/settings.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <new>
 
@@ -97,8 +104,8 @@ int dispatch(int argc, char** argv) {
   CLI::App* check = app.add_subcommand("check", "read and validate a scene, and say what would be simulated");
   add_scene_options(*check, options);
   if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
-    fmt::print(stderr, "fascia: \"{}\" is no command; must be run, check, bench or completion, as in: fascia run {}\n",
-               argv[1], std::string_view(argv[1]).ends_with(".toml") ? argv[1] : "SCENE");
+    say("fascia: \"{}\" is no command; must be run, check, bench or completion, as in: fascia run {}\n", argv[1],
+        std::string_view(argv[1]).ends_with(".toml") ? argv[1] : "SCENE");
     return kWrongInput;
   }
   BenchOptions bench_options;
@@ -117,31 +124,41 @@ int dispatch(int argc, char** argv) {
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 
+/// Where one is closed, the next file that is opened would take its place, and what is printed.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF && open("/dev/null", O_RDWR) < 0) std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   try {
-    return dispatch(argc, argv);
+    const int status = dispatch(argc, argv);
+    if (std::fflush(stdout) == 0) return status;
+    say("fascia: standard output cannot be written: {}\n", std::strerror(errno));
+    return kFileProblem;
   } catch (const SceneError& e) {
-    for (const Diagnostic& d : e.diagnostics()) fmt::print(stderr, "{}\n", d.text());
+    for (const Diagnostic& d : e.diagnostics()) say("{}\n", d.text());
     return kWrongInput;
   } catch (const fascia::InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    say("{}\n", e.what());
     return kWrongInput;
   } catch (const fascia::StateError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    say("{}\n", e.what());
     return kNotConverged;
   } catch (const fascia::FileError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    say("{}\n", e.what());
     return kFileProblem;
   } catch (const BackendError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    say("{}\n", e.what());
     return kNoBackend;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "out of memory; use a smaller grid, or linear = {{ kind = \"cg\" }}\n");
+    say("out of memory; use a smaller grid, or linear = {{ kind = \"cg\" }}\n");
     return kWrongInput;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "fascia: {}\n", e.what());
+    say("fascia: {}\n", e.what());
     return 1;
   }
 }

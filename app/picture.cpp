@@ -1,6 +1,8 @@
 #include "app/picture.hpp"
+#include "app/messages.hpp"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,7 +25,15 @@ int run(const std::vector<std::string>& arguments) {
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
   pid_t pid = 0;
-  if (posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ) != 0) return 127;
+  posix_spawnattr_t attributes;  // signals that wait for this process end that one
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  const int error = posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) return 127;
   int status = 0;
   waitpid(pid, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
@@ -50,10 +60,9 @@ void make_picture(const Simulation& s, const fs::path& directory, const std::str
   const Picture& p = *s.scene.output.picture;
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "fascia-picture";
   if (!fs::exists(program)) {
-    fmt::print(stderr,
-               "no picture: there is no {} (of the package fascia-picture; in a checkout ./run builds it where VTK can "
-               "render)\n",
-               program.string());
+    say("no picture: there is no {} (of the package fascia-picture; in a checkout ./run builds it where VTK can "
+        "render)\n",
+        program.string());
     return;
   }
   std::vector<std::string> command;
@@ -69,8 +78,7 @@ void make_picture(const Simulation& s, const fs::path& directory, const std::str
   if (upright) command.push_back(fmt::format("--up={},{},{}", 0 - g[0], 0 - g[1], 0 - g[2]));
   // xvfb-run fails at times while it cleans up, after the picture is written.
   if (run(command) != 0 && !fs::exists(directory / (name + ".png")))
-    fmt::print(stderr, "no picture: \"{}\" failed; a display, or xvfb-run (Debian: xvfb, xauth), is needed\n",
-               command.front());
+    say("no picture: \"{}\" failed; a display, or xvfb-run (Debian: xvfb, xauth), is needed\n", command.front());
 }
 
 }  // namespace fascia::app

@@ -1,4 +1,5 @@
 #include "app/progress.hpp"
+#include "app/messages.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,9 +16,9 @@ void Progress::update(const StepInfo& step) {
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - last_).count();
   if (verbose_) {
-    fmt::print(stderr, "step {} (t = {:.6g}): {} Newton iterations, {} linear, residual {:.2e}, {:.3f} s{}\n",
-               step.step, step.time, step.newton.iterations, step.newton.linear_iterations, step.newton.last.relative,
-               step.seconds, step.newton.trouble.empty() ? "" : "; " + step.newton.trouble);
+    say("step {} (t = {:.6g}): {} Newton iterations, {} linear, residual {:.2e}, {:.3f} s{}\n", step.step, step.time,
+        step.newton.iterations, step.newton.linear_iterations, step.newton.last.relative, step.seconds,
+        step.newton.trouble.empty() ? "" : "; " + step.newton.trouble);
     return;
   }
   if (since < (terminal_ ? 0.1 : 5.0)) return;
@@ -29,10 +30,10 @@ void Progress::update(const StepInfo& step) {
   if (terminal_) {
     constexpr int kWidth = 24;
     const int full = static_cast<int>(kWidth * step.progress);
-    fmt::print(stderr, "\r[{:=<{}}{: <{}}] {}\x1b[K", "", full, "", kWidth - full, text);
+    say("\r[{:=<{}}{: <{}}] {}\x1b[K", "", full, "", kWidth - full, text);
     drawn_ = true;
   } else {
-    fmt::print(stderr, "{}\n", text);
+    say("{}\n", text);
   }
   std::fflush(stderr);
   last_ = now;
@@ -40,7 +41,7 @@ void Progress::update(const StepInfo& step) {
 }
 
 void Progress::finish() {
-  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+  if (drawn_) say("\r\x1b[K");
   drawn_ = false;
 }
 

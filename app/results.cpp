@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <type_traits>
 
 namespace fascia::app {
@@ -110,10 +111,6 @@ ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path dir
       directory_(std::move(directory)),
       name_(std::move(name)),
       last_(simulation.probes.size()) {
-  csv_ = "time";
-  for (const ResolvedProbe& p : simulation.probes)
-    for (const std::string& column : probe_columns(p)) csv_ += "," + column;
-  csv_ += tells_time_step() ? ",time_step\n" : "\n";
   for (const SimulatedBody& b : simulation.bodies) {
     surface_.emplace_back();
     if (b.groups() != nullptr) continue;  // a mesh is written as it is
@@ -122,14 +119,22 @@ ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path dir
   }
 }
 
+void ResultFiles::open() {
+  std::string head = "time";
+  for (const ResolvedProbe& p : simulation_.probes)
+    for (const std::string& column : probe_columns(p)) head += "," + column;
+  head += tells_time_step() ? ",time_step\n" : "\n";
+  csv_.emplace(directory_ / "probes.csv", head);
+}
+
 void ResultFiles::add_probes(double time, const Snapshot& snap) {
-  csv_ += fmt::format("{}", time);
+  std::string row = fmt::format("{}", time);
   for (std::size_t i = 0; i < simulation_.probes.size(); ++i) {
     last_[i] = probe_values(simulation_, simulation_.probes[i], snap);
-    for (const double value : last_[i]) csv_ += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
+    for (const double value : last_[i]) row += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
   }
-  if (tells_time_step()) csv_ += fmt::format(",{:.17g}", snap.time_step);
-  csv_ += "\n";
+  if (tells_time_step()) row += fmt::format(",{:.17g}", snap.time_step);
+  csv_->append(row + "\n");
 }
 
 bool ResultFiles::tells_time_step() const { return simulation_.scene.solver.time_step_automatic; }
@@ -224,25 +229,26 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
 
 void ResultFiles::add_state(double time, const State& state) {
   const Clock::time_point start = Clock::now();
-  const std::size_t listed = entries_.size();
+  std::vector<std::string> files;
   try {
     for (const SimulatedBody& body : simulation_.bodies) {
-      const std::string file = fmt::format("{}_{:05d}.vtu", body.name, saved_);
-      io::write_vtu(directory_ / file, visual(body, state));
-      entries_.push_back({time, body.name, file});
+      files.push_back(fmt::format("{}_{:05d}.vtu", body.name, saved_));
+      io::write_vtu(directory_ / files.back(), visual(body, state));
     }
-  } catch (const StateError&) {  // the bodies that it can show are no whole state
-    for (std::size_t k = listed; k < entries_.size(); ++k) std::filesystem::remove(directory_ / entries_[k].file);
-    entries_.resize(listed);
+  } catch (const std::exception&) {  // the bodies that are there are no whole state
+    std::error_code ignored;
+    for (const std::string& file : files) std::filesystem::remove(directory_ / file, ignored);
     throw;
   }
+  if (!collection_) collection_.emplace(directory_ / (name_ + ".pvd"));
+  for (std::size_t b = 0; b < files.size(); ++b) collection_->add(time, simulation_.bodies[b].name, files[b]);
   ++saved_;
   seconds_ += seconds_since(start);
 }
 
-void ResultFiles::finish() {
-  io::write_pvd(directory_ / (name_ + ".pvd"), entries_);
-  io::write_text(directory_ / "probes.csv", csv_);
+void ResultFiles::synchronise() const {
+  csv_->synchronise();
+  if (collection_) collection_->synchronise();
 }
 
 }  // namespace fascia::app

@@ -9,23 +9,26 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace fascia::app {
 
-/// Writes the files of a run: one .vtu a body and saved time, the .pvd that lists them, probes.csv.
+/// Writes the files of a run as they arise: one .vtu a body and saved time, the .pvd that lists them, probes.csv.
 class ResultFiles {
  public:
   ResultFiles(const Simulation& simulation, std::filesystem::path directory, std::string name);
 
+  /// Begins probes.csv. @throws FileError
+  void open();
   /// A row of probes.csv. @param time  load factor in statics, number of the mode in modes
   void add_probes(double time, const Snapshot& at);
   /// The .vtu files of a state. @param time  in the .pvd, where times must not decrease: of a path its step
   /// @throws FileError, InputError
   void add_state(double time, const State& state);
-  /// Writes the .pvd and probes.csv.
-  void finish();
+  /// Waits until probes.csv and the .pvd are on the disk.
+  void synchronise() const;
 
   const std::vector<double>& last_values(std::size_t probe) const { return last_[probe]; }
   double seconds() const { return seconds_; }
@@ -36,8 +39,9 @@ class ResultFiles {
   io::VisualMesh visual(const SimulatedBody& body, const State& state) const;
   const Simulation& simulation_;
   std::filesystem::path directory_;
-  std::string name_, csv_;
-  std::vector<io::PvdEntry> entries_;
+  std::string name_;
+  std::optional<io::GrowingFile> csv_;
+  std::optional<io::Collection> collection_;  ///< from the first state on
   std::vector<std::vector<double>> last_;
   std::vector<std::vector<Attachment>> surface_;  ///< of each body
   int saved_ = 0;
@@ -48,6 +52,10 @@ struct RunTimes {
   double setup = 0, solve = 0, output = 0;
   std::vector<double> steps;
 };
+
+/// summary.json of a run that goes on: what is known of it from the start.
+nlohmann::ordered_json running_summary(const Simulation& s);
+const char* status_name(RunStatus status);
 
 /// summary.json. Modes put a list into the probes of quantity frequency.
 /// @param fluids  of Simulation::fluids at the end; none of modes

@@ -3,11 +3,14 @@
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
 #include "app/gpu_run.hpp"
+#include "app/interruption.hpp"
+#include "app/load_scene.hpp"
+#include "app/messages.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
 #include "app/result_warnings.hpp"
 #include "app/results.hpp"
-#include "app/scene/parse.hpp"
+#include "app/run_result.hpp"
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/math/rotation.hpp"
@@ -20,37 +23,15 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <csignal>
 
 namespace fascia::app {
 
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
-void on_interrupt(int) { interrupted = 1; }
-
 PathSettings path_of(const Simulation& s) {
   const Solver& solver = s.scene.solver;
   const bool arc = solver.control == StaticControl::arc_length;
   return {arc ? PathControl::arc_length : PathControl::displacement, solver.load_steps, solver.max_steps, s.controlled};
-}
-
-Simulation load(const RunOptions& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (options.backend) overrides.push_back("solver.backend=" + *options.backend);
-  if (options.threads) overrides.push_back(fmt::format("solver.threads={}", *options.threads));
-  if (options.gpus) overrides.push_back(fmt::format("solver.gpus={}", *options.gpus));
-  Scene scene = parse_scene_file(options.scene, overrides);
-  if (options.output) scene.output.directory = *options.output;
-  Simulation s = build_simulation(std::move(scene));
-  add_imperfection(s);
-  if (s.scene.solver.kind == SolverKind::central_differences) {
-    ThreadPool pool(s.scene.solver.threads);
-    MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
-    settle_time_step(s, system);
-  }
-  for (const std::string& w : s.warnings) fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
-  return s;
 }
 
 /// Saved steps of a dynamic run: every so many seconds or steps, 25 a simulated second otherwise, and the last.
@@ -94,8 +75,8 @@ struct Outcome {
   CouplingReports couplings;
 };
 
-Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultFiles& files,
-                 const RunOptions& options) {
+Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
+                 Interruption& stop) {
   Outcome out;
   out.backend = backend;
   const Clock::time_point setup = Clock::now();
@@ -129,12 +110,13 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
                          const std::function<const State&()>& show) {
     out.times.steps.push_back(step.seconds);
     progress.update(step);
+    files.note(step);
     const bool due = rule.save(step);
     rule.note(step);
     if (due || statics) save(step.time, step.step, show(), due);
     out.stabilization = energy.stabilization;
     if (statics && !path) snaps.look(step.time, energy.elastic);
-    return interrupted == 0 && not_shown.empty();
+    return !stop.requested() && not_shown.empty();
   };
   const auto observe = [&](const StepInfo& step, const State& at, MechanicalSystem&) {
     return watch(step, system.internal_energy(), [&]() -> const State& { return at; });
@@ -172,13 +154,14 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
         out.times.steps.push_back(step.seconds);
         time_step = step.time_step;
         progress.update(step);
-        return rule.save(step) || interrupted != 0;
+        files.note(step);
+        return rule.save(step) || stop.requested();
       };
       const auto keep = [&](const StepInfo& step, const State& at) {
         rule.note(step);
         save(step.time, step.step, at, true);
         out.stabilization = system.internal_energy().stabilization;
-        return interrupted == 0 && not_shown.empty();
+        return !stop.requested() && not_shown.empty();
       };
       const auto keep_from_gpu = [&](const StepInfo& step, gpu::DeviceStep& device) {
         device.show(system, factors(step.time));
@@ -225,7 +208,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, ResultF
 /// Stabilisation holds a hundredth of a body's own modes, and a tenth and more of those of badly coupled frames.
 constexpr double kHollow = 0.1;
 
-Outcome find_modes(const Simulation& s, ThreadPool& pool, ResultFiles& files) {
+Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
   Outcome out;
   const Clock::time_point start = Clock::now();
   const Modes modes = natural_modes(s.model, pool, s.scene.solver.modes);
@@ -289,98 +272,69 @@ void print_summary(const nlohmann::ordered_json& j, const std::filesystem::path&
   fmt::print("results in {}\n", directory.string());
 }
 
-void warn_of_backend(Simulation& s, Backend backend) {
-  const std::string lost = not_as_asked(s, backend);
-  if (lost.empty()) return;
-  fmt::print(stderr, "{}: warning: {}\n", s.scene.path.string(), lost);
-  s.warnings.push_back(lost);
+int exit_status(RunStatus status, int signal) {
+  if (status == RunStatus::interrupted) return 128 + signal;
+  return status == RunStatus::converged ? kDone : kNotConverged;
 }
 
-int exit_status(RunStatus status) {
-  if (status == RunStatus::interrupted) return kInterrupted;
-  return status == RunStatus::converged ? kDone : kNotConverged;
+/// What an error, or a signal, leaves of a result.
+std::string kept(const Simulation& s, bool saved) {
+  return saved ? fmt::format("; {} holds what was saved before", s.scene.output.directory.string()) : "";
+}
+
+/// The run. What was saved before an error stays, with a summary that tells it.
+Outcome computed(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
+                 Interruption& stop) {
+  const auto fail = [&](RunStatus status, const std::exception& e) {
+    if (!files.shown()) return;
+    files.end(status, e.what());
+    say("{}: it ended early{}\n", options.scene.string(), kept(s, true));
+  };
+  try {
+    return s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files)
+                                                    : simulate(s, backend, pool, files, options, stop);
+  } catch (const StateError& e) {
+    fail(RunStatus::diverged, e);
+    throw;
+  } catch (const std::exception& e) {
+    fail(RunStatus::interrupted, e);
+    throw;
+  }
 }
 
 }  // namespace
 
 int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
-  Simulation s = load(options);
+  Interruption stop;
+  Simulation s = load_scene(options);
   const Backend backend = choose_backend(s);
   warn_of_backend(s, backend);
-  io::ResultDirectory directory(s.scene.output.directory);
+  RunResult files(s);
+  const Abandonable while_it_lives(stop, [&] {
+    const bool saved = files.abandon();
+    say("\n{}: interrupted within a step{}\n", options.scene.string(), kept(s, saved));
+  });
   ThreadPool pool(s.scene.solver.threads);
-  const std::string name = s.scene.path.stem().string();
-  ResultFiles files(s, directory.path(), name);
   const double setup = seconds_since(start);
-  std::signal(SIGINT, on_interrupt);
-  Outcome out = s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files)
-                                                         : simulate(s, backend, pool, files, options);
+  Outcome out = computed(s, backend, pool, files, options, stop);
   out.times.setup += setup;
-  files.finish();
-  if (s.scene.output.picture) make_picture(s, directory.path(), name);
+  if (s.scene.output.picture) make_picture(s, files.path(), s.scene.path.stem().string());
   s.warnings.insert(s.warnings.end(), out.told.begin(), out.told.end());
   for (const std::string& w : out.warnings) {
-    fmt::print(stderr, "{}: warning: {}\n", options.scene.string(), w);
+    say("{}: warning: {}\n", options.scene.string(), w);
     s.warnings.push_back(w);
   }
   const nlohmann::ordered_json j = summary(s, out.backend, out.gpus, out.run, out.times, pool.size(), out.probes,
                                            out.stabilization, out.fluids, out.couplings);
-  io::write_text(directory.path() / "summary.json", j.dump(2) + "\n");
-  directory.commit();
+  files.finish(j);
   if (options.json)
     fmt::print("{}\n", j.dump(2));
   else if (!options.quiet)
     print_summary(j, s.scene.output.directory);
-  if (out.run.status != RunStatus::converged) fmt::print(stderr, "{}: {}\n", options.scene.string(), out.run.message);
+  if (out.run.status != RunStatus::converged) say("{}: {}\n", options.scene.string(), out.run.message);
   if (out.run.steps_at_limit > 0 && !out.failed) return kDone;  // as asked for
-  return exit_status(out.run.status);
-}
-
-/// The model, and how many cells it has.
-std::string describe(const SimulatedBody& b) {
-  const BodyCells& cells = b.body->cells();
-  if (cells.nodes.empty()) return b.body->model_name();
-  if (cells.type == CellType::triangle)
-    return fmt::format("{} of {} triangles", b.body->model_name(), cells.nodes.size() / 3);
-  return fmt::format("{} {}{}", cells.nodes.size() / static_cast<std::size_t>(cells.nodes_per_cell),
-                     cells.nodes_per_cell > node_count(cells.type) ? "quadratic " : "", b.body->model_name());
-}
-
-int check_scene(const RunOptions& options) {
-  Simulation s = load(options);
-  const Backend backend = choose_backend(s);
-  warn_of_backend(s, backend);
-  for (const SimulatedBody& b : s.bodies)
-    fmt::print("body {}: {}, {}, {}{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
-               counted(at(b.body->node_count()), b.node_word()), counted(b.body->points().size(), "integration point"),
-               b.body->selective() ? " (lambda at one point a cell)" : "", b.body->volume(), b.body->mass());
-  for (const SimulatedBody& b : s.bodies)
-    if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
-  for (const FluidOfBody& f : s.fluids)
-    fmt::print("body {}: its fluid fills {:.6g} m3 at rest\n", s.bodies[at(f.body)].name,
-               s.model.surfaces[at(f.surface)].rest_volume);
-  fmt::print("{}", coupling_layout(s));
-  const int free = s.model.free_dof_count(), followers = s.model.dependent_dof_count();
-  const std::string tethers = s.model.tethers.empty() ? "" : fmt::format("{} tethers, ", s.model.tethers.size());
-  fmt::print("{} unknowns ({} prescribed{}), {}{}, {}\n", free, s.model.constrained_dof_count(),
-             followers > 0 ? fmt::format(", {} that follow others", followers) : "", tethers,
-             counted(s.scene.loads.size(), "load"), counted(s.probes.size(), "probe"));
-  if (s.stable_step > 0)
-    fmt::print("{}, {}{} steps of {:.4g} s{}\n",
-               std::isfinite(s.stable_step) ? fmt::format("stable time step {:.4g} s", s.stable_step)
-                                            : "nothing elastic limits the time step",
-               s.scene.solver.time_step_automatic ? "about " : "", s.scene.solver.steps, s.scene.solver.time_step,
-               s.scene.solver.time_step_automatic ? " at first" : "");
-  for (const SimulatedBody& b : s.bodies)
-    if (s.stable_step > 0 && b.body->fastest_cell() > 0)
-      fmt::print("body {}: {} {} limits the time step\n", b.name,
-                 b.body->cells().type == CellType::triangle ? "triangle" : "element", b.body->fastest_cell());
-  fmt::print("memory: about {:.3g} MB\n", model_memory(s) / 1e6);
-  if (backend == Backend::cuda) fmt::print("computed on the GPU\n");
-  fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
-             s.warnings.size() == 1 ? "" : "s");
-  return kDone;
+  return exit_status(out.run.status, stop.signal());
 }
 
 }  // namespace fascia::app

@@ -17,7 +17,8 @@ struct RunOptions {
   bool quiet = false, json = false, verbose = false;
 };
 
-enum ExitStatus { kDone = 0, kWrongInput = 2, kNotConverged = 3, kFileProblem = 4, kNoBackend = 5, kInterrupted = 130 };
+/// What the program returns; of a run that a signal ended it is 128 + the signal.
+enum ExitStatus { kDone = 0, kWrongInput = 2, kNotConverged = 3, kFileProblem = 4, kNoBackend = 5 };
 
 /// A backend that is not there. Exit status 5.
 class BackendError : public std::runtime_error {

@@ -24,6 +24,37 @@ std::size_t peak_memory_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
+/// JSON has no NaN: a number that is not finite is a bug caught before, and would read null here.
+double finite(double v) { return std::isfinite(v) ? v : 0.0; }
+
+nlohmann::ordered_json bodies_of(const Simulation& s) {
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::object();
+  for (const SimulatedBody& b : s.bodies) {
+    bodies[b.name] = {
+        {"model", b.body->model_name()},
+        {b.vertices ? "nodes" : "frames", b.body->node_count()},
+        {"shared", b.body->shared_nodes().size()},
+        {"points", b.body->points().size()},
+        {"cells", b.body->cells().nodes.size() / static_cast<std::size_t>(b.body->cells().nodes_per_cell)},
+        {"volume", b.body->volume()},
+        {"mass", b.body->mass()}};
+  }
+  return bodies;
+}
+
+/// What every summary begins with.
+nlohmann::ordered_json summary_head(const Simulation& s, const std::string& status, const std::string& message) {
+  nlohmann::ordered_json j;
+  j["fascia"] = FASCIA_VERSION;
+  j["scene"] = s.scene.path.filename().string();
+  if (!s.scene.title.empty()) j["title"] = s.scene.title;
+  j["status"] = status;
+  j["message"] = message;
+  return j;
+}
+
+}  // namespace
+
 const char* status_name(RunStatus status) {
   switch (status) {
     case RunStatus::converged:
@@ -34,43 +65,34 @@ const char* status_name(RunStatus status) {
       return "unstable";
     case RunStatus::inverted:
       return "inverted";
+    case RunStatus::interrupted:
+      return "interrupted";
     default:
       return "not-converged";
   }
 }
 
-/// JSON has no NaN: a number that is not finite is a bug caught before, and would read null here.
-double finite(double v) { return std::isfinite(v) ? v : 0.0; }
-
-}  // namespace
+nlohmann::ordered_json running_summary(const Simulation& s) {
+  nlohmann::ordered_json j = summary_head(s, "running", "");
+  j["bodies"] = bodies_of(s);
+  j["dofs"] = s.model.free_dof_count();
+  j["steps"] = 0;
+  j["warnings"] = s.warnings;
+  return j;
+}
 
 nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, const RunReport& run,
                                const RunTimes& times, int threads, const std::vector<nlohmann::json>& probe_values,
                                double stabilization_energy, const std::vector<FluidState>& fluids,
                                const CouplingReports& couplings) {
-  nlohmann::ordered_json j;
-  j["fascia"] = FASCIA_VERSION;
-  j["scene"] = s.scene.path.filename().string();
-  if (!s.scene.title.empty()) j["title"] = s.scene.title;
-  j["status"] = status_name(run.status);
-  j["message"] = run.message;
+  nlohmann::ordered_json j = summary_head(s, status_name(run.status), run.message);
   j["convergence"] = run.convergence;
   j["backend"] = name_of(backend);
   j["gpus"] = gpus;
   j["precision"] = precision_of(s, backend);
   j["threads"] = threads;
   j["library"] = tuning();
-  j["bodies"] = nlohmann::ordered_json::object();
-  for (const SimulatedBody& b : s.bodies) {
-    j["bodies"][b.name] = {
-        {"model", b.body->model_name()},
-        {b.vertices ? "nodes" : "frames", b.body->node_count()},
-        {"shared", b.body->shared_nodes().size()},
-        {"points", b.body->points().size()},
-        {"cells", b.body->cells().nodes.size() / static_cast<std::size_t>(b.body->cells().nodes_per_cell)},
-        {"volume", b.body->volume()},
-        {"mass", b.body->mass()}};
-  }
+  j["bodies"] = bodies_of(s);
   for (std::size_t f = 0; f < fluids.size(); ++f)
     j["bodies"][s.bodies[static_cast<std::size_t>(s.fluids[f].body)].name]["fluid"] = {
         {"volume", finite(fluids[f].volume)}, {"pressure", finite(fluids[f].pressure)}};

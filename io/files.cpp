@@ -15,13 +15,28 @@ namespace fs = std::filesystem;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-[[noreturn]] void fail_write(const fs::path& path, int error) {
+/// Zero, or why the bytes could not be written; then nothing is left of them.
+int write_whole(const fs::path& path, std::string_view bytes) {
+  errno = 0;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"), &std::fclose);
+  if (!file) return errno;
+  int error = 0;
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) error = errno;
+  if (std::fclose(file.release()) != 0 && error == 0) error = errno;
+  std::error_code ignored;
+  if (error != 0 && fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
+  return error;
+}
+
+}  // namespace
+
+fs::path part_of(const fs::path& path) { return path.parent_path() / ("." + path.filename().string() + ".part"); }
+
+void fail_write(const fs::path& path, int error) {
   std::string advice = "check the path and its permissions";
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) advice = "free space there or write elsewhere";
   throw FileError(path.string() + ": cannot be written: " + reason(error) + "; " + advice);
 }
-
-}  // namespace
 
 void check_readable(const fs::path& path) {
   std::error_code error;
@@ -58,15 +73,16 @@ void make_directories(const fs::path& path) {
 
 void write_file(const fs::path& path, std::string_view bytes) {
   if (path.has_parent_path()) make_directories(path.parent_path());
-  errno = 0;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"), &std::fclose);
-  if (!file) fail_write(path, errno);
-  int error = 0;
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) error = errno;
-  if (std::fclose(file.release()) != 0 && error == 0) error = errno;
-  if (error == 0) return;
+  if (const int error = write_whole(path, bytes); error != 0) fail_write(path, error);
+}
+
+void replace_file(const fs::path& path, std::string_view bytes) {
+  const fs::path part = part_of(path);
+  if (const int error = write_whole(part, bytes); error != 0) fail_write(path, error);
+  if (std::rename(part.c_str(), path.c_str()) == 0) return;
+  const int error = errno;
   std::error_code ignored;
-  if (fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
+  fs::remove(part, ignored);
   fail_write(path, error);
 }
 

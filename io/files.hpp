@@ -22,6 +22,15 @@ std::string read_file(const std::filesystem::path& path);
 /// @throws FileError  where it cannot be written in whole; what was written is removed
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// The same, so that the file is the old one or the new one at any moment: through a hidden file beside it.
+void replace_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// That hidden file.
+std::filesystem::path part_of(const std::filesystem::path& path);
+
+/// Says that a file cannot be written, why, and what helps. @throws FileError
+[[noreturn]] void fail_write(const std::filesystem::path& path, int error);
+
 /// Creates a directory and its parents. @throws FileError
 void make_directories(const std::filesystem::path& path);
 

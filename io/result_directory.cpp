@@ -1,16 +1,12 @@
+#include "io/result_directory.hpp"
+
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
-#include "io/result_writer.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <signal.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <charconv>
+#include <algorithm>
 #include <fstream>
-#include <optional>
 #include <system_error>
 
 namespace fascia::io {
@@ -18,68 +14,122 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Hidden siblings of NAME: ".NAME.partial-PID" is being written, ".NAME.older-PID" is about to be replaced.
-constexpr const char* partial = "partial";
-constexpr const char* older = "older";
+/// Where an older result waits, inside of the directory.
+constexpr const char* kOlder = ".fascia.older";
+/// The same once the new one is shown: it only waits to be removed.
+constexpr const char* kOutdated = ".fascia.outdated";
+constexpr const char* kSummary = "summary.json";
 
-fs::path sibling(const fs::path& target, const char* role, long pid) {
-  return target.parent_path() / ("." + target.filename().string() + "." + role + "-" + std::to_string(pid));
+bool there_is(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// The process that a hidden sibling of that role belongs to.
-std::optional<long> owner(const fs::path& entry, const fs::path& target, const char* role) {
-  const std::string name = entry.filename().string();
-  const std::string prefix = "." + target.filename().string() + "." + role + "-";
-  if (name.size() <= prefix.size() || name.compare(0, prefix.size(), prefix) != 0) return std::nullopt;
-  long pid = 0;
-  const auto [end, error] = std::from_chars(name.data() + prefix.size(), name.data() + name.size(), pid);
-  if (error != std::errc{} || end != name.data() + name.size() || pid <= 0) return std::nullopt;
-  return pid;
-}
-
-bool alive(long pid) { return kill(static_cast<pid_t>(pid), 0) == 0 || errno != ESRCH; }
-
-bool is_result(const fs::path& directory) {
-  std::ifstream stream(directory / "summary.json", std::ios::binary);
-  if (!stream) return false;
+/// What a result of this program in a directory calls its files, as its summary.json says.
+std::optional<ResultNames> names_of_result(const fs::path& directory) {
+  std::ifstream stream(directory / kSummary, std::ios::binary);
+  if (!stream) return std::nullopt;
   const nlohmann::json summary = nlohmann::json::parse(stream, nullptr, false);
-  return summary.is_object() && summary.contains("fascia");
+  if (!summary.is_object() || !summary.contains("fascia")) return std::nullopt;
+  ResultNames names;
+  if (summary.contains("scene") && summary["scene"].is_string())
+    names.stem = fs::path(summary["scene"].get<std::string>()).stem().string();
+  if (summary.contains("bodies") && summary["bodies"].is_object())
+    for (const auto& [body, unused] : summary["bodies"].items()) names.bodies.push_back(body);
+  return names;
 }
 
-/// Fails where `target` exists and may not be replaced.
-void check_replaceable(const fs::path& target) {
+/// BODY_00000.vtu, with five digits or more.
+bool is_state_of(const std::string& file, const std::string& body) {
+  const std::string_view end = ".vtu";
+  if (!file.starts_with(body + "_") || !file.ends_with(end) || file.size() < body.size() + 1 + 5 + end.size())
+    return false;
+  const std::string_view number(file.data() + body.size() + 1, file.size() - body.size() - 1 - end.size());
+  return std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool belongs(const std::string& file, const ResultNames& names) {
+  if (file == kSummary || file == "probes.csv" || file == names.stem + ".pvd" || file == names.stem + ".png")
+    return true;
+  return std::any_of(names.bodies.begin(), names.bodies.end(),
+                     [&](const std::string& body) { return is_state_of(file, body); });
+}
+
+/// Files of a directory that a result of these names would have, and those that it was writing; summary.json first.
+std::vector<std::string> files_of(const fs::path& directory, const ResultNames& names) {
+  std::vector<std::string> files;
   std::error_code error;
-  const fs::file_status status = fs::symlink_status(target, error);
-  if (!fs::exists(status)) return;
+  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error)) {
+    const std::string file = it->path().filename().string();
+    const bool part = file.size() > 6 && file.starts_with(".") && file.ends_with(".part");
+    if (belongs(part ? file.substr(1, file.size() - 6) : file, names)) files.push_back(file);
+  }
+  std::sort(files.begin(), files.end(), [](const std::string& a, const std::string& b) {
+    return std::make_pair(a != kSummary, a) < std::make_pair(b != kSummary, b);
+  });
+  return files;
+}
+
+/// summary.json, which says what belongs to it, goes first and comes last: without it nothing else is taken for a part.
+void set_aside(const fs::path& directory, const ResultNames& names) {
+  const fs::path older = directory / kOlder;
+  make_directories(older);
+  for (const std::string& file : files_of(directory, names)) {
+    std::error_code error;
+    fs::rename(directory / file, older / file, error);
+    if (error) throw FileError((directory / file).string() + ": cannot be replaced: " + error.message());
+  }
+}
+
+void remove_result(const fs::path& directory) {
+  const std::optional<ResultNames> names = names_of_result(directory);
+  if (!names) return;
+  std::vector<std::string> files = files_of(directory, *names);
+  std::error_code ignored;
+  for (auto file = files.rbegin(); file != files.rend(); ++file) fs::remove(directory / *file, ignored);
+}
+
+/// Removes what there is of a new result, and puts the older one back. A summary.json is aside exactly as long as there
+/// is an older result to put back.
+void restore(const fs::path& directory) {
+  const fs::path older = directory / kOlder;
+  std::error_code ignored;
+  if (there_is(older / kSummary)) remove_result(directory);
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(older, ignored), end; !ignored && it != end; it.increment(ignored))
+    files.push_back(it->path());
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return (a.filename() == kSummary) < (b.filename() == kSummary);
+  });
+  for (const fs::path& file : files) fs::rename(file, directory / file.filename(), ignored);
+  fs::remove(older, ignored);
+}
+
+/// True where nothing but what this program keeps there for itself is in a directory.
+bool holds_nothing(const fs::path& directory) {
+  std::error_code error;
+  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+    if (it->path().filename() != DirectoryLock::kName) return false;
+  if (error)
+    throw FileError(directory.string() + ": cannot be read: " + error.message() +
+                    "; remove it or choose another directory");
+  return true;
+}
+
+/// Fails where a directory may not be filled.
+void check_replaceable(const fs::path& target) {
+  std::error_code ignored;
+  if (!there_is(target)) return;
   const std::string remedy = "; remove it or choose another directory";
-  if (!fs::is_directory(status)) throw FileError(target.string() + ": exists and is no directory" + remedy);
-  const bool empty = fs::is_empty(target, error);
-  if (error) throw FileError(target.string() + ": cannot be read: " + error.message() + remedy);
-  if (!empty && !is_result(target))
+  if (!fs::is_directory(target, ignored)) throw FileError(target.string() + ": exists and is no directory" + remedy);
+  if (!holds_nothing(target) && !there_is(target / kOlder) && !names_of_result(target))
     throw FileError(target.string() + ": exists and is no result of this program (it has no summary.json of one)" +
                     remedy);
 }
 
-/// Removes what processes that were killed left, and puts back the older result of one killed between its two renames.
-void clean_up(const fs::path& target) {
-  std::error_code error;
-  std::vector<fs::path> entries;
-  for (fs::directory_iterator it(target.parent_path(), error), end; !error && it != end; it.increment(error))
-    entries.push_back(it->path());
-  for (const fs::path& entry : entries)
-    for (const char* role : {older, partial}) {
-      const std::optional<long> pid = owner(entry, target, role);
-      if (!pid || (alive(*pid) && *pid != getpid())) continue;
-      std::error_code ignored;
-      if (role == older && !fs::exists(target, ignored))
-        fs::rename(entry, target, ignored);
-      else
-        fs::remove_all(entry, ignored);
-    }
-}
-
 /// The directory itself, with symbolic links followed and no trailing slash.
 fs::path resolved(const fs::path& target) {
+  if (target.empty()) throw FileError("the directory of the results has no name; give one, such as results/NAME");
   std::error_code error;
   fs::path path = fs::weakly_canonical(fs::absolute(target), error);
   if (error) throw FileError(target.string() + ": cannot be used: " + error.message());
@@ -91,37 +141,57 @@ fs::path resolved(const fs::path& target) {
 
 }  // namespace
 
-ResultDirectory::ResultDirectory(const fs::path& target) : target_(resolved(target)) {
+ResultDirectory::ResultDirectory(const fs::path& target, const ResultNames& names) : target_(resolved(target)) {
   check_replaceable(target_);
   make_directories(target_.parent_path());
-  clean_up(target_);
-  work_ = sibling(target_, partial, getpid());
-  make_directories(work_);
+  std::error_code error;
+  made_ = fs::create_directory(target_, error);
+  if (error) fail_write(target_, error.value());
+  try {
+    lock_.emplace(target_);
+    prepare(names);
+  } catch (...) {
+    if (lock_ && there_is(target_ / kOlder)) restore(target_);
+    lock_.reset();
+    if (made_) fs::remove(target_, error);
+    throw;
+  }
+}
+
+void ResultDirectory::prepare(const ResultNames& names) {
+  std::error_code ignored;
+  fs::remove_all(target_ / kOutdated, ignored);
+  if (there_is(target_ / kOlder)) restore(target_);  // of a process that was killed before it had anything to show
+  check_replaceable(target_);                        // again: another run may have filled it meanwhile
+  if (const std::optional<ResultNames> older = names_of_result(target_)) set_aside(target_, *older);
+  const std::vector<std::string> foreign = files_of(target_, names);
+  if (foreign.empty()) return;
+  throw FileError((target_ / foreign.front()).string() +
+                  ": would be overwritten and belongs to no result there; move it, or choose another directory");
+}
+
+void ResultDirectory::show() {
+  if (shown_) return;
+  shown_ = true;
+  if (!there_is(target_ / kOlder)) return;
+  std::error_code error;
+  fs::rename(target_ / kOlder, target_ / kOutdated, error);
+  if (error) fail_write(target_ / kOutdated, error.value());
+  fs::remove_all(target_ / kOutdated, error);  // what cannot be removed now goes with the next result
+}
+
+void ResultDirectory::keep() {
+  if (!there_is(target_ / kOlder)) shown_ = true;
 }
 
 ResultDirectory::~ResultDirectory() {
   std::error_code ignored;
-  if (!done_) fs::remove_all(work_, ignored);
-}
-
-void ResultDirectory::commit() {
-  check_replaceable(target_);
-  const fs::path aside = sibling(target_, older, getpid());
-  std::error_code error;
-  const bool replaces = fs::exists(target_, error);
-  if (replaces) fs::rename(target_, aside, error);
-  if (error) throw FileError(target_.string() + ": cannot be replaced: " + error.message() + "; it is as it was");
-  fs::rename(work_, target_, error);
-  if (error) {
-    std::error_code restore;
-    if (replaces) fs::rename(aside, target_, restore);
-    throw FileError(target_.string() + ": cannot be written: " + error.message() + "; " +
-                    (!replaces ? "nothing was written"
-                     : restore ? "the older result is in " + aside.string()
-                               : "the older result is as it was"));
-  }
-  done_ = true;
-  fs::remove_all(aside, error);  // what cannot be removed now goes with the next result
+  if (!shown_ && there_is(target_ / kOlder))
+    restore(target_);
+  else if (!shown_)
+    remove_result(target_);
+  lock_.reset();
+  if (!shown_ && made_) fs::remove(target_, ignored);
 }
 
 }  // namespace fascia::io

@@ -16,8 +16,10 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <stdexcept>
 
 namespace fascia::io {
@@ -181,25 +183,22 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
   writer->WriteToOutputStringOn();
   if (writer->Write() == 0 || !errors.first().empty())
     throw FileError(fmt::format("{}: cannot be written: {}", file.string(), errors.first()));
-  write_file(file, writer->GetOutputString());
+  replace_file(file, writer->GetOutputString());
 }
 
-void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& entries) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
-      "<Collection>\n";
-  std::vector<std::string> bodies;
-  for (const PvdEntry& entry : entries) {
-    if (!std::isfinite(entry.time)) throw InputError(fmt::format("{}: a time is not finite", file.string()));
-    std::size_t part = 0;
-    while (part < bodies.size() && bodies[part] != entry.body) ++part;
-    if (part == bodies.size()) bodies.push_back(entry.body);
-    text += fmt::format("    <DataSet timestep=\"{}\" group=\"\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", entry.time,
-                        part, escaped(entry.body), escaped(entry.file));
-  }
-  write_file(file, text + "  </Collection>\n</VTKFile>\n");
-}
+Collection::Collection(const std::filesystem::path& file)
+    : path_(file),
+      file_(file,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
+            "<Collection>\n",
+            "  </Collection>\n</VTKFile>\n") {}
 
-void write_text(const std::filesystem::path& file, const std::string& text) { write_file(file, text); }
+void Collection::add(double time, const std::string& body, const std::string& state) {
+  if (!std::isfinite(time)) throw InputError(fmt::format("{}: a time is not finite", path_.string()));
+  const auto part = std::find(bodies_.begin(), bodies_.end(), body) - bodies_.begin();
+  file_.append(fmt::format("    <DataSet timestep=\"{}\" group=\"\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", time,
+                           part, escaped(body), escaped(state)));
+  if (part == std::ssize(bodies_)) bodies_.push_back(body);
+}
 
 }  // namespace fascia::io

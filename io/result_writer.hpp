@@ -2,6 +2,7 @@
 
 #include "core/geometry/mesh.hpp"
 #include "core/math/vec3.hpp"
+#include "io/growing_file.hpp"
 
 #include <array>
 #include <cstddef>
@@ -48,36 +49,21 @@ struct VisualMesh {
 /// @throws InputError  where a value is not finite (names the array)
 void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh);
 
-struct PvdEntry {
-  double time = 0;
-  std::string body;  ///< part name
-  std::string file;  ///< relative to the .pvd
-};
-
-/// Writes a ParaView collection. @throws FileError
-void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& entries);
-
-/// Writes a whole text file, or throws FileError.
-void write_text(const std::filesystem::path& file, const std::string& text);
-
-/// A directory of results that appears whole or not at all: everything is written into a hidden sibling, which
-/// commit() puts in the place of an older result. Without commit() the older result stays as it was.
-class ResultDirectory {
+/// A ParaView collection of the states of several bodies, complete after each of them.
+class Collection {
  public:
-  /// Creates the hidden sibling.
-  /// @throws FileError  where it cannot be made, or where `target` exists and is no result of this program
-  ///                    (a directory that is empty or holds a summary.json with a "fascia" key is)
-  explicit ResultDirectory(const std::filesystem::path& target);
-  ~ResultDirectory();
-  ResultDirectory(const ResultDirectory&) = delete;
-  ResultDirectory& operator=(const ResultDirectory&) = delete;
-
-  const std::filesystem::path& path() const { return work_; }  ///< write here
-  void commit();  ///< @throws FileError; the older result is then still there
+  /// @throws FileError
+  explicit Collection(const std::filesystem::path& file);
+  /// @param body  part name
+  /// @param state  its .vtu, relative to the collection
+  /// @throws FileError, InputError where the time is not finite; the collection is then as it was
+  void add(double time, const std::string& body, const std::string& state);
+  void synchronise() const { file_.synchronise(); }
 
  private:
-  std::filesystem::path target_, work_;
-  bool done_ = false;
+  std::filesystem::path path_;
+  std::vector<std::string> bodies_;
+  GrowingFile file_;
 };
 
 }  // namespace fascia::io

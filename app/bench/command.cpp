@@ -1,5 +1,6 @@
 #include "app/bench/benchmark.hpp"
 #include "app/bench/report.hpp"
+#include "app/messages.hpp"
 #include "app/run_scene.hpp"
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
@@ -37,13 +38,13 @@ class Teller {
   void operator()(const std::string& what) const {
     if (quiet_) return;
     if (terminal_)
-      fmt::print(stderr, "\r\033[K{}", what);
+      say("\r\033[K{}", what);
     else
-      fmt::print(stderr, "{}\n", what);
+      say("{}\n", what);
     std::fflush(stderr);
   }
   void finish() const {
-    if (!quiet_ && terminal_) fmt::print(stderr, "\r\033[K");
+    if (!quiet_ && terminal_) say("\r\033[K");
   }
 
  private:

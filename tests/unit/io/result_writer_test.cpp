@@ -1,5 +1,7 @@
 #include "io/result_writer.hpp"
 
+#include "io/files.hpp"
+
 #include "core/geometry/primitives.hpp"
 #include "io/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
@@ -172,37 +174,49 @@ std::string file_error(Act&& act) {
 TEST(FullDisk, is_noticed_by_every_writer) {
   const TemporaryDirectory directory;
   std::string vtu, text, pvd;
-  const std::vector<PvdEntry> entries(200, PvdEntry{0.5, "beam", "beam_0001.vtu"});
   {
     const FileSizeLimit limit(4096);
     vtu = file_error([&] { write_vtu(directory.path() / "a.vtu", sample(20)); });
-    text = file_error([&] { write_text(directory.path() / "a.json", std::string(5000, 'x')); });
-    pvd = file_error([&] { write_pvd(directory.path() / "a.pvd", entries); });
+    text = file_error([&] { replace_file(directory.path() / "a.json", std::string(5000, 'x')); });
+    pvd = file_error([&] {
+      Collection collection(directory.path() / "a.pvd");
+      for (int k = 0; k < 200; ++k) collection.add(0.5, "beam", "beam_0001.vtu");
+    });
   }
   for (const std::string& e : {vtu, text, pvd}) {
     EXPECT_EQ(e.rfind(directory.path().string(), 0), 0u) << e;
     EXPECT_NE(e.find("free space there or write elsewhere"), std::string::npos) << e;
   }
+  const std::string kept = content(directory.path() / "a.pvd");
+  EXPECT_TRUE(kept.ends_with("/>\n  </Collection>\n</VTKFile>\n")) << kept;
+  std::filesystem::remove(directory.path() / "a.pvd");
   EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
 }
 
 TEST(FullDisk, device_that_is_always_full) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "absent: /dev/full";
-  const std::string e = file_error([&] { write_text("/dev/full", "a few bytes"); });
+  const std::string e = file_error([&] { write_file("/dev/full", "a few bytes"); });
   EXPECT_EQ(e.rfind("/dev/full: cannot be written: ", 0), 0u) << e;
 }
 
-TEST(WriteText, paths_that_cannot_be_written) {
+TEST(ReplaceFile, paths_that_cannot_be_written) {
   const TemporaryDirectory directory;
   directory.write("file", "x");
-  EXPECT_THROW(write_text(directory.path() / "file" / "a.txt", "x"), FileError);
-  EXPECT_THROW(write_text(directory.path(), "x"), FileError);
+  EXPECT_THROW(replace_file(directory.path() / "file" / "a.txt", "x"), FileError);
+  EXPECT_THROW(replace_file(directory.path(), "x"), FileError);
 }
 
-TEST(WritePvd, lists_times_and_parts) {
+TEST(Collection, lists_times_and_parts_and_is_complete_after_each) {
   const TemporaryDirectory directory;
   const auto file = directory.path() / "a.pvd";
-  write_pvd(file, {{0, "beam", "beam_0.vtu"}, {0, "a<b&\"c\"", "x.vtu"}, {0.1, "beam", "beam_1.vtu"}});
+  Collection collection(file);
+  const std::vector<std::array<std::string, 3>> entries{
+      {"0", "beam", "beam_0.vtu"}, {"0", "a<b&\"c\"", "x.vtu"}, {"0.1", "beam", "beam_1.vtu"}};
+  for (const auto& [time, body, state] : entries) {
+    collection.add(std::stod(time), body, state);
+    EXPECT_TRUE(content(file).ends_with("/>\n  </Collection>\n</VTKFile>\n"));
+  }
+  EXPECT_THROW(collection.add(NAN, "beam", "beam_2.vtu"), InputError);
   const std::string text = content(file);
   EXPECT_NE(text.find("timestep=\"0\" group=\"\" part=\"0\" name=\"beam\" file=\"beam_0.vtu\""), std::string::npos)
       << text;

@@ -1,0 +1,62 @@
+#include "app/backend.hpp"
+#include "app/coupling_report.hpp"
+#include "app/load_scene.hpp"
+#include "app/run_scene.hpp"
+#include "app/solver_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fascia::app {
+namespace {
+
+/// The model, and how many cells it has.
+std::string describe(const SimulatedBody& b) {
+  const BodyCells& cells = b.body->cells();
+  if (cells.nodes.empty()) return b.body->model_name();
+  if (cells.type == CellType::triangle)
+    return fmt::format("{} of {} triangles", b.body->model_name(), cells.nodes.size() / 3);
+  return fmt::format("{} {}{}", cells.nodes.size() / static_cast<std::size_t>(cells.nodes_per_cell),
+                     cells.nodes_per_cell > node_count(cells.type) ? "quadratic " : "", b.body->model_name());
+}
+
+}  // namespace
+
+int check_scene(const RunOptions& options) {
+  Simulation s = load_scene(options);
+  const Backend backend = choose_backend(s);
+  warn_of_backend(s, backend);
+  for (const SimulatedBody& b : s.bodies)
+    fmt::print("body {}: {}, {}, {}{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
+               counted(at(b.body->node_count()), b.node_word()), counted(b.body->points().size(), "integration point"),
+               b.body->selective() ? " (lambda at one point a cell)" : "", b.body->volume(), b.body->mass());
+  for (const SimulatedBody& b : s.bodies)
+    if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
+  for (const FluidOfBody& f : s.fluids)
+    fmt::print("body {}: its fluid fills {:.6g} m3 at rest\n", s.bodies[at(f.body)].name,
+               s.model.surfaces[at(f.surface)].rest_volume);
+  fmt::print("{}", coupling_layout(s));
+  const int free = s.model.free_dof_count(), followers = s.model.dependent_dof_count();
+  const std::string tethers = s.model.tethers.empty() ? "" : fmt::format("{} tethers, ", s.model.tethers.size());
+  fmt::print("{} unknowns ({} prescribed{}), {}{}, {}\n", free, s.model.constrained_dof_count(),
+             followers > 0 ? fmt::format(", {} that follow others", followers) : "", tethers,
+             counted(s.scene.loads.size(), "load"), counted(s.probes.size(), "probe"));
+  if (s.stable_step > 0)
+    fmt::print("{}, {}{} steps of {:.4g} s{}\n",
+               std::isfinite(s.stable_step) ? fmt::format("stable time step {:.4g} s", s.stable_step)
+                                            : "nothing elastic limits the time step",
+               s.scene.solver.time_step_automatic ? "about " : "", s.scene.solver.steps, s.scene.solver.time_step,
+               s.scene.solver.time_step_automatic ? " at first" : "");
+  for (const SimulatedBody& b : s.bodies)
+    if (s.stable_step > 0 && b.body->fastest_cell() > 0)
+      fmt::print("body {}: {} {} limits the time step\n", b.name,
+                 b.body->cells().type == CellType::triangle ? "triangle" : "element", b.body->fastest_cell());
+  fmt::print("memory: about {:.3g} MB\n", model_memory(s) / 1e6);
+  if (backend == Backend::cuda) fmt::print("computed on the GPU\n");
+  fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
+             s.warnings.size() == 1 ? "" : "s");
+  return kDone;
+}
+
+}  // namespace fascia::app

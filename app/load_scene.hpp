@@ -1,0 +1,15 @@
+#pragma once
+
+#include "app/backend.hpp"
+#include "app/run_scene.hpp"
+#include "app/simulation.hpp"
+
+namespace fascia::app {
+
+/// Reads the scene of a command with its overrides, and builds what is simulated; prints the warnings.
+Simulation load_scene(const RunOptions& options);
+
+/// Prints, and keeps, a warning where the backend does not do what the scene asks for.
+void warn_of_backend(Simulation& s, Backend backend);
+
+}  // namespace fascia::app

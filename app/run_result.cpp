@@ -1,0 +1,91 @@
+#include "app/run_result.hpp"
+
+#include "io/files.hpp"
+
+#include <chrono>
+#include <exception>
+
+namespace fascia::app {
+namespace {
+
+constexpr double kWriteEvery = 1;  // [s]
+constexpr std::chrono::seconds kPatience{5};
+
+io::ResultNames names_of(const Simulation& s) {
+  io::ResultNames names{s.scene.path.stem().string(), {}};
+  for (const SimulatedBody& b : s.bodies) names.bodies.push_back(b.name);
+  return names;
+}
+
+}  // namespace
+
+RunResult::RunResult(const Simulation& simulation)
+    : directory_(std::in_place, simulation.scene.output.directory, names_of(simulation)),
+      files_(simulation, directory_->path(), simulation.scene.path.stem().string()),
+      running_(running_summary(simulation)),
+      started_(Clock::now()),
+      written_(started_) {
+  write(running_);
+  files_.open();
+}
+
+void RunResult::write(const nlohmann::ordered_json& summary) const {
+  io::replace_file(directory_->path() / "summary.json", summary.dump(2) + "\n");
+}
+
+void RunResult::add_probes(double time, const Snapshot& at) {
+  const std::lock_guard lock(writing_);
+  files_.add_probes(time, at);
+}
+
+void RunResult::add_state(double time, const State& state) {
+  const std::lock_guard lock(writing_);
+  files_.add_state(time, state);
+  directory_->show();
+}
+
+void RunResult::note(const StepInfo& step) {
+  const std::lock_guard lock(writing_);
+  running_["steps"] = step.step;
+  running_["time"] = step.time;
+  running_["progress"] = step.progress;
+  if (seconds_since(written_) < kWriteEvery) return;
+  const double elapsed = seconds_since(started_);
+  running_["seconds_left"] = step.progress > 0 ? elapsed * (1 - step.progress) / step.progress : 0;
+  write(running_);
+  files_.synchronise();
+  written_ = Clock::now();
+}
+
+void RunResult::finish(const nlohmann::ordered_json& summary) {
+  const std::lock_guard lock(writing_);
+  write(summary);
+  directory_->show();
+  files_.synchronise();
+}
+
+void RunResult::end(RunStatus status, const std::string& why) noexcept {
+  try {
+    running_["status"] = status_name(status);
+    running_["message"] = why;
+    running_.erase("seconds_left");
+    directory_->keep();
+    if (directory_->shown()) write(running_);
+  } catch (const std::exception&) {  // the summary stays as it was: "running"
+  }
+}
+
+bool RunResult::abandon() noexcept {
+  try {
+    const std::unique_lock lock(writing_, kPatience);
+    if (!lock) return shown();
+    const bool saved = shown();
+    end(RunStatus::interrupted, "interrupted within a step");
+    directory_.reset();
+    return saved;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace fascia::app

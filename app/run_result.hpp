@@ -1,0 +1,51 @@
+#pragma once
+
+#include "app/results.hpp"
+#include "core/solver/clock.hpp"
+#include "io/result_directory.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+namespace fascia::app {
+
+/// The result of a run, in its directory as it arises: states and rows when they are saved, summary.json with the
+/// status "running" once a second. A run that dies leaves what it had saved.
+class RunResult {
+ public:
+  /// @throws FileError  of ResultDirectory
+  explicit RunResult(const Simulation& simulation);
+
+  /// As of ResultFiles.
+  void add_probes(double time, const Snapshot& at);
+  void add_state(double time, const State& state);
+  const std::vector<double>& last_values(std::size_t probe) const { return files_.last_values(probe); }
+  double seconds() const { return files_.seconds(); }
+
+  /// Says how far the run is, once a second.
+  void note(const StepInfo& step);
+  /// The summary of a run that came to its end, with whatever status. @throws FileError
+  void finish(const nlohmann::ordered_json& summary);
+  /// The summary of one that an error ended: what was saved stays. Nothing else can be done about further errors.
+  void end(RunStatus status, const std::string& why) noexcept;
+  /// The same of one that is abandoned, from another thread: the directory is left to itself.
+  /// @return whether something that was saved is in it
+  bool abandon() noexcept;
+
+  const std::filesystem::path& path() const { return directory_->path(); }
+  bool shown() const { return directory_->shown(); }
+
+ private:
+  void write(const nlohmann::ordered_json& summary) const;
+
+  std::optional<io::ResultDirectory> directory_;
+  ResultFiles files_;
+  nlohmann::ordered_json running_;  ///< summary.json as it stands
+  Clock::time_point started_, written_;
+  std::timed_mutex writing_;  ///< held while files change
+};
+
+}  // namespace fascia::app

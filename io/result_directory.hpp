@@ -1,0 +1,49 @@
+#pragma once
+
+#include "io/directory_lock.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fascia::io {
+
+/// What the files of a result are called after.
+struct ResultNames {
+  std::string stem;                 ///< of the scene's file: NAME.pvd, NAME.png
+  std::vector<std::string> bodies;  ///< BODY_00000.vtu
+};
+
+/// A directory of results, which a run fills as they arise. The files of an older result are set aside, in the
+/// directory, until the new one can be shown; they come back where it never can, also after a process that was killed,
+/// with the next run there. Files that belong to no result stay where they are.
+class ResultDirectory {
+ public:
+  /// Makes the directory, locks it, sets the older result aside.
+  /// @throws FileError  where it cannot be made or locked, or where `target` exists and is no result of this program
+  ///                    (a directory that is empty or holds a summary.json with a "fascia" key is), or holds a foreign
+  ///                    file of a name that this result needs
+  ResultDirectory(const std::filesystem::path& target, const ResultNames& names);
+  /// Unless it was shown or kept, the new result goes and the older one comes back.
+  ~ResultDirectory();
+  ResultDirectory(const ResultDirectory&) = delete;
+  ResultDirectory& operator=(const ResultDirectory&) = delete;
+
+  const std::filesystem::path& path() const { return target_; }
+  /// What was written can be opened: the older result goes.
+  void show();
+  /// What was written stays where there is no older result that could come back.
+  void keep();
+  bool shown() const { return shown_; }
+
+ private:
+  void prepare(const ResultNames& names);
+
+  std::filesystem::path target_;
+  bool made_ = false;   ///< the directory is new
+  bool shown_ = false;  ///< what is in it stays
+  std::optional<DirectoryLock> lock_;
+};
+
+}  // namespace fascia::io
