@@ -77,6 +77,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
 }
 
 void replace_file(const fs::path& path, std::string_view bytes) {
+  if (path.has_parent_path()) make_directories(path.parent_path());
   const fs::path part = part_of(path);
   if (const int error = write_whole(part, bytes); error != 0) fail_write(path, error);
   if (std::rename(part.c_str(), path.c_str()) == 0) return;
