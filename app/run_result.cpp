@@ -20,8 +20,8 @@ io::ResultNames names_of(const Simulation& s) {
 }  // namespace
 
 RunResult::RunResult(const Simulation& simulation)
-    : directory_(std::in_place, simulation.scene.output.directory, names_of(simulation)),
-      files_(simulation, directory_->path(), simulation.scene.path.stem().string()),
+    : directory_(simulation.scene.output.directory, names_of(simulation)),
+      files_(simulation, directory_.path(), simulation.scene.path.stem().string()),
       running_(running_summary(simulation)),
       started_(Clock::now()),
       written_(started_) {
@@ -30,7 +30,7 @@ RunResult::RunResult(const Simulation& simulation)
 }
 
 void RunResult::write(const nlohmann::ordered_json& summary) const {
-  io::replace_file(directory_->path() / "summary.json", summary.dump(2) + "\n");
+  io::replace_file(directory_.path() / "summary.json", summary.dump(2) + "\n");
 }
 
 void RunResult::add_probes(double time, const Snapshot& at) {
@@ -41,7 +41,7 @@ void RunResult::add_probes(double time, const Snapshot& at) {
 void RunResult::add_state(double time, const State& state) {
   const std::lock_guard lock(writing_);
   files_.add_state(time, state);
-  directory_->show();
+  directory_.show();
 }
 
 void RunResult::note(const StepInfo& step) {
@@ -60,7 +60,7 @@ void RunResult::note(const StepInfo& step) {
 void RunResult::finish(const nlohmann::ordered_json& summary) {
   const std::lock_guard lock(writing_);
   write(summary);
-  directory_->show();
+  directory_.show();
   files_.synchronise();
 }
 
@@ -69,19 +69,20 @@ void RunResult::end(RunStatus status, const std::string& why) noexcept {
     running_["status"] = status_name(status);
     running_["message"] = why;
     running_.erase("seconds_left");
-    directory_->keep();
-    if (directory_->shown()) write(running_);
+    directory_.keep();
+    if (directory_.shown()) write(running_);
   } catch (const std::exception&) {  // the summary stays as it was: "running"
   }
 }
 
 bool RunResult::abandon() noexcept {
   try {
-    const std::unique_lock lock(writing_, kPatience);
+    std::unique_lock lock(writing_, kPatience);
     if (!lock) return shown();
     const bool saved = shown();
     end(RunStatus::interrupted, "interrupted within a step");
-    directory_.reset();
+    directory_.leave();
+    lock.release();  // for good: the run, which goes on until the process ends, writes nothing more
     return saved;
   } catch (const std::exception&) {
     return false;

@@ -35,13 +35,13 @@ class RunResult {
   /// @return whether something that was saved is in it
   bool abandon() noexcept;
 
-  const std::filesystem::path& path() const { return directory_->path(); }
-  bool shown() const { return directory_->shown(); }
+  const std::filesystem::path& path() const { return directory_.path(); }
+  bool shown() const { return directory_.shown(); }
 
  private:
   void write(const nlohmann::ordered_json& summary) const;
 
-  std::optional<io::ResultDirectory> directory_;
+  io::ResultDirectory directory_;
   ResultFiles files_;
   nlohmann::ordered_json running_;  ///< summary.json as it stands
   Clock::time_point started_, written_;

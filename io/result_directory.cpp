@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <fstream>
 #include <system_error>
 
@@ -184,14 +185,20 @@ void ResultDirectory::keep() {
   if (!there_is(target_ / kOlder)) shown_ = true;
 }
 
-ResultDirectory::~ResultDirectory() {
-  std::error_code ignored;
-  if (!shown_ && there_is(target_ / kOlder))
-    restore(target_);
-  else if (!shown_)
-    remove_result(target_);
-  lock_.reset();
-  if (!shown_ && made_) fs::remove(target_, ignored);
+ResultDirectory::~ResultDirectory() { leave(); }
+
+void ResultDirectory::leave() noexcept {
+  if (!lock_) return;
+  try {
+    if (!shown_ && there_is(target_ / kOlder))
+      restore(target_);
+    else if (!shown_)
+      remove_result(target_);
+    lock_.reset();
+    std::error_code ignored;
+    if (!shown_ && made_) fs::remove(target_, ignored);
+  } catch (const std::exception&) {  // no memory: the next run there sees to it
+  }
 }
 
 }  // namespace fascia::io

@@ -25,7 +25,6 @@ class ResultDirectory {
   ///                    (a directory that is empty or holds a summary.json with a "fascia" key is), or holds a foreign
   ///                    file of a name that this result needs
   ResultDirectory(const std::filesystem::path& target, const ResultNames& names);
-  /// Unless it was shown or kept, the new result goes and the older one comes back.
   ~ResultDirectory();
   ResultDirectory(const ResultDirectory&) = delete;
   ResultDirectory& operator=(const ResultDirectory&) = delete;
@@ -36,6 +35,8 @@ class ResultDirectory {
   /// What was written stays where there is no older result that could come back.
   void keep();
   bool shown() const { return shown_; }
+  /// Gives the directory free. Unless it was shown or kept, the new result goes and the older one comes back.
+  void leave() noexcept;
 
  private:
   void prepare(const ResultNames& names);
