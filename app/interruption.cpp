@@ -10,6 +10,12 @@ namespace fascia::app {
 namespace {
 
 constexpr long kPatience = 700'000'000;  // [ns]
+constexpr time_t kForResults = 6;        // to leave results in order [s]
+
+std::atomic<pthread_t> watcher_of_all{};
+
+/// On a thread that is older than main, which libraries may start: passes the signal on.
+void pass_on(int signal) { pthread_kill(watcher_of_all, signal); }
 
 bool is_ignored(int signal) {
   struct sigaction action {};
@@ -25,9 +31,17 @@ Interruption::Interruption() {
   if (!is_ignored(SIGHUP)) sigaddset(&signals_, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals_, &before_);
   watcher_ = std::thread([this] { watch(); });
+  watcher_of_all = watcher_.native_handle();
+  struct sigaction action {};
+  action.sa_handler = pass_on;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (sigismember(&signals_, signal) == 1) sigaction(signal, &action, nullptr);
 }
 
 Interruption::~Interruption() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (sigismember(&signals_, signal) == 1) std::signal(signal, SIG_DFL);
   over_ = true;
   pthread_kill(watcher_.native_handle(), SIGINT);
   watcher_.join();
@@ -55,9 +69,15 @@ void Interruption::watch() {
     if (over_) return;
     if (second > 0) _exit(128 + second);
   } while (noticed_ || errno == EINTR);
-  const std::lock_guard lock(mutex_);
-  if (abandon_) abandon_();
-  _exit(128 + first);
+  // On another thread, so that a second signal, or a disk that does not answer, ends the process all the same.
+  std::thread([this, first] {
+    const std::lock_guard lock(mutex_);
+    if (abandon_) abandon_();
+    _exit(128 + first);
+  }).detach();
+  const timespec rest{kForResults, 0};
+  const int second = sigtimedwait(&signals_, nullptr, &rest);
+  _exit(128 + (second > 0 ? second : first));
 }
 
 }  // namespace fascia::app

@@ -36,6 +36,7 @@ void RunResult::write(const nlohmann::ordered_json& summary) const {
 void RunResult::add_probes(double time, const Snapshot& at) {
   const std::lock_guard lock(writing_);
   files_.add_probes(time, at);
+  has_rows_ = true;
 }
 
 void RunResult::add_state(double time, const State& state) {
@@ -60,16 +61,23 @@ void RunResult::note(const StepInfo& step) {
 void RunResult::finish(const nlohmann::ordered_json& summary) {
   const std::lock_guard lock(writing_);
   write(summary);
-  directory_.show();
+  finished_ = true;
+  directory_.keep();
   files_.synchronise();
 }
 
 void RunResult::end(RunStatus status, const std::string& why) noexcept {
+  const std::lock_guard lock(writing_);
+  end_unlocked(status, why);
+}
+
+void RunResult::end_unlocked(RunStatus status, const std::string& why) noexcept {
+  if (finished_) return;
   try {
     running_["status"] = status_name(status);
     running_["message"] = why;
     running_.erase("seconds_left");
-    directory_.keep();
+    if (has_rows_) directory_.keep();
     if (directory_.shown()) write(running_);
   } catch (const std::exception&) {  // the summary stays as it was: "running"
   }
@@ -80,7 +88,8 @@ bool RunResult::abandon() noexcept {
     std::unique_lock lock(writing_, kPatience);
     if (!lock) return shown();
     const bool saved = shown();
-    end(RunStatus::interrupted, "interrupted within a step");
+    if (!finished_) directory_.keep();
+    end_unlocked(RunStatus::interrupted, "interrupted within a step");
     directory_.leave();
     lock.release();  // for good: the run, which goes on until the process ends, writes nothing more
     return saved;

@@ -29,7 +29,8 @@ class RunResult {
   void note(const StepInfo& step);
   /// The summary of a run that came to its end, with whatever status. @throws FileError
   void finish(const nlohmann::ordered_json& summary);
-  /// The summary of one that an error ended: what was saved stays. Nothing else can be done about further errors.
+  /// The summary of one that an error ended: what was saved stays, rows too where no older result comes back. Nothing
+  /// else can be done about further errors. After finish() it does nothing.
   void end(RunStatus status, const std::string& why) noexcept;
   /// The same of one that is abandoned, from another thread: the directory is left to itself.
   /// @return whether something that was saved is in it
@@ -40,11 +41,13 @@ class RunResult {
 
  private:
   void write(const nlohmann::ordered_json& summary) const;
+  void end_unlocked(RunStatus status, const std::string& why) noexcept;
 
   io::ResultDirectory directory_;
   ResultFiles files_;
   nlohmann::ordered_json running_;  ///< summary.json as it stands
   Clock::time_point started_, written_;
+  bool has_rows_ = false, finished_ = false;
   std::timed_mutex writing_;  ///< held while files change
 };
 

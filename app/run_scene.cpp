@@ -282,13 +282,23 @@ std::string kept(const Simulation& s, bool saved) {
   return saved ? fmt::format("; {} holds what was saved before", s.scene.output.directory.string()) : "";
 }
 
+/// Writes the summary; where that cannot be done, the one of a run that ended early.
+void finish(const Simulation& s, RunResult& files, const nlohmann::ordered_json& summary) {
+  try {
+    files.finish(summary);
+  } catch (const std::exception& e) {
+    files.end(RunStatus::interrupted, e.what());
+    if (files.shown()) say("{}: its end could not be written{}\n", s.scene.path.string(), kept(s, true));
+    throw;
+  }
+}
+
 /// The run. What was saved before an error stays, with a summary that tells it.
 Outcome computed(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
                  Interruption& stop) {
   const auto fail = [&](RunStatus status, const std::exception& e) {
-    if (!files.shown()) return;
     files.end(status, e.what());
-    say("{}: it ended early{}\n", options.scene.string(), kept(s, true));
+    if (files.shown()) say("{}: it ended early{}\n", options.scene.string(), kept(s, true));
   };
   try {
     return s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files)
@@ -319,7 +329,6 @@ int run_scene(const RunOptions& options) {
   const double setup = seconds_since(start);
   Outcome out = computed(s, backend, pool, files, options, stop);
   out.times.setup += setup;
-  if (s.scene.output.picture) make_picture(s, files.path(), s.scene.path.stem().string());
   s.warnings.insert(s.warnings.end(), out.told.begin(), out.told.end());
   for (const std::string& w : out.warnings) {
     say("{}: warning: {}\n", options.scene.string(), w);
@@ -327,7 +336,9 @@ int run_scene(const RunOptions& options) {
   }
   const nlohmann::ordered_json j = summary(s, out.backend, out.gpus, out.run, out.times, pool.size(), out.probes,
                                            out.stabilization, out.fluids, out.couplings);
-  files.finish(j);
+  finish(s, files, j);
+  if (s.scene.output.picture && out.run.status != RunStatus::interrupted)
+    make_picture(s, files.path(), s.scene.path.stem().string());
   if (options.json)
     fmt::print("{}\n", j.dump(2));
   else if (!options.quiet)

@@ -5,12 +5,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <string>
 
 namespace fascia::io {
@@ -41,10 +43,15 @@ Holder holder(int descriptor) {
 bool DirectoryLock::open_file() {
   descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail_write(directory_, errno);
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    const bool held = errno == EWOULDBLOCK;
     const Holder other = holder(descriptor_);
-    refuse(fmt::format("another run writes its result there{}; wait for its end, or choose another directory",
-                       other.pid.empty() ? "" : fmt::format(" (process {} on {})", other.pid, other.host)));
+    // Some file systems know no locks: there the process that is named tells.
+    const int process = std::atoi(other.pid.c_str());
+    const bool lives = process > 0 && process != getpid() && other.host == host() && kill(process, 0) == 0;
+    if (held || lives)
+      refuse(fmt::format("another run writes its result there{}; wait for its end, or choose another directory",
+                         other.pid.empty() ? "" : fmt::format(" (process {} on {})", other.pid, other.host)));
   }
   struct stat opened {
   }, named{};

@@ -33,6 +33,7 @@ GrowingFile::GrowingFile(std::filesystem::path path, std::string_view beginning,
     append(beginning);
   } catch (...) {
     close(descriptor_);
+    unlink(path_.c_str());
     throw;
   }
 }
@@ -45,8 +46,9 @@ void GrowingFile::append(std::string_view piece) {
     size_ += static_cast<off_t>(piece.size());
     return;
   }
-  // The old end fits where it was.
-  const bool restored = ftruncate(descriptor_, size_) == 0 && write_at(descriptor_, end_, size_) == 0;
+  // The old end fits where it was, as long as nothing there is given back to the disk.
+  const bool restored =
+      write_at(descriptor_, end_, size_) == 0 && ftruncate(descriptor_, size_ + static_cast<off_t>(end_.size())) == 0;
   static_cast<void>(restored);
   fail_write(path_, error);
 }

@@ -3,6 +3,7 @@
 #include "core/model/errors.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -148,8 +149,11 @@ std::string read_all(int pipe) {
   }
 }
 
-/// No output, no core file, no endless loop.
+/// No output, no core file, no endless loop, no signal that waits for the parent's threads.
 void confine() {
+  sigset_t none_blocked;
+  sigemptyset(&none_blocked);
+  sigprocmask(SIG_SETMASK, &none_blocked, nullptr);
   const int nowhere = open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
   const rlimit none{0, 0}, seconds{600, 600};

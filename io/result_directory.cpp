@@ -30,7 +30,12 @@ bool there_is(const fs::path& path) {
 std::optional<ResultNames> names_of_result(const fs::path& directory) {
   std::ifstream stream(directory / kSummary, std::ios::binary);
   if (!stream) return std::nullopt;
-  const nlohmann::json summary = nlohmann::json::parse(stream, nullptr, false);
+  nlohmann::json summary;
+  try {
+    summary = nlohmann::json::parse(stream, nullptr, false);
+  } catch (const std::ios_base::failure&) {  // a directory of that name
+    return std::nullopt;
+  }
   if (!summary.is_object() || !summary.contains("fascia")) return std::nullopt;
   ResultNames names;
   if (summary.contains("scene") && summary["scene"].is_string())
@@ -106,11 +111,24 @@ void restore(const fs::path& directory) {
   fs::remove(older, ignored);
 }
 
+/// What a process that was killed left, and belongs to nothing.
+bool is_left_over(const std::string& file) { return file == part_of(kSummary).string() || file.starts_with(kOutdated); }
+
+void remove_left_over(const fs::path& directory) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(directory, ignored), end; !ignored && it != end; it.increment(ignored))
+    if (is_left_over(it->path().filename().string())) files.push_back(it->path());
+  for (const fs::path& file : files) fs::remove_all(file, ignored);
+}
+
 /// True where nothing but what this program keeps there for itself is in a directory.
 bool holds_nothing(const fs::path& directory) {
   std::error_code error;
-  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
-    if (it->path().filename() != DirectoryLock::kName) return false;
+  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error)) {
+    const std::string file = it->path().filename().string();
+    if (file != DirectoryLock::kName && !is_left_over(file)) return false;
+  }
   if (error)
     throw FileError(directory.string() + ": cannot be read: " + error.message() +
                     "; remove it or choose another directory");
@@ -160,8 +178,7 @@ ResultDirectory::ResultDirectory(const fs::path& target, const ResultNames& name
 }
 
 void ResultDirectory::prepare(const ResultNames& names) {
-  std::error_code ignored;
-  fs::remove_all(target_ / kOutdated, ignored);
+  remove_left_over(target_);
   if (there_is(target_ / kOlder)) restore(target_);  // of a process that was killed before it had anything to show
   check_replaceable(target_);                        // again: another run may have filled it meanwhile
   if (const std::optional<ResultNames> older = names_of_result(target_)) set_aside(target_, *older);
@@ -173,12 +190,16 @@ void ResultDirectory::prepare(const ResultNames& names) {
 
 void ResultDirectory::show() {
   if (shown_) return;
+  if (there_is(target_ / kOlder)) {
+    fs::path outdated;  // what could not be removed of another one may be there still
+    for (int k = 0; outdated.empty() || there_is(outdated); ++k)
+      outdated = target_ / (kOutdated + ("-" + std::to_string(k)));
+    std::error_code error;
+    fs::rename(target_ / kOlder, outdated, error);
+    if (error) fail_write(outdated, error.value());
+    fs::remove_all(outdated, error);  // what cannot be removed now goes with the next result
+  }
   shown_ = true;
-  if (!there_is(target_ / kOlder)) return;
-  std::error_code error;
-  fs::rename(target_ / kOlder, target_ / kOutdated, error);
-  if (error) fail_write(target_ / kOutdated, error.value());
-  fs::remove_all(target_ / kOutdated, error);  // what cannot be removed now goes with the next result
 }
 
 void ResultDirectory::keep() {
