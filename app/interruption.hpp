@@ -20,10 +20,10 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// Whether the run is to end; the caller then does so in its own time.
+  /// True when the run is to end; the caller then does so in its own time.
   bool requested();
   int signal() const { return signal_; }  ///< its number, 0: none
-  /// What leaves the results in order, on another thread than the run's; empty: nothing is to be done.
+  /// Sets what leaves the results in order, on another thread than the run's; empty: nothing is to be done.
   void on_abandon(std::function<void()> abandon);
 
  private:

@@ -46,16 +46,22 @@ void RunResult::add_state(double time, const State& state) {
 }
 
 void RunResult::note(const StepInfo& step) {
-  const std::lock_guard lock(writing_);
-  running_["steps"] = step.step;
-  running_["time"] = step.time;
-  running_["progress"] = step.progress;
+  steps_ = step.step;
+  time_ = step.time;
+  progress_ = step.progress;
   if (seconds_since(written_) < kWriteEvery) return;
-  const double elapsed = seconds_since(started_);
-  running_["seconds_left"] = step.progress > 0 ? elapsed * (1 - step.progress) / step.progress : 0;
+  const std::lock_guard lock(writing_);
+  tell_progress();
+  running_["seconds_left"] = step.progress > 0 ? seconds_since(started_) * (1 - step.progress) / step.progress : 0;
   write(running_);
   files_.synchronise();
   written_ = Clock::now();
+}
+
+void RunResult::tell_progress() {
+  running_["steps"] = steps_.load();
+  running_["time"] = time_.load();
+  running_["progress"] = progress_.load();
 }
 
 void RunResult::finish(const nlohmann::ordered_json& summary) {
@@ -76,6 +82,7 @@ void RunResult::end_unlocked(RunStatus status, const std::string& why) noexcept 
   try {
     running_["status"] = status_name(status);
     running_["message"] = why;
+    tell_progress();
     running_.erase("seconds_left");
     if (has_rows_) directory_.keep();
     if (directory_.shown()) write(running_);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <atomic>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -19,7 +20,7 @@ class RunResult {
   /// @throws FileError  of ResultDirectory
   explicit RunResult(const Simulation& simulation);
 
-  /// As of ResultFiles.
+  /// These do what those of ResultFiles do.
   void add_probes(double time, const Snapshot& at);
   void add_state(double time, const State& state);
   const std::vector<double>& last_values(std::size_t probe) const { return files_.last_values(probe); }
@@ -32,7 +33,7 @@ class RunResult {
   /// The summary of one that an error ended: what was saved stays, rows too where no older result comes back. Nothing
   /// else can be done about further errors. After finish() it does nothing.
   void end(RunStatus status, const std::string& why) noexcept;
-  /// The same of one that is abandoned, from another thread: the directory is left to itself.
+  /// Ends one that is abandoned, from another thread: the directory is left to itself.
   /// @return whether something that was saved is in it
   bool abandon() noexcept;
 
@@ -41,6 +42,7 @@ class RunResult {
 
  private:
   void write(const nlohmann::ordered_json& summary) const;
+  void tell_progress();
   void end_unlocked(RunStatus status, const std::string& why) noexcept;
 
   io::ResultDirectory directory_;
@@ -48,6 +50,8 @@ class RunResult {
   nlohmann::ordered_json running_;  ///< summary.json as it stands
   Clock::time_point started_, written_;
   bool has_rows_ = false, finished_ = false;
+  std::atomic<int> steps_{0};  ///< so far
+  std::atomic<double> time_{0}, progress_{0};
   std::timed_mutex writing_;  ///< held while files change
 };
 

@@ -262,14 +262,15 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
   return out;
 }
 
-void print_summary(const nlohmann::ordered_json& j, const std::filesystem::path& directory) {
+/// @param shown  there is a new result; else there was nothing to show and the older one came back
+void print_summary(const nlohmann::ordered_json& j, const std::filesystem::path& directory, bool shown) {
   fmt::print("{}: {} unknowns, {} steps, {} Newton iterations, {:.2f} s\n", j["status"].get<std::string>(),
              j["dofs"].get<int>(), j["steps"].get<int>(), j["newton_iterations"].get<int>(),
              j["seconds"]["solve"].get<double>());
   for (const auto& [name, probe] : j["probes"].items())
     fmt::print("  {} ({}): {} {}\n", name, probe["quantity"].get<std::string>(), probe["value"].dump(),
                probe["unit"].get<std::string>());
-  fmt::print("results in {}\n", directory.string());
+  fmt::print(shown ? "results in {}\n" : "no new results: {} is as it was\n", directory.string());
 }
 
 int exit_status(RunStatus status, int signal) {
@@ -277,7 +278,7 @@ int exit_status(RunStatus status, int signal) {
   return status == RunStatus::converged ? kDone : kNotConverged;
 }
 
-/// What an error, or a signal, leaves of a result.
+/// Says where an error, or a signal, leaves a result.
 std::string kept(const Simulation& s, bool saved) {
   return saved ? fmt::format("; {} holds what was saved before", s.scene.output.directory.string()) : "";
 }
@@ -342,7 +343,7 @@ int run_scene(const RunOptions& options) {
   if (options.json)
     fmt::print("{}\n", j.dump(2));
   else if (!options.quiet)
-    print_summary(j, s.scene.output.directory);
+    print_summary(j, s.scene.output.directory, files.shown());
   if (out.run.status != RunStatus::converged) say("{}: {}\n", options.scene.string(), out.run.message);
   if (out.run.steps_at_limit > 0 && !out.failed) return kDone;  // as asked for
   return exit_status(out.run.status, stop.signal());

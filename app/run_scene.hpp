@@ -17,7 +17,7 @@ struct RunOptions {
   bool quiet = false, json = false, verbose = false;
 };
 
-/// What the program returns; of a run that a signal ended it is 128 + the signal.
+/// The program returns these; of a run that a signal ended it returns 128 + the signal.
 enum ExitStatus { kDone = 0, kWrongInput = 2, kNotConverged = 3, kFileProblem = 4, kNoBackend = 5 };
 
 /// A backend that is not there. Exit status 5.

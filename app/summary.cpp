@@ -42,7 +42,7 @@ nlohmann::ordered_json bodies_of(const Simulation& s) {
   return bodies;
 }
 
-/// What every summary begins with.
+/// Every summary begins with this.
 nlohmann::ordered_json summary_head(const Simulation& s, const std::string& status, const std::string& message) {
   nlohmann::ordered_json j;
   j["fascia"] = FASCIA_VERSION;

@@ -22,7 +22,7 @@ std::string read_file(const std::filesystem::path& path);
 /// @throws FileError  where it cannot be written in whole; what was written is removed
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// The same, so that the file is the old one or the new one at any moment: through a hidden file beside it.
+/// Writes a whole file so that it is the old one or the new one at any moment: through a hidden file beside it.
 void replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// That hidden file.

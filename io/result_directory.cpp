@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Where an older result waits, inside of the directory.
 constexpr const char* kOlder = ".fascia.older";
-/// The same once the new one is shown: it only waits to be removed.
+/// It moves here once the new one is shown, and only waits to be removed.
 constexpr const char* kOutdated = ".fascia.outdated";
 constexpr const char* kSummary = "summary.json";
 
@@ -26,7 +26,7 @@ bool there_is(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// What a result of this program in a directory calls its files, as its summary.json says.
+/// The names of a result of this program in a directory, as its summary.json says.
 std::optional<ResultNames> names_of_result(const fs::path& directory) {
   std::ifstream stream(directory / kSummary, std::ios::binary);
   if (!stream) return std::nullopt;
@@ -111,7 +111,7 @@ void restore(const fs::path& directory) {
   fs::remove(older, ignored);
 }
 
-/// What a process that was killed left, and belongs to nothing.
+/// True of files that a process that was killed left, and that belong to nothing.
 bool is_left_over(const std::string& file) { return file == part_of(kSummary).string() || file.starts_with(kOutdated); }
 
 void remove_left_over(const fs::path& directory) {

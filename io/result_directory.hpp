@@ -9,7 +9,7 @@
 
 namespace fascia::io {
 
-/// What the files of a result are called after.
+/// The files of a result are called after these.
 struct ResultNames {
   std::string stem;                 ///< of the scene's file: NAME.pvd, NAME.png
   std::vector<std::string> bodies;  ///< BODY_00000.vtu
@@ -30,9 +30,9 @@ class ResultDirectory {
   ResultDirectory& operator=(const ResultDirectory&) = delete;
 
   const std::filesystem::path& path() const { return target_; }
-  /// What was written can be opened: the older result goes.
+  /// Says that the new result can be opened: the older one goes.
   void show();
-  /// What was written stays where there is no older result that could come back.
+  /// Lets the new result stay where there is no older one that could come back.
   void keep();
   bool shown() const { return shown_; }
   /// Gives the directory free. Unless it was shown or kept, the new result goes and the older one comes back.

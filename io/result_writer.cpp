@@ -179,7 +179,6 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);  // a tenth larger, in half of the time
   writer->WriteToOutputStringOn();
   if (writer->Write() == 0 || !errors.first().empty())
     throw FileError(fmt::format("{}: cannot be written: {}", file.string(), errors.first()));

@@ -2,6 +2,7 @@
 #include "app/bench/report.hpp"
 #include "app/scene/parse.hpp"
 #include "core/model/errors.hpp"
+#include "tests/support/cases.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -121,7 +122,7 @@ TEST(BenchCases, TableThreeIsThePaperThenGridsUpToTenMillionPoints) {
 TEST(BenchCases, TheSmallOnesHaveExactlyThePapersNumbers) {
   std::vector<BenchmarkCase> cases = of_setting(table2(), "paper");
   for (const BenchmarkCase& c : of_setting(table3(), "paper"))
-    if (c.size <= 1000) cases.push_back(c);
+    if (c.size <= (fascia::test::full_size() ? 2600 : 1000)) cases.push_back(c);
   for (const BenchmarkCase& c : cases) {
     const Benchmark one{"one", "", "", 10000, {c}};
     const BenchmarkResult result = time_benchmark(one, {}, {pretended("cpu", 1, 1)}, [](const std::string&) {});

@@ -21,7 +21,7 @@ TEST(ThreadPool, TakesEachChunkOnce) {
   }
 }
 
-/// As under taskset, or in a batch job that gives a process one core of a machine.
+/// This is the case under taskset, and in a batch job that gives a process one core of a machine.
 TEST(ThreadPool, UsesTheProcessorsThatTheProcessMayRunOn) {
   cpu_set_t before, one;
   ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);

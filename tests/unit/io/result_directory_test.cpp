@@ -39,7 +39,7 @@ void make_result(const fs::path& target, const std::string& text) {
   result.show();
 }
 
-/// What a process does, and dies.
+/// A process does this, and dies.
 void in_a_process_that_dies(const std::function<void()>& work) {
   const pid_t child = fork();
   if (child == 0) {

@@ -1,8 +1,7 @@
 #include "io/result_writer.hpp"
 
-#include "io/files.hpp"
-
 #include "core/geometry/primitives.hpp"
+#include "io/files.hpp"
 #include "io/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 

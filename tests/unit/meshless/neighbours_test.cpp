@@ -99,7 +99,10 @@ TEST(BlockSearch, FindsTheNearestOfAll) {
       for (int k = 0; k < 500; ++k) {
         Vec3d x{{uniform(random), uniform(random), uniform(random)}};
         if (k % 3 == 0) x = {{std::round(2 * x[0]) / 2, std::round(2 * x[1]) / 2, std::round(2 * x[2]) / 2}};
-        EXPECT_EQ(search.nearest(x * unit), grid.nearest(x * unit, INFINITY, [](int) { return true; }));
+        const int found = search.nearest(x * unit);
+        EXPECT_EQ(found, grid.nearest(x * unit, INFINITY, [](int) { return true; }));
+        for (const Vec3d& p : points)
+          EXPECT_LE(squared_norm(points[at(found)] - x * unit), squared_norm(p - x * unit) * (1 + 2 * kTie));
       }
     }
   EXPECT_EQ(BlockSearch({}, 1).nearest({}), -1);
