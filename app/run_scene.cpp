@@ -270,7 +270,10 @@ void print_summary(const nlohmann::ordered_json& j, const std::filesystem::path&
   for (const auto& [name, probe] : j["probes"].items())
     fmt::print("  {} ({}): {} {}\n", name, probe["quantity"].get<std::string>(), probe["value"].dump(),
                probe["unit"].get<std::string>());
-  fmt::print(shown ? "results in {}\n" : "no new results: {} is as it was\n", directory.string());
+  if (shown)
+    fmt::print("results in {}\n", directory.string());
+  else
+    fmt::print("no new results: {} is as it was\n", directory.string());
 }
 
 int exit_status(RunStatus status, int signal) {
