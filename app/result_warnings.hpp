@@ -24,6 +24,7 @@ class SnapWatch {
 };
 
 /// What a user must know of a result that converged; a run with steps above the tolerance counts as not converged.
-void add_result_warnings(const Simulation& simulation, const State& end, RunReport& run, Warnings& warnings);
+void add_result_warnings(const Simulation& simulation, const State& end, RunReport& run,
+                         std::vector<std::string>& warnings);
 
 }  // namespace fascia::app

@@ -4,7 +4,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 class vtkDataSet;
 
@@ -13,10 +12,8 @@ namespace fascia::io {
 /// Vertices and faces of a Wavefront OBJ file, in the file's numbering. (VTK's own reader leaves out faces that mix
 /// notations and numbers the vertices anew where texture coordinates differ.)
 ///
-/// @param name      the file's name, for messages
-/// @param messages  receives what was mended
+/// @param name  the file's name, for messages
 /// @throws InputError  "NAME:LINE: what is wrong; remedy"
-vtkSmartPointer<vtkDataSet> parse_obj(std::string_view text, const std::string& name,
-                                      std::vector<std::string>& messages);
+vtkSmartPointer<vtkDataSet> parse_obj(std::string_view text, const std::string& name);
 
 }  // namespace fascia::io

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/bench/benchmark.hpp"
-#include "app/machine.hpp"
+#include "app/bench/machine.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
