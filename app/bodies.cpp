@@ -2,6 +2,7 @@
 
 #include "app/carried_surface.hpp"
 #include "app/domains.hpp"
+#include "app/read_files.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/shell_meshes.hpp"
@@ -89,11 +90,11 @@ std::vector<Vec3d> before_placement(const MatterParts& parts, std::vector<Vec3d>
 }
 
 template <class Choice>
-SampleChoice sample_choice(const Choice& choice, const MatterParts& parts) {
+SampleChoice sample_choice(const Choice& choice, const MatterParts& parts, const Place& place) {
   if (const auto* spaced = std::get_if<SpacedSamples>(&choice)) return SpacedChoice{spaced->spacing, spaced->seed};
   if (const auto* counted = std::get_if<CountedSamples>(&choice)) return CountedChoice{counted->count, counted->seed};
   if (const auto* file = std::get_if<SampleFile>(&choice)) {
-    io::PointTable table = io::read_point_table(file->path);
+    io::PointTable table = read_for(place, [&] { return io::read_point_table(file->path); });
     return ListedChoice{before_placement(parts, std::move(table.position)), table.rotation, table.volume};
   }
   return {};
@@ -102,7 +103,7 @@ SampleChoice sample_choice(const Choice& choice, const MatterParts& parts) {
 SampleChoice frame_choice(const Body& body, const MatterParts& parts) {
   if (const auto* listed = std::get_if<ListedFrames>(&body.frames))
     return ListedChoice{before_placement(parts, listed->positions), listed->rotations, {}};
-  return sample_choice(body.frames, parts);
+  return sample_choice(body.frames, parts, body.frames_place);
 }
 
 ScatteredKind scattered_kind(WeightKind kind) {
@@ -150,7 +151,7 @@ void describe_thin_grid(const Body& body, const MatterParts& parts, const BodyBu
   if (const auto* cell = std::get_if<PerCell>(&body.points))
     thin.per_cell = cell->count;
   else
-    thin.points = sample_choice(body.points, parts);
+    thin.points = sample_choice(body.points, parts, body.points_place);
   grid_cloud(thin, spec);
 }
 
@@ -216,7 +217,7 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build) {
     } else {
       ScatterSpec scatter{parts,
                           frame_choice(body, parts),
-                          sample_choice(body.points, parts),
+                          sample_choice(body.points, parts, body.points_place),
                           scattered_kind(body.weights),
                           body.neighbours,
                           body.support,

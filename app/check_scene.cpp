@@ -1,6 +1,9 @@
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
 #include "app/load_scene.hpp"
+#include "app/memory.hpp"
+#include "app/readable.hpp"
+#include "app/result_size.hpp"
 #include "app/run_scene.hpp"
 #include "app/solver_settings.hpp"
 
@@ -27,10 +30,13 @@ int check_scene(const RunOptions& options) {
   Simulation s = load_scene(options);
   const Backend backend = choose_backend(s);
   warn_of_backend(s, backend);
+  const ResultSize results = forecast_result(s);
+  warn_of_size(s, results);
   for (const SimulatedBody& b : s.bodies)
-    fmt::print("body {}: {}, {}, {}{}, {:.6g} m3, {:.6g} kg\n", b.name, describe(b),
+    fmt::print("body {}: {}, {}, {}{}, {:.6g} m3, {:.6g} kg ({})\n", b.name, describe(b),
                counted(at(b.body->node_count()), b.node_word()), counted(b.body->points().size(), "integration point"),
-               b.body->selective() ? " (lambda at one point a cell)" : "", b.body->volume(), b.body->mass());
+               b.body->selective() ? " (lambda at one point a cell)" : "", b.body->volume(), b.body->mass(),
+               body_text(*b.body));
   for (const SimulatedBody& b : s.bodies)
     if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
   for (const FluidOfBody& f : s.fluids)
@@ -52,7 +58,12 @@ int check_scene(const RunOptions& options) {
     if (s.stable_step > 0 && b.body->fastest_cell() > 0)
       fmt::print("body {}: {} {} limits the time step\n", b.name,
                  b.body->cells().type == CellType::triangle ? "triangle" : "element", b.body->fastest_cell());
-  fmt::print("memory: about {:.3g} MB\n", model_memory(s) / 1e6);
+  const RunMemory memory = run_memory(s, backend == Backend::cuda);
+  fmt::print("memory: about {:.3g} MB{}\n", memory.peak / 1e6,
+             memory.beyond > 1.05 * memory.peak
+                 ? fmt::format(", {:.3g} MB where the path passes a limit point", memory.beyond / 1e6)
+                 : "");
+  fmt::print("results: {}\n", results.text());
   if (backend == Backend::cuda) fmt::print("computed on the GPU\n");
   fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
              s.warnings.size() == 1 ? "" : "s");

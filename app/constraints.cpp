@@ -73,10 +73,9 @@ void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<i
     return found == held.end() || found->second.rotation.axis.size() < 3;
   };
   if (std::none_of(nodes.begin(), nodes.end(), turns)) return;
-  s.warnings.push_back(
-      fmt::format("{}: prescribes positions without rotations, which leaves the displacement between "
-                  "frames free (the force comes out too small); add \"rx\", \"ry\", \"rz\" to axes",
-                  c.place.key));
+  s.warnings.add("rotations", c.place,
+                 "prescribes positions without rotations, which leaves the displacement between frames free (the force "
+                 "comes out too small); add \"rx\", \"ry\", \"rz\" to axes");
 }
 
 /// A node that another body shares: what holds that body's material there, and what holds the node itself, must agree.

@@ -1,5 +1,6 @@
 #include "app/domains.hpp"
 
+#include "app/read_files.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "app/scene/schema.hpp"
@@ -277,7 +278,7 @@ MatterParts make_domain(const Body& body, std::vector<std::string>& messages) {
     parts.sheets.push_back(make_sheet(rectangle_mesh(*r, body, scale), body, parts));
   if (const auto* line = std::get_if<LineDomain>(&body.domain)) parts.lines.push_back(line_part(*line, body, scale));
   if (const auto* file = std::get_if<FileDomain>(&body.domain)) {
-    Mesh mesh = io::read_mesh(file->path);
+    Mesh mesh = read_for(file->place, [&] { return io::read_mesh(file->path); });
     const Vec3d c = local_origin(bounds_of(mesh.points));
     for (Vec3d& x : mesh.points) x -= c;
     parts.translation += parts.rotation * (c * scale);

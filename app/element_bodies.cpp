@@ -1,5 +1,6 @@
 #include "app/bodies.hpp"
 
+#include "app/read_files.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "core/math/rotation.hpp"
@@ -30,7 +31,8 @@ ElementMesh mesh_of(const Body& body) {
   const ElementFamily family =
       body.model == BodyModel::tetrahedra ? ElementFamily::tetrahedra : ElementFamily::hexahedra;
   if (const auto* file = std::get_if<FileDomain>(&body.domain))
-    return element_mesh(io::read_mesh(file->path, io::MidNodes::keep), family, body.order);
+    return element_mesh(read_for(file->place, [&] { return io::read_mesh(file->path, io::MidNodes::keep); }), family,
+                        body.order);
   const ElementKind kind{family, body.order, body.cells->split};
   if (const auto* box = std::get_if<BoxDomain>(&body.domain))
     return generate_box(box->min, box->max, cells_of<3>(body), kind);

@@ -23,13 +23,13 @@ RunReport broken_off(RunReport seen, const std::string& why) {
   return seen;
 }
 
-void warn(const Simulation& s, const std::string& text, std::vector<std::string>& warnings) {
-  say("{}: warning: {}\n", s.scene.path.string(), text);
-  warnings.push_back(text);
+void warn(const Simulation& s, const std::string& text, Warnings& warnings) {
+  warnings.add("backend", text);
+  warnings.tell(s.scene.path);
 }
 
 /// GPUs that share the run. @throws BackendError  fewer than were asked for
-std::vector<int> devices_of(const Simulation& s, std::vector<std::string>& warnings) {
+std::vector<int> devices_of(const Simulation& s, Warnings& warnings) {
   const Solver& solver = s.scene.solver;
   if (solver.gpus == 1) return {};
   std::string reason;
@@ -55,8 +55,7 @@ RunReport run_kind(const Simulation& s, State& state, const FactorFunction& fact
 }  // namespace
 
 std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors,
-                                 const SolverSettings& asked, std::vector<std::string>& warnings,
-                                 const gpu::DeviceObserver& observe,
+                                 const SolverSettings& asked, Warnings& warnings, const gpu::DeviceObserver& observe,
                                  const std::function<bool(const StepInfo&)>& observed) {
   const Solver& solver = s.scene.solver;
   const bool may_choose = solver.backend == "auto";

@@ -22,8 +22,7 @@ struct GpuRun {
 /// @param observed  of explicit dynamics, as in ExplicitSettings
 /// @throws BackendError  what is missing, where the GPU was asked for
 std::optional<GpuRun> run_on_gpu(const Simulation& simulation, State& state, const FactorFunction& factors,
-                                 const SolverSettings& settings, std::vector<std::string>& warnings,
-                                 const gpu::DeviceObserver& observe,
+                                 const SolverSettings& settings, Warnings& warnings, const gpu::DeviceObserver& observe,
                                  const std::function<bool(const StepInfo&)>& observed = {});
 
 }  // namespace fascia::app

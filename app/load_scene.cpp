@@ -1,10 +1,12 @@
 #include "app/load_scene.hpp"
 
 #include "app/backend.hpp"
-#include "app/messages.hpp"
+#include "app/plausible.hpp"
 #include "app/scene/parse.hpp"
 #include "app/solver_settings.hpp"
 #include "core/solver/mechanical_system.hpp"
+
+#include <fmt/format.h>
 
 namespace fascia::app {
 
@@ -13,7 +15,8 @@ Simulation load_scene(const RunOptions& options) {
   if (options.backend) overrides.push_back("solver.backend=" + *options.backend);
   if (options.threads) overrides.push_back(fmt::format("solver.threads={}", *options.threads));
   if (options.gpus) overrides.push_back(fmt::format("solver.gpus={}", *options.gpus));
-  Scene scene = parse_scene_file(options.scene, overrides);
+  Scene scene = options.text ? parse_scene_text(*options.text, options.scene, overrides)
+                             : parse_scene_file(options.scene, overrides);
   if (options.output) scene.output.directory = *options.output;
   Simulation s = build_simulation(std::move(scene));
   add_imperfection(s);
@@ -22,15 +25,16 @@ Simulation load_scene(const RunOptions& options) {
     MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
     settle_time_step(s, system);
   }
-  for (const std::string& w : s.warnings) say("{}: warning: {}\n", options.scene.string(), w);
+  warn_of_the_implausible(s);
+  s.warnings.tell(options.scene);
   return s;
 }
 
 void warn_of_backend(Simulation& s, Backend backend) {
   const std::string lost = not_as_asked(s, backend);
   if (lost.empty()) return;
-  say("{}: warning: {}\n", s.scene.path.string(), lost);
-  s.warnings.push_back(lost);
+  s.warnings.add("backend", lost);
+  s.warnings.tell(s.scene.path);
 }
 
 }  // namespace fascia::app

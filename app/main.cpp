@@ -1,6 +1,11 @@
 #include "app/bench/benchmark.hpp"
+#include "app/compare_results.hpp"
 #include "app/completion.hpp"
+#include "app/list.hpp"
 #include "app/messages.hpp"
+#include "app/process_memory.hpp"
+#include "app/provenance.hpp"
+#include "app/rerun.hpp"
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
 #include "app/version.hpp"
@@ -8,10 +13,12 @@
 #include "core/solver/settings.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -20,6 +27,7 @@
 #include <cstring>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 namespace {
 
@@ -38,7 +46,9 @@ CLI::Validator number_from(double least, bool above, bool whole) {
 
 void add_scene_options(CLI::App& command, RunOptions& options) {
   command.add_option("scene", options.scene, "scene file (TOML)")->required();
-  command.add_option("--set", options.overrides, "override a key: --set key.path=value (repeatable)")
+  command
+      .add_option("--set", options.overrides,
+                  "set a key: --set key.path=value, or remove it: --set key.path= (repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--backend", options.backend, "cpu, cuda or auto")->check(CLI::IsMember({"cpu", "cuda", "auto"}));
@@ -70,8 +80,28 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
-bool is_command(std::string_view word) {
-  return word == "run" || word == "check" || word == "bench" || word == "completion";
+constexpr std::array kCommands{"run", "check", "rerun", "compare", "bench", "list", "completion"};
+
+CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
+  CLI::App* rerun = app.add_subcommand("rerun", "repeat a run from what its result says, and compare the two");
+  rerun->add_option("directory", options.directory, "directory of the results")->required();
+  rerun->add_option("--output", options.output, "directory of the repeated run; otherwise DIRECTORY.rerun");
+  rerun->add_option("--tolerance", options.tolerance, "relative difference that is still equal")
+      ->check(number_from(0, false, false))
+      ->capture_default_str();
+  rerun->add_flag("--quiet", options.quiet, "no progress and no summary of the run");
+  return rerun;
+}
+
+CLI::App* add_compare(CLI::App& app, CompareOptions& options) {
+  CLI::App* compare = app.add_subcommand("compare", "compare two results: every probe, every saved field");
+  compare->add_option("a", options.a, "directory of results")->required();
+  compare->add_option("b", options.b, "another one")->required();
+  compare->add_option("--tolerance", options.tolerance, "relative difference that is still equal")
+      ->check(number_from(0, false, false))
+      ->capture_default_str();
+  compare->add_flag("--json", options.json, "print JSON, and nothing else, on standard output");
+  return compare;
 }
 
 /// Prints the script; what it completes is read off the commands themselves.
@@ -83,6 +113,7 @@ int print_completion(const CLI::App& app) {
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : option->get_lnames()) words.options.push_back("--" + name);
     if (words.name == "completion") words.arguments = {"bash"};
+    if (words.name == "list") words.arguments = listed_things();
     if (words.name == "bench")
       for (const Benchmark& b : all_benchmarks()) words.arguments.push_back(b.name);
   }
@@ -104,13 +135,21 @@ int dispatch(int argc, char** argv) {
   run->add_flag("-v,--verbose", options.verbose, "a line for each step");
   CLI::App* check = app.add_subcommand("check", "read and validate a scene, and say what would be simulated");
   add_scene_options(*check, options);
-  if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) {
-    say("fascia: \"{}\" is no command; must be run, check, bench or completion, as in: fascia run {}\n", argv[1],
+  if (argc > 1 && argv[1][0] != '-' &&
+      std::find(kCommands.begin(), kCommands.end(), std::string_view(argv[1])) == kCommands.end()) {
+    say("fascia: \"{}\" is no command; must be one of {}, as in: fascia run {}\n", argv[1], fmt::join(kCommands, ", "),
         std::string_view(argv[1]).ends_with(".toml") ? argv[1] : "SCENE");
     return kWrongInput;
   }
+  RerunOptions rerun_options;
+  const CLI::App* rerun = add_rerun(app, rerun_options);
+  CompareOptions compare_options;
+  const CLI::App* compare = add_compare(app, compare_options);
   BenchOptions bench_options;
   const CLI::App* bench = add_bench(app, bench_options);
+  CLI::App* list = app.add_subcommand("list", "list scenes that come with the program, quantities of probes, or units");
+  std::string what;
+  list->add_option("what", what, "scenes, quantities or units")->required()->check(CLI::IsMember(listed_things()));
   CLI::App* completion = app.add_subcommand("completion", "print a script that completes commands, options and keys");
   std::string shell;
   completion->add_option("shell", shell, "bash")->required()->check(CLI::IsMember({"bash"}));
@@ -121,7 +160,10 @@ int dispatch(int argc, char** argv) {
     return code == 0 ? kDone : kWrongInput;
   }
   if (completion->parsed()) return print_completion(app);
+  if (list->parsed()) return list_things(what);
   if (bench->parsed()) return run_bench(bench_options);
+  if (rerun->parsed()) return rerun_result(rerun_options);
+  if (compare->parsed()) return compare_command(compare_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 
@@ -135,8 +177,10 @@ void open_standard_streams() {
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  remember_command(argc, argv);
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // told as errors of what is written
   try {
+    require_room();
     const int status = dispatch(argc, argv);
     if (std::fflush(stdout) == 0) return status;
     say("fascia: standard output cannot be written: {}\n", std::strerror(errno));
@@ -157,7 +201,16 @@ int main(int argc, char** argv) {
     say("{}\n", e.what());
     return kNoBackend;
   } catch (const std::bad_alloc&) {
-    say("out of memory; use a smaller grid, or linear = {{ kind = \"cg\" }}\n");
+    const FreeMemory left = free_memory();
+    say("out of memory: {:.3g} MB are free{}; use a smaller grid, or linear = {{ kind = \"cg\" }}{}\n",
+        left.bytes / 1e6, left.limit, left.limit.empty() ? "" : ", or raise the limit");
+    return kWrongInput;
+  } catch (const std::system_error& e) {
+    if (e.code() != std::errc::resource_unavailable_try_again) throw;
+    say("fascia: a thread cannot be started: {}; use --threads 1, or raise the limit on memory or processes (ulimit "
+        "-v, "
+        "-u)\n",
+        e.code().message());
     return kWrongInput;
   } catch (const std::exception& e) {
     say("fascia: {}\n", e.what());

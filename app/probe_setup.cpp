@@ -1,3 +1,4 @@
+#include "app/matter.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -66,15 +68,27 @@ int find_fluid(const Simulation& s, const ResolvedProbe& r) {
                                       : fmt::format("asks for one of {} fluids; name its body", found.size())}});
 }
 
-/// Nodes of a probe without a region: those of its body, or of the scene; of displacements the shared ones too.
+/// Nodes of a probe without a region: those of its body, or of the scene.
 std::vector<int> nodes_of(const Simulation& s, const ResolvedProbe& r) {
-  const Quantity q = r.probe->quantity;
-  if (r.body >= 0 && (q == Quantity::max_displacement || q == Quantity::mean_displacement))
-    return find_nodes(s, r.body, {{}, AllRegion{}});
   const ModelBody* body = r.body >= 0 ? s.bodies[at(r.body)].body.get() : nullptr;
   std::vector<int> nodes(at(body ? body->node_count() : s.model.node_count()));
   std::iota(nodes.begin(), nodes.end(), body ? body->first_node() : 0);
   return nodes;
+}
+
+/// The matter of a displacement without a region; of nodes with one, since these are what it selects.
+void find_matter(const Simulation& s, ResolvedProbe& r) {
+  const Quantity q = r.probe->quantity;
+  if (q != Quantity::max_displacement && q != Quantity::mean_displacement) return;
+  if (r.probe->where) {
+    for (const int node : r.nodes) r.matter.push_back(matter_at(node));
+    return;
+  }
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (r.body >= 0 && at(r.body) != b) continue;
+    std::vector<MatterPoint> more = matter_of(s.bodies[b]);
+    r.matter.insert(r.matter.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
 }
 
 /// Inertia lies at nodes: at shared ones that of all their bodies, at followed ones that of what follows.
@@ -94,10 +108,11 @@ void warn_of_shared_mass(Simulation& s, const ResolvedProbe& r) {
     return std::any_of(d.hosts.begin(), d.hosts.end(), [&](int host) { return own(host) != own(d.node); });
   });
   if (shares || follows)
-    s.warnings.push_back(
-        fmt::format("{}: masses of what is coupled count at the nodes that move them, whichever their body: this is "
+    s.warnings.add(
+        "masses", r.probe->place,
+        fmt::format("masses of what is coupled count at the nodes that move them, whichever their body: this is "
                     "not all of \"{}\", or more; leave body out for the whole scene",
-                    r.probe->place.key, s.bodies[at(r.body)].name));
+                    s.bodies[at(r.body)].name));
 }
 
 }  // namespace
@@ -111,7 +126,7 @@ Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place)
         {{place,
           fmt::format("({:.6g}, {:.6g}, {:.6g}) lies {:.4g} m outside body \"{}\"; give a point of its rest shape",
                       X[0], X[1], X[2], distance, s.bodies[at(body)].name)}});
-  s.warnings.push_back(fmt::format("{}: lies {:.3g} m outside the body and was taken as on it", place.key, distance));
+  s.warnings.add("place", place, fmt::format("lies {:.3g} m outside the body and was taken as on it", distance));
   return X;
 }
 
@@ -146,10 +161,11 @@ void resolve_probes(Simulation& s) {
     } else {
       r.nodes = nodes_of(s, r);
     }
+    find_matter(s, r);
     warn_of_shared_mass(s, r);
     r.about = probe.about.value_or(Vec3d{});
     if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))
-      s.warnings.push_back(fmt::format("{}: is zero in a static solve", probe.place.key));
+      s.warnings.add("no-effect", probe.place, "is zero in a static solve");
     const bool modes = s.scene.solver.kind == SolverKind::modes, frequency = probe.quantity == Quantity::frequency;
     if (frequency && !modes) throw SceneError({{probe.place, "quantity \"frequency\" needs solver.kind = \"modes\""}});
     if (modes && !frequency && probe.quantity != Quantity::mass && probe.quantity != Quantity::volume)

@@ -1,11 +1,13 @@
 #include "app/probes.hpp"
 
+#include "app/matter.hpp"
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/physics/inertia.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -55,11 +57,14 @@ void push(std::vector<double>& out, const Mat3d& m) {
   for (int i = 0; i < 3; ++i) push(out, m.row(i));
 }
 
-void push_point_value(std::vector<double>& out, Quantity q, const SimulatedBody& owner, const ProbePoint& p,
-                      const State& state) {
+/// Strains and stresses of bodies in one state, each made when it is first asked for.
+using TensorFields = std::map<int, TensorField>;
+
+void push_point_value(std::vector<double>& out, const ResolvedProbe& probe, const SimulatedBody& owner,
+                      const ProbePoint& p, const State& state, TensorFields& fields) {
   const ModelBody& body = *owner.body;
   const FieldValue f = field_at(p.field, state);
-  switch (q) {
+  switch (probe.probe->quantity) {
     case Quantity::displacement:
       push(out, f.u);
       break;
@@ -80,9 +85,12 @@ void push_point_value(std::vector<double>& out, Quantity q, const SimulatedBody&
     case Quantity::strain:
       push(out, body.strain_at(p.field, state));
       break;
-    default:
-      push(out, body.tensors_at(p.field, p.nearest, state).stress);
+    default: {
+      TensorField& tensors = fields[probe.body];
+      if (!tensors) tensors = body.tensor_field(state);
+      push(out, tensors(p.field, p.nearest).stress);
       break;
+    }
   }
 }
 
@@ -230,14 +238,13 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
   }
 }
 
-}  // namespace
-
-std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
+std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap,
+                              TensorFields& fields) {
   std::vector<double> out;
   const Quantity q = probe.probe->quantity;
   const State& state = *snap.state;
   if (!probe.points.empty()) {
-    for (const ProbePoint& p : probe.points) push_point_value(out, q, s.bodies[at(probe.body)], p, state);
+    for (const ProbePoint& p : probe.points) push_point_value(out, probe, s.bodies[at(probe.body)], p, state, fields);
     return out;
   }
   switch (q) {
@@ -276,18 +283,12 @@ std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe
     case Quantity::angular_momentum:
       push(out, momentum(s, probe, state).angular);
       break;
-    case Quantity::max_displacement: {
-      double largest = 0;
-      for (const int i : probe.nodes) largest = std::max(largest, norm(state.u[at(i)]));
-      out.push_back(largest);
+    case Quantity::max_displacement:
+      out.push_back(largest_displacement(probe.matter, state));
       break;
-    }
-    case Quantity::mean_displacement: {
-      Vec3d mean;
-      for (const int i : probe.nodes) mean += state.u[at(i)] * (1.0 / static_cast<double>(probe.nodes.size()));
-      push(out, mean);
+    case Quantity::mean_displacement:
+      push(out, mean_displacement(probe.matter, state));
       break;
-    }
     case Quantity::fluid_volume:
       out.push_back(fluid_state(s, probe.fluid, state).volume);
       break;
@@ -301,7 +302,21 @@ std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe
   return out;
 }
 
+}  // namespace
+
+std::vector<std::vector<double>> probe_values(const Simulation& s, const Snapshot& snap) {
+  TensorFields fields;
+  std::vector<std::vector<double>> values;
+  for (const ResolvedProbe& probe : s.probes) values.push_back(values_of(s, probe, snap, fields));
+  return values;
+}
+
 std::string probe_unit(Quantity quantity) { return info(quantity).unit; }
+std::string unit_of_quantity(std::string_view name) {
+  return std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                      [&](const QuantityInfo& i) { return i.name == name; })
+      ->unit;
+}
 std::string quantity_name(Quantity quantity) { return info(quantity).name; }
 
 nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fascia::app {
@@ -18,11 +19,13 @@ struct Snapshot {
   double time_step = 0;                ///< explicit: of the step that ended here, at the start of the first one [s]
 };
 
-/// Value of a probe as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).
-std::vector<double> probe_values(const Simulation& s, const ResolvedProbe& probe, const Snapshot& at);
+/// Values of all probes, of each as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).
+std::vector<std::vector<double>> probe_values(const Simulation& s, const Snapshot& at);
 nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values);
 std::string probe_unit(Quantity quantity);
 std::string quantity_name(Quantity quantity);
+/// By the name that a scene gives it.
+std::string unit_of_quantity(std::string_view name);
 /// Column names of a probe in probes.csv: tip.x, tip.y, ...
 std::vector<std::string> probe_columns(const ResolvedProbe& probe);
 

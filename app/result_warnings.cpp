@@ -16,7 +16,7 @@ constexpr double kResolved = 0.5;
 /// A triangle with less of its area collapses: strains of that size are no physical state of this law.
 constexpr double kCollapsed = 0.1;
 
-void add_shell_warnings(const SimulatedBody& b, const State& end, std::vector<std::string>& warnings) {
+void add_shell_warnings(const SimulatedBody& b, const State& end, Warnings& warnings) {
   int unresolved = 0, against = 0;
   double smallest = 1;
   Vec3d where;
@@ -37,17 +37,22 @@ void add_shell_warnings(const SimulatedBody& b, const State& end, std::vector<st
     where = triangles[t].X;
   }
   if (smallest < kCollapsed)
-    warnings.push_back(fmt::format(
-        "body \"{}\": the triangle at ({:.4g}, {:.4g}, {:.4g}) has {:.2g} % of its area left: it collapses, "
-        "which St Venant-Kirchhoff materials do not resist; mesh again there if it is a needle or cap",
-        b.name, where[0], where[1], where[2], 100 * smallest));
+    warnings.add(
+        "inverted",
+        fmt::format(
+            "body \"{}\": the triangle at ({:.4g}, {:.4g}, {:.4g}) has {:.2g} % of its area left: it collapses, "
+            "which St Venant-Kirchhoff materials do not resist; mesh again there if it is a needle or cap",
+            b.name, where[0], where[1], where[2], 100 * smallest));
   if (against > 0)
-    warnings.push_back(fmt::format(
-        "body \"{}\": {} of {} triangles face against the directors of their nodes: no physical state; mesh finer "
-        "there, without needles and caps",
-        b.name, against, triangles.size()));
+    warnings.add(
+        "inverted",
+        fmt::format(
+            "body \"{}\": {} of {} triangles face against the directors of their nodes: no physical state; mesh finer "
+            "there, without needles and caps",
+            b.name, against, triangles.size()));
   if (unresolved > 0)
-    warnings.push_back(
+    warnings.add(
+        "resolution",
         fmt::format("body \"{}\": the corners of {} of {} triangles are turned against each other by more than a right "
                     "angle: the mesh does not resolve so sharp a bend; use more cells",
                     b.name, unresolved, triangles.size()));
@@ -93,25 +98,25 @@ std::string softest_place(const Simulation& s, const State& end, int node) {
   return "";
 }
 
-void judge_stability(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
+void judge_stability(const Simulation& s, const State& end, RunReport& run, Warnings& warnings) {
   const Stability& found = run.stability;
   const std::string where = softest_place(s, end, found.node);
   if (!found.known)
-    return warnings.push_back(
-        "the linear solver could not tell whether the end state is stable; linear.kind = "
-        "\"cholesky\" can, where memory allows it");
+    return warnings.add("stability",
+                        "the linear solver could not tell whether the end state is stable; linear.kind = "
+                        "\"cholesky\" can, where memory allows it");
   if (found.near_limit)
-    return warnings.push_back(
-        "the end state is near a limit point or a bifurcation" + where +
-        ": less than a hundredth of the lowest stiffness is left; a slightly larger load may have "
-        "no equilibrium nearby");
+    return warnings.add("stability",
+                        "the end state is near a limit point or a bifurcation" + where +
+                            ": less than a hundredth of the lowest stiffness is left; a slightly larger load may have "
+                            "no equilibrium nearby");
   if (!found.is_unstable()) return;
   if (!s.model.loads_are_conservative())
-    return warnings.push_back("the end state may be an unstable equilibrium" + where +
-                              "; loads that follow the body have no energy that could tell");
+    return warnings.add("stability", "the end state may be an unstable equilibrium" + where +
+                                         "; loads that follow the body have no energy that could tell");
   const std::string message =
       "the end state is an unstable equilibrium" + where + ": the smallest disturbance makes the body leave it";
-  if (s.scene.solver.accept_unstable) return warnings.push_back(message);
+  if (s.scene.solver.accept_unstable) return warnings.add("stability", message);
   run.status = RunStatus::unstable;
   run.message =
       message +
@@ -120,20 +125,22 @@ void judge_stability(const Simulation& s, const State& end, RunReport& run, std:
 
 }  // namespace
 
-void add_result_warnings(const Simulation& s, const State& end, RunReport& run, std::vector<std::string>& warnings) {
+void add_result_warnings(const Simulation& s, const State& end, RunReport& run, Warnings& warnings) {
   if (run.status == RunStatus::converged && !run.trouble.empty())
-    warnings.push_back("the end state may be an unstable equilibrium: " + run.trouble);
+    warnings.add("stability", "the end state may be an unstable equilibrium: " + run.trouble);
   const bool judged = is_judged(s, run);
   if (judged) judge_stability(s, end, run, warnings);
-  warnings.insert(warnings.end(), run.events.begin(), run.events.end());
+  for (const std::string& event : run.events) warnings.add("solver", event);
   if (run.indefinite_steps > 0)
-    warnings.push_back(fmt::format(
-        "in {} time step{}, first at t = {:.4g} s, the stiffness became indefinite on the way: so long a step may have "
-        "several solutions, of which one was found; compare with a smaller time_step",
-        run.indefinite_steps, run.indefinite_steps == 1 ? "" : "s", run.first_indefinite));
+    warnings.add("time-step",
+                 fmt::format("in {} time step{}, first at t = {:.4g} s, the stiffness became indefinite on the way: so "
+                             "long a step may have "
+                             "several solutions, of which one was found; compare with a smaller time_step",
+                             run.indefinite_steps, run.indefinite_steps == 1 ? "" : "s", run.first_indefinite));
   if (run.residual_floor > 1e-3 && !(s.model.loads.empty() && s.model.surfaces.empty()))
-    warnings.push_back(fmt::format(
-        "rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion", run.residual_floor));
+    warnings.add("rounding",
+                 fmt::format("rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion",
+                             run.residual_floor));
   std::vector<std::string> inside_out;
   for (const SimulatedBody& b : s.bodies) {
     const auto index = static_cast<std::size_t>(&b - s.bodies.data());
@@ -151,11 +158,11 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
       unresolved += rigid && determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
     }
     if (inverted > 0 && linear)
-      warnings.push_back(
-          fmt::format("body \"{}\": {} of {} integration points are turned inside out: the displacements are "
-                      "too large for small-strain elasticity; use formulation = \"corotational\" or leave "
-                      "it out",
-                      b.name, inverted, b.body->points().size()));
+      warnings.add("inverted",
+                   fmt::format("body \"{}\": {} of {} integration points are turned inside out: the displacements are "
+                               "too large for small-strain elasticity; use formulation = \"corotational\" or leave "
+                               "it out",
+                               b.name, inverted, b.body->points().size()));
     else if (inverted > 0)
       inside_out.push_back(fmt::format(
           "body \"{}\" is turned inside out at {} of {} integration points: {} do not resist that; the "
@@ -163,18 +170,19 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
           b.name, inverted, b.body->points().size(),
           formulation == Formulation::corotational ? "co-rotational elements" : "St Venant-Kirchhoff materials"));
     if (unresolved > 0)
-      warnings.push_back(
+      warnings.add(
+          "resolution",
           fmt::format("body \"{}\": neighbouring frames are turned against each other by more than a right angle at {} "
                       "of {} integration points: their blend does not resolve that; use more frames",
                       b.name, unresolved, b.body->points().size()));
   }
-  if (run.status == RunStatus::unstable && !inside_out.empty()) warnings.push_back(run.message);
+  if (run.status == RunStatus::unstable && !inside_out.empty()) warnings.add("stability", run.message);
   for (const std::string& message : inside_out)
     if (judged && !s.scene.solver.accept_inverted && run.status != RunStatus::inverted) {
       run.status = RunStatus::inverted;
       run.message = message + "; solver.accept = [\"inverted\"] keeps it all the same";
     } else {
-      warnings.push_back(message);
+      warnings.add("inverted", message);
     }
   if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
     run.status = RunStatus::not_converged;

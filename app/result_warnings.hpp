@@ -24,7 +24,6 @@ class SnapWatch {
 };
 
 /// What a user must know of a result that converged; a run with steps above the tolerance counts as not converged.
-void add_result_warnings(const Simulation& simulation, const State& end, RunReport& run,
-                         std::vector<std::string>& warnings);
+void add_result_warnings(const Simulation& simulation, const State& end, RunReport& run, Warnings& warnings);
 
 }  // namespace fascia::app

@@ -5,6 +5,7 @@
 #include "core/model/errors.hpp"
 #include "core/physics/von_mises.hpp"
 #include "core/solver/clock.hpp"
+#include "io/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -22,39 +23,6 @@ struct PointValue {
   Vec3d rest{}, u{}, rotation{};
   Mat3d axes = Mat3d::identity();
 };
-
-/// Of the integration points, and their averages at the nodes (weighted with w v): the averages are smooth, which the
-/// field's own gradient is not across the faces of cells.
-struct BodyTensors {
-  std::vector<PointTensors> points, nodes;
-};
-
-void add_share(PointTensors& sum, const PointTensors& t, double share) {
-  sum.strain += t.strain * share;
-  sum.stress += t.stress * share;
-  sum.energy_density += t.energy_density * share;
-}
-
-BodyTensors tensors(const SimulatedBody& b, const State& state) {
-  const ModelBody& body = *b.body;
-  BodyTensors t{body.tensors(state), std::vector<PointTensors>(b.nodes.size())};
-  std::vector<double> weight(t.nodes.size());
-  for (std::size_t q = 0; q < body.points().size(); ++q) {
-    const Attachment a = body.attach_point(q);
-    for (std::size_t k = 0; k < a.nodes.size(); ++k) {
-      const double share = body.points()[q].volume * std::max(a.influences[k].w, 1e-3);
-      const std::size_t node = b.index_of(a.nodes[k]);
-      weight[node] += share;
-      add_share(t.nodes[node], t.points[q], share);
-    }
-  }
-  for (std::size_t i = 0; i < t.nodes.size(); ++i) {
-    PointTensors mean;
-    if (weight[i] > 0) add_share(mean, t.nodes[i], 1 / weight[i]);
-    t.nodes[i] = mean;
-  }
-  return t;
-}
 
 /// Means over the points of each cell, weighted with volume.
 std::vector<PointTensors> cell_means(const ModelBody& body, std::vector<PointTensors> points) {
@@ -104,13 +72,21 @@ class FieldWriter {
   std::size_t count_;
 };
 
+void set_units(std::vector<io::FieldArray>& fields) {
+  for (io::FieldArray& field : fields)
+    if (const std::string unit = io::name_of_field(field.name).unit; unit != "1") field.unit = unit;
+}
+
 }  // namespace
 
-ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path directory, std::string name)
+ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path directory, std::string name,
+                         std::string provenance)
     : simulation_(simulation),
       directory_(std::move(directory)),
       name_(std::move(name)),
-      last_(simulation.probes.size()) {
+      provenance_(std::move(provenance)),
+      last_(simulation.probes.size()),
+      recovery_(simulation.bodies.size()) {
   for (const SimulatedBody& b : simulation.bodies) {
     surface_.emplace_back();
     if (b.groups() != nullptr) continue;  // a mesh is written as it is
@@ -129,18 +105,26 @@ void ResultFiles::open() {
 
 void ResultFiles::add_probes(double time, const Snapshot& snap) {
   std::string row = fmt::format("{}", time);
-  for (std::size_t i = 0; i < simulation_.probes.size(); ++i) {
-    last_[i] = probe_values(simulation_, simulation_.probes[i], snap);
-    for (const double value : last_[i]) row += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
-  }
+  last_ = probe_values(simulation_, snap);
+  for (const std::vector<double>& values : last_)
+    for (const double value : values) row += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
   if (tells_time_step()) row += fmt::format(",{:.17g}", snap.time_step);
   csv_->append(row + "\n");
 }
 
 bool ResultFiles::tells_time_step() const { return simulation_.scene.solver.time_step_automatic; }
 
+/// What is recovered at the nodes is smooth, which the field's own gradient is not across the faces of cells.
+ResultFiles::BodyTensors ResultFiles::tensors(const SimulatedBody& b, const State& state) {
+  std::optional<NodalRecovery>& recovery = recovery_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
+  if (!recovery) recovery.emplace(b);
+  std::vector<PointTensors> points = b.body->tensors(state);
+  std::vector<PointTensors> nodes = recovery->at_nodes(points);
+  return {std::move(points), std::move(nodes)};
+}
+
 /// Cells on the nodes, with tensors by cell and averaged at the nodes.
-io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) const {
+io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) {
   const ModelBody& body = *b.body;
   const auto first = at(body.first_node());
   io::VisualMesh mesh;
@@ -175,7 +159,7 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
 }
 
 /// The surface or lines that a meshless body carries, its frames and its points.
-io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) const {
+io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) {
   if (b.groups() != nullptr) return visual_mesh(b, state);
   const ModelBody& body = *b.body;
   const BodyTensors t = tensors(b, state);
@@ -227,13 +211,22 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) c
   return mesh;
 }
 
+std::string state_file(const SimulatedBody& body, std::size_t state) {
+  return fmt::format("{}_{:05d}.vtu", body.name, state);
+}
+
 void ResultFiles::add_state(double time, const State& state) {
   const Clock::time_point start = Clock::now();
   std::vector<std::string> files;
   try {
     for (const SimulatedBody& body : simulation_.bodies) {
-      files.push_back(fmt::format("{}_{:05d}.vtu", body.name, saved_));
-      io::write_vtu(directory_ / files.back(), visual(body, state));
+      files.push_back(state_file(body, times_.size()));
+      io::VisualMesh mesh = visual(body, state);
+      set_units(mesh.point_fields);
+      set_units(mesh.cell_fields);
+      mesh.time = time;
+      mesh.provenance = provenance_;
+      io::write_vtu(directory_ / files.back(), mesh);
     }
   } catch (const std::exception&) {  // the bodies that are there are no whole state
     std::error_code ignored;
@@ -242,8 +235,14 @@ void ResultFiles::add_state(double time, const State& state) {
   }
   if (!collection_) collection_.emplace(directory_ / (name_ + ".pvd"));
   for (std::size_t b = 0; b < files.size(); ++b) collection_->add(time, simulation_.bodies[b].name, files[b]);
-  ++saved_;
+  times_.push_back(state.time);
   seconds_ += seconds_since(start);
+}
+
+double ResultFiles::estimated_size(const State& state) const {
+  double size = 0;
+  for (const SimulatedBody& body : simulation_.bodies) size += io::estimated_size(visual(body, state));
+  return size;
 }
 
 void ResultFiles::synchronise() const {

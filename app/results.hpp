@@ -3,7 +3,9 @@
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
 #include "app/probes.hpp"
+#include "app/recovery.hpp"
 #include "app/simulation.hpp"
+#include "app/step_seconds.hpp"
 #include "core/solver/drivers.hpp"
 #include "io/result_writer.hpp"
 
@@ -15,10 +17,14 @@
 
 namespace fascia::app {
 
+/// Name of the .vtu of a body. @param state  number of the saved state, from 0
+std::string state_file(const SimulatedBody& body, std::size_t state);
+
 /// Writes the files of a run as they arise: one .vtu a body and saved time, the .pvd that lists them, probes.csv.
 class ResultFiles {
  public:
-  ResultFiles(const Simulation& simulation, std::filesystem::path directory, std::string name);
+  /// @param provenance  as text, for each .vtu
+  ResultFiles(const Simulation& simulation, std::filesystem::path directory, std::string name, std::string provenance);
 
   /// Begins probes.csv. @throws FileError
   void open();
@@ -27,34 +33,45 @@ class ResultFiles {
   /// The .vtu files of a state. @param time  in the .pvd, where times must not decrease: of a path its step
   /// @throws FileError, InputError
   void add_state(double time, const State& state);
+  /// Bytes of the .vtu files of a state, about.
+  double estimated_size(const State& state) const;
   /// Waits until probes.csv and the .pvd are on the disk.
   void synchronise() const;
 
   const std::vector<double>& last_values(std::size_t probe) const { return last_[probe]; }
   double seconds() const { return seconds_; }
+  /// State::time of the states that were saved.
+  const std::vector<double>& times() const { return times_; }
 
  private:
   bool tells_time_step() const;  ///< the last column of probes.csv: steps that follow the state
-  io::VisualMesh visual_mesh(const SimulatedBody& b, const State& state) const;
-  io::VisualMesh visual(const SimulatedBody& body, const State& state) const;
+  /// Of the integration points, and recovered at the nodes.
+  struct BodyTensors {
+    std::vector<PointTensors> points, nodes;
+  };
+  BodyTensors tensors(const SimulatedBody& b, const State& state);
+  io::VisualMesh visual_mesh(const SimulatedBody& b, const State& state);
+  io::VisualMesh visual(const SimulatedBody& body, const State& state);
   const Simulation& simulation_;
   std::filesystem::path directory_;
-  std::string name_;
+  std::string name_, provenance_;
   std::optional<io::GrowingFile> csv_;
   std::optional<io::Collection> collection_;  ///< from the first state on
   std::vector<std::vector<double>> last_;
-  std::vector<std::vector<Attachment>> surface_;  ///< of each body
-  int saved_ = 0;
+  std::vector<std::vector<Attachment>> surface_;        ///< of each body
+  std::vector<std::optional<NodalRecovery>> recovery_;  ///< of each body, once it is needed
+  std::vector<double> times_;
   double seconds_ = 0;
 };
 
 struct RunTimes {
   double setup = 0, solve = 0, output = 0;
-  std::vector<double> steps;
+  StepSeconds steps;
 };
 
 /// summary.json of a run that goes on: what is known of it from the start.
-nlohmann::ordered_json running_summary(const Simulation& s);
+/// @param provenance  see provenance_of()
+nlohmann::ordered_json running_summary(const Simulation& s, const nlohmann::ordered_json& provenance);
 const char* status_name(RunStatus status);
 
 /// summary.json. Modes put a list into the probes of quantity frequency.
@@ -63,6 +80,6 @@ const char* status_name(RunStatus status);
 nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, const RunReport& run,
                                const RunTimes& times, int threads, const std::vector<nlohmann::json>& probe_values,
                                double stabilization_energy, const std::vector<FluidState>& fluids,
-                               const CouplingReports& couplings);
+                               const CouplingReports& couplings, const nlohmann::ordered_json& provenance);
 
 }  // namespace fascia::app

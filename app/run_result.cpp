@@ -1,5 +1,7 @@
 #include "app/run_result.hpp"
 
+#include "app/provenance.hpp"
+#include "app/run_text.hpp"
 #include "io/files.hpp"
 
 #include <chrono>
@@ -20,9 +22,9 @@ io::ResultNames names_of(const Simulation& s) {
 }  // namespace
 
 RunResult::RunResult(const Simulation& simulation)
-    : directory_(simulation.scene.output.directory, names_of(simulation)),
-      files_(simulation, directory_.path(), simulation.scene.path.stem().string()),
-      running_(running_summary(simulation)),
+    : running_(running_summary(simulation, provenance_of(simulation))),
+      directory_(simulation.scene.output.directory, names_of(simulation)),
+      files_(simulation, directory_.path(), simulation.scene.path.stem().string(), provenance().dump()),
       started_(Clock::now()),
       written_(started_) {
   write(running_);
@@ -30,7 +32,7 @@ RunResult::RunResult(const Simulation& simulation)
 }
 
 void RunResult::write(const nlohmann::ordered_json& summary) const {
-  io::replace_file(directory_.path() / "summary.json", summary.dump(2) + "\n");
+  io::replace_file(directory_.path() / "summary.json", json_text(summary) + "\n");
 }
 
 void RunResult::add_probes(double time, const Snapshot& at) {

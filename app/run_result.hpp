@@ -17,14 +17,18 @@ namespace fascia::app {
 /// status "running" once a second. A run that dies leaves what it had saved.
 class RunResult {
  public:
-  /// @throws FileError  of ResultDirectory
+  /// @throws FileError  of ResultDirectory, or of a file that the scene names
   explicit RunResult(const Simulation& simulation);
+
+  /// Where the result comes from, see provenance_of().
+  const nlohmann::ordered_json& provenance() const { return running_.at("provenance"); }
 
   /// These do what those of ResultFiles do.
   void add_probes(double time, const Snapshot& at);
   void add_state(double time, const State& state);
   const std::vector<double>& last_values(std::size_t probe) const { return files_.last_values(probe); }
   double seconds() const { return files_.seconds(); }
+  const std::vector<double>& times() const { return files_.times(); }
 
   /// Says how far the run is, once a second.
   void note(const StepInfo& step);
@@ -45,9 +49,9 @@ class RunResult {
   void tell_progress();
   void end_unlocked(RunStatus status, const std::string& why) noexcept;
 
+  nlohmann::ordered_json running_;  ///< summary.json as it stands
   io::ResultDirectory directory_;
   ResultFiles files_;
-  nlohmann::ordered_json running_;  ///< summary.json as it stands
   Clock::time_point started_, written_;
   bool has_rows_ = false, finished_ = false;
   std::atomic<int> steps_{0};  ///< so far

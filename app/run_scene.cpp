@@ -5,12 +5,16 @@
 #include "app/gpu_run.hpp"
 #include "app/interruption.hpp"
 #include "app/load_scene.hpp"
+#include "app/memory.hpp"
 #include "app/messages.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
+#include "app/readable.hpp"
+#include "app/result_size.hpp"
 #include "app/result_warnings.hpp"
 #include "app/results.hpp"
 #include "app/run_result.hpp"
+#include "app/run_text.hpp"
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
 #include "core/math/rotation.hpp"
@@ -66,10 +70,10 @@ struct Outcome {
   Backend backend = Backend::cpu;  ///< that took the steps
   int gpus = 0;
   bool failed = false;  ///< not only steps that were accepted as they were
-  std::vector<std::string> warnings;
-  std::vector<std::string> told;  ///< warnings that were printed when they arose
+  Warnings warnings;
   RunTimes times;
   std::vector<nlohmann::json> probes;
+  std::vector<double> frequencies;  ///< of modes [1/s]
   double stabilization = 0;
   std::vector<FluidState> fluids;
   CouplingReports couplings;
@@ -78,14 +82,16 @@ struct Outcome {
 Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
                  Interruption& stop) {
   Outcome out;
+  out.warnings = Warnings(s.scene.silenced);
   out.backend = backend;
   const Clock::time_point setup = Clock::now();
-  const SolverSettings settings = settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   const bool statics = s.scene.solver.kind == SolverKind::statics;
   MechanicalSystem system(s.model, pool, settings);
   State state = s.initial;
   out.times.setup = seconds_since(setup);
-  Progress progress(options.quiet || options.json, options.verbose);
+  Progress progress(options.quiet || options.json, options.verbose, statics);
+  settings.iterating = [&](const IterationInfo& iteration) { progress.update(iteration); };
   SaveRule rule(s.scene.output, statics);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   const bool path = s.scene.solver.control != StaticControl::load;
@@ -108,7 +114,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   // What is watched in all steps, and what is saved of some: `show` makes `system` stand there.
   const auto watch = [&](const StepInfo& step, const InternalEnergy& energy,
                          const std::function<const State&()>& show) {
-    out.times.steps.push_back(step.seconds);
+    out.times.steps.add(step.seconds);
     progress.update(step);
     files.note(step);
     const bool due = rule.save(step);
@@ -130,7 +136,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   // Whether the GPU did it.
   const auto on_gpu = [&](const gpu::DeviceObserver& look, const std::function<bool(const StepInfo&)>& observed = {}) {
     if (out.backend != Backend::cuda) return false;
-    const std::optional<GpuRun> run = run_on_gpu(s, state, factors, settings, out.told, look, observed);
+    const std::optional<GpuRun> run = run_on_gpu(s, state, factors, settings, out.warnings, look, observed);
     if (!run) {
       out.backend = Backend::cpu;
       return false;
@@ -151,7 +157,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
     save(0, 0, state, true);
     if (s.scene.solver.kind == SolverKind::central_differences) {
       const auto observed = [&](const StepInfo& step) {
-        out.times.steps.push_back(step.seconds);
+        out.times.steps.add(step.seconds);
         time_step = step.time_step;
         progress.update(step);
         files.note(step);
@@ -198,7 +204,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   out.failed = !ended || out.run.status == RunStatus::unstable || out.run.status == RunStatus::inverted;
   out.couplings = coupling_report(s, system, state);
   for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
-  if (!snaps.warning().empty()) out.warnings.push_back(snaps.warning());
+  if (!snaps.warning().empty()) out.warnings.add("snap", snaps.warning());
   out.times.output = output_seconds;
   if (out.run.status == RunStatus::interrupted) out.run.message = fmt::format("interrupted at {:.6g}", out.run.time);
   for (std::size_t i = 0; i < s.probes.size(); ++i) out.probes.push_back(probe_json(s.probes[i], files.last_values(i)));
@@ -210,9 +216,11 @@ constexpr double kHollow = 0.1;
 
 Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
   Outcome out;
+  out.warnings = Warnings(s.scene.silenced);
   const Clock::time_point start = Clock::now();
   const Modes modes = natural_modes(s.model, pool, s.scene.solver.modes);
   out.times.solve = seconds_since(start);
+  out.frequencies = modes.frequency;
   out.run.steps = static_cast<int>(modes.frequency.size());
   out.run.linear_iterations = modes.iterations;
   if (!modes.converged) {
@@ -223,7 +231,8 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
   for (std::size_t m = 0; m < modes.stabilization.size(); ++m)
     if (modes.stabilization[m] > kHollow && hollow++ == 0) first_hollow = static_cast<int>(m) + 1;
   if (hollow > 0)
-    out.warnings.push_back(
+    out.warnings.add(
+        "hollow",
         fmt::format("{} modes (the first: number {}) are motions of frames that the material hardly feels, held by "
                     "stabilisation: they are no modes of the body; use more rigid frames, on a grid",
                     hollow, first_hollow));
@@ -260,20 +269,6 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
   out.probes = std::move(frequencies);
   out.times.output = files.seconds();
   return out;
-}
-
-/// @param shown  there is a new result; else there was nothing to show and the older one came back
-void print_summary(const nlohmann::ordered_json& j, const std::filesystem::path& directory, bool shown) {
-  fmt::print("{}: {} unknowns, {} steps, {} Newton iterations, {:.2f} s\n", j["status"].get<std::string>(),
-             j["dofs"].get<int>(), j["steps"].get<int>(), j["newton_iterations"].get<int>(),
-             j["seconds"]["solve"].get<double>());
-  for (const auto& [name, probe] : j["probes"].items())
-    fmt::print("  {} ({}): {} {}\n", name, probe["quantity"].get<std::string>(), probe["value"].dump(),
-               probe["unit"].get<std::string>());
-  if (shown)
-    fmt::print("results in {}\n", directory.string());
-  else
-    fmt::print("no new results: {} is as it was\n", directory.string());
 }
 
 int exit_status(RunStatus status, int signal) {
@@ -324,6 +319,10 @@ int run_scene(const RunOptions& options) {
   Simulation s = load_scene(options);
   const Backend backend = choose_backend(s);
   warn_of_backend(s, backend);
+  check_run_memory(s, backend == Backend::cuda);
+  if (may_be_large(s)) warn_of_size(s, forecast_result(s));
+  if (!options.quiet && !options.json)
+    for (const SimulatedBody& b : s.bodies) fmt::print("body {}: {}\n", b.name, body_text(*b.body));
   RunResult files(s);
   const Abandonable while_it_lives(stop, [&] {
     const bool saved = files.abandon();
@@ -333,20 +332,18 @@ int run_scene(const RunOptions& options) {
   const double setup = seconds_since(start);
   Outcome out = computed(s, backend, pool, files, options, stop);
   out.times.setup += setup;
-  s.warnings.insert(s.warnings.end(), out.told.begin(), out.told.end());
-  for (const std::string& w : out.warnings) {
-    say("{}: warning: {}\n", options.scene.string(), w);
-    s.warnings.push_back(w);
-  }
+  out.warnings.tell(options.scene);
+  s.warnings.add(out.warnings);
   const nlohmann::ordered_json j = summary(s, out.backend, out.gpus, out.run, out.times, pool.size(), out.probes,
-                                           out.stabilization, out.fluids, out.couplings);
+                                           out.stabilization, out.fluids, out.couplings, files.provenance());
   finish(s, files, j);
   if (s.scene.output.picture && out.run.status != RunStatus::interrupted)
-    make_picture(s, files.path(), s.scene.path.stem().string());
+    make_picture(s, files.path(), s.scene.solver.kind == SolverKind::modes ? out.frequencies : files.times(),
+                 out.run.status);
   if (options.json)
-    fmt::print("{}\n", j.dump(2));
+    fmt::print("{}\n", json_text(j));
   else if (!options.quiet)
-    print_summary(j, s.scene.output.directory, files.shown());
+    print_summary(s, j, files.shown());
   if (out.run.status != RunStatus::converged) say("{}: {}\n", options.scene.string(), out.run.message);
   if (out.run.steps_at_limit > 0 && !out.failed) return kDone;  // as asked for
   return exit_status(out.run.status, stop.signal());

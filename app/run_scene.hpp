@@ -10,6 +10,7 @@ namespace fascia::app {
 
 struct RunOptions {
   std::filesystem::path scene;
+  std::optional<std::string> text;  ///< run in the place of what the file holds now
   std::vector<std::string> overrides;
   std::optional<std::filesystem::path> output;
   std::optional<std::string> backend;
@@ -18,7 +19,7 @@ struct RunOptions {
 };
 
 /// The program returns these; of a run that a signal ended it returns 128 + the signal.
-enum ExitStatus { kDone = 0, kWrongInput = 2, kNotConverged = 3, kFileProblem = 4, kNoBackend = 5 };
+enum ExitStatus { kDone = 0, kDiffers = 1, kWrongInput = 2, kNotConverged = 3, kFileProblem = 4, kNoBackend = 5 };
 
 /// A backend that is not there. Exit status 5.
 class BackendError : public std::runtime_error {

@@ -1,5 +1,6 @@
 #include "app/shell_meshes.hpp"
 
+#include "app/read_files.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 #include "core/math/rotation.hpp"
@@ -33,7 +34,7 @@ Diagonal diagonal_of(const Body& body) {
 
 ShellMesh generated_or_read(const Body& body) {
   if (const auto* file = std::get_if<FileDomain>(&body.domain))
-    return shell_mesh(io::read_mesh(file->path, io::MidNodes::keep));
+    return shell_mesh(read_for(file->place, [&] { return io::read_mesh(file->path, io::MidNodes::keep); }));
   if (const auto* r = std::get_if<RectangleDomain>(&body.domain))
     return rectangle(r->origin, r->edge_u, r->edge_v, two_cells(body), diagonal_of(body));
   if (const auto* a = std::get_if<AnnulusDomain>(&body.domain))

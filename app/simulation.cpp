@@ -2,6 +2,7 @@
 
 #include "app/bodies.hpp"
 #include "app/domains.hpp"
+#include "app/memory.hpp"
 #include "app/neighbours.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
@@ -12,7 +13,6 @@
 #include "core/model/dependent_inertia.hpp"
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
-#include "core/solver/block_matrix.hpp"
 #include "core/solver/dependents.hpp"
 #include "meshless/neighbours.hpp"
 
@@ -20,36 +20,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 namespace fascia::app {
 
 namespace {
-
-void check_memory(const Scene& scene) {
-  const double need = estimated_memory(scene), have = available_memory();
-  if (need <= have && need < 2e11) return;
-  const auto largest = std::max_element(scene.bodies.begin(), scene.bodies.end(), [](const Body& a, const Body& b) {
-    return estimated_samples(a).frames + estimated_samples(a).points <
-           estimated_samples(b).frames + estimated_samples(b).points;
-  });
-  const SampleEstimate e = estimated_samples(*largest);
-  const bool grid = std::holds_alternative<GridFrames>(largest->frames);
-  const bool by_points = !std::holds_alternative<std::monostate>(largest->points) && e.points > 100 * e.frames;
-  if (is_mesh_model(*largest) || is_shell(*largest))
-    throw SceneError(
-        {{largest->cells_place,
-          fmt::format("{:.6g} nodes and {:.6g} integration points need about {:.3g} GB, {:.3g} GB are free; "
-                      "use fewer cells",
-                      e.frames, e.points, need / 1e9, have / 1e9)}});
-  throw SceneError({{by_points ? largest->points_place : largest->frames_place,
-                     fmt::format("{:.6g} frames and {:.6g} points need about {:.3g} GB, {:.3g} GB are free; use {}",
-                                 e.frames, e.points, need / 1e9, have / 1e9,
-                                 by_points ? "fewer points"
-                                 : grid    ? "a smaller grid"
-                                           : "fewer frames")}});
-}
 
 void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& built) {
   const int first = built.body->first_node(), count = built.body->node_count();
@@ -73,8 +48,9 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
                        "initial motion is lost on this body: all its nodes belong to other bodies or follow them; give "
                        "those the motion and remove initial"}});
   if (following > 0)
-    s.warnings.push_back(fmt::format("bodies.{}.initial: {} of {} {}s follow other bodies, and start as these do",
-                                     body.name, following, count, built.node_word()));
+    s.warnings.add(
+        "initial", s.scene.place_of("bodies." + body.name + ".initial"),
+        fmt::format("{} of {} {}s follow other bodies, and start as these do", following, count, built.node_word()));
   const Vec3d about = body.initial.about.value_or(mass > 0 ? center * (1 / mass) : bounds_of(built.nodes).middle()),
               w = body.initial.angular_velocity;
   for (int i = first; i < first + count; ++i) {
@@ -152,13 +128,14 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
     for (std::size_t i = 0; i < b.body->weights().size(); ++i)
       b.lumped_mass.push_back(s.model.inertia[at(b.body->first_node()) + i].mass);
     give_rotations(s.model, build.shared, *b.body);
-    build.messages.insert(build.messages.end(), b.body->messages().begin(), b.body->messages().end());
-    for (const std::string& m : build.messages) s.warnings.push_back("bodies." + body.name + ": " + m);
+    for (const std::string& m : build.messages) s.warnings.add("mesh", body.place, m);
+    const char* topic = body.model == BodyModel::meshless ? "sampling" : "mesh";
+    for (const std::string& m : b.body->messages()) s.warnings.add(topic, body.place, m);
     for (int i = 0; i < b.body->node_count(); ++i) b.node_ids.push_back(b.body->first_node() + i);
     b.node_ids.insert(b.node_ids.end(), b.body->shared_nodes().begin(), b.body->shared_nodes().end());
     for (const int node : b.node_ids) b.nodes.push_back(s.model.rest_position[at(node)]);
     if (const std::string lost = lost_digits(*b.body, b.nodes); !lost.empty())
-      s.warnings.push_back(fmt::format("bodies.{}: {}", body.name, lost));
+      s.warnings.add("far", body.domain_place, lost);
     b.node_on_boundary = b.body->nodes_on_boundary();
     b.surface_on_boundary.assign(b.body->surface().points.size(), 1);
     b.interfaces = std::move(build.interfaces);
@@ -175,51 +152,6 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
 }
 
 }  // namespace
-
-double available_memory() {
-  std::ifstream info("/proc/meminfo");
-  std::string key, unit;
-  double kilobytes = 0;
-  while (info >> key >> kilobytes >> unit)
-    if (key == "MemAvailable:") return kilobytes * 1024;
-  return 1e18;
-}
-
-double estimated_memory(const Scene& scene) {
-  double bytes = 30e6;  // the program itself
-  for (const Body& b : scene.bodies) {
-    const SampleEstimate e = estimated_samples(b);
-    // Per point: shapes of its frames, stress and strain, results. Per frame: blocks of the matrix, vectors; and the
-    // fill of a factor, which grows with the section, where one is made whatever its size.
-    const double dofs = (is_mesh_model(b) ? 3 : b.affine ? 12 : 6) * e.frames;
-    const double block = is_mesh_model(b) ? 0.25 : b.affine ? 4 : 1;
-    const bool factor = scene.solver.linear == LinearKind::cholesky || dofs <= 15000;
-    bytes += e.points * (is_mesh_model(b) ? 300 + 60.0 * e.neighbours : 500 + 250.0 * e.neighbours) +
-             e.frames * (e.coupled * 300 * block + 1000 + (factor ? 36 * 8 * 6 * block * std::cbrt(e.frames) : 0.0)) +
-             e.pieces * 160;
-  }
-  return bytes;
-}
-
-double model_memory(const Simulation& s) {
-  const PointSet& set = s.model.points;
-  const BlockMatrix pattern(set);
-  // Shapes, sums and states of points; results; the matrix and what a factor fills in.
-  const double points = 1.0 * set.slot_count() * (13 * kGroupSize + 12) * 8 + set.group_count() * 45.0 * kGroupSize * 8;
-  const double results = set.point_count * (600.0 + 120.0 * set.slot_count() / std::max(1, set.group_count()));
-  const double matrix = 8.0 * static_cast<double>(pattern.value_count());
-  const bool factor = s.scene.solver.linear == LinearKind::cholesky || s.model.dof_count() <= 15000;
-  double pieces = 0;  // of matter, while scattered bodies are sampled
-  for (const SimulatedBody& b : s.bodies) {
-    if (b.body->interpolates()) continue;
-    const Law law = b.body->points().front().law;
-    const double of_point = is_solid(law) ? 216 : law == Law::sheet ? 18 : 1.5;
-    pieces = std::max(pieces, std::min(4e6, of_point * static_cast<double>(b.body->points().size())));
-  }
-  // Upper triangles of frames are half of what a factor fills.
-  const double fill = pattern.fills_upper() && s.model.has_frames() ? 8 : 4;
-  return 30e6 + points + results + matrix * (factor ? fill : 1) + s.model.dof_count() * 200.0 + pieces * 160;
-}
 
 std::vector<double> Simulation::factors(double time) const {
   std::vector<double> f;
@@ -302,6 +234,7 @@ Simulation build_simulation(Scene scene) {
   check_memory(scene);
   Simulation s;
   s.scene = std::move(scene);
+  s.warnings = Warnings(s.scene.silenced);
   PointSetBuilder points;
   s.bodies.resize(s.scene.bodies.size());
   for (const std::size_t index : build_order(s.scene)) {
@@ -337,7 +270,7 @@ Simulation build_simulation(Scene scene) {
   if (s.scene.solver.kind == SolverKind::statics) check_support(s);
   if (s.scene.solver.kind == SolverKind::modes &&
       !(s.model.loads.empty() && s.model.followers.empty() && s.model.surfaces.empty()))
-    s.warnings.push_back("modes are those of the unloaded rest state: gravity, loads and fluids are not used");
+    s.warnings.add("no-effect", "modes are those of the unloaded rest state: gravity, loads and fluids are not used");
   resolve_probes(s);
   resolve_controlled(s);
   return s;

@@ -2,6 +2,7 @@
 
 #include "app/regions.hpp"
 #include "app/scene/scene.hpp"
+#include "app/warnings.hpp"
 #include "core/model/model.hpp"
 #include "core/model/model_body.hpp"
 #include "core/solver/mechanical_system.hpp"
@@ -60,15 +61,22 @@ struct TetheredMaterial {
   Attachment field;
 };
 
+/// A place of a body's matter.
+struct MatterPoint {
+  Attachment field;
+  double volume = 0;  ///< of an integration point; 0 on the surface [m³]
+};
+
 /// A probe with what it selects resolved.
 struct ResolvedProbe {
   const Probe* probe = nullptr;
   int body = -1;  ///< −1: the whole scene
   std::vector<ProbePoint> points;
-  std::vector<int> nodes;     ///< of the model, by `where`
-  std::vector<int> tethered;  ///< of Simulation::tethered
-  int fluid = -1;             ///< of Simulation::fluids
-  Vec3d about{};              ///< of moments and angular momentum
+  std::vector<int> nodes;           ///< of the model, by `where`
+  std::vector<int> tethered;        ///< of Simulation::tethered
+  std::vector<MatterPoint> matter;  ///< that displacements of whole bodies are those of
+  int fluid = -1;                   ///< of Simulation::fluids
+  Vec3d about{};                    ///< of moments and angular momentum
 };
 
 /// A weld, embedding or spring of the scene in the model.
@@ -96,22 +104,13 @@ struct Simulation {
   std::vector<FrameInertia> dependent_damping;  ///< what their hosts took over of Model::mass_damping; or empty
   std::optional<ControlledPoint> controlled;    ///< of control = "displacement"
   State initial;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   int gravity_load = -1;   ///< index of gravity in Model::loads
   double stable_step = 0;  ///< of central differences [s]
 
   /// Factors of all schedules at a time.
   std::vector<double> factors(double time) const;
 };
-
-/// Memory that a process may still take [bytes].
-double available_memory();
-
-/// Rough memory of a scene [bytes], known before anything is allocated.
-double estimated_memory(const Scene& scene);
-
-/// The same from the built model, closer: a run's peak [bytes].
-double model_memory(const Simulation& simulation);
 
 /// Time between saved states of a dynamic run that names none [s].
 inline constexpr double kDefaultEvery = 0.04;

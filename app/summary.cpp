@@ -1,28 +1,15 @@
+#include "app/process_memory.hpp"
 #include "app/results.hpp"
 #include "app/version.hpp"
 
-#include <sys/resource.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace fascia::app {
 
 namespace {
-
-double percentile(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const auto last = static_cast<double>(values.size() - 1);
-  return values[static_cast<std::size_t>(std::ceil(part * last))];
-}
-
-std::size_t peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
 
 /// JSON has no NaN: a number that is not finite is a bug caught before, and would read null here.
 double finite(double v) { return std::isfinite(v) ? v : 0.0; }
@@ -72,19 +59,20 @@ const char* status_name(RunStatus status) {
   }
 }
 
-nlohmann::ordered_json running_summary(const Simulation& s) {
+nlohmann::ordered_json running_summary(const Simulation& s, const nlohmann::ordered_json& provenance) {
   nlohmann::ordered_json j = summary_head(s, "running", "");
   j["bodies"] = bodies_of(s);
   j["dofs"] = s.model.free_dof_count();
   j["steps"] = 0;
-  j["warnings"] = s.warnings;
+  j["warnings"] = s.warnings.summary();
+  j["provenance"] = provenance;
   return j;
 }
 
 nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, const RunReport& run,
                                const RunTimes& times, int threads, const std::vector<nlohmann::json>& probe_values,
                                double stabilization_energy, const std::vector<FluidState>& fluids,
-                               const CouplingReports& couplings) {
+                               const CouplingReports& couplings, const nlohmann::ordered_json& provenance) {
   nlohmann::ordered_json j = summary_head(s, status_name(run.status), run.message);
   j["convergence"] = run.convergence;
   j["backend"] = name_of(backend);
@@ -109,17 +97,18 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, c
   j["seconds"] = {{"setup", times.setup},
                   {"solve", times.solve},
                   {"output", times.output},
-                  {"step_median", percentile(times.steps, 0.5)},
-                  {"step_p99", percentile(times.steps, 0.99)},
-                  {"step_max", percentile(times.steps, 1.0)}};
-  j["peak_memory_bytes"] = peak_memory_bytes();
-  j["warnings"] = s.warnings;
+                  {"step_median", times.steps.percentile(0.5)},
+                  {"step_p99", times.steps.percentile(0.99)},
+                  {"step_max", times.steps.percentile(1.0)}};
+  j["peak_memory_bytes"] = static_cast<std::uint64_t>(peak_memory());
+  j["warnings"] = s.warnings.summary();
   j["probes"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
     const Probe& p = *s.probes[i].probe;
     j["probes"][p.name] = {
         {"quantity", quantity_name(p.quantity)}, {"unit", probe_unit(p.quantity)}, {"value", probe_values[i]}};
   }
+  j["provenance"] = provenance;
   return j;
 }
 

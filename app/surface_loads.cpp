@@ -107,7 +107,7 @@ void add_fluid(Simulation& s, int body, const Fluid& fluid) {
     load.weight = s.scene.world.gravity * fluid.density;
     load.weight_schedule = s.model.loads[at(s.gravity_load)].schedule;
   } else if (fluid.density > 0) {
-    s.warnings.push_back(fluid.place.key + ".density: does nothing without world.gravity");
+    s.warnings.add("no-effect", s.scene.place_of(fluid.place.key + ".density"), "does nothing without world.gravity");
   }
   s.fluids.push_back({body, static_cast<int>(s.model.surfaces.size())});
   s.model.surfaces.push_back(std::move(load));

@@ -15,8 +15,9 @@ std::string backend_list() {
 const char* tuning() { return FASCIA_TUNING; }
 
 std::string version_text() {
-  return fmt::format("fascia {}\nbackends: {}\ndirect solver: {}\nprocessor: {}", FASCIA_VERSION, backend_list(),
-                     FASCIA_DIRECT_SOLVER, tuning());
+  const std::string built_from = *commit() == '\0' ? "" : fmt::format("\ncommit: {}", commit());
+  return fmt::format("fascia {}{}\nbackends: {}\ndirect solver: {}\nprocessor: {}", FASCIA_VERSION, built_from,
+                     backend_list(), FASCIA_DIRECT_SOLVER, tuning());
 }
 
 }  // namespace fascia::app

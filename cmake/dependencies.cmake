@@ -3,14 +3,20 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(VTK 9.1 REQUIRED
-  COMPONENTS CommonCore CommonDataModel IOXML IOLegacy IOPLY
-  OPTIONAL_COMPONENTS FiltersCore FiltersGeometry FiltersSources IOImage RenderingAnnotation RenderingFreeType RenderingOpenGL2)
+  COMPONENTS CommonCore CommonDataModel IOCore IOXML IOLegacy IOPLY
+  OPTIONAL_COMPONENTS FiltersCore FiltersGeometry FiltersSources IOImage RenderingFreeType RenderingOpenGL2)
 
 find_path(UDUNITS2_INCLUDE udunits2.h REQUIRED)
 find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
 add_library(udunits2 INTERFACE)
 target_include_directories(udunits2 SYSTEM INTERFACE ${UDUNITS2_INCLUDE})
 target_link_libraries(udunits2 INTERFACE ${UDUNITS2_LIBRARY})
+
+find_path(MD_INCLUDE sha256.h REQUIRED)
+find_library(MD_LIBRARY md REQUIRED)
+add_library(md INTERFACE)
+target_include_directories(md SYSTEM INTERFACE ${MD_INCLUDE})
+target_link_libraries(md INTERFACE ${MD_LIBRARY})
 
 find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
 add_library(nanoflann INTERFACE)

@@ -43,6 +43,7 @@ class ElementBody final : public ModelBody {
   Attachment attach_surface(std::size_t point) const override;
   std::vector<PointTensors> tensors(const State& state) const override;
   PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const override;
+  TensorField tensor_field(const State& state) const override;
   std::vector<std::vector<int>> faces() const override;
   std::vector<FacePoint> face_points() const override;
   std::vector<char> nodes_on_boundary() const override { return on_boundary_; }

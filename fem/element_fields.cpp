@@ -146,9 +146,14 @@ std::vector<PointTensors> ElementBody::tensors(const State& state) const {
 }
 
 PointTensors ElementBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {
-  const std::vector<Averaged> average = averages(state);
-  return tensors_of(nearest, field_at(place, state).H, strained(at(place.cell), state),
-                    average.empty() ? std::nullopt : std::optional(average[at(place.cell)]));
+  return tensor_field(state)(place, nearest);
+}
+
+TensorField ElementBody::tensor_field(const State& state) const {
+  return [this, &state, average = averages(state)](const Attachment& place, std::size_t nearest) {
+    return tensors_of(nearest, field_at(place, state).H, strained(at(place.cell), state),
+                      average.empty() ? std::nullopt : std::optional(average[at(place.cell)]));
+  };
 }
 
 }  // namespace fascia

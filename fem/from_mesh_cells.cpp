@@ -44,12 +44,34 @@ struct Entry {
   std::int64_t number = 0;
   int group = -1;
   int element = 0;
+  const CellBlock* block = nullptr;
+  std::size_t cell = 0;  ///< in the block
 };
 
+/// Cells with the same corners that make the same element: four corners make one linear tetrahedron only, in whatever
+/// order they come.
+bool same_element(const Entry& a, const Entry& b) {
+  const auto same = [&](const std::vector<int>& of_a, const std::vector<int>& of_b, std::size_t count) {
+    const auto begin = [&](const std::vector<int>& nodes, std::size_t cell) {
+      return nodes.begin() + static_cast<std::ptrdiff_t>(cell * count);
+    };
+    return std::equal(begin(of_a, a.cell), begin(of_a, a.cell + 1), begin(of_b, b.cell));
+  };
+  const std::size_t middles = at(a.block->mid_nodes_per_cell);
+  if (middles != at(b.block->mid_nodes_per_cell)) return false;
+  if (a.block->type == CellType::tetrahedron && middles == 0) return true;
+  return same(a.block->nodes, b.block->nodes, at(node_count(a.block->type))) &&
+         same(a.block->mid_nodes, b.block->mid_nodes, middles);
+}
+
 /// For each cell, in the file's order, the first cell that it repeats (itself where it is the first).
-/// @throws InputError  a repetition that is not another group's
-std::vector<int> first_of_same(const std::string& file, std::vector<Entry> entries) {
+/// A message says which repeat others by mistake, not for another group.
+/// @throws InputError  a repetition of the corners that makes another element
+std::vector<int> first_of_same(const std::string& file, std::vector<Entry> entries,
+                               std::vector<std::string>& messages) {
   std::vector<int> first(entries.size());
+  std::size_t copies = 0;
+  std::string first_copy;
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.element < b.element; });
   for (std::size_t k = 0, end = 0; k < entries.size(); k = end) {
@@ -57,14 +79,23 @@ std::vector<int> first_of_same(const std::string& file, std::vector<Entry> entri
       const Entry& entry = entries[end];
       for (std::size_t before = k; before < end; ++before) {
         const Entry& other = entries[before];
-        if (other.number == entry.number) continue;
-        if (other.group == entry.group || other.group < 0 || entry.group < 0)
+        if (other.number == entry.number || (other.group != entry.group && other.group >= 0 && entry.group >= 0))
+          continue;
+        if (!same_element(other, entry))
           fail(file, "elements " + std::to_string(other.number) + " and " + std::to_string(entry.number) +
                          " have the same nodes; remove one of them");
+        if (copies++ == 0)
+          first_copy = std::to_string(entry.number) + ", which repeats element " + std::to_string(other.number);
+        break;
       }
       first[at(entry.element)] = entries[k].element;
     }
   }
+  if (copies > 0)
+    messages.push_back(file + ": left out " + std::to_string(copies) +
+                       (copies == 1 ? " element that repeats another (element "
+                                    : " elements that repeat others (the first: element ") +
+                       first_copy + ")");
   return first;
 }
 
@@ -102,14 +133,14 @@ Cells distinct_cells(const Mesh& mesh, ElementFamily family, int order) {
   std::vector<Entry> entries;
   for (const CellBlock* block : blocks)
     for (std::size_t c = 0; c < block->size(); ++c) {
-      Entry entry{{}, block->file_number[c], block->group[c], static_cast<int>(entries.size())};
+      Entry entry{{}, block->file_number[c], block->group[c], static_cast<int>(entries.size()), block, c};
       for (std::size_t n = 0; n < corners; ++n) entry.key[n] = block->nodes[c * corners + n];
       std::sort(entry.key.begin(), entry.key.begin() + static_cast<std::ptrdiff_t>(corners));
       entries.push_back(entry);
     }
-  const std::vector<int> first = first_of_same(mesh.file, std::move(entries));
-
   Cells result;
+  result.mesh.messages = mesh.messages;
+  const std::vector<int> first = first_of_same(mesh.file, std::move(entries), result.mesh.messages);
   result.elements_of_group.resize(mesh.groups.size());
   ElementMesh& made = result.mesh;
   made.shape = element_shape(family, all ? order : 1);

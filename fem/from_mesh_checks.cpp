@@ -139,10 +139,11 @@ void check_corners(ElementMesh& mesh) {
   if (wrong.empty()) return;
   if (!right.empty()) {
     const std::vector<std::int64_t>& few = wrong.size() <= right.size() ? wrong : right;
-    fail(mesh.file, std::string(few.size() > 1 ? "elements " : "element ") + first_few(few) + " of " +
-                        std::to_string(mesh.size()) + (few.size() > 1 ? " are" : " is") +
-                        (&few == &wrong ? " turned the wrong way round" : " turned against the others") +
-                        "; number the nodes of all elements alike");
+    fail(mesh.file, std::string(few.size() > 1 ? "elements " : "element ") + first_few(few) +
+                        (few.size() > 1 ? " are" : " is") +
+                        (&few == &wrong ? " turned the wrong way round" : " turned against the others") + " (" +
+                        std::to_string(few.size()) + " of " + std::to_string(mesh.size()) +
+                        " elements); number the nodes of all elements alike");
   }
   turn_over(mesh);
   mesh.messages.push_back(mesh.file + ": all " + std::to_string(mesh.size()) +

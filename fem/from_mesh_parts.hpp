@@ -22,7 +22,8 @@ struct Cells {
   std::vector<std::vector<int>> elements_of_group;
 };
 
-/// @throws InputError  cells that repeat others, linear cells beside quadratic ones where order = 2
+/// Cells that repeat others are left out, with a message.
+/// @throws InputError  cells of the same corners in another order, linear cells beside quadratic ones where order = 2
 Cells distinct_cells(const Mesh& mesh, ElementFamily family, int order);
 
 /// @throws InputError  a node twice in an element, flat elements, a mixture of orientations

@@ -8,7 +8,7 @@
 
 namespace fascia::io {
 
-/// Reads a Gmsh mesh, 2.2 or 4.1, ASCII or binary.
+/// Reads a Gmsh mesh: 1 ($NOD, ASCII), 2 to 2.2 and 4.1 (ASCII or binary).
 ///
 /// Linear cells of every kind; cells of higher order keep their corners, quadratic ones their mid-side nodes too where
 /// these are asked for; nodes of faces and centres are left out. A cell that belongs to several physical groups appears

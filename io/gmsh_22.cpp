@@ -22,6 +22,10 @@ std::size_t checked_tags(GmshInput& input, std::int64_t tags) {
   return input.checked_count(tags, 2, 4, "the number of tags");
 }
 
+int physical_group(GmshBuilder& builder, const GmshElement& element, std::int64_t physical) {
+  return physical == 0 ? -1 : builder.group(dimension_of(element.type), physical);
+}
+
 /// Tags and nodes of an element whose header is read.
 void read_element(GmshInput& input, GmshBuilder& builder, const ElementRun& run, std::int64_t number,
                   std::vector<std::int64_t>& nodes) {
@@ -32,8 +36,7 @@ void read_element(GmshInput& input, GmshBuilder& builder, const ElementRun& run,
   }
   nodes.resize(static_cast<std::size_t>(run.element.nodes));
   for (std::int64_t& node : nodes) node = input.int32("a node number");
-  const int group = physical == 0 ? -1 : builder.group(dimension_of(run.element.type), physical);
-  builder.add_cell(run.element, number, nodes, group);
+  builder.add_cell(run.element, number, nodes, physical_group(builder, run.element, physical));
 }
 
 void read_elements_text(GmshInput& input, GmshBuilder& builder, std::size_t count) {
@@ -67,6 +70,26 @@ void read_elements_binary(GmshInput& input, GmshBuilder& builder, std::size_t co
 }
 
 }  // namespace
+
+void read_elements_1(GmshInput& input, GmshBuilder& builder) {
+  const std::size_t count = text_count(input, 12, 12, "the number of elements");
+  std::vector<std::int64_t> nodes;
+  for (std::size_t e = 0; e < count; ++e) {
+    input.begin_line();
+    const std::int64_t number = input.int32("an element number");
+    const GmshElement element = gmsh_element(input.int32("an element type"), input);
+    const std::int64_t physical = input.int32("a physical group");
+    input.int32("an elementary entity");
+    const std::int64_t said = input.int32("the number of nodes of an element");
+    if (said != element.nodes)
+      input.fail("element " + std::to_string(number) + " says that it has " + std::to_string(said) +
+                 " nodes; its type has " + std::to_string(element.nodes) + ": correct the one or the other");
+    nodes.resize(static_cast<std::size_t>(element.nodes));
+    for (std::int64_t& node : nodes) node = input.int32("a node number");
+    builder.add_cell(element, number, nodes, physical_group(builder, element, physical));
+    input.end_of_line("element " + std::to_string(number));
+  }
+}
 
 void read_nodes_22(GmshInput& input, GmshBuilder& builder) {
   const std::size_t count = text_count(input, 8, 28, "the number of nodes");

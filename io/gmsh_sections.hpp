@@ -10,6 +10,9 @@ namespace fascia::io {
 /// Physical groups of each geometric entity, by dimension and tag (4.1).
 using GmshEntities = std::map<std::pair<int, std::int64_t>, std::vector<int>>;
 
+void read_elements_1(GmshInput& input, GmshBuilder& builder);
+
+/// Versions 1 and 2 write nodes alike.
 void read_nodes_22(GmshInput& input, GmshBuilder& builder);
 void read_elements_22(GmshInput& input, GmshBuilder& builder);
 

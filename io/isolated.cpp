@@ -96,6 +96,8 @@ std::string pack(const Mesh& mesh) {
     packer.add(group.number);
     packer.add(group.dimension);
   }
+  packer.add(mesh.messages.size());
+  for (const std::string& message : mesh.messages) packer.add(message);
   return packer.take();
 }
 
@@ -123,6 +125,9 @@ Mesh unpack(std::string_view bytes) {
     unpacker.get(group.number);
     unpacker.get(group.dimension);
   }
+  std::size_t messages = 0;
+  unpacker.get(messages);
+  for (std::size_t m = 0; m < messages; ++m) unpacker.get(mesh.messages.emplace_back());
   return mesh;
 }
 

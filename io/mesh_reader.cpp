@@ -13,7 +13,7 @@
 namespace fascia::io {
 
 Mesh read_mesh(const std::filesystem::path& path, MidNodes mid_nodes) {
-  constexpr std::array<std::string_view, 6> vtk_endings{".vtk", ".vtu", ".vtp", ".stl", ".obj", ".ply"};
+  constexpr std::array<std::string_view, 7> vtk_endings{".vtk", ".vtu", ".vtp", ".stl", ".obj", ".off", ".ply"};
   std::string ending = path.extension().string();
   for (char& c : ending)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -21,7 +21,7 @@ Mesh read_mesh(const std::filesystem::path& path, MidNodes mid_nodes) {
   check_readable(path);
   if (std::find(vtk_endings.begin(), vtk_endings.end(), ending) == vtk_endings.end())
     throw InputError(path.string() + ": the ending \"" + ending +
-                     "\" names no known mesh format; must be .msh, .vtk, .vtu, .vtp, .stl, .obj or .ply");
+                     "\" names no known mesh format; must be .msh, .vtk, .vtu, .vtp, .stl, .obj, .off or .ply");
   return read_vtk_mesh(path, ending, mid_nodes);
 }
 

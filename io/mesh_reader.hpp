@@ -7,7 +7,8 @@
 
 namespace fascia::io {
 
-/// Reads Gmsh 2.2 and 4.1 (ASCII and binary), VTK legacy, VTU, VTP, STL, OBJ or PLY, chosen by the file's ending.
+/// Reads Gmsh 1 (ASCII), 2 to 2.2 and 4.1 (ASCII and binary), VTK legacy, VTU, VTP, STL, OBJ, OFF or PLY, chosen by
+/// the file's ending. Mesh::messages says what was mended.
 ///
 /// Groups are Gmsh's physical groups. VTK's files have none; there the first of these cell arrays that the file has, of
 /// integers and one component, numbers them: "group", "gmsh:physical", "PhysicalGroup", "medit:ref", "cell_tags",

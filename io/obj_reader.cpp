@@ -119,8 +119,11 @@ class ObjParser {
 
 }  // namespace
 
-vtkSmartPointer<vtkDataSet> parse_obj(std::string_view text, const std::string& name) {
-  return ObjParser(text, name).parse();
+vtkSmartPointer<vtkDataSet> parse_obj(std::string_view text, const std::string& name,
+                                      std::vector<std::string>& messages) {
+  const BareText bare(text);
+  bare.report(name, messages);
+  return ObjParser(bare.text, name).parse();
 }
 
 }  // namespace fascia::io

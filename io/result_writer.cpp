@@ -8,13 +8,17 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkZLibDataCompressor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -128,6 +132,7 @@ void add_field(vtkFieldData& data, const FieldArray& field, std::size_t count) {
     array->Fill(0);
     for (std::size_t i = 0; i < field.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), field.values[i]);
   }
+  if (!field.unit.empty()) array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field.unit.c_str());
   data.AddArray(array);
 }
 
@@ -139,6 +144,18 @@ void add_fields(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   part->SetName("part");
   for (const int p : mesh.part) part->InsertNextValue(p);
   grid.GetCellData()->AddArray(part);
+}
+
+void add_origin(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
+  vtkNew<vtkDoubleArray> time;
+  time->SetName("TimeValue");
+  time->InsertNextValue(mesh.time);
+  grid.GetFieldData()->AddArray(time);
+  if (mesh.provenance.empty()) return;
+  vtkNew<vtkStringArray> provenance;
+  provenance->SetName("provenance");
+  provenance->InsertNextValue(mesh.provenance);
+  grid.GetFieldData()->AddArray(provenance);
 }
 
 std::string escaped(const std::string& text) {
@@ -162,15 +179,53 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
+void fill(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
+  check_sizes(mesh);
+  add_points(grid, mesh);
+  add_cells(grid, mesh);
+  add_fields(grid, mesh);
+}
+
+/// Of an array: the writer compresses blocks, of which some are taken as samples, evenly spaced.
+double estimated_size(vtkDataArray& array, vtkZLibDataCompressor& compressor) {
+  constexpr std::size_t block = 32768, most_samples = 6;  // the writer's block; enough for a few percent
+  const std::size_t size =
+      static_cast<std::size_t>(array.GetNumberOfValues()) * static_cast<std::size_t>(array.GetDataTypeSize());
+  if (size == 0) return 0;
+  const auto* bytes = static_cast<const unsigned char*>(array.GetVoidPointer(0));
+  const std::size_t blocks = (size + block - 1) / block, samples = std::min(blocks, most_samples);
+  double taken = 0, compressed = 0;
+  std::vector<unsigned char> space(compressor.GetMaximumCompressionSpace(block));
+  for (std::size_t k = 0; k < samples; ++k) {
+    const std::size_t begin = k * blocks / samples * block, length = std::min(block, size - begin);
+    taken += static_cast<double>(length);
+    compressed += static_cast<double>(compressor.Compress(bytes + begin, length, space.data(), space.size()));
+  }
+  return compressed / taken * static_cast<double>(size) + 4 * static_cast<double>(blocks);
+}
+
 }  // namespace
 
-void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
-  check_sizes(mesh);
-  check_finite(file, mesh);
+double estimated_size(const VisualMesh& mesh) {
   vtkNew<vtkUnstructuredGrid> grid;
-  add_points(*grid, mesh);
-  add_cells(*grid, mesh);
-  add_fields(*grid, mesh);
+  fill(*grid, mesh);
+  vtkNew<vtkZLibDataCompressor> compressor;
+  compressor->SetCompressionLevel(vtkNew<vtkXMLUnstructuredGridWriter>()->GetCompressionLevel());
+  std::vector<vtkDataArray*> arrays{grid->GetPoints()->GetData(), grid->GetCells()->GetConnectivityArray(),
+                                    grid->GetCells()->GetOffsetsArray(), grid->GetCellTypesArray()};
+  for (vtkFieldData* data :
+       {static_cast<vtkFieldData*>(grid->GetPointData()), static_cast<vtkFieldData*>(grid->GetCellData())})
+    for (int k = 0; k < data->GetNumberOfArrays(); ++k) arrays.push_back(data->GetArray(k));
+  double size = 1000;  // the description
+  for (vtkDataArray* array : arrays) size += 200 + estimated_size(*array, *compressor);
+  return size;
+}
+
+void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  fill(*grid, mesh);
+  add_origin(*grid, mesh);
+  check_finite(file, mesh);
 
   // Into memory first: one place then checks that the whole file reaches the disk.
   VtkErrors errors;

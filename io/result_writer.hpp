@@ -17,6 +17,7 @@ struct FieldArray {
   std::string name;
   int components = 1;
   std::vector<double> values;
+  std::string unit = {};  ///< "Pa", "m"; empty: none
 };
 
 /// Cells of one type and order that fields belong to.
@@ -41,6 +42,8 @@ struct VisualMesh {
   std::vector<int> vertices;  ///< point indices, one vertex cell each
   std::vector<FieldArray> point_fields;
   std::vector<FieldArray> cell_fields;  ///< values for the volume cells only; the file has zeros for the other cells
+  double time = 0;                      ///< as the .pvd says it: the file's "TimeValue"
+  std::string provenance;               ///< the file's text of that name; none where empty
   std::vector<int> part;  ///< cell array "part", one a cell (volumes, triangles, lines, vertices); may be empty
 };
 
@@ -48,6 +51,9 @@ struct VisualMesh {
 /// @throws FileError   where it cannot be written in whole
 /// @throws InputError  where a value is not finite (names the array)
 void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh);
+
+/// Bytes of what write_vtu would write, by compressing samples of its arrays.
+double estimated_size(const VisualMesh& mesh);
 
 /// A ParaView collection of the states of several bodies, complete after each of them.
 class Collection {

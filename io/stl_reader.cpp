@@ -28,11 +28,15 @@ class StlParser {
     points_->SetDataTypeToDouble();
   }
 
-  vtkSmartPointer<vtkDataSet> parse() {
-    if (is_binary())
+  vtkSmartPointer<vtkDataSet> parse(std::vector<std::string>& messages) {
+    const BareText bare(bytes_);
+    if (is_binary(bare.text)) {
       parse_binary();
-    else
+    } else {
+      bare.report(name_, messages);
+      bytes_ = bare.text;
       parse_text();
+    }
     const auto mesh = vtkSmartPointer<vtkPolyData>::New();
     mesh->SetPoints(points_);
     mesh->SetPolys(faces_);
@@ -48,12 +52,13 @@ class StlParser {
   }
 
   /// Some binary files begin with "solid" too: their length tells them apart, or a zero byte, which no text has.
-  bool is_binary() const {
-    if (bytes_.find('\0') != std::string_view::npos) return true;
+  /// @param text  the file, if it is text
+  bool is_binary(std::string_view text) const {
+    if (text.find('\0') != std::string_view::npos) return true;
     if (bytes_.size() >= kStart && bytes_.size() == kStart + kTriangle * at<std::uint32_t>(kHeader)) return true;
-    const std::size_t begin = bytes_.find_first_not_of(" \t\r\n");
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return false;
-    return !is_word(bytes_.substr(begin, 5), "solid");
+    return !is_word(text.substr(begin, 5), "solid");
   }
 
   void parse_binary() {
@@ -78,7 +83,7 @@ class StlParser {
   }
 
   void parse_text() {
-    for (std::string_view word = next(); !word.empty(); word = next()) {
+    for (std::string_view word = keyword(); !word.empty(); word = keyword()) {
       if (is_word(word, "solid") || is_word(word, "endsolid")) {
         ends_ = word.size() > std::string_view("solid").size();
         skip_line();  // a name of any words
@@ -120,12 +125,22 @@ class StlParser {
     return bytes_.substr(begin, place_ - begin);
   }
 
+  /// The next word; one that is written in two, as "end solid", in one.
+  std::string_view keyword() {
+    const std::string_view word = next();
+    if (!is_word(word, "end")) return word;
+    const std::string_view what = next();
+    for (const std::string_view ending : {"endsolid", "endfacet", "endloop"})
+      if (is_word(what, ending.substr(3))) return ending;
+    fail("found \"end\" and then " + said(what) + "; must be endsolid, endfacet or endloop");
+  }
+
   void skip_line() { place_ = std::min(bytes_.find('\n', place_), bytes_.size()); }
 
   static std::string said(std::string_view word) { return word.empty() ? "the end of the file" : quoted(word); }
 
   void expect(std::string_view wanted) {
-    const std::string_view word = next();
+    const std::string_view word = keyword();
     if (!is_word(word, wanted)) fail("found " + said(word) + "; must be " + std::string(wanted));
   }
 
@@ -159,8 +174,9 @@ class StlParser {
 
 }  // namespace
 
-vtkSmartPointer<vtkDataSet> parse_stl(std::string_view bytes, const std::string& name) {
-  return StlParser(bytes, name).parse();
+vtkSmartPointer<vtkDataSet> parse_stl(std::string_view bytes, const std::string& name,
+                                      std::vector<std::string>& messages) {
+  return StlParser(bytes, name).parse(messages);
 }
 
 }  // namespace fascia::io

@@ -33,6 +33,25 @@ std::optional<double> to_number(std::string_view word) {
   return value;
 }
 
+BareText::BareText(std::string_view whole) : text(whole) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (text.starts_with(mark)) text.remove_prefix(mark.size());
+  std::string_view rest = text;
+  while (!rest.empty() && (is_blank(rest.back()) || rest.back() == '\0' || rest.back() == '\x1A')) {
+    stray += is_blank(rest.back()) ? 0u : 1u;
+    rest.remove_suffix(1);
+  }
+  if (stray > 0) text = rest;
+}
+
+void BareText::report(const std::string& file, std::vector<std::string>& messages) const {
+  if (stray == 0) return;
+  messages.push_back(
+      file + ": left out " + std::to_string(stray) +
+      (stray == 1 ? " byte behind the last line that belongs" : " bytes behind the last line that belong") +
+      " to no text");
+}
+
 std::string quoted(std::string_view word) {
   constexpr std::size_t longest = 40;
   std::string result = "\"";

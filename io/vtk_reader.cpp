@@ -4,6 +4,7 @@
 #include "io/files.hpp"
 #include "io/isolated.hpp"
 #include "io/obj_reader.hpp"
+#include "io/off_reader.hpp"
 #include "io/stl_reader.hpp"
 #include "io/vtk_cells.hpp"
 #include "io/vtk_errors.hpp"
@@ -18,6 +19,7 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <exception>
+#include <fstream>
 
 namespace fascia::io {
 namespace {
@@ -51,6 +53,19 @@ vtkSmartPointer<vtkDataSet> read_data(const std::string& file, const std::string
   return read_with<vtkPLYReader>(file);
 }
 
+/// Files of VTK's XML formats are often called .vtk; what they hold says which of them they are.
+std::string true_ending(const std::filesystem::path& path, const std::string& ending) {
+  if (ending != ".vtk") return ending;
+  constexpr std::size_t longest = 2000;
+  std::string start(longest, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(start.data(), static_cast<std::streamsize>(longest));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  if (!start.starts_with('<') || start.find("<VTKFile") == std::string::npos) return ending;
+  if (start.find("\"UnstructuredGrid\"") != std::string::npos) return ".vtu";
+  return start.find("\"PolyData\"") != std::string::npos ? ".vtp" : ending;
+}
+
 Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mid_nodes) {
   VtkErrors errors;
   try {
@@ -70,12 +85,19 @@ Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mi
 
 Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending, MidNodes mid_nodes) {
   const std::string file = path.string();
-  if (ending == ".obj" || ending == ".stl") {
+  if (ending == ".obj" || ending == ".stl" || ending == ".off") {
     VtkErrors silence;
-    const auto parse = ending == ".obj" ? parse_obj : parse_stl;
-    return mesh_of_vtk(*parse(read_file(path), file), file, 1, 1, mid_nodes);
+    const auto parse = ending == ".obj" ? parse_obj : ending == ".stl" ? parse_stl : parse_off;
+    const int first = ending == ".off" ? 0 : 1;  // the number that the format gives its first vertex
+    std::vector<std::string> messages;
+    Mesh mesh = mesh_of_vtk(*parse(read_file(path), file, messages), file, first, first, mid_nodes);
+    mesh.messages = std::move(messages);
+    return mesh;
   }
-  return read_isolated(file, [&] { return read_by_vtk(file, ending, mid_nodes); });
+  const std::string kind = true_ending(path, ending);
+  Mesh mesh = read_isolated(file, [&] { return read_by_vtk(file, kind, mid_nodes); });
+  if (kind != ending) mesh.messages.push_back(file + ": holds XML, which is a " + kind + " file, and was read as one");
+  return mesh;
 }
 
 }  // namespace fascia::io

@@ -36,7 +36,7 @@ GridBody::GridBody(const GridSpec& spec, Model& model, PointSetBuilder& points)
 
   int full_count = 0;
   for (const Sample& s : samples) full_count = std::max(full_count, ++cells_[at(s.cell)].point_count);
-  find_owners(samples, full_count);
+  find_owners(spec, samples, full_count);
   number_frames(spec, samples, model);
   add_points(spec, samples, model, points);
   add_inertia(spec, samples, model);

@@ -61,7 +61,8 @@ class GridBody final : public ModelBody {
   };
 
   std::vector<Sample> sample(const GridSpec& spec) const;
-  void find_owners(const std::vector<Sample>& samples, int full_count);
+  void find_owners(const GridSpec& spec, const std::vector<Sample>& samples, int full_count);
+  void advise(const GridSpec& spec, int full_count);
   int nearest_owner(int cell) const;
   void number_frames(const GridSpec& spec, const std::vector<Sample>& samples, Model& model);
   void place_shared(const GridSpec& spec);

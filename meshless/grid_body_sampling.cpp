@@ -65,7 +65,7 @@ std::vector<GridBody::Sample> GridBody::sample(const GridSpec& spec) const {
 
 /// Cells with enough points own themselves; from these, layer by layer, each other cell takes the owner among its
 /// neighbours' that is nearest, of equals the one with most points.
-void GridBody::find_owners(const std::vector<Sample>& samples, int full_count) {
+void GridBody::find_owners(const GridSpec& spec, const std::vector<Sample>& samples, int full_count) {
   int least = std::max(1, static_cast<int>(std::ceil(kSmallCell * full_count)));
   if (std::none_of(cells_.begin(), cells_.end(), [&](const Cell& c) { return c.point_count >= least; })) least = 1;
   if (weights_ == GridWeightKind::linear) {
@@ -103,8 +103,7 @@ void GridBody::find_owners(const std::vector<Sample>& samples, int full_count) {
     for (const auto& [c, owner] : found) cells_[at(c)].owner = owner;
     open = std::move(left);
   }
-  if (lent > 0 && full_count < 27)
-    messages_.push_back("the boundary cuts cells that have few points; use 3 in each direction (per_cell = [3, 3, 3])");
+  if (lent > 0) advise(spec, full_count);
   if (lent > 0)
     messages_.push_back(std::to_string(lent) +
                         " points in cells that the domain hardly fills were given to neighbouring cells");
@@ -116,6 +115,18 @@ void GridBody::find_owners(const std::vector<Sample>& samples, int full_count) {
   }
   for (std::size_t c = 0; c < cells_.size(); ++c)
     if (volume[c] > 0) cells_[c].center *= 1 / volume[c];
+}
+
+/// What helps where the boundary cuts cells that have few points.
+void GridBody::advise(const GridSpec& spec, int full_count) {
+  std::array<int, 3> count{};
+  for (int a = 0; a < 3; ++a) count[at(a)] = spec.per_cell ? (*spec.per_cell)[at(a)] : points_of_cell(spec, a);
+  constexpr int enough = 3;
+  const bool few = std::any_of(count.begin(), count.end(), [](int n) { return n < enough; });
+  if (weights_ == GridWeightKind::trilinear && few)
+    messages_.push_back("the boundary cuts cells that have few points; use 3 in each direction (per_cell = [3, 3, 3])");
+  else if (full_count < (weights_ == GridWeightKind::linear ? 24 : count[0] * count[1] * count[2]))
+    messages_.push_back("the boundary cuts every cell of the grid; use more frames");
 }
 
 /// Best owner among those of the 26 neighbours; −1 where none has one yet.

@@ -1,5 +1,6 @@
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
+#include "core/geometry/surface_touching.hpp"
 #include "core/geometry/text.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <utility>
 
 namespace fascia {
@@ -47,13 +49,13 @@ void report_choice(const Mesh& mesh, std::vector<std::string>& messages) {
     }
 }
 
-/// @throws InputError  an edge of three triangles or more
+/// @throws InputError  an edge of three triangles or more, where the surface does not just touch itself
 void check_edges(const Solid& sheet, const std::vector<Triangle>& triangles) {
   const std::vector<Edge> edges = sorted_edges(triangles);
   std::size_t first = 0, most = 0, count = 0;
   for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
     for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
-    if (end - e <= 2) continue;
+    if (end - e <= 2 || balanced(std::span(edges).subspan(e, end - e))) continue;
     if (count++ == 0) first = e, most = end - e;
   }
   if (count == 0) return;
@@ -134,6 +136,43 @@ std::vector<BodyGroup> groups_of(const Mesh& mesh, const Solid& all, const std::
   return groups;
 }
 
+/// Gives what touches along edges nodes of its own there. Groups get the new nodes and triangles too.
+void part_where_touching(ShellMesh& mesh) {
+  std::vector<Triangle> triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) triangles.push_back({mesh.triangles[t], mesh.file_number[t]});
+  const std::vector<TouchingEdge> touching = touching_edges(mesh.nodes, triangles);
+  if (touching.empty()) return;
+  const int former_nodes = static_cast<int>(mesh.nodes.size()), former = static_cast<int>(triangles.size());
+  const PartedSurface parted = part_at(touching, mesh.nodes.size(), std::move(triangles));
+  mesh.messages.push_back(
+      mesh.file + ": touches itself along " + std::to_string(touching.size()) +
+      (touching.size() == 1 ? " edge, at " : " edges, the first at ") +
+      text((mesh.nodes[at(touching[0].low)] + mesh.nodes[at(touching[0].high)]) * 0.5) +
+      "; split there: what met is not joined" +
+      (parted.joined > 0 ? ", but in one node where a part would come loose (" + std::to_string(parted.joined) + ")"
+                         : ""));
+  for (const auto& [a, b] : parted.added) mesh.nodes.push_back((mesh.nodes[at(a)] + mesh.nodes[at(b)]) * 0.5);
+  mesh.triangles.clear();
+  mesh.file_number.clear();
+  for (const Triangle& t : parted.triangles) {
+    mesh.triangles.push_back(t.nodes);
+    mesh.file_number.push_back(t.file_number);
+  }
+  const auto has = [](const std::vector<int>& members, int i) {
+    return std::ranges::find(members, i) != members.end();
+  };
+  for (BodyGroup& group : mesh.groups) {
+    for (int k = 0; const auto& [a, b] : parted.added) {
+      if (has(group.nodes, a) && has(group.nodes, b)) group.nodes.push_back(former_nodes + k);
+      ++k;
+    }
+    for (int k = 0; const int whole : parted.half_of) {
+      if (has(group.cells, whole)) group.cells.push_back(former + k);
+      ++k;
+    }
+  }
+}
+
 /// The number of each point among those that triangles use, in their order; −1 for the others.
 std::vector<int> number_nodes(const Solid& solid, const std::vector<Triangle>& triangles) {
   std::vector<int> number(solid.points.size(), -1);
@@ -154,6 +193,7 @@ ShellMesh shell_mesh(const Mesh& mesh) {
     throw InputError(mesh.file + ": has no triangles; a shell needs a surface of triangles or quadrilaterals");
   ShellMesh result;
   result.file = mesh.file;
+  result.messages = mesh.messages;
   report_choice(mesh, result.messages);
   report_unused_points(mesh, result.messages);
 
@@ -162,15 +202,17 @@ ShellMesh shell_mesh(const Mesh& mesh) {
   for (const Cell& cell : all.cells)
     if (of_volumes ? is_volume(cell.type) : is_surface(cell.type)) cells.push_back(cell);
   const Solid used = with_cells(all, std::move(cells));
-  std::vector<Triangle> triangles = of_volumes ? boundary_of_cells(used, result.messages) : triangles_of_cells(used);
-  check_edges(used, triangles);
+  std::vector<Triangle> triangles =
+      of_volumes ? boundary_of_cells(used, result.messages) : triangles_of_cells(used, result.messages);
   orient_sheet(used, triangles, result.messages);
+  check_edges(used, triangles);
 
   TriangleMesh surface = compact(used, triangles);
   result.nodes = std::move(surface.points);
   result.triangles = std::move(surface.triangles);
   for (const Triangle& t : triangles) result.file_number.push_back(t.file_number);
   result.groups = groups_of(mesh, all, triangles, number_nodes(used, triangles), of_volumes);
+  part_where_touching(result);
   for (const BodyGroup& group : result.groups)
     if (group.nodes.empty())
       result.messages.push_back(mesh.file + ": group \"" + group.name + "\" has no nodes of the shell");

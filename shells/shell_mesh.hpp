@@ -24,9 +24,12 @@ struct ShellMesh {
 ///
 /// Quadrilaterals are split, coincident nodes welded (within 1e-9 of the bounding box's diagonal), nodes that no cell
 /// uses dropped; triangles that disagree with their neighbours turn over, by as few turns as possible in each connected
-/// part, and closed parts face outward. Groups of surfaces have triangles and nodes, those of lines and points nodes.
-/// @throws InputError  no triangles, NaN, flat or repeated triangles, an edge of more than two, a surface with one side
-///                     only; with the file and its own cell or node numbers
+/// part, and closed parts face outward; copies of triangles are left out. Where the surface touches itself along an
+/// edge it is split: each side has nodes of its own. Groups of surfaces have triangles and nodes, those of lines and
+/// points nodes.
+/// @throws InputError  no triangles, NaN, flat triangles, an edge where a third triangle branches off, a surface with
+/// one
+///                     side only; with the file and its own cell or node numbers
 ShellMesh shell_mesh(const Mesh& mesh);
 
 }  // namespace fascia

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/bench/benchmark.hpp"
-#include "app/bench/machine.hpp"
+#include "app/machine.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

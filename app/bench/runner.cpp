@@ -1,4 +1,6 @@
 #include "app/bench/benchmark.hpp"
+#include "app/memory.hpp"
+#include "app/process_memory.hpp"
 #include "app/scene/errors.hpp"
 #include "app/scene/parse.hpp"
 #include "core/model/errors.hpp"
@@ -70,7 +72,7 @@ Measurement measured(Measurement m, const Backend& backend, const StepTimes& t) 
 /// The case's model, or none where it does not fit or the program refuses it.
 std::optional<Simulation> built(const BenchmarkCase& c, std::string& reason) {
   Scene scene = parse_scene_text(c.scene, c.name + ".toml", {});
-  const double need = estimated_memory(scene), have = available_memory();
+  const double need = estimated_memory(scene), have = free_memory().bytes;
   if (need > kMemoryShare * have) {
     reason = fmt::format("it needs about {:.3g} GB of memory and {:.3g} GB are free", need / 1e9, have / 1e9);
     return std::nullopt;

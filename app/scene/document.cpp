@@ -1,5 +1,7 @@
 #include "app/scene/document.hpp"
 
+#include "app/scene/text_checks.hpp"
+
 #include <fmt/format.h>
 
 // toml++ 3.3 asserts (or, without assertions, lets the compiler assume) things that a wrong text breaks, "[%]" for one;
@@ -151,11 +153,16 @@ const Value* Value::find(std::string_view key) const {
 Value* Value::find(std::string_view key) { return const_cast<Value*>(std::as_const(*this).find(key)); }
 
 Value parse_toml(std::string_view text) {
-  Scan(text).check();
+  check_encoding(text);
   try {
-    return convert(toml::parse(text));
-  } catch (const toml::parse_error& error) {
-    throw SyntaxError{position_of(error.source()), std::string(error.description())};
+    Scan(text).check();
+    try {
+      return convert(toml::parse(text));
+    } catch (const toml::parse_error& error) {
+      throw SyntaxError{position_of(error.source()), std::string(error.description())};
+    }
+  } catch (const SyntaxError& error) {
+    throw unquoted_quantity(text, error.position.line).value_or(error);
   }
 }
 

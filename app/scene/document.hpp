@@ -51,12 +51,13 @@ struct Member {
 struct SyntaxError {
   Position position;
   std::string message;
+  std::string remedy = "must be TOML 1.0";  ///< empty where the message holds it
 };
 
 /// Texts whose brackets and dotted keys nest deeper are refused.
 inline constexpr int max_nesting = 256;
 
-/// Reads a TOML 1.0 text.
+/// Reads a TOML 1.0 text in UTF-8.
 /// @throws SyntaxError  at its first mistake
 Value parse_toml(std::string_view text);
 

@@ -35,8 +35,10 @@ struct EllipsoidDomain {
   Vec3d center, radii;
 };
 struct FileDomain {
-  std::filesystem::path path;
-};  ///< already resolved against the scene's folder
+  std::filesystem::path path;  ///< already resolved against the scene's folder
+  Place place{};               ///< of the key
+  double unit = 1;             ///< of its numbers [m]; it is part of Transform::scale
+};
 /// A parallelogram: origin + u edge_u + v edge_v, u and v from 0 to 1.
 struct RectangleDomain {
   Vec3d origin, edge_u, edge_v;

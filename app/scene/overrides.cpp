@@ -1,5 +1,7 @@
 #include "app/scene/overrides.hpp"
 
+#include "app/scene/text_checks.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -113,9 +115,34 @@ Value* step(Value& at, const Part& part, const std::string& path, Diagnostics& d
   return &members->back().value;
 }
 
+/// Why a key cannot be removed.
+std::string not_there(const Table& members, const std::string& key) {
+  std::vector<std::string> known;
+  for (const Member& member : members) known.push_back(member.key);
+  const std::string near = nearest(key, known);
+  return fmt::format("is not there, so that it cannot be removed; {}",
+                     near.empty() ? "leave this --set out" : fmt::format("did you mean \"{}\"?", near));
+}
+
+/// Takes a member out of its table, or an element out of its list.
+void remove(Value& owner, const Value& removed) {
+  if (Array* items = owner.as_array()) {
+    items->erase(items->begin() + (&removed - items->data()));
+    return;
+  }
+  Table& members = *owner.as_table();
+  members.erase(
+      std::find_if(members.begin(), members.end(), [&](const Member& member) { return &member.value == &removed; }));
+}
+
 }  // namespace
 
 void apply_override(Value& document, std::string_view text, Diagnostics& diagnostics) {
+  try {
+    check_encoding(text);
+  } catch (const SyntaxError& error) {
+    return diagnostics.add(at_column(error.position.column), "", error.message + "; write it in UTF-8");
+  }
   const std::size_t equals = find_equals(text);
   if (equals == std::string_view::npos)
     return diagnostics.add(at_column(1), "", fmt::format("{} has no =; must be key.path=value", in_quotes(text)));
@@ -125,19 +152,22 @@ void apply_override(Value& document, std::string_view text, Diagnostics& diagnos
   for (const Part& part : parts)
     if (part.key.empty())
       return diagnostics.add(at_column(part.column), "", "a part of the key is empty; must be key.path=value");
-  Value* at = &document;
+  const std::string_view value = trimmed(text.substr(equals + 1));
+  Value *at = &document, *owner = nullptr;
   std::string path;
   for (const Part& part : parts) {
     const bool in_list = at->as_array() != nullptr;
     const std::optional<std::size_t> index = as_index(part.key);
     const std::string whole = in_list && index ? join(path, *index) : join(path, part.key);
+    if (value.empty() && at->as_table() && !at->find(part.key))
+      return diagnostics.add(at_column(part.column), whole, not_there(*at->as_table(), part.key));
+    owner = at;
     at = step(*at, part, in_list && !index ? path : whole, diagnostics);
     if (!at) return;
     path = whole;
   }
-  const std::string_view value = trimmed(text.substr(equals + 1));
-  const auto column = value.empty() ? equals + 2 : static_cast<std::size_t>(value.data() - text.data()) + 1;
-  *at = parse_value(value, static_cast<int>(column));
+  if (value.empty()) return remove(*owner, *at);
+  *at = parse_value(value, static_cast<int>(value.data() - text.data()) + 1);
 }
 
 }  // namespace fascia::app

@@ -2,6 +2,7 @@
 
 #include "app/scene/overrides.hpp"
 #include "app/scene/readers.hpp"
+#include "app/scene/text_checks.hpp"
 #include "app/scene/validate.hpp"
 #include "core/model/errors.hpp"
 
@@ -42,9 +43,44 @@ Value parse_document(std::string_view text, Diagnostics& diagnostics) {
   try {
     return parse_toml(text);
   } catch (const SyntaxError& error) {
-    diagnostics.add(error.position, "toml", one_line(error.message) + "; must be TOML 1.0");
+    const std::string remedy = error.remedy.empty() ? "" : "; " + error.remedy;
+    diagnostics.add(error.position, "toml", one_line(error.message) + remedy);
     diagnostics.throw_if_any();
     throw;
+  }
+}
+
+/// Every key of every table, by its full path.
+void collect_places(const Value& value, const std::string& path, const Diagnostics& diagnostics,
+                    std::map<std::string, Place>& places) {
+  if (const Table* members = value.as_table())
+    for (const Member& member : *members) {
+      const std::string key = join(path, member.key);
+      places.emplace(key, diagnostics.place(member.position, key));
+      collect_places(member.value, key, diagnostics, places);
+    }
+  const Array* items = value.as_array();
+  if (items == nullptr || items->empty() || items->front().as_table() == nullptr) return;
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    const std::string key = join(path, i);
+    places.emplace(key, diagnostics.place((*items)[i].position, key));
+    collect_places((*items)[i], key, diagnostics, places);
+  }
+}
+
+/// The scene's file gives its name to files of the result, and to a place in summary.json.
+void check_name(const std::filesystem::path& path, Diagnostics& diagnostics) {
+  constexpr std::size_t longest = 255 - std::string_view(".pvd").size();
+  const std::string stem = path.stem().string();
+  if (stem.size() > longest)
+    diagnostics.add(Position{}, "",
+                    fmt::format("the file's name has {} bytes, so that SCENE.pvd of its results would have more than "
+                                "a file system takes; use at most {} before .toml",
+                                stem.size(), longest));
+  try {
+    check_encoding(stem);
+  } catch (const SyntaxError&) {
+    diagnostics.add(Position{}, "", "the file's name is no UTF-8, as summary.json must be; rename the file");
   }
 }
 
@@ -52,6 +88,9 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
   Scene scene;
   scene.path = path;
   scene.title = table.text("title").value_or("");
+  if (const Value* silenced = table.value("silence"))
+    for (const Value& name : *silenced->as_array())
+      if (const std::string* text = name.as_string()) scene.silenced.push_back(*text);
   scene.world = read_world(table);
   const Materials materials = read_materials(table);
   std::vector<std::string> bodies;
@@ -81,14 +120,29 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
 
 }  // namespace
 
+Place Scene::place_of(const std::string& key) const {
+  std::string known = key;
+  while (!known.empty() && !says(known)) {
+    const std::size_t end = known.find_last_of(".[");
+    known.resize(end == std::string::npos ? 0 : end);
+  }
+  Place place = says(known) ? places.at(known) : Place{path.string(), 0, 0, ""};
+  place.key = key;
+  return place;
+}
+
 Scene parse_scene_text(std::string_view text, const std::filesystem::path& path,
                        const std::vector<std::string>& overrides) {
   Diagnostics diagnostics(path.string());
+  check_name(path, diagnostics);
   Value document = parse_document(text, diagnostics);
   for (const std::string& change : overrides) apply_override(document, change, diagnostics);
   validate(document, scene_schema(), diagnostics);
   Scene scene = read_scene(TableReader(&document, "", diagnostics), path);
   diagnostics.throw_if_any();
+  scene.text = text;
+  collect_places(document, "", diagnostics, scene.places);
+  scene.overrides = overrides;
   return scene;
 }
 

@@ -192,6 +192,7 @@ Body read_body(const TableReader& table, const Materials& materials, const std::
   body.domain_place = table.place("domain");
   body.domain = read_domain(table, bodies, folder);
   body.transform = read_transform(table.table("transform"));
+  if (const auto* file = std::get_if<FileDomain>(&body.domain)) body.transform.scale *= file->unit;
   body.materials = read_material_uses(table, materials);
   body.mass = table.number("mass");
   body.density = table.number("density");

@@ -1,4 +1,5 @@
 #include "app/scene/readers.hpp"
+#include "app/scene/units.hpp"
 
 #include <fmt/format.h>
 
@@ -97,10 +98,20 @@ LineDomain read_line(const TableReader& line) {
   return {from.value_or(Vec3d{}), to.value_or(Vec3d{})};
 }
 
+/// What a number of the file means [m].
+double unit_of_file(const TableReader& domain) {
+  const std::optional<std::string> unit = domain.text("unit");
+  if (!unit) return 1;
+  const std::variant<double, UnitError> size = parse_quantity("1 " + *unit, "m");
+  if (const auto* metres = std::get_if<double>(&size); metres && *metres > 0) return *metres;
+  domain.error("unit", fmt::format("{} is no unit of length; must be one, as \"mm\"", in_quotes(*unit)));
+  return 1;
+}
+
 FileDomain read_file(const TableReader& domain, const std::filesystem::path& folder) {
   const std::string name = *domain.text("file");
   if (name.empty()) domain.error("file", "is empty; must be the path of a mesh");
-  return {folder / name};
+  return {folder / name, domain.place("file"), unit_of_file(domain)};
 }
 
 BetweenDomain read_between(const TableReader& body, const std::vector<std::string>& known) {
@@ -141,6 +152,8 @@ Domain read_domain(const TableReader& body, const std::vector<std::string>& bodi
                    const std::filesystem::path& folder) {
   const TableReader domain = body.table("domain");
   if (domain.value("between")) return read_between(body, bodies);
+  if (!domain.has("file"))
+    domain.refuse({"unit"}, "is used only with file; write lengths with their unit, as \"5 mm\"");
   if (!domain.has("between")) domain.refuse({"where", "as"}, "is used only with between");
   if (domain.value("file")) return read_file(domain, folder);
   if (domain.value("block")) return read_block(domain.table("block"));

@@ -1,6 +1,8 @@
 #include "app/scene/readers.hpp"
 
 #include "app/scene/schema.hpp"
+#include "app/scene/units.hpp"
+#include "io/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -101,12 +103,36 @@ std::vector<std::string> read_fields(const TableReader& output, bool shells) {
   return fields;
 }
 
-Picture read_picture(const TableReader& table, bool shells) {
+/// A number in SI, or a text with a unit of the field; reports what is wrong.
+std::optional<double> read_end(const TableReader& table, const Value& end, const std::string& unit) {
+  const std::string* quantity = end.as_string();
+  if (!quantity) return std::get<double>(end.data);
+  const auto result = parse_quantity(*quantity, unit);
+  if (const auto* error = std::get_if<UnitError>(&result)) table.error("range", error->message);
+  return std::holds_alternative<double>(result) ? std::optional(std::get<double>(result)) : std::nullopt;
+}
+
+std::optional<std::array<double, 2>> read_range(const TableReader& table, const std::string& field,
+                                                std::optional<SolverKind> kind) {
+  if (kind == SolverKind::modes) table.refuse({"range"}, "does not go with modes, which have no amplitude");
+  const Value* ends = table.value("range");
+  if (!ends) return std::nullopt;
+  const std::string unit = io::name_of_field(field).unit;
+  const auto low = read_end(table, ends->as_array()->front(), unit);
+  const auto high = read_end(table, ends->as_array()->back(), unit);
+  if (!low || !high) return std::nullopt;
+  if (!(*low < *high))
+    table.error("range", fmt::format("{:g} is not below {:g}; must be the lower value, then the higher", *low, *high));
+  return std::array{*low, *high};
+}
+
+Picture read_picture(const TableReader& table, bool shells, std::optional<SolverKind> kind) {
   Picture picture;
   picture.view = table.direction("view").value_or(picture.view);
   if (const auto size = table.integers("size")) picture.size = {(*size)[0], (*size)[1]};
-  picture.field = table.text("field").value_or(picture.field);
+  picture.field = table.text("field").value_or(kind == SolverKind::modes ? "displacement" : picture.field);
   check_shell_field(table, "field", picture.field, shells);
+  picture.range = read_range(table, picture.field, kind);
   return picture;
 }
 
@@ -141,7 +167,7 @@ Output read_output(const TableReader& scene, const std::string& scene_name, std:
   output.every = table.number("every").value_or(0);
   output.every_steps = table.integer("every_steps").value_or(0);
   output.fields = read_fields(table, shells);
-  if (table.value("picture")) output.picture = read_picture(table.table("picture"), shells);
+  if (table.value("picture")) output.picture = read_picture(table.table("picture"), shells, kind);
   return output;
 }
 

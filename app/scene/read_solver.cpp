@@ -149,7 +149,7 @@ void check_kind(const TableReader& table, const Solver& solver) {
 
 World read_world(const TableReader& scene) {
   const TableReader world = scene.table("world");
-  return {world.vector("gravity").value_or(Vec3d{}), read_schedule(world)};
+  return {world.vector("gravity").value_or(Vec3d{}), read_schedule(world), world.direction("up")};
 }
 
 std::optional<SolverKind> read_solver_kind(const TableReader& scene) {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -248,6 +249,7 @@ struct Coupling {
 struct World {
   Vec3d gravity{};
   Schedule schedule;
+  std::optional<Vec3d> up;  ///< in pictures; default: against gravity
 };
 
 // ------------------------------------------------------------------------------------------------ solver
@@ -345,6 +347,7 @@ struct Picture {
   Vec3d view{{1, 1, 1}};
   std::array<int, 2> size{1200, 800};
   std::string field = "von_mises";
+  std::optional<std::array<double, 2>> range;  ///< of the colours, in SI
 };
 
 struct Output {
@@ -358,6 +361,10 @@ struct Output {
 
 struct Scene {
   std::filesystem::path path;
+  std::string text;                     ///< of the file
+  std::vector<std::string> overrides;   ///< "key.path=value", in their order
+  std::vector<std::string> silenced;    ///< names of warnings
+  std::map<std::string, Place> places;  ///< of every key that is written, by its full path
   std::string title;
   World world;
   std::vector<Body> bodies;  ///< in the order of the file
@@ -367,6 +374,11 @@ struct Scene {
   Solver solver;
   std::vector<Probe> probes;  ///< in the order of the file
   Output output;
+
+  /// Whether a key is written: "loads[0].over".
+  bool says(const std::string& key) const { return places.contains(key); }
+  /// Where a key is written; where it is not, the table that would hold it.
+  Place place_of(const std::string& key) const;
 };
 
 }  // namespace fascia::app

@@ -2,6 +2,7 @@
 
 #include "app/scene/diagnostics.hpp"
 #include "app/scene/units.hpp"
+#include "app/scene/warning_names.hpp"
 
 #include <fmt/format.h>
 
@@ -186,9 +187,13 @@ Key key(std::string name, Shape shape, std::string doc) {
 }
 
 const Shape& scene_schema() {
-  static const Shape scene = table({key("title", text(), "One line for people.").defaults("empty"), world_schema(),
-                                    materials_schema(), bodies_schema(), constraints_schema(), loads_schema(),
-                                    couplings_schema(), solver_schema(), probes_schema(), output_schema()});
+  static const Shape scene =
+      table({key("title", text(), "One line for people.").defaults("empty"),
+             key("silence", array(choice(warning_names())),
+                 "Warnings that are not told, by the name in brackets at their end.")
+                 .defaults("[]"),
+             world_schema(), materials_schema(), bodies_schema(), constraints_schema(), loads_schema(),
+             couplings_schema(), solver_schema(), probes_schema(), output_schema()});
   return scene;
 }
 

@@ -126,11 +126,12 @@ Shape domain_schema() {
        key("ellipsoid", ellipsoid(), "A solid ellipsoid; for shells, rigid bodies and surfaces its skin."),
        key("sphere", sphere(), "A solid ball; for shells, rigid bodies and surfaces its skin."),
        key("file", text("a path"),
-           "A mesh: Gmsh 2.2 or 4.1, VTK legacy, VTU, STL, OBJ or PLY. Closed surfaces and volume cells are solids; "
-           "with "
-           "`thickness`, triangles that bound no solid are sheets; with `radius`, its lines are lines. A shell, a "
+           "A mesh: Gmsh 1, 2 to 2.2 or 4.1, VTK legacy, VTU, VTP, STL, OBJ, OFF or PLY. Closed surfaces and volume "
+           "cells are solids; with `thickness`, triangles that bound no solid are sheets; with `radius`, its lines are "
+           "lines. A shell, a "
            "rigid body or a surface takes the triangles, or the boundary of volume cells where there are none. The "
            "path is relative to the scene file."),
+       key("unit", text("a unit of length"), "What a number of `file` means: \"mm\", \"cm\".").defaults("\"m\""),
        key("rectangle", rectangle(), "A flat sheet between two edges; a meshless body or a shell needs `thickness`."),
        key("annulus", annulus(), "A flat ring or a sector of it; for shells, rigid bodies and surfaces."),
        key("line", line(), "A straight line; the body needs `radius`."),

@@ -13,17 +13,17 @@ std::vector<Choice> quantities() {
       {"stress", "At points: Cauchy, 3 x 3 by rows [Pa]."},
       {"force", "Of the constraint or load on the nodes in `where` [N]."},
       {"moment", "Likewise, about `about` [N m]."},
-      {"volume", "[m3]"},
-      {"mass", "[kg]"},
+      {"volume", "Of the deformed material [m3]."},
+      {"mass", "Of a body, of the nodes in `where`, or of the scene [kg]."},
       {"energy", "Elastic energy without stabilisation [J]."},
-      {"kinetic_energy", "[J]"},
+      {"kinetic_energy", "Of what moves [J]."},
       {"total_energy",
        "With stabilisation, kinetic energy and the potential of gravity, dead loads, fluids, and pressure on surfaces "
        "that are closed or held at their free edges [J]."},
-      {"momentum", "[kg m/s]"},
+      {"momentum", "Of what moves [kg m/s]."},
       {"angular_momentum", "About `about` [kg m2/s]."},
-      {"max_displacement", "Of the nodes [m]."},
-      {"mean_displacement", "Of the nodes [m]."},
+      {"max_displacement", "Of the matter of a body, or of the nodes in `where` [m]."},
+      {"mean_displacement", "Likewise, by volume [m]."},
       {"frequency", "Of `solver.kind = \"modes\"` [1/s]."},
       {"fluid_volume", "What the fluid of a body fills [m3]."},
       {"fluid_pressure", "Of the fluid of a body, at the level of its centre at rest [Pa]."}};
@@ -49,7 +49,12 @@ Shape picture_schema() {
   return table(
       {key("view", vector3("1"), "Direction from the body to the eye.").defaults("[1, 1, 1]"),
        key("size", array(integer(between(1, 16384)), 2, 2), "Width and height in pixels.").defaults("[1200, 800]"),
-       key("field", choice(all_field_choices()), "Field that gives the colours.").defaults("\"von_mises\"")});
+       key("field", choice(all_field_choices()), "Field that gives the colours.")
+           .defaults("\"von_mises\"; of modes \"displacement\""),
+       key("range", array(one_of({text("a quantity with a unit"), number("1")}), 2, 2),
+           "Values of the first and the last colour, in the SI unit of the field or with a unit; not for "
+           "`solver.kind = \"modes\"`.")
+           .defaults("the values shown")});
 }
 
 }  // namespace
@@ -88,7 +93,8 @@ Key output_schema() {
              key("every_steps", integer(between(1, 1e9)), "Steps between saved states."),
              key("fields", array(choice(all_field_choices())), "Fields in the files.").defaults("all"),
              key("format", choice({{"vtu", "VTK XML, with a .pvd."}}), "File format.").defaults("\"vtu\""),
-             key("picture", picture_schema(), "A PNG of the end state.").defaults("none")},
+             key("picture", picture_schema(), "A PNG of the end state; of modes, of each side by side.")
+                 .defaults("none")},
             {{{"every", "every_steps"}, false}}),
       "What is written.");
 }

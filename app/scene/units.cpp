@@ -16,34 +16,32 @@
 namespace fascia::app {
 namespace {
 
-struct Dimension {
-  const char *unit, *noun, *example;
-};
+using Dimension = UnitExamples;
 
-/// Units of SI that scenes use, the kind of quantity, and a sample with another unit.
+/// Units of SI that scenes use, the kind of quantity, a sample with another unit, and further units.
 constexpr std::array<Dimension, 22> dimensions{{
-    {"m", "a length", "5 mm"},
-    {"s", "a time", "10 ms"},
-    {"kg", "a mass", "200 g"},
-    {"rad", "an angle", "90 degree"},
-    {"Pa", "a pressure", "40 kPa"},
-    {"N", "a force", "5 mN"},
-    {"N m", "a torque", "3 N mm"},
-    {"m/s", "a velocity", "5 mm/s"},
-    {"m/s2", "an acceleration", "981 cm/s2"},
-    {"1/s", "a rate", "2 Hz"},
-    {"rad/s", "an angular velocity", "10 degree/s"},
-    {"kg/m3", "a density", "1 g/cm3"},
-    {"N/m", "a force per length", "5 N/mm"},
-    {"m2", "an area", "4 cm2"},
-    {"m3", "a volume", "1 l"},
-    {"Pa s", "a viscosity", "1 mPa s"},
-    {"kg m2", "a moment of inertia", "5 g cm2"},
-    {"W", "a power", "5 mW"},
-    {"kg m/s", "a momentum", "5 N s"},
-    {"1/m", "a curvature", "2 1/mm"},
-    {"K", "a temperature", "300 K"},
-    {"A", "an electric current", "5 mA"},
+    {"m", "a length", "5 mm", "um cm mm km inch foot"},
+    {"s", "a time", "10 ms", "us ms min h day"},
+    {"kg", "a mass", "200 g", "mg g t lb"},
+    {"rad", "an angle", "90 degree", "deg degree mrad turn"},
+    {"Pa", "a pressure", "40 kPa", "kPa MPa GPa bar mbar mmHg N/mm2 psi"},
+    {"N", "a force", "5 mN", "mN kN kgf dyne"},
+    {"N m", "a torque", "3 N mm", "mN.m kN.m J"},
+    {"m/s", "a velocity", "5 mm/s", "mm/s cm/s km/h"},
+    {"m/s2", "an acceleration", "981 cm/s2", "mm/s2 cm/s2 gal"},
+    {"1/s", "a rate", "2 Hz", "Hz kHz 1/min 1/h"},
+    {"rad/s", "an angular velocity", "10 degree/s", "degree/s rpm"},
+    {"kg/m3", "a density", "1 g/cm3", "g/cm3 kg/l g/ml"},
+    {"N/m", "a force per length", "5 N/mm", "N/mm mN/mm kN/m"},
+    {"m2", "an area", "4 cm2", "mm2 cm2"},
+    {"m3", "a volume", "1 l", "mm3 cm3 ml l"},
+    {"Pa s", "a viscosity", "1 mPa s", "mPa.s poise"},
+    {"kg m2", "a moment of inertia", "5 g cm2", "g.cm2 kg.mm2"},
+    {"W", "a power", "5 mW", "mW kW"},
+    {"kg m/s", "a momentum", "5 N s", "N.s g.m/s"},
+    {"1/m", "a curvature", "2 1/mm", "1/mm 1/cm"},
+    {"K", "a temperature", "300 K", "mK"},
+    {"A", "an electric current", "5 mA", "mA"},
 }};
 
 const Dimension* find_dimension(std::string_view unit) {
@@ -156,6 +154,8 @@ std::optional<double> convert(double number, const Unit& from, const Unit& to) {
 }
 
 }  // namespace
+
+std::span<const UnitExamples> unit_examples() { return dimensions; }
 
 std::string dimension_in_words(std::string_view si_unit) {
   if (si_unit == "1") return "a number";

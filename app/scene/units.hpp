@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,6 +12,15 @@ namespace fascia::app {
 struct UnitError {
   std::string message;
 };
+
+/// Units of one kind of quantity.
+struct UnitExamples {
+  const char *unit, *noun;  ///< the SI unit of bare numbers, "a length"
+  const char* example;      ///< "5 mm"
+  const char* others;       ///< further units that are understood, with spaces between them
+};
+/// Of all kinds that scenes know.
+std::span<const UnitExamples> unit_examples();
 
 /// Reads a number with a unit into SI.
 ///

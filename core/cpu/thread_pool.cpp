@@ -14,19 +14,30 @@ int available_processors() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-ThreadPool::ThreadPool(int threads) {
-  const int count = threads > 0 ? threads : available_processors();
-  for (int i = 1; i < count; ++i) workers_.emplace_back([this] { worker_loop(); });
+namespace {
+
+void end_all(std::vector<std::thread>& workers, std::mutex& mutex, bool& stop, std::condition_variable& start) {
+  {
+    const std::lock_guard lock(mutex);
+    stop = true;
+  }
+  start.notify_all();
+  for (std::thread& worker : workers) worker.join();
 }
 
-ThreadPool::~ThreadPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
+}  // namespace
+
+ThreadPool::ThreadPool(int threads) {
+  const int count = threads > 0 ? threads : available_processors();
+  try {
+    for (int i = 1; i < count; ++i) workers_.emplace_back([this] { worker_loop(); });
+  } catch (...) {  // no memory for another stack, or no thread left (std::system_error): those that run must end first
+    end_all(workers_, mutex_, stop_, start_);
+    throw;
   }
-  start_.notify_all();
-  for (std::thread& worker : workers_) worker.join();
 }
+
+ThreadPool::~ThreadPool() { end_all(workers_, mutex_, stop_, start_); }
 
 void ThreadPool::run(int chunks, const void* work, Call call) {
   {

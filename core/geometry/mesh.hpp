@@ -60,6 +60,7 @@ struct Mesh {
   std::vector<std::int64_t> point_file_number;
   std::vector<CellBlock> blocks;
   std::vector<MeshGroup> groups;
+  std::vector<std::string> messages = {};  ///< what its reader mended
 };
 
 /// A triangulated surface. Closed and outward-oriented where it bounds a solid.

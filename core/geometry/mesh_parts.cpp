@@ -26,13 +26,13 @@ std::vector<Cell> cells_of(const Solid& all, bool (*wanted)(CellType)) {
 ClosedSurface solid_of(const Solid& all, std::vector<std::string>& messages) {
   const Solid solid = with_cells(all, cells_of(all, is_volume));
   const std::vector<Triangle> triangles = boundary_of_cells(solid, messages);
-  check_closed(solid, triangles);
+  check_closed(solid, triangles, messages);
   return enclose(solid, triangles);
 }
 
 TriangleMesh sheet_of(const Solid& all, std::vector<std::string>& messages) {
   const Solid sheet = with_cells(all, cells_off_volumes(all));
-  std::vector<Triangle> triangles = triangles_of_cells(sheet);
+  std::vector<Triangle> triangles = triangles_of_cells(sheet, messages);
   orient_sheet(sheet, triangles, messages);
   return compact(sheet, triangles);
 }
@@ -89,6 +89,7 @@ MeshParts mesh_parts(const Mesh& mesh) {
   if (count_cells(mesh, is_part) == 0)
     throw InputError(mesh.file + ": has neither volume cells, triangles nor lines" + remedy);
   MeshParts parts;
+  parts.messages = mesh.messages;
   report_unused(mesh, parts.messages);
   const Solid all = make_solid(mesh, is_part, parts.messages);
   if (count_cells(mesh, is_volume) > 0) parts.solid = solid_of(all, parts.messages);

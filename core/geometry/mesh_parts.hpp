@@ -23,7 +23,7 @@ struct MeshParts {
 
 /// Coincident points are welded (within 1e-9 of the bounding box's diagonal), unused ones dropped, quadrilaterals
 /// split. A triangle or volume cell that a file repeats for another group counts once.
-/// @throws InputError  no cells of any of these kinds, NaN, flat or repeated triangles, a sheet with one side only, and
+/// @throws InputError  no cells of any of these kinds, NaN, flat triangles, a sheet with one side only, and
 ///                     what closed_surface() throws for volume cells; with the file and its own cell or node number
 MeshParts mesh_parts(const Mesh& mesh);
 

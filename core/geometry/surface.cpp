@@ -12,11 +12,12 @@ ClosedSurface closed_surface(const Mesh& mesh) {
   if (!volume_mesh && count_cells(mesh, is_surface) == 0)
     throw InputError(mesh.file + ": has neither volume cells nor triangles; give a closed surface or a volume mesh");
 
-  std::vector<std::string> messages;
+  std::vector<std::string> messages = mesh.messages;
   report_unused(mesh, messages);
   const Solid solid = make_solid(mesh, volume_mesh ? is_volume : is_surface, messages);
-  std::vector<Triangle> triangles = volume_mesh ? boundary_of_cells(solid, messages) : triangles_of_cells(solid);
-  check_closed(solid, triangles);
+  std::vector<Triangle> triangles =
+      volume_mesh ? boundary_of_cells(solid, messages) : triangles_of_cells(solid, messages);
+  check_closed(solid, triangles, messages);
   if (!volume_mesh) orient_outward(solid, triangles, messages);
 
   ClosedSurface result = enclose(solid, triangles);

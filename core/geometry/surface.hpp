@@ -13,9 +13,10 @@ struct ClosedSurface {
 
 /// Coincident vertices are welded (within 1e-9 of the bounding box's diagonal), unused ones dropped, quadrilaterals
 /// split.
-/// @throws InputError  open, non-manifold, flat or inverted cells, mixed orientation, NaN; with the file and its own
-/// cell
-///                     or node number
+/// Cells and triangles that repeat others are left out. The surface may touch itself along edges and in points: then
+/// more than two triangles share an edge, as many in one direction as in the other.
+/// @throws InputError  open or branching edges, flat or inverted cells, mixed orientation, NaN; with the file and its
+///                     own cell or node number
 ClosedSurface closed_surface(const Mesh& mesh);
 
 }  // namespace fascia

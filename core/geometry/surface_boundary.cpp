@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <span>
+#include <utility>
 
 namespace fascia::surface_parts {
 namespace {
@@ -108,8 +109,9 @@ bool check_orientation(const Solid& solid, const std::vector<Cell>& cells) {
                   std::to_string(cells.size()) + " cells; orient all cells alike");
 }
 
-/// Cells without those that a file repeats because they belong to several groups.
-std::vector<Cell> distinct_cells(const Solid& solid) {
+/// Volume cells without those that a file repeats, because they belong to several groups or by mistake, which a message
+/// says. Of surface cells those of one group are all kept.
+std::vector<Cell> distinct_cells(const Solid& solid, std::vector<std::string>& messages) {
   struct Entry {
     std::array<int, 8> key;
     int cell;
@@ -126,17 +128,29 @@ std::vector<Cell> distinct_cells(const Solid& solid) {
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.cell < b.cell; });
   std::vector<bool> keep(solid.cells.size(), true);
+  std::size_t copies = 0;
+  std::string first;
   for (std::size_t e = 1; e < entries.size(); ++e) {
     if (entries[e].key != entries[e - 1].key) continue;
     const Cell& a = solid.cells[static_cast<std::size_t>(entries[e - 1].cell)];
     const Cell& b = solid.cells[static_cast<std::size_t>(entries[e].cell)];
-    if (a.group == b.group)
-      fail(solid, "cells " + number_of(a) + " and " + number_of(b) + " have the same nodes; remove one of them");
+    if (a.group == b.group && !is_volume(b.type)) continue;
+    if (a.group == b.group) {
+      // Four nodes make one tetrahedron only; of other cells their order may make another shape.
+      if (b.type != CellType::tetrahedron && a.nodes != b.nodes)
+        fail(solid, "cells " + number_of(a) + " and " + number_of(b) + " have the same nodes; remove one of them");
+      if (copies++ == 0) first = number_of(b) + ", which repeats cell " + number_of(a);
+    }
     keep[static_cast<std::size_t>(entries[e].cell)] = false;
   }
   std::vector<Cell> cells;
   for (std::size_t c = 0; c < keep.size(); ++c)
     if (keep[c]) cells.push_back(solid.cells[c]);
+  if (copies > 0)
+    messages.push_back(
+        solid.file + ": left out " + std::to_string(copies) +
+        (copies == 1 ? " cell that repeats another (cell " : " cells that repeat others (the first: cell ") + first +
+        ")");
   return cells;
 }
 
@@ -165,25 +179,6 @@ double relative_area(const Solid& solid, const Triangle& t) {
   const Vec3d a = corner(1) - corner(0), b = corner(2) - corner(0), c = corner(2) - corner(1);
   const double longest = std::max({squared_norm(a), squared_norm(b), squared_norm(c)});
   return longest > 0 ? norm(cross(a, b)) / (2 * longest) : 0;
-}
-
-void check_repeated(const Solid& solid, const std::vector<Triangle>& triangles) {
-  struct Entry {
-    std::array<int, 3> key;
-    std::int64_t file_number;
-    bool operator<(const Entry& b) const { return key != b.key ? key < b.key : file_number < b.file_number; }
-  };
-  std::vector<Entry> entries;
-  for (const Triangle& t : triangles) {
-    Entry entry{t.nodes, t.file_number};
-    std::sort(entry.key.begin(), entry.key.end());
-    entries.push_back(entry);
-  }
-  std::sort(entries.begin(), entries.end());
-  for (std::size_t e = 1; e < entries.size(); ++e)
-    if (entries[e].key == entries[e - 1].key)
-      fail(solid, "triangles " + std::to_string(entries[e - 1].file_number) + " and " +
-                      std::to_string(entries[e].file_number) + " have the same nodes; remove one of them");
 }
 
 using TriangleKey = std::array<int, 3>;
@@ -228,7 +223,7 @@ std::vector<Cell> cells_off_volumes(const Solid& solid) {
 }
 
 std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::string>& messages) {
-  const std::vector<Cell> cells = distinct_cells(solid);
+  const std::vector<Cell> cells = distinct_cells(solid, messages);
   const bool inverted = check_orientation(solid, cells);
   if (inverted)
     messages.push_back(solid.file + ": all " + std::to_string(cells.size()) + " cells are inverted; turned over");
@@ -250,17 +245,16 @@ std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::str
   return triangles;
 }
 
-std::vector<Triangle> triangles_of_cells(const Solid& solid) {
+std::vector<Triangle> triangles_of_cells(const Solid& solid, std::vector<std::string>& messages) {
   std::vector<Triangle> triangles;
-  for (const Cell& cell : distinct_cells(solid))
+  for (const Cell& cell : distinct_cells(solid, messages))
     append_triangles(std::span(cell.nodes).first(static_cast<std::size_t>(node_count(cell.type))), cell.file_number,
                      triangles);
   for (const Triangle& t : triangles)
     if (!(relative_area(solid, t) > flat_area))
       fail(solid, "triangle " + std::to_string(t.file_number) + " is flat (its area is below 1e-10 of its longest " +
                       "edge squared); remove it or mesh again");
-  check_repeated(solid, triangles);
-  return triangles;
+  return without_repeats(solid, std::move(triangles), messages);
 }
 
 }  // namespace fascia::surface_parts

@@ -22,18 +22,32 @@ std::vector<Edge> sorted_edges(const std::vector<Triangle>& triangles) {
   return edges;
 }
 
+namespace {
+
+/// Puts a link where a triangle has none yet.
+void fill(std::array<Neighbours::Link, 3>& links, const Neighbours::Link& link) {
+  for (Neighbours::Link& free : links)
+    if (free.triangle < 0) {
+      free = link;
+      return;
+    }
+}
+
+}  // namespace
+
 Neighbours::Neighbours(std::size_t triangle_count, const std::vector<Edge>& edges) : of(triangle_count) {
-  std::vector<std::size_t> filled(triangle_count, 0);
-  const auto link = [&](const Edge& from, const Edge& to) {
-    const std::size_t t = at(from.triangle);
-    of[t][filled[t]++] = {to.triangle, from.forward == to.forward};
-  };
   for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
     for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
     if (end - e != 2) continue;
-    link(edges[e], edges[e + 1]);
-    link(edges[e + 1], edges[e]);
+    const Edge &a = edges[e], &b = edges[e + 1];
+    fill(of[at(a.triangle)], {b.triangle, a.forward == b.forward});
+    fill(of[at(b.triangle)], {a.triangle, a.forward == b.forward});
   }
+}
+
+void Neighbours::link(int a, int b) {
+  fill(of[at(a)], {b, false});
+  fill(of[at(b)], {a, false});
 }
 
 Components::Components(const Neighbours& neighbours) : of(neighbours.of.size(), -1), turn(neighbours.of.size(), false) {

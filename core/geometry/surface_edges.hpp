@@ -30,6 +30,9 @@ struct Neighbours {
   std::vector<std::array<Link, 3>> of;
 
   Neighbours(std::size_t triangle_count, const std::vector<Edge>& edges);
+
+  /// Links two triangles that run in opposite directions along an edge of more.
+  void link(int a, int b);
 };
 
 /// Components of a surface that hang together across edges of two triangles, and which triangles must turn to agree

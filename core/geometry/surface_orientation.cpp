@@ -2,11 +2,13 @@
 #include "core/geometry/inside.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
+#include "core/geometry/surface_touching.hpp"
 #include "core/math/index.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace fascia::surface_parts {
@@ -46,6 +48,7 @@ struct Component {
   std::vector<Triangle> triangles;
   Bounds bounds;
   bool outward = true;
+  bool touches = false;  ///< another component, along an edge
 };
 
 std::vector<Component> split(const Solid& solid, const std::vector<Triangle>& triangles, const Components& components) {
@@ -68,7 +71,8 @@ std::vector<int> nesting_depths(const Solid& solid, const std::vector<Component>
     for (std::size_t inner = 0; inner < components.size(); ++inner) {
       if (inner == outer || !components[outer].bounds.contains(components[inner].bounds)) continue;
       if (!test) test.emplace(compact(solid, components[outer].triangles));
-      const Vec3d& x = solid.points[static_cast<std::size_t>(components[inner].triangles[0].nodes[0])];
+      Vec3d x{};  // the middle of a triangle: its corners may be the other's too
+      for (const int node : components[inner].triangles[0].nodes) x += solid.points[at(node)] * (1.0 / 3);
       if (test->winding_number(x) != 0) ++depth[inner];
     }
   }
@@ -79,16 +83,14 @@ std::vector<int> nesting_depths(const Solid& solid, const std::vector<Component>
 struct Patch {
   std::vector<std::size_t> triangles;
   std::size_t disagreeing = 0;  ///< triangles that must turn to agree with the first
-  bool closed = true;
 };
 
-std::vector<Patch> split_sheet(const Neighbours& neighbours, const Components& components) {
+std::vector<Patch> split_sheet(const Components& components) {
   std::vector<Patch> patches(at(components.count));
-  for (std::size_t t = 0; t < neighbours.of.size(); ++t) {
+  for (std::size_t t = 0; t < components.of.size(); ++t) {
     Patch& patch = patches[at(components.of[t])];
     patch.triangles.push_back(t);
     patch.disagreeing += components.turn[t] ? 1u : 0u;
-    for (const Neighbours::Link& link : neighbours.of[t]) patch.closed = patch.closed && link.triangle >= 0;
   }
   return patches;
 }
@@ -97,16 +99,20 @@ void turn_over(Triangle& triangle) { std::swap(triangle.nodes[1], triangle.nodes
 
 }  // namespace
 
-void check_closed(const Solid& solid, const std::vector<Triangle>& triangles) {
+void check_closed(const Solid& solid, const std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
   const std::vector<Edge> edges = sorted_edges(triangles);
-  std::size_t open = 0, first_open = 0;
+  std::size_t open = 0, first_open = 0, touching = 0, first_touching = 0;
   bool consistent = true;
   for (std::size_t e = edges.size(), begin = e; e > 0; e = begin) {
     for (begin = e; begin > 0 && edges[begin - 1].same_as(edges[e - 1]);) --begin;
-    if (e - begin > 2)
+    if (e - begin > 2 && !balanced(std::span(edges).subspan(begin, e - begin)))
       fail(solid, "the edge between " + name_of(solid, edges[begin]) + " belongs to " + std::to_string(e - begin) +
-                      " triangles of the surface; must be 2: separate the parts that touch there");
-    if (e - begin == 1) {
+                      " triangles of the surface, which bound no solid there; remove what branches off or overlaps, "
+                      "or give a volume mesh");
+    if (e - begin > 2) {
+      ++touching;
+      first_touching = begin;
+    } else if (e - begin == 1) {
       ++open;
       first_open = begin;
     } else if (edges[begin].forward == edges[begin + 1].forward) {
@@ -117,20 +123,36 @@ void check_closed(const Solid& solid, const std::vector<Triangle>& triangles) {
     fail(solid, "its surface is open: " + std::to_string(open) + " edges have one triangle only, the first between " +
                     name_of(solid, edges[first_open]) + "; close the holes or give a volume mesh");
   if (!consistent) fail_mixed(solid, triangles, Components(Neighbours(triangles.size(), edges)));
+  if (touching > 0)
+    messages.push_back(solid.file + ": its surface touches itself along " + std::to_string(touching) +
+                       (touching == 1 ? " edge, between " : " edges, the first between ") +
+                       name_of(solid, edges[first_touching]) + "; the solid hangs together there");
 }
 
 void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
-  const Components numbering(Neighbours(triangles.size(), sorted_edges(triangles)));
-  const std::vector<Component> components = split(solid, triangles, numbering);
-  const std::vector<int> depth = nesting_depths(solid, components);
-  std::size_t wrong = 0, first_wrong = 0;
-  for (std::size_t c = components.size(); c-- > 0;)
-    if (components[c].outward != (depth[c] % 2 == 0)) {
-      ++wrong;
-      first_wrong = c;
+  Neighbours neighbours(triangles.size(), sorted_edges(triangles));
+  const std::vector<TouchingEdge> touching = touching_edges(solid.points, triangles);
+  for (const TouchingEdge& edge : touching)
+    for (const auto& [a, b] : edge.pairs) neighbours.link(a, b);
+  const Components numbering(neighbours);
+  std::vector<Component> components = split(solid, triangles, numbering);
+  for (const TouchingEdge& edge : touching)
+    for (const auto& [a, b] : edge.pairs) {
+      const int c = numbering.of[at(a)], other = numbering.of[at(edge.pairs[0][0])];
+      if (c != other) components[at(c)].touches = components[at(other)].touches = true;
     }
+  const std::vector<int> depth = nesting_depths(solid, components);
+  std::size_t wrong = 0, first_wrong = 0, judged = 0;
+  for (std::size_t c = components.size(); c-- > 0;) {
+    // Within a part that it touches, one may be a cavity or lie on it: folds of the surface do, and are inside anyway.
+    if (components[c].touches && depth[c] % 2 != 0) continue;
+    ++judged;
+    if (components[c].outward == (depth[c] % 2 == 0)) continue;
+    ++wrong;
+    first_wrong = c;
+  }
   if (wrong == 0) return;
-  if (wrong < components.size())
+  if (wrong < judged)
     fail(solid, "the closed part with triangle " + std::to_string(components[first_wrong].triangles[0].file_number) +
                     " is oriented against the others (" + std::to_string(wrong) + " of " +
                     std::to_string(components.size()) +
@@ -140,14 +162,13 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
 }
 
 void orient_sheet(const Solid& sheet, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
-  const Neighbours neighbours(triangles.size(), sorted_edges(triangles));
-  const Components components(neighbours);
+  const Components components(Neighbours(triangles.size(), sorted_edges(triangles)));
   if (!components.orientable)
     fail(sheet, "a sheet has one side only, as a Moebius strip (at triangle " +
                     std::to_string(triangles[at(components.twisted)].file_number) +
                     "); cut it open or give a sheet with two sides");
   std::size_t turned = 0, first = triangles.size(), inward = 0;
-  for (const Patch& patch : split_sheet(neighbours, components)) {
+  for (const Patch& patch : split_sheet(components)) {
     const bool minority = 2 * patch.disagreeing <= patch.triangles.size();
     for (const std::size_t t : patch.triangles) {
       if (components.turn[t] != minority) continue;
@@ -155,10 +176,9 @@ void orient_sheet(const Solid& sheet, std::vector<Triangle>& triangles, std::vec
       first = std::min(first, t);
       ++turned;
     }
-    if (!patch.closed) continue;
     std::vector<Triangle> own;
     for (const std::size_t t : patch.triangles) own.push_back(triangles[t]);
-    if (enclosed_volume(sheet.points, own) >= 0) continue;
+    if (!encloses(own) || enclosed_volume(sheet.points, own) >= 0) continue;
     for (const std::size_t t : patch.triangles) turn_over(triangles[t]);
     ++inward;
   }

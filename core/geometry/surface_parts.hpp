@@ -54,19 +54,28 @@ Solid with_cells(const Solid& solid, std::vector<Cell> cells);
 [[noreturn]] void fail(const Solid& solid, const std::string& message);
 
 /// The cells' faces that no other cell has, outward. Turns the solid over where all cells are inverted.
-/// @throws InputError  flat cells, a mixture of orientations, repeated or overlapping cells
+/// Copies of cells are left out, with a message.
+/// @throws InputError  flat cells, a mixture of orientations, overlapping cells
 std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::string>& messages);
 
-/// Triangles of a surface mesh, quadrilaterals split at the node of the lowest index.
-/// @throws InputError  flat or repeated triangles
-std::vector<Triangle> triangles_of_cells(const Solid& solid);
+/// Triangles of a surface mesh, quadrilaterals split at the node of the lowest index, without_repeats().
+/// @throws InputError  flat triangles
+std::vector<Triangle> triangles_of_cells(const Solid& solid, std::vector<std::string>& messages);
+
+/// Leaves out triangles that have the nodes of others, with a message. Where the rest would branch, but closes without
+/// both of two that lie back to back, both go; where it closes only with a triangle twice, because it lies on itself,
+/// both stay.
+std::vector<Triangle> without_repeats(const Solid& solid, std::vector<Triangle> triangles,
+                                      std::vector<std::string>& messages);
 
 /// The surface cells that are no face of a volume cell. A quadrilateral is one in whole or as two triangles, and a
 /// triangle is one as half of a quadrilateral too.
 std::vector<Cell> cells_off_volumes(const Solid& solid);
 
-/// @throws InputError  open, non-manifold or inconsistently oriented edges
-void check_closed(const Solid& solid, const std::vector<Triangle>& triangles);
+/// An edge of more than two triangles must have as many in one direction as in the other: there the surface touches
+/// itself, which a message says.
+/// @throws InputError  open, branching or inconsistently oriented edges
+void check_closed(const Solid& solid, const std::vector<Triangle>& triangles, std::vector<std::string>& messages);
 
 /// Turns a surface outward: every component outward, or inward where it bounds a cavity.
 /// @throws InputError  some components the right way, some not

@@ -77,6 +77,10 @@ std::vector<PointTensors> ModelBody::tensors(const State& state) const {
   return all;
 }
 
+TensorField ModelBody::tensor_field(const State& state) const {
+  return [this, &state](const Attachment& place, std::size_t nearest) { return tensors_at(place, nearest, state); };
+}
+
 PointTensors ModelBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {
   const Mat3d H = field_at(place, state).H;
   return tensors_of(points_[nearest], axes_, H, selective() ? field_at(attach_volumetric(place), state).H : H);

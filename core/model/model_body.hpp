@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,9 @@ struct PointTensors {
   Mat3d strain{}, stress{};   ///< [-], [Pa]
   double energy_density = 0;  ///< [J/m³]
 };
+
+/// Strain and stress of a body in one state, with the arguments of ModelBody::tensors_at.
+using TensorField = std::function<PointTensors(const Attachment& place, std::size_t nearest)>;
 
 /// A quadrature point of a face of the surface.
 struct FacePoint {
@@ -131,6 +135,9 @@ class ModelBody {
   virtual std::vector<PointTensors> tensors(const State& state) const;
   /// At any place. @param nearest  index of the integration point whose material counts there
   virtual PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const;
+  /// The same at many places of one state: what they share is computed once, when this is called. Body and state must
+  /// outlive what it returns.
+  virtual TensorField tensor_field(const State& state) const;
   /// Green-Lagrange strain at any place.
   virtual Mat3d strain_at(const Attachment& place, const State& state) const;
   /// What only this kind of body shows in results.

@@ -1,25 +1,13 @@
+#include "core/solver/blas.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/free_matrix.hpp"
 
 #include <cholmod.h>
-#include <dlfcn.h>
 
+#include <algorithm>
 #include <new>
-#include <stdexcept>
 
 namespace fascia {
-
-namespace {
-
-/// Threads of BLAS would share our cores and change results, those of CHOLMOD's own loops come whatever a scene asks
-/// for: both keep to one.
-void hold_to_one_thread() {
-  using Set = void (*)(int);
-  if (void* set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) reinterpret_cast<Set>(set)(1);
-  if (void* set = dlsym(RTLD_DEFAULT, "omp_set_max_active_levels")) reinterpret_cast<Set>(set)(0);
-}
-
-}  // namespace
 
 struct BlockCholesky::Impl {
   FreeMatrix matrix;
@@ -31,7 +19,7 @@ struct BlockCholesky::Impl {
   cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
   Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots) : matrix(pattern, f), filter(f) {
-    hold_to_one_thread();
+    hold_blas_to_one_thread();
     cholmod_start(&common);
     common.print = 0;
     common.quick_return_if_not_posdef = 1;
@@ -52,6 +40,7 @@ struct BlockCholesky::Impl {
     factor = cholmod_analyze(&sparse, &common);
     rhs = cholmod_zeros(n, 1, CHOLMOD_REAL, &common);
     if (factor == nullptr || rhs == nullptr) throw std::bad_alloc();
+    if (factor->is_super != 0) take_blas_buffer();
   }
   ~Impl() {
     cholmod_free_dense(&rhs, &common);
@@ -72,7 +61,20 @@ BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
 BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
 
 double BlockCholesky::factor_flops() const { return impl_->common.fl; }
-double BlockCholesky::factor_bytes() const { return impl_->common.lnz * 8; }
+
+/// The peak of a factorisation, beside what the analysis has left: CHOLMOD holds the matrix in its own order then,
+/// and once more while it orders it (cholmod_factorize_p). Supernodes are dense, of which one is updated at a time;
+/// else columns have room to grow, by Common->grow1 and grow2.
+double BlockCholesky::factor_bytes() const {
+  const cholmod_factor& L = *impl_->factor;
+  const cholmod_common& c = impl_->common;
+  constexpr double number = sizeof(double), entry = sizeof(int) + sizeof(double);
+  const auto n = static_cast<double>(L.n);
+  const double matrix = entry * static_cast<double>(impl_->matrix.row.size()) + sizeof(int) * n;
+  if (L.is_super == 0) return entry * (c.grow1 * c.lnz + static_cast<double>(c.grow2) * n) + matrix + 4 * number * n;
+  return number * (static_cast<double>(L.xsize) + 4 * n) + matrix +
+         std::max(matrix, number * static_cast<double>(L.maxcsize));
+}
 
 bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
   Impl& m = *impl_;

@@ -5,13 +5,27 @@
 
 namespace fascia {
 
+namespace {
+
+/// Tells how many entries the factor will have, once its pattern is analysed.
+template <class Solver>
+struct Analysed : Solver {
+  double entries() const {
+    return this->m_matrix.outerSize() == 0
+               ? 0.0
+               : static_cast<double>(this->m_matrix.outerIndexPtr()[this->m_matrix.outerSize()]);
+  }
+};
+
+}  // namespace
+
 /// The build without SuiteSparse: slower on large models, same results to rounding.
 struct BlockCholesky::Impl {
   using Sparse = Eigen::Map<const Eigen::SparseMatrix<double>>;
   FreeMatrix matrix;
   const DofFilter& filter;
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> llt;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> ldlt;
+  Analysed<Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower>> llt;
+  Analysed<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>> ldlt;
   bool any_pivots;
   Eigen::VectorXd rhs;
 
@@ -35,10 +49,16 @@ BlockCholesky::~BlockCholesky() = default;
 BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
 BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
 
-// Eigen does not tell the fill before it factorises: an estimate of a banded factor.
-double BlockCholesky::factor_bytes() const { return 8.0 * 20.0 * static_cast<double>(impl_->matrix.row.size()); }
+/// The peak of a factorisation: the factor, and the matrix in its order.
+double BlockCholesky::factor_bytes() const {
+  constexpr double number = sizeof(double), entry = sizeof(int) + sizeof(double);
+  const double entries = impl_->any_pivots ? impl_->ldlt.entries() : impl_->llt.entries();
+  return entry * (entries + static_cast<double>(impl_->matrix.row.size())) + 3 * number * impl_->matrix.size;
+}
+
+// An estimate of a banded factor.
 double BlockCholesky::factor_flops() const {
-  const double column = factor_bytes() / 8.0 / std::max(1, impl_->matrix.size);
+  const double column = 20.0 * static_cast<double>(impl_->matrix.row.size()) / std::max(1, impl_->matrix.size);
   return column * column * impl_->matrix.size;
 }
 

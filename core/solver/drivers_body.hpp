@@ -83,7 +83,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
       target = reached + increment;
       system.set_factors(factors(target));
     }
-    Newton newton(system, settings);
+    Newton newton(system, settings, {run.steps + 1, target});
     const NewtonReport report = newton.solve();
     count(run, report);
     if (!acceptable(report, settings)) {
@@ -149,7 +149,7 @@ struct Stepper {
     NewtonReport report;
     if (depth == 0 || system.prescribed_rotation() <= kRotationPerStep) {
       system.start_from_prediction();
-      Newton newton(system, settings);
+      Newton newton(system, settings, {run.steps + 1, end});
       report = newton.solve();
       count(run, report);
       if (acceptable(report, settings)) {

@@ -37,6 +37,12 @@ struct NewtonReport {
   double cg_seconds = 0;       ///< of all directions
 };
 
+/// The load or time step that a solve belongs to.
+struct SolvedStep {
+  int number = 0;   ///< counted from 1
+  double time = 0;  ///< its end [s]; in statics the load factor
+};
+
 /// Newton's method with a watchdog (Chamberlain et al. 1982): full steps may raise energy and residual for a few
 /// iterations, because a slender structure's first step always does (its bending, linear in the rotations, stretches
 /// it). Where that leads nowhere, it returns to the best state and searches along the line.
@@ -46,7 +52,8 @@ struct NewtonReport {
 template <class System>
 class Newton {
  public:
-  Newton(System& system, const SolverSettings& settings) : system_(system), settings_(settings) {}
+  Newton(System& system, const SolverSettings& settings, const SolvedStep& step = {})
+      : system_(system), settings_(settings), step_(step) {}
 
   NewtonReport solve() {
     report_ = {};
@@ -111,6 +118,8 @@ class Newton {
   }
 
   DirectionReport direction() {
+    if (settings_.iterating)
+      settings_.iterating({step_.number, step_.time, report_.iterations + 1, current_.relative, settings_.tolerance});
     DirectionReport d = system_.direction();
     ++report_.iterations;
     report_.linear_iterations += d.linear_iterations;
@@ -195,6 +204,7 @@ class Newton {
 
   System& system_;
   const SolverSettings& settings_;
+  SolvedStep step_;
   NewtonReport report_;
   Evaluation current_, marked_;
   int detour_ = 0, standing_ = 0;

@@ -53,7 +53,7 @@ class PathFollower {
   bool start() {
     state_.time = 0;
     begin();
-    Newton newton(system_, settings_);
+    Newton newton(system_, settings_, {1, 0});
     const NewtonReport report = newton.solve();
     run_.newton_iterations += report.iterations;
     if (report.status != NewtonStatus::converged) return give_up(report, "there is no equilibrium to start from");
@@ -168,6 +168,9 @@ class PathFollower {
       if (!report.last.finite()) break;
       report.status = NewtonStatus::limit;
       if (!kept && report.iterations >= limit) break;
+      if (settings_.iterating)
+        settings_.iterating(
+            {run_.steps + 1, lambda_, report.iterations + 1, report.last.relative, settings_.tolerance});
       const PathDirections d = directions();
       const double dlambda = d.usable ? constraint(d) : 0.0;
       report.status = NewtonStatus::linear_failure;

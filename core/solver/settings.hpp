@@ -3,6 +3,7 @@
 #include "core/physics/point_physics.hpp"
 #include "core/solver/cg.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace fascia {
@@ -14,6 +15,14 @@ enum class Preconditioner { automatic, none, jacobi, block_jacobi, cholesky };
 /// is judged by. mixed: products with the tangent of 32 bits; single: vectors of conjugate gradients too. Sums over
 /// nodes are of 64 bits. Of the GPU's solver; the processor's has 64 bits.
 enum class Precision { full, mixed, single };
+
+/// Where a solve stands when a Newton iteration begins.
+struct IterationInfo {
+  int step = 0;                        ///< load or time step, counted from 1
+  double time = 0;                     ///< its end [s]; in statics the load factor
+  int iteration = 0;                   ///< counted from 1
+  double relative = 0, tolerance = 0;  ///< the residual before it, relative, and where it is small enough
+};
 
 /// GPUs that can share a run.
 inline constexpr int kMostDevices = 8;
@@ -27,6 +36,7 @@ struct SolverSettings {
   CgOptions cg;
   Tangent tangent = Tangent::full;
   Precision precision = Precision::full;
+  std::function<void(const IterationInfo&)> iterating;  ///< is told of each Newton iteration; may be empty
   std::vector<int> devices;  ///< GPUs that share the points of the linear solves; empty: one computes all
 };
 

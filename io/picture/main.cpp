@@ -6,28 +6,50 @@
 #include <CLI/CLI.hpp>
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <map>
+#include <optional>
+#include <utility>
 
 namespace {
 
 using fascia::InputError;
+using fascia::io::PictureBody;
+using fascia::io::PictureDescription;
+using fascia::io::PictureState;
 
-/// Three numbers "x,y,z" that are not all zero.
-std::array<double, 3> direction(const std::string& option, const std::string& text) {
-  std::array<double, 3> result{};
-  const InputError wrong(option + ": \"" + text + "\" must be three numbers x,y,z, not all zero");
-  std::size_t begin = 0, count = 0;
-  for (bool more = true; more; ++count) {
+/// As many numbers as asked for, "x,y,z"; none where the text is something else.
+std::optional<std::vector<double>> numbers(const std::string& text, std::size_t count) {
+  std::vector<double> result;
+  std::size_t begin = 0;
+  for (bool more = true; more;) {
     const std::size_t comma = text.find(',', begin);
     more = comma != std::string::npos;
     const auto value = fascia::io::to_number(std::string_view(text).substr(begin, more ? comma - begin : comma));
-    if (!value || count >= result.size()) throw wrong;
-    result[count] = *value;
+    if (!value) return std::nullopt;
+    result.push_back(*value);
     begin = comma + 1;
   }
-  if (count != result.size()) throw wrong;
-  if (result == std::array<double, 3>{}) throw wrong;
-  return result;
+  return result.size() == count ? std::optional(result) : std::nullopt;
+}
+
+/// Three numbers "x,y,z" that are not all zero.
+fascia::Vec3d direction(const std::string& option, const std::string& text) {
+  const auto v = numbers(text, 3);
+  if (!v || *v == std::vector<double>(3))
+    throw InputError(option + ": \"" + text + "\" must be three numbers x,y,z, not all zero");
+  return {{(*v)[0], (*v)[1], (*v)[2]}};
+}
+
+/// "a,b", the first below the second.
+std::array<double, 2> range(const std::string& text) {
+  const auto ends = numbers(text, 2);
+  if (!ends || !((*ends)[0] < (*ends)[1]))
+    throw InputError("--range: \"" + text +
+                     "\" must be two numbers a,b in SI units of the field, the first below the "
+                     "second");
+  return {(*ends)[0], (*ends)[1]};
 }
 
 /// "WxH", each from 16 to 16384.
@@ -42,32 +64,67 @@ std::array<int, 2> size(const std::string& text) {
   return {static_cast<int>(*width), static_cast<int>(*height)};
 }
 
+/// The bodies of each state; all in one where not each is wanted for itself.
+std::vector<PictureState> states_of(std::vector<PictureBody> bodies, const PictureDescription& description, bool each) {
+  std::map<int, PictureState> states;
+  for (PictureBody& body : bodies) {
+    const int state = each ? body.state : 0;
+    states[state].label = state_label(description, body.state);
+    states[state].bodies.push_back(std::move(body));
+  }
+  std::vector<PictureState> result;
+  for (auto& [number, state] : states) {
+    state.marks = find_marks(description, state.bodies);
+    result.push_back(std::move(state));
+  }
+  return result;
+}
+
 int run(int argc, char** argv) {
   std::vector<std::string> files;
-  std::string view = "1,1,1", up, pixels = "1200x800";
+  std::string view = "1,1,1", up, pixels = "1200x800", ends;
+  std::optional<std::string> title, label;
+  bool sheet = false, no_rest = false, no_marks = false;
   fascia::io::PictureStyle style;
   CLI::App app{"Renders results of fascia: fascia-picture RESULT.vtu... OUT.png"};
   app.add_option("files", files, "results (.vtu), then the picture (.png)")->required()->expected(2, 1 << 20);
   app.add_option("--view", view, "direction from the bodies to the eye, x,y,z")->capture_default_str();
-  app.add_option("--up", up, "direction that points up in the picture, x,y,z (default: y)");
+  app.add_option("--up", up,
+                 "direction that points up in the picture, x,y,z (default: the scene's; without one z, or y where one "
+                 "looks within 45 degrees of the z axis)");
   app.add_option("--size", pixels, "width and height in pixels")->capture_default_str();
   app.add_option("--field", style.field, "point or cell field that colours the surface (magnitude of vectors)");
-  app.add_option("--title", style.title, "text above the picture");
+  app.add_option("--range", ends, "values of the first and the last colour, a,b, in SI units (default: those shown)");
+  app.add_option("--title", title, "text above the picture (default: the scene's title)");
+  app.add_option("--label", label, "text below the title (default: the time, load factor, or mode)");
+  app.add_flag("--sheet", sheet, "each state that the files belong to for itself, side by side and alike");
   app.add_flag("--frames", style.frames, "show the frames as balls in front of the surface");
+  app.add_flag("--no-rest", no_rest, "leave out the outline at rest");
+  app.add_flag("--no-marks", no_marks, "leave out supports and springs");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   style.view = direction("--view", view);
-  if (!up.empty()) style.up = direction("--up", up);
   style.size = size(pixels);
+  style.rest = !no_rest;
+  if (!ends.empty()) style.range = range(ends);
+  const std::filesystem::path directory = std::filesystem::path(files.front()).parent_path();
+  PictureDescription description = fascia::io::read_description(directory);
+  if (no_marks) description.supports.clear();
+  if (no_marks) description.springs.clear();
+  style.up = up.empty() ? description.up : direction("--up", up);
+  style.title = title.value_or(description.title);
+  style.relative = description.kind == fascia::io::StateKind::frequency;
 
   const fascia::io::DisplayConnection display;
-  std::vector<fascia::io::PictureBody> bodies;
+  std::vector<PictureBody> bodies;
   for (std::size_t f = 0; f + 1 < files.size(); ++f)
     bodies.push_back(fascia::io::read_picture_body(files[f], style.field));
-  fascia::io::render_picture(bodies, style, files.back());
+  std::vector<PictureState> states = states_of(std::move(bodies), description, sheet);
+  if (label) states.front().label = *label;
+  fascia::io::render_picture(std::move(states), style, files.back());
   return 0;
 }
 

@@ -2,7 +2,9 @@
 
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
+#include "io/picture/outline.hpp"
 #include "io/picture/surface.hpp"
+#include "io/text_numbers.hpp"
 #include "io/vtk_errors.hpp"
 
 #include <vtkCellData.h>
@@ -14,6 +16,9 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string_view>
 #include <vector>
 
 namespace fascia::io {
@@ -60,29 +65,86 @@ ShownValues shown_values(const std::filesystem::path& file, vtkUnstructuredGrid&
   throw InputError(file.string() + ": has no field \"" + field + "\"; it has " + (names.empty() ? "none" : names));
 }
 
+/// Cells of a result by what they are.
+struct Cells {
+  std::vector<vtkIdType> volumes, triangles, lines, frames;
+};
+
+Cells cells_of(vtkUnstructuredGrid& grid) {
+  vtkDataArray* part = grid.GetCellData()->GetArray("part");
+  Cells cells;
+  for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
+    switch (grid.GetCellType(c)) {
+      case VTK_TETRA:
+      case VTK_HEXAHEDRON:
+      case VTK_QUADRATIC_TETRA:
+      case VTK_QUADRATIC_HEXAHEDRON:
+        cells.volumes.push_back(c);
+        break;
+      case VTK_TRIANGLE:
+        cells.triangles.push_back(c);
+        break;
+      case VTK_LINE:
+        cells.lines.push_back(c);
+        break;
+      case VTK_VERTEX:
+        if (part && static_cast<int>(part->GetComponent(c, 0)) == frame_part) cells.frames.push_back(c);
+        break;
+      default:
+        break;
+    }
+  }
+  return cells;
+}
+
+/// The grid with its points where they are at rest; null where that is not known.
+vtkSmartPointer<vtkUnstructuredGrid> at_rest(vtkUnstructuredGrid& grid) {
+  vtkDataArray* positions = grid.GetPointData()->GetArray("rest_position");
+  if (!positions || positions->GetNumberOfComponents() != 3) return nullptr;
+  vtkNew<vtkPoints> points;
+  points->SetData(positions);
+  auto rest = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  rest->ShallowCopy(&grid);
+  rest->SetPoints(points);
+  return rest;
+}
+
+void add_rest(PictureBody& body, vtkUnstructuredGrid& grid, const Cells& cells) {
+  body.now = grid.GetPoints();
+  body.rest_surface = body.rest_lines = vtkSmartPointer<vtkPolyData>::New();
+  const vtkSmartPointer<vtkUnstructuredGrid> rest = at_rest(grid);
+  if (!rest) return;
+  body.rest = rest->GetPoints();
+  body.rest_surface = joined(extract(*rest, cells.triangles, {}), outer_faces(*rest, cells.volumes, {}));
+  body.rest_lines = extract(*rest, cells.lines, {});
+}
+
+/// BODY_00012.vtu, with five digits or more.
+void add_name(PictureBody& body, const std::filesystem::path& file) {
+  body.name = file.stem().string();
+  const std::size_t digits = body.name.find_last_not_of("0123456789") + 1;
+  constexpr std::size_t fewest = 5;
+  if (digits == 0 || body.name[digits - 1] != '_' || body.name.size() < digits + fewest) return;
+  const auto number = to_integer(std::string_view(body.name).substr(digits));
+  if (!number || *number > std::numeric_limits<int>::max()) return;
+  body.state = static_cast<int>(*number);
+  body.name.resize(digits - 1);
+}
+
 }  // namespace
 
 PictureBody read_picture_body(const std::filesystem::path& file, const std::string& field) {
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
   const ShownValues values = shown_values(file, *grid, field);
-  vtkDataArray* part = grid->GetCellData()->GetArray("part");
-  std::vector<vtkIdType> volumes, linear_volumes, triangles, lines, frames;
-  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    const int type = grid->GetCellType(c);
-    const bool linear = type == VTK_TETRA || type == VTK_HEXAHEDRON;
-    if (linear) linear_volumes.push_back(c);
-    if (linear || type == VTK_QUADRATIC_TETRA || type == VTK_QUADRATIC_HEXAHEDRON) volumes.push_back(c);
-    if (type == VTK_TRIANGLE) triangles.push_back(c);
-    if (type == VTK_LINE) lines.push_back(c);
-    if (type == VTK_VERTEX && part && static_cast<int>(part->GetComponent(c, 0)) == frame_part) frames.push_back(c);
-  }
-  const auto sheet = extract(*grid, triangles, values);
+  const Cells cells = cells_of(*grid);
+  const auto sheet = extract(*grid, cells.triangles, values);
   PictureBody body;
-  body.surface = joined(sheet, outer_faces(*grid, volumes, values));
-  body.edges = linear_volumes.size() == volumes.size() ? body.surface
-                                                       : joined(sheet, outer_faces(*grid, linear_volumes, values));
-  body.lines = extract(*grid, lines, {values.points, nullptr});
-  body.frames = extract(*grid, frames, {});
+  add_name(body, file);
+  body.surface = joined(sheet, outer_faces(*grid, cells.volumes, values));
+  body.edges = joined(edges_of(*sheet), edges_of(*whole_faces(*grid, cells.volumes)));
+  body.lines = extract(*grid, cells.lines, {values.points, nullptr});
+  body.frames = extract(*grid, cells.frames, {});
+  add_rest(body, *grid, cells);
   body.shown_on = values.points ? ShownOn::points : values.cells ? ShownOn::cells : ShownOn::nothing;
   return body;
 }

@@ -54,5 +54,6 @@ done
 echo "== installed without packages, into a folder with spaces"
 cmake --install "$build" --prefix "$work/of my own" >/dev/null
 "$work/of my own/bin/fascia" run "$work/of my own/share/fascia/scenes/soft_cantilever.toml" --quiet --output "$work/own"
+"$work/of my own/bin/fascia" list scenes | grep "^  soft_cantilever.toml  *Soft cantilever" >/dev/null || fail "no scenes listed"
 bash -n "$work/of my own/share/bash-completion/completions/fascia"
 echo "packages: passed"

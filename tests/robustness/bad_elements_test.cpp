@@ -185,14 +185,14 @@ constexpr std::string_view kTetrahedra = "tetrahedra", kHexahedra = "hexahedra",
 
 const SpoiledMesh kSpoiledMeshes[] = {
     {"one_inverted", kTetrahedra, [] { return edited(tetrahedra_beam(), [](auto& m) { m.swap_nodes(4, 0, 1); }); },
-     "element 5 of 12 is turned the wrong way round"},
+     "element 5 is turned the wrong way round (1 of 12 elements)"},
     {"all_but_one_inverted", kTetrahedra,
      [] {
        return edited(tetrahedra_beam(), [](auto& m) {
          for (std::size_t c = 1; c < 12; ++c) m.swap_nodes(c, 0, 1);
        });
      },
-     "element 1 of 12 is turned against the others"},
+     "element 1 is turned against the others (1 of 12 elements)"},
     {"hexahedron_twisted", kHexahedra, [] { return edited(hexahedra_beam(), [](auto& m) { m.swap_nodes(1, 2, 3); }); },
      "element 2 is folded"},
     {"flat", kTetrahedra,
@@ -209,10 +209,13 @@ const SpoiledMesh kSpoiledMeshes[] = {
      "element 1 is flat"},
     {"node_twice", kTetrahedra, [] { return edited(tetrahedra_beam(), [](auto& m) { m.cells[2].nodes[1] = 0; }); },
      "element 3 uses node 1 twice"},
-    {"repeated", kTetrahedra, [] { return edited(tetrahedra_beam(), [](auto& m) { m.cells.push_back(m.cells[3]); }); },
-     "elements 4 and 15 have the same nodes"},
-    {"repeated_hexahedron", kHexahedra,
-     [] { return edited(hexahedra_beam(), [](auto& m) { m.cells.push_back(m.cells[0]); }); },
+    {"repeated_in_another_order", kHexahedra,
+     [] {
+       return edited(hexahedra_beam(), [](auto& m) {
+         m.cells.push_back(m.cells[0]);
+         std::swap(m.cells.back().nodes[0], m.cells.back().nodes[1]);
+       });
+     },
      "elements 1 and 3 have the same nodes"},
     {"node_too_high", kTetrahedra, [] { return edited(tetrahedra_beam(), [](auto& m) { m.cells[2].nodes[1] = 98; }); },
      "element 3 uses node 99"},

@@ -105,7 +105,37 @@ TEST_F(BadMesh, AbsentFileIsAnErrorOfFiles) {
   const ProgramResult result = run_with_domain("absent.msh");
   EXPECT_EQ(result.status, 4);
   EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
-  EXPECT_NE(result.err.find("absent.msh"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.rfind("scene.toml:", 0), 0u) << "the scene's line: " << result.err;
+  EXPECT_NE(result.err.find(": bodies.beam.domain.file: "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("absent.msh: cannot be opened: it does not exist"), std::string::npos) << result.err;
+}
+
+TEST_F(BadMesh, MendedOnesRunWithAWarning) {
+  const std::string copied = obj_box() + "f 3 2 1\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {obj_box() + "\x1A", "left out 1 byte behind the last line"},
+      {copied, "left out 1 triangle that has the nodes of another (triangle 13, which lies on triangle 1)"}};
+  for (const auto& [text, says] : cases) {
+    write("box.obj", text);
+    const ProgramResult result = run_with_domain("box.obj");
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+    EXPECT_NEAR(summary("out").at("bodies").at("beam").at("volume").get<double>(), 0.04, 1e-9);
+  }
+}
+
+/// What is set already is no remedy.
+TEST_F(BadMesh, PointsThatTheBoundaryCutsOffAreAdvisedOnce) {
+  const std::string round = with(kCantilever, "{ box = { min = [0, 0, 0], max = [1, 0.2, 0.2] } }",
+                                 "{ ellipsoid = { center = [0.5, 0.1, 0.1], radii = [0.5, 0.1, 0.1] } }");
+  for (const std::string points : {"2, 2, 2", "3, 3, 3"}) {
+    const std::string frames = "frames   = { grid = [9, 9, 9] }\npoints = { per_cell = [" + points + "] }\n";
+    write("scene.toml", with(round, "frames   = { grid = [3, 2, 2] }\n", frames));
+    const ProgramResult result = fascia({"check", "scene.toml"});
+    const std::string said = result.out + result.err;
+    EXPECT_NE(said.find("the domain hardly fills"), std::string::npos) << said;
+    EXPECT_EQ(said.find("per_cell = [3, 3, 3]") == std::string::npos, points == "3, 3, 3") << said;
+  }
 }
 
 TEST_F(BadMesh, InvertedCellAmongOthersIsNamedByItsNumber) { expect_refused("box.msh", gmsh_box(5), "6"); }

@@ -1,17 +1,35 @@
 #include "core/geometry/surface.hpp"
 #include "core/model/errors.hpp"
 #include "io/gmsh.hpp"
+#include "io/off_reader.hpp"
+#include "io/vtk_cells.hpp"
+
+#include <vtkDataSet.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
+
+namespace {
+
+/// The formats of own parsing are told apart by their first byte.
+fascia::Mesh parse(std::string_view text) {
+  using namespace fascia::io;
+  if (!text.starts_with('O')) return parse_gmsh(text, "fuzz.msh");
+  std::vector<std::string> messages;
+  return mesh_of_vtk(*parse_off(text, "fuzz.off", messages), "fuzz.off", 0, 0, MidNodes::drop);
+}
+
+}  // namespace
 
 /// Any bytes at all are either a mesh or an InputError; a mesh either has a closed surface or an InputError says why
 /// not.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    fascia::closed_surface(fascia::io::parse_gmsh(text, "fuzz.msh"));
+    fascia::closed_surface(parse(text));
   } catch (const fascia::InputError&) {
   }
   return 0;

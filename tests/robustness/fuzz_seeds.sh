@@ -124,6 +124,34 @@ $Elements
 $EndElements
 TEXT
 
+cat >"$gmsh/tetrahedron_1.msh" <<'TEXT'
+$NOD
+4
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+$ENDNOD
+$ELM
+2
+1 2 7 1 3 1 2 3
+2 4 7 1 4 1 2 3 4
+$ENDELM
+TEXT
+
+cat >"$gmsh/tetrahedron.off" <<'TEXT'
+OFF # a comment
+4 4 6
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 0 2 1
+3 0 1 3 255 0 0
+3 1 2 3
+3 0 3 2
+TEXT
+
 cat >"$gmsh/tetrahedron_41.msh" <<'TEXT'
 $MeshFormat
 4.1 0 8

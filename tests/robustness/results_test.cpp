@@ -83,6 +83,21 @@ TEST_F(Results, HoldNoNumberThatIsNotFinite) {
   EXPECT_FALSE(std::regex_search(read_text(folder_ / "out/probes.csv"), not_finite));
 }
 
+TEST_F(Results, PictureKnowsTimesAndSupports) {
+  const auto run = fascia({"run", "dynamics.toml", "--output", "out", "--set", "output.picture.size=[200,150]"});
+  ASSERT_EQ(run.status, 0);
+  if (!fs::exists(folder_ / "out/dynamics.png")) GTEST_SKIP() << "no picture here: " << run.err;
+  EXPECT_EQ(read_text(folder_ / "out/dynamics.png").substr(1, 3), "PNG");
+  const auto picture = nlohmann::json::parse(read_text(folder_ / "out/picture.json"));
+  EXPECT_EQ(picture.at("kind"), "time");
+  EXPECT_EQ(picture.at("states").size(), 6u);
+  EXPECT_NEAR(picture.at("states").back().get<double>(), 0.1, 1e-12);
+  ASSERT_FALSE(picture.at("supports").empty());
+  EXPECT_EQ(picture.at("supports")[0].at("body"), "beam");
+  make_result();
+  EXPECT_FALSE(fs::exists(folder_ / "out/picture.json")) << "it belongs to the older result";
+}
+
 TEST_F(Results, DefaultDirectoryCarriesTheNameOfTheScene) {
   ASSERT_EQ(fascia({"run", "scene.toml"}).status, 0);
   EXPECT_EQ(summary("results/scene").at("status"), "converged");

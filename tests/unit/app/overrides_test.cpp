@@ -42,6 +42,31 @@ TEST(Overrides, AddressElements) {
   EXPECT_EQ(std::get<BoxDomain>(parse_beam("", {"bodies.beam.domain.box.max[0]=7"}).bodies[0].domain).max[0], 7);
 }
 
+TEST(Overrides, WithoutAValueRemove) {
+  EXPECT_EQ(parse_beam("[world]\ngravity = [0, 0, -1]\n", {"world.gravity="}).world.gravity[2], 0);
+  EXPECT_EQ(parse_beam("title = 3\n", {"bodies.beam.title = "}).title, "");
+  EXPECT_EQ(parse_beam(two_constraints, {"constraints[1]="}).constraints.size(), 1u);
+  EXPECT_EQ(parse_beam(two_constraints, {"constraints[0]=", "constraints[0]="}).constraints.size(), 0u);
+  EXPECT_EQ(parse_beam(two_constraints, {"constraints="}).constraints.size(), 0u);
+  EXPECT_EQ(parse_beam("", {"probes.p.quantity=volume", "probes.p="}).probes.size(), 0u);
+  EXPECT_EQ(parse_beam("", {"title=\"\""}).title, "");
+}
+
+TEST(Overrides, RemoveOnlyWhatIsThere) {
+  EXPECT_EQ(errors_of_override("materials.soft.yuong="),
+            "--set:1:16: materials.soft.yuong: is not there, so that it cannot be removed; did you mean \"young\"?");
+  EXPECT_EQ(errors_of_override("world.gravity="),
+            "--set:1:1: world: is not there, so that it cannot be removed; leave this --set out");
+  EXPECT_EQ(errors_of_override("constraints[2]="),
+            "--set:1:13: constraints[2]: \"2\" is no index of this list; must be from 0 to 1");
+  EXPECT_EQ(errors_of_override("materials.soft.young.x="),
+            "--set:1:22: materials.soft.young.x: \"40 kPa\" has no key \"x\"; set the whole value");
+  EXPECT_EQ(
+      errors_of_override("bodies.beam.material="),
+      "a.toml:4:1: bodies.beam.material: is missing; must be the name of a material, a table with young or lame or "
+      "a list, each a table with use");
+}
+
 TEST(Overrides, MakeMissingTables) {
   const Scene scene = parse_beam("", {"solver.linear.tolerance=1e-3", "probes.p.quantity=volume"});
   EXPECT_EQ(scene.solver.linear_tolerance, 1e-3);

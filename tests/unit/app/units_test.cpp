@@ -6,6 +6,7 @@
 
 #include <numbers>
 #include <set>
+#include <sstream>
 
 namespace fascia::app::units_test {
 namespace {
@@ -31,6 +32,14 @@ TEST(Units, ReadsQuantities) {
   EXPECT_DOUBLE_EQ(si("0 mm", "m"), 0);
   EXPECT_DOUBLE_EQ(si("1 µm", "m"), 1e-6);
   EXPECT_DOUBLE_EQ(si("1 min", "s"), 60);
+}
+
+TEST(Units, ExamplesAreUnderstood) {
+  for (const UnitExamples& u : unit_examples()) {
+    EXPECT_GT(si(u.example, u.unit), 0) << u.example;
+    std::istringstream others(u.others);
+    for (std::string unit; others >> unit;) EXPECT_GT(si("1 " + unit, u.unit), 0) << unit;
+  }
 }
 
 TEST(Units, ReadsComposedUnits) {

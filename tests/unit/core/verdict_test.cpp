@@ -140,6 +140,25 @@ TEST(NewtonVerdict, SaysThatTheToleranceWasMet) {
   EXPECT_NEAR(system.x, 0.6823278038280193, 1e-8);
 }
 
+TEST(NewtonVerdict, TellsEachIteration) {
+  OneSpring system{[](double x) { return x + x * x * x - 1; }, [](double x) { return 1 + 3 * x * x; }};
+  std::vector<IterationInfo> told;
+  SolverSettings settings;
+  settings.iterating = [&](const IterationInfo& i) { told.push_back(i); };
+  Newton newton(system, settings, {4, 0.5});
+  const NewtonReport r = newton.solve();
+  ASSERT_EQ(static_cast<int>(told.size()), r.iterations);
+  for (int k = 0; k < r.iterations; ++k) {
+    const IterationInfo& i = told[static_cast<std::size_t>(k)];
+    EXPECT_EQ(i.step, 4);
+    EXPECT_EQ(i.time, 0.5);
+    EXPECT_EQ(i.iteration, k + 1);
+    EXPECT_EQ(i.tolerance, settings.tolerance);
+    EXPECT_GT(i.relative, k == 0 ? 0.1 : 0.0);
+  }
+  EXPECT_LT(told.back().relative, told.front().relative);
+}
+
 /// arctan overshoots and diverges from x = 2: what is kept at the limit is no worse than the start.
 TEST(NewtonVerdict, KeepsTheBestStateWhereItGivesUp) {
   OneSpring system{[](double x) { return std::atan(x - 2); }, [](double x) { return 1 / (1 + (x - 2) * (x - 2)); }};

@@ -172,5 +172,21 @@ TEST(ElementBody, TensorsOfAveragedElementsAddUpToTheEnergy) {
   EXPECT_LT(energy_gap(element_model(std::move(spec))), 1e-12);
 }
 
+TEST(ElementBody, ATensorFieldIsWhatTensorsAreAtEachPlace) {
+  for (const ElementLocking locking : {ElementLocking::none, ElementLocking::averaged}) {
+    ElementOptions o;
+    o.locking = locking;
+    const ElementModel built = element_model(o);
+    const State state = random_state(built.model, 0.02, 0);
+    const std::vector<PointTensors> tensors = built.body->tensors(state);
+    const TensorField field = built.body->tensor_field(state);
+    for (std::size_t q = 0; q < tensors.size(); q += 7) {
+      const Attachment place = built.body->attach_point(q);
+      EXPECT_LE(norm(field(place, q).stress - tensors[q].stress), 1e-14 * norm(tensors[q].stress));
+      EXPECT_EQ(norm(field(place, q).stress - built.body->tensors_at(place, q, state).stress), 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fascia::element_body_test

@@ -77,14 +77,24 @@ TEST(FromMeshErrors, flat_elements) {
 TEST(FromMeshErrors, repeated_elements) {
   Mesh mesh = boxes(hexahedra);
   append_cell(mesh, cell_of(mesh, 1), 9);
-  EXPECT_EQ(error_of(mesh, ElementFamily::hexahedra),
-            "sample.msh: elements 2 and 9 have the same nodes; remove one of them");
+  const ElementMesh once = element_mesh(mesh, ElementFamily::hexahedra, 1);
+  EXPECT_EQ(once.size(), 3u);
+  EXPECT_EQ(once.messages, std::vector<std::string>{"sample.msh: left out 1 element that repeats another (element 9, "
+                                                    "which repeats element 2)"});
   // Files that write a cell once for each of its groups may number it anew.
   mesh.groups = {{"a", 1, 3}, {"b", 2, 3}};
   mesh.blocks[0].group = {-1, 0, -1, 1};
   EXPECT_EQ(element_mesh(mesh, ElementFamily::hexahedra, 1).size(), 3u);
   mesh.blocks[0].group = {-1, 1, -1, 1};
-  expect_contains(error_of(mesh, ElementFamily::hexahedra), "elements 2 and 9");
+  EXPECT_EQ(element_mesh(mesh, ElementFamily::hexahedra, 1).messages.size(), 2u) << "and one of a group without nodes";
+  std::swap(mesh.blocks[0].nodes[24], mesh.blocks[0].nodes[25]);
+  EXPECT_EQ(error_of(mesh, ElementFamily::hexahedra),
+            "sample.msh: elements 2 and 9 have the same nodes; remove one of them");
+
+  Mesh four = boxes(tetrahedra);
+  const std::vector<int> first = cell_of(four, 0);
+  append_cell(four, {first[1], first[0], first[2], first[3]}, 50);
+  EXPECT_EQ(element_mesh(four, ElementFamily::tetrahedra, 1).size(), boxes(tetrahedra).blocks[0].size());
 }
 
 TEST(FromMeshErrors, mixed_orientation) {
@@ -92,9 +102,9 @@ TEST(FromMeshErrors, mixed_orientation) {
   for (const std::size_t c : {1u, 4u, 5u, 9u, 10u})
     std::swap(mesh.blocks[0].nodes[4 * c], mesh.blocks[0].nodes[4 * c + 1]);
   expect_contains(error_of(mesh, ElementFamily::tetrahedra),
-                  "elements 2, 5, 6 and 2 more of 18 are turned the wrong way round; number the nodes");
+                  "elements 2, 5, 6 and 2 more are turned the wrong way round (5 of 18 elements); number the nodes");
   for (Vec3d& X : mesh.points) X[0] = -X[0];
-  expect_contains(error_of(mesh, ElementFamily::tetrahedra), "elements 2, 5, 6 and 2 more of 18 are turned against");
+  expect_contains(error_of(mesh, ElementFamily::tetrahedra), "elements 2, 5, 6 and 2 more are turned against");
 }
 
 TEST(FromMeshErrors, folded_elements) {

@@ -19,6 +19,15 @@ inline std::string gmsh_22() {
          "$EndElements\n";
 }
 
+/// Version 1 has no names of groups.
+inline std::string gmsh_1() {
+  return "$NOD\n4\n10 0 0 0\n20 1 0 0\n30 0 +1e0 0\n40 0 0 1\n$ENDNOD\n"
+         "$ELM\n6\n"
+         "1 2 3 1 3 10 30 20\n2 2 3 1 3 10 20 40\n3 2 3 1 3 20 30 40 \n4 2 3 1 3 10 40 30\n"
+         "5 4 7 1 4 10 20 30 40\n6 15 0 1 1 10\n"
+         "$ENDELM\n";
+}
+
 inline std::string gmsh_41() {
   return "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
          "$PhysicalNames\n1\n2 3 \"skin of it\"\n$EndPhysicalNames\n"

@@ -24,7 +24,7 @@ TEST_P(GmshKinds, hold_the_same_mesh) {
   EXPECT_EQ(mesh.point_file_number, (std::vector<std::int64_t>{10, 20, 30, 40}));
 
   ASSERT_EQ(mesh.groups.size(), 2u);
-  EXPECT_EQ(mesh.groups[0].name, "skin of it");
+  EXPECT_EQ(mesh.groups[0].name, GetParam() == &samples::gmsh_1 ? "3" : "skin of it");
   EXPECT_EQ(mesh.groups[0].number, 3);
   EXPECT_EQ(mesh.groups[0].dimension, 2);
   EXPECT_EQ(mesh.groups[1].name, "7");
@@ -44,8 +44,24 @@ TEST_P(GmshKinds, hold_the_same_mesh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GmshKinds,
-                         testing::Values(&samples::gmsh_22, &samples::gmsh_41, &samples::gmsh_22_binary,
-                                         &samples::gmsh_41_binary));
+                         testing::Values(&samples::gmsh_1, &samples::gmsh_22, &samples::gmsh_41,
+                                         &samples::gmsh_22_binary, &samples::gmsh_41_binary));
+
+TEST(Gmsh, older_versions_of_2_are_read_alike) {
+  for (const char* version : {"2 0 8", "2.0 0 8", "2.1 0 8"}) {
+    std::string text = samples::gmsh_22();
+    text.replace(text.find("2.2 0 8"), 7, version);
+    EXPECT_EQ(parse_gmsh(text, "a.msh").groups[0].name, "skin of it") << version;
+  }
+}
+
+TEST(Gmsh, stray_bytes_around_the_text_are_left_out) {
+  const Mesh mesh = parse_gmsh("\xEF\xBB\xBF" + samples::gmsh_1() + "\x1A", "a.msh");
+  EXPECT_EQ(mesh.points.size(), 4u);
+  EXPECT_EQ(mesh.messages, std::vector<std::string>{"a.msh: left out 1 byte behind the last line that belongs to no "
+                                                    "text"});
+  EXPECT_TRUE(parse_gmsh(samples::gmsh_1() + "\n \n", "a.msh").messages.empty());
+}
 
 TEST(Gmsh, windows_line_ends) {
   std::string text;

@@ -7,6 +7,8 @@
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 
+#include <tuple>
+
 // What a picture shows of a result; no display is needed for it.
 namespace fascia::io::picture_test {
 namespace {
@@ -39,18 +41,19 @@ PictureBody body_of(const VisualMesh& mesh, const std::string& field) {
 struct PictureCase {
   CellType type;
   bool quadratic;
-  vtkIdType faces;
+  vtkIdType faces, edges;
 };
 
 TEST(PictureBody, outer_faces_of_volume_cells) {
   for (const PictureCase& c :
-       {PictureCase{CellType::tetrahedron, false, 28}, PictureCase{CellType::tetrahedron, true, 4 * 28},
-        PictureCase{CellType::hexahedron, false, 14}, PictureCase{CellType::hexahedron, true, 6 * 14}}) {
+       {PictureCase{CellType::tetrahedron, false, 28, 42}, PictureCase{CellType::tetrahedron, true, 4 * 28, 42},
+        PictureCase{CellType::hexahedron, false, 14, 28}, PictureCase{CellType::hexahedron, true, 6 * 14, 28}}) {
     SCOPED_TRACE(testing::Message() << static_cast<int>(c.type) << " " << c.quadratic);
     const PictureBody body = body_of(row_of_cubes(3, c.type, c.quadratic), "height");
     EXPECT_EQ(body.surface->GetNumberOfCells(), c.faces);
     EXPECT_NEAR(area_of(*body.surface), 14, 1e-12);
-    EXPECT_EQ(body.edges->GetNumberOfCells(), c.quadratic ? 0 : c.faces);
+    EXPECT_EQ(body.edges->GetNumberOfCells(), c.edges);
+    EXPECT_EQ(body.edges->GetNumberOfPoints(), 16 + (c.quadratic ? c.edges : 0));  // corners, middles
     EXPECT_EQ(body.lines->GetNumberOfCells(), 0);
     EXPECT_EQ(body.shown_on, ShownOn::points);
     vtkDataArray* shown = body.surface->GetPointData()->GetScalars();
@@ -94,6 +97,31 @@ TEST(PictureBody, triangles_beside_volume_cells) {
     EXPECT_EQ(body.surface->GetNumberOfCells(), 7) << field;
     EXPECT_NEAR(area_of(*body.surface), 7, 1e-12) << field;
   }
+}
+
+TEST(PictureBody, name_and_number_of_the_state) {
+  const TemporaryDirectory directory;
+  for (const auto& [file, name, state] :
+       {std::tuple{"left_beam_00012.vtu", "left_beam", 12}, {"beam_3.vtu", "beam_3", -1}, {"00001.vtu", "00001", -1}}) {
+    write_vtu(directory.path() / file, row_of_cubes(1, CellType::hexahedron, false));
+    const PictureBody body = read_picture_body(directory.path() / file, "");
+    EXPECT_EQ(body.name, name);
+    EXPECT_EQ(body.state, state);
+  }
+}
+
+TEST(PictureBody, shape_at_rest) {
+  VisualMesh mesh = row_of_cubes(2, CellType::hexahedron, false);
+  EXPECT_EQ(body_of(mesh, "").rest, nullptr);
+  FieldArray rest{"rest_position", 3, {}};
+  for (Vec3d& x : mesh.points) {
+    rest.values.insert(rest.values.end(), x.v, x.v + 3);
+    x = x * 2.0;
+  }
+  mesh.point_fields.push_back(rest);
+  const PictureBody body = body_of(mesh, "");
+  EXPECT_NEAR(area_of(*body.surface), 40, 1e-12);
+  EXPECT_NEAR(area_of(*body.rest_surface), 10, 1e-12);
 }
 
 TEST(PictureBody, unknown_field_names_those_there_are) {

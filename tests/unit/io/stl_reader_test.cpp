@@ -41,6 +41,20 @@ TEST(StlReader, TextKeepsDoublePrecisionWhateverItsCaseAndSpacing) {
   EXPECT_EQ(mesh.points[5][1], 1e-3);
 }
 
+TEST(StlReader, EndsInTwoWordsAndStrayBytesAreRead) {
+  const TemporaryDirectory directory;
+  std::string text = "solid a\n" + facet("0 0 0", "0 0 1", "0 1e-3 0");
+  for (const std::string word : {"loop", "facet"}) text.replace(text.find("end" + word), 3, "END ");
+  for (const char* end : {"end solid", "end solid a\n", "End  Solid\n\x1A"}) {
+    const Mesh mesh = read_mesh(directory.write("a.stl", text + end));
+    EXPECT_EQ(mesh.points.size(), 3u) << end;
+    EXPECT_EQ(mesh.messages.size(), std::string(end).find('\x1A') == std::string::npos ? 0u : 1u) << end;
+  }
+  const Mesh mesh = read_mesh(directory.write("a.stl", text + "endsolid" + std::string(2, '\0')));
+  ASSERT_EQ(mesh.messages.size(), 1u);
+  EXPECT_NE(mesh.messages[0].find("a.stl: left out 2 bytes behind the last line"), std::string::npos);
+}
+
 TEST(StlReader, BinaryFilesMayBeginWithSolid) {
   const TemporaryDirectory directory;
   for (const char* header : {"solid", "", "made by hand"})
@@ -61,6 +75,7 @@ TEST(StlReader, ErrorsNameTheLineOrTheTriangle) {
             ":6: found \"endloop\"; must be vertex");
   EXPECT_EQ(error("solid a\nfacet normal 0 0 0 outer"), ":2: found the end of the file; must be loop");
   EXPECT_EQ(error("solid a\nfacets\n"), ":2: found \"facets\"; must be facet or endsolid");
+  EXPECT_EQ(error("solid a\nend of it\n"), ":2: found \"end\" and then \"of\"; must be endsolid, endfacet or endloop");
   EXPECT_NE(error("solid a\nendsolid a\n").find("has no cells"), std::string::npos);
   const std::string whole = binary(tetrahedron, "cut");
   EXPECT_EQ(

@@ -60,13 +60,10 @@ TEST(SurfaceOrientation, third_triangle_at_an_edge) {
   EXPECT_TRUE(contains(e, "belongs to 3 triangles")) << e;
 }
 
-TEST(SurfaceOrientation, flat_and_repeated_triangles) {
+TEST(SurfaceOrientation, flat_triangle) {
   TriangleMesh mesh = cube(0, 1);
-  mesh.triangles.push_back(mesh.triangles[4]);
-  std::string e = input_error([&] { closed_surface(mesh_of(mesh)); });
-  EXPECT_TRUE(contains(e, "cells 5 and 49 have the same nodes")) << e;
-  mesh.triangles.back() = {0, 1, 1};
-  e = input_error([&] { closed_surface(mesh_of(mesh)); });
+  mesh.triangles.push_back({0, 1, 1});
+  const std::string e = input_error([&] { closed_surface(mesh_of(mesh)); });
   EXPECT_TRUE(contains(e, "triangle 49 is flat")) << e;
 }
 

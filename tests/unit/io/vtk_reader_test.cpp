@@ -103,6 +103,35 @@ TEST(ObjReader, relative_indices_and_continued_lines) {
   EXPECT_NEAR(closed_surface(read_mesh(file)).volume, 1. / 6, 1e-15);
 }
 
+TEST(ObjReader, stray_bytes_around_the_text_are_left_out) {
+  const TemporaryDirectory directory;
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const std::string& stray : {std::string("\x1A"), std::string("\n\0", 2), std::string("\0\n", 2)}) {
+    const auto file = directory.write("a.obj", "\xEF\xBB\xBF" + text + stray);
+    const Mesh mesh = read_mesh(file);
+    EXPECT_EQ(mesh.points.size(), 3u);
+    EXPECT_EQ(mesh.messages, std::vector<std::string>{file.string() + ": left out 1 byte behind the last line that "
+                                                                      "belongs to no text"});
+  }
+}
+
+TEST(VtkReader, xml_in_a_legacy_file_is_read_as_what_it_is) {
+  const TemporaryDirectory directory;
+  const std::string grid =
+      "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" "
+      "NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 "
+      "0 1 0</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 "
+      "2</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray type=\"UInt8\" "
+      "Name=\"types\" format=\"ascii\">5</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n";
+  for (const char* start : {"", "<?xml version=\"1.0\"?>\n"}) {
+    const auto file = directory.write("a.vtk", start + grid);
+    const Mesh mesh = read_mesh(file);
+    EXPECT_EQ(mesh.points.size(), 3u);
+    EXPECT_EQ(mesh.messages,
+              std::vector<std::string>{file.string() + ": holds XML, which is a .vtu file, and was read as one"});
+  }
+}
+
 TEST(ObjReader, errors_name_the_line) {
   const TemporaryDirectory directory;
   const auto error = [&](const std::string& text) {

@@ -53,7 +53,7 @@ TEST(ShellFromSurfaceErrors, OneSideOnly) {
       << error;
 }
 
-TEST(ShellFromSurfaceErrors, FlatAndRepeatedTriangles) {
+TEST(ShellFromSurfaceErrors, FlatTriangles) {
   std::vector<Vec3d> points = kPoints;
   points[2] = {{2, 1e-12, 0}};
   EXPECT_EQ(error_of(mesh_of(CellType::triangle, points, {0, 1, 3, 0, 1, 2})),
@@ -67,8 +67,6 @@ TEST(ShellFromSurfaceErrors, FlatAndRepeatedTriangles) {
             "sample.msh: triangle 2 is flat (its area is below 1e-10 of its longest edge squared); remove it or mesh "
             "again")
       << "welding its corners makes it flat";
-  EXPECT_EQ(error_of(mesh_of(CellType::triangle, kPoints, {0, 1, 2, 0, 2, 3, 2, 0, 1})),
-            "sample.msh: cells 1 and 3 have the same nodes; remove one of them");
 }
 
 TEST(ShellFromSurfaceErrors, NoNumbersNoExtentNoTriangles) {

@@ -7,6 +7,9 @@
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
 #include <utility>
 
 // From a mesh as a file holds it to a shell's surface: what is kept, what is repaired and said.
@@ -46,6 +49,65 @@ TEST(ShellFromSurface, QuadrilateralsAreSplit) {
   EXPECT_EQ(shell.file_number, (std::vector<std::int64_t>{1, 1, 2, 2}));
   EXPECT_DOUBLE_EQ(area(shell), 2);
   EXPECT_EQ(shell.messages, Messages{"sample.msh: left out 2 points that no cell uses (the first: node 1)"});
+}
+
+/// Directed edges, each of which one triangle may have.
+std::set<std::pair<int, int>> directed_edges(const ShellMesh& shell) {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& t : shell.triangles)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(edges.insert({t[k], t[(k + 1) % 3]}).second);
+  return edges;
+}
+
+TEST(ShellFromSurface, SkinThatTouchesItselfIsSplitThere) {
+  // Two cubes along an edge, as one closed skin with a group of its own for the triangles of the second.
+  std::vector<Vec3d> points = cube_points();
+  points.insert(points.end(), {{{2, 1, 0}}, {{2, 2, 0}}, {{1, 2, 0}}, {{2, 1, 1}}, {{2, 2, 1}}, {{1, 2, 1}}});
+  Mesh mesh = mesh_of(CellType::hexahedron, points, {0, 1, 2, 3, 4, 5, 6, 7, 2, 8, 9, 10, 6, 11, 12, 13});
+  mesh.groups = {{"second", 5, 3}};
+  mesh.blocks[0].group = {-1, 0};
+  const ShellMesh shell = shell_mesh(mesh);
+  EXPECT_EQ(shell.nodes.size(), 15u) << "in one node the cubes stay joined, or one would be loose";
+  EXPECT_EQ(shell.triangles.size(), 24u);
+  EXPECT_DOUBLE_EQ(area(shell), 12);
+  for (const auto& [a, b] : directed_edges(shell)) EXPECT_TRUE(directed_edges(shell).contains({b, a}));
+  ASSERT_EQ(shell.messages.size(), 2u);
+  EXPECT_EQ(
+      shell.messages[1],
+      "sample.msh: touches itself along 1 edge, at (1, 1, 0.5); split there: what met is not joined, but in one node "
+      "where a part would come loose (1)");
+  ASSERT_EQ(shell.groups.size(), 1u);
+  EXPECT_EQ(shell.groups[0].cells.size(), 12u);
+  for (const int t : shell.groups[0].cells)
+    for (const int node : shell.triangles[at(t)])
+      EXPECT_TRUE(std::ranges::count(shell.groups[0].nodes, node) == 1) << "copies are in the group too";
+}
+
+TEST(ShellFromSurface, EdgeWhoseEndsHangTogetherGetsANodeInItsMiddle) {
+  // Cubes of a block, at random.
+  std::mt19937 random(4);
+  constexpr int size = 4, n = size + 1;
+  std::size_t halved = 0;
+  for (int round = 0; round < 60; ++round) {
+    std::vector<Vec3d> points;
+    for (int p = 0; p < n * n * n; ++p) points.push_back({{1.0 * (p % n), 1.0 * (p / n % n), 1.0 * (p / (n * n))}});
+    std::vector<int> nodes;
+    for (int c = 0; c < size * size * size; ++c) {
+      if (random() % 3 == 0) continue;
+      const int a = c % size + n * (c / size % size + n * (c / (size * size))), b = a + n, up = n * n;
+      nodes.insert(nodes.end(), {a, a + 1, b + 1, b, a + up, a + 1 + up, b + 1 + up, b + up});
+    }
+    const Mesh mesh = mesh_of(CellType::hexahedron, points, nodes);
+    const ShellMesh shell = shell_mesh(mesh);
+    const std::set<std::pair<int, int>> edges = directed_edges(shell);
+    for (const auto& [a, b] : edges) EXPECT_TRUE(edges.contains({b, a})) << "closed";
+    EXPECT_TRUE(closed(shell));
+    ASSERT_EQ(shell.file_number.size(), shell.triangles.size());
+    const double faces = std::round(area(shell));
+    EXPECT_NEAR(area(shell), faces, 1e-9);
+    halved += shell.triangles.size() - static_cast<std::size_t>(2 * faces);
+  }
+  EXPECT_GT(halved, 50u);
 }
 
 TEST(ShellFromSurface, GroupsHaveTrianglesAndNodes) {

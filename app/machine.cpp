@@ -1,4 +1,4 @@
-#include "app/bench/machine.hpp"
+#include "app/machine.hpp"
 
 #include "app/version.hpp"
 #include "core/cpu/thread_pool.hpp"
@@ -6,7 +6,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
+#include <array>
+#include <climits>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -25,6 +28,11 @@ std::string field_of(const std::filesystem::path& path, const std::string& key) 
     if (begin != std::string::npos) return line.substr(begin);
   }
   return "";
+}
+
+std::string host_name() {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 double total_memory() {
@@ -73,9 +81,12 @@ Machine this_machine() {
   m.memory = total_memory();
   m.gpu = gpus();
   m.driver = driver_version();
+  m.host = host_name();
   m.fascia = FASCIA_VERSION;
+  m.commit = commit();
   m.backends = backend_list();
   m.compiler = fmt::format("{} {}", FASCIA_COMPILER, __VERSION__);
+  m.flags = FASCIA_FLAGS;
   m.build = FASCIA_BUILD;
   m.libraries = pairs_of(FASCIA_LIBRARIES);
   return m;

@@ -1,0 +1,183 @@
+#include "app/plausible.hpp"
+
+#include "app/readable.hpp"
+#include "core/geometry/bounds.hpp"
+#include "core/math/index.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fascia::app {
+namespace {
+
+// Limits, each with what lies just inside.
+constexpr double kSoftest = 20, kStiffest = 1.5e12;       // [Pa] mucus and loose gels; diamond
+constexpr double kLightest = 15, kHeaviest = 23000;       // [kg/m³] aerogel-like foams, lungs: 200; platinum
+constexpr double kLightestOfAMass = 0.05;                 // [kg/m³] where the mass is given: scaled models
+constexpr double kMetal = 4000, kSoftForAMetal = 1e8;     // [kg/m³], [Pa]
+constexpr double kWatery = 1300, kStiffForTissue = 3e10;  // [kg/m³], [Pa] bone: 2000 and 20 GPa
+constexpr double kSoft = 1e8;                             // [Pa] tissue, gel, rubber
+constexpr double kLongestSoft = 20, kLongest = 5000;      // [m]
+constexpr double kHeaviestSoft = 5000;                    // [kg]
+constexpr double kShortest = 1e-6;                        // [m]
+constexpr double kSlender = 4;                            // length over thickness
+constexpr double kCrushed = 5;                            // weight on the base over Young's modulus
+
+/// Weight or inertia count in what is computed.
+bool mass_matters(const Scene& scene) {
+  return scene.solver.kind != SolverKind::statics || squared_norm(scene.world.gravity) > 0;
+}
+
+void warn_of_stiffness(Simulation& s, const Body& body, const BodyScale& scale) {
+  for (const MaterialUse& use : body.materials) {
+    const double E = use.material.young();
+    const Place place = place_of_material(s.scene, use.material, "young");
+    if (E < kSoftest)
+      s.warnings.add(
+          "stiffness", place,
+          fmt::format("{} is softer than any tissue (brain: 1 kPa, liver: 5 kPa); write the unit, as \"5 kPa\"",
+                      pressure_text(E)));
+    else if (E > kStiffest)
+      s.warnings.add("stiffness", place,
+                     fmt::format("{} is stiffer than diamond; write the unit, as \"210 GPa\"", pressure_text(E)));
+    else if (scale.density > kMetal && E < kSoftForAMetal)
+      s.warnings.add("stiffness", place,
+                     fmt::format("{} is as soft as tissue or rubber, and body \"{}\" as heavy as metal ({:.4g} kg/m3); "
+                                 "write the unit, as \"{:.6g} MPa\"",
+                                 pressure_text(E), body.name, scale.density, E));
+    else if (scale.density > 0 && scale.density < kWatery && E > kStiffForTissue)
+      s.warnings.add(
+          "stiffness", place,
+          fmt::format("{} is as stiff as metal, and body \"{}\" as light as tissue ({:.4g} kg/m3); write the "
+                      "unit, as \"{:.4g} kPa\"",
+                      pressure_text(E), body.name, scale.density, E / 1e9));
+  }
+}
+
+/// @return whether the density is in the range of materials, or does not count
+bool warn_of_density(Simulation& s, const Body& body, const BodyScale& scale) {
+  const std::string path = "bodies." + body.name + (body.density ? ".density" : ".mass");
+  const double lightest = body.density ? kLightest : kLightestOfAMass;
+  if (scale.density <= 0 || (scale.density >= lightest && scale.density <= kHeaviest)) return true;
+  if (!mass_matters(s.scene)) return true;
+  s.warnings.add("density", s.scene.place_of(path),
+                 fmt::format("makes {:.4g} kg/m3 (water: 1000, tissue: 1060, steel: 7850); write the unit, as {}",
+                             scale.density, body.density ? "\"1.06 g/cm3\"" : "\"1.5 kg\""));
+  return false;
+}
+
+/// The domain's file or the numbers that make it large.
+Place place_of_size(const Scene& scene, const Body& body) {
+  const std::string path = "bodies." + body.name;
+  for (const char* key : {".transform.scale", ".domain.file", ".domain"})
+    if (scene.says(path + key)) return scene.place_of(path + key);
+  return body.domain_place;
+}
+
+/// @return whether size and mass are those of a body of such a material
+bool warn_of_size(Simulation& s, const Body& body, const BodyScale& scale, double mass) {
+  const bool soft = scale.softest < kSoft;
+  const std::string remedy = std::holds_alternative<FileDomain>(body.domain)
+                                 ? "say what a number of the file means, as domain.unit = \"mm\""
+                                 : "write lengths with their unit, as \"160 mm\"";
+  const Place place = place_of_size(s.scene, body);
+  const std::string material = soft ? ", and its material as soft as tissue or rubber" : "";
+  if (scale.length > (soft ? kLongestSoft : kLongest) || scale.length < kShortest)
+    s.warnings.add("size", place,
+                   fmt::format("the body is {} long{}; {}", length_text(scale.length), material, remedy));
+  else if (soft && mass > kHeaviestSoft && mass_matters(s.scene))
+    s.warnings.add(
+        "mass", place,
+        fmt::format("the body has a mass of {} ({}){}; {}", mass_text(mass), box_text(scale.extent), material, remedy));
+  else
+    return true;
+  return false;
+}
+
+void warn_of_sag(Simulation& s, const Body& body, const BodyScale& scale) {
+  const double weight = norm(s.scene.world.gravity) * scale.density * scale.length;
+  if (s.scene.solver.kind == SolverKind::modes || scale.softest < kSoftest || weight < kCrushed * scale.softest) return;
+  s.warnings.add("sag", place_of_material(s.scene, body.materials.front().material, "young"),
+                 fmt::format("{} does not bear body \"{}\" ({}, {:.4g} kg/m3): its own weight would crush a column of "
+                             "that length; see young, density, lengths and world.gravity",
+                             pressure_text(scale.softest), body.name, length_text(scale.length), scale.density));
+}
+
+/// One cell of frames along a body that is much longer than thick: it hardly bends.
+void warn_of_single_cell(Simulation& s, const Body& body, const BodyScale& scale) {
+  const auto* grid = std::get_if<GridFrames>(&body.frames);
+  if (body.model != BodyModel::meshless || grid == nullptr || scale.length < kSlender * scale.thickness) return;
+  for (int axis = 0; axis < 3 && grid->count.size() == 3; ++axis)
+    if (grid->count[at(axis)] == 2 && scale.extent[axis] > kSlender * scale.thickness)
+      s.warnings.add("locking", body.frames_place,
+                     fmt::format("a single cell of frames reaches over {}, {:.2g} times the thickness: the body hardly "
+                                 "bends; use 5 frames or more along {}",
+                                 length_text(scale.extent[axis]), scale.extent[axis] / scale.thickness, "xyz"[axis]));
+}
+
+}  // namespace
+
+double BodyScale::wave_speed() const { return density > 0 ? std::sqrt(stiffest / density) : 0; }
+
+double BodyScale::slowest_period() const {
+  const double c = wave_speed();
+  if (c <= 0 || thickness <= 0) return 0;
+  // First bending mode of a cantilever: omega = 3.52 c k / L², k = h / sqrt(12) the radius of gyration.
+  const double bending = 2 * std::numbers::pi * std::sqrt(12.0) / 3.516 * length * length / (thickness * c);
+  return std::max(4 * length / c, bending);
+}
+
+BodyScale scale_of(const Simulation& s, std::size_t index) {
+  const Body& body = s.scene.bodies[index];
+  const ModelBody& built = *s.bodies[index].body;
+  BodyScale scale;
+  const std::vector<Vec3d>& places = built.surface().points.empty() ? s.bodies[index].nodes : built.surface().points;
+  scale.extent = bounds_of(places).extent();
+  scale.length = std::max({scale.extent[0], scale.extent[1], scale.extent[2]});
+  scale.thickness = std::min({scale.extent[0], scale.extent[1], scale.extent[2]});
+  for (const ThicknessUse& use : body.thickness) scale.thickness = use.value;
+  if (body.radius) scale.thickness = 2 * *body.radius;
+  scale.area = scale.length > 0 ? built.volume() / scale.length : 0;
+  scale.density = built.volume() > 0 ? built.mass() / built.volume() : 0;
+  if (is_carrier(body)) return scale;
+  for (const MaterialUse& use : body.materials) {
+    const double E = use.material.young();
+    scale.stiffest = std::max(scale.stiffest, E);
+    scale.softest = scale.softest > 0 ? std::min(scale.softest, E) : E;
+  }
+  return scale;
+}
+
+Place place_of_material(const Scene& scene, const Material& material, const char* key) {
+  const std::string path = material.place.key + "." + key;
+  return scene.says(path) ? scene.place_of(path) : material.place;
+}
+
+void warn_of_bodies(Simulation& s) {
+  std::vector<std::string> told;  // materials, once each
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Body& body = s.scene.bodies[b];
+    if (body.model == BodyModel::surface) continue;
+    const BodyScale scale = scale_of(s, b);
+    const bool right_density = warn_of_density(s, body, scale);
+    if (is_carrier(body) || body.materials.empty()) continue;
+    warn_of_single_cell(s, body, scale);
+    const std::string material = body.materials.front().material.place.key;
+    if (std::find(told.begin(), told.end(), material) == told.end() && right_density) warn_of_stiffness(s, body, scale);
+    told.push_back(material);
+    if (right_density && warn_of_size(s, body, scale, s.bodies[b].body->mass())) warn_of_sag(s, body, scale);
+  }
+}
+
+void warn_of_the_implausible(Simulation& s) {
+  warn_of_bodies(s);
+  warn_of_loads(s);
+  warn_of_times(s);
+  warn_of_no_effect(s);
+  warn_of_overlaps(s);
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,77 @@
+#include "app/provenance.hpp"
+
+#include "app/machine.hpp"
+#include "app/version.hpp"
+#include "io/digest.hpp"
+
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace fascia::app {
+namespace {
+
+std::string& command() {
+  static std::string text;
+  return text;
+}
+
+std::string quoted_for_shell(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string whole_path(const std::filesystem::path& path) {
+  std::error_code failed;
+  const std::filesystem::path whole = std::filesystem::absolute(path, failed);
+  return (failed ? path : whole.lexically_normal()).string();
+}
+
+}  // namespace
+
+void remember_command(int argc, char** argv) {
+  std::vector<std::string> words;
+  for (int i = 0; i < argc; ++i) words.push_back(quoted_for_shell(argv[i]));
+  command() = fmt::format("{}", fmt::join(words, " "));
+}
+
+std::vector<std::filesystem::path> input_files(const Scene& scene) {
+  std::vector<std::filesystem::path> files;
+  const auto add = [&](const std::filesystem::path& file) {
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  };
+  for (const Body& b : scene.bodies) {
+    if (const auto* mesh = std::get_if<FileDomain>(&b.domain)) add(mesh->path);
+    if (const auto* frames = std::get_if<SampleFile>(&b.frames)) add(frames->path);
+    if (const auto* points = std::get_if<SampleFile>(&b.points)) add(points->path);
+  }
+  return files;
+}
+
+nlohmann::ordered_json provenance_of(const Simulation& s) {
+  const Machine m = this_machine();
+  nlohmann::ordered_json j;
+  j["scene"] = s.scene.text;
+  j["scene_sha256"] = io::sha256(s.scene.text);
+  j["scene_file"] = whole_path(s.scene.path);
+  j["overrides"] = s.scene.overrides;
+  j["output"] = whole_path(s.scene.output.directory);
+  j["files"] = nlohmann::ordered_json::array();
+  for (const std::filesystem::path& file : input_files(s.scene))
+    j["files"].push_back({{"path", whole_path(file)}, {"sha256", io::sha256_of(file)}});
+  j["command"] = command();
+  j["started"] = m.date;
+  j["units"] = "SI: m, kg, s, N, Pa, rad";
+  j["program"] = {{"version", m.fascia}, {"commit", m.commit}, {"backends", m.backends}, {"compiler", m.compiler},
+                  {"flags", m.flags},    {"build", m.build},   {"processor", tuning()}};
+  for (const auto& [name, version] : m.libraries) j["program"]["libraries"][name] = version;
+  j["machine"] = {{"host", m.host},       {"system", m.system}, {"cpu", m.cpu},
+                  {"threads", m.threads}, {"memory", m.memory}, {"gpu", m.gpu}};
+  return j;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "app/simulation.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+/// The command that the process was started with, words quoted for a shell where they must be.
+void remember_command(int argc, char** argv);
+
+/// Where a result comes from, so that it can be repeated: the scene's text and its SHA-256, its file, overrides and
+/// output directory, the files that it reads with theirs, the command, the program (version, commit, compiler, flags,
+/// libraries, processor level), the machine, the time of the start (UTC) and the units.
+/// @throws FileError  a file that the scene names cannot be read
+nlohmann::ordered_json provenance_of(const Simulation& simulation);
+
+/// Files that a scene reads, in its order.
+std::vector<std::filesystem::path> input_files(const Scene& scene);
+
+}  // namespace fascia::app

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/scene/schema.hpp"
+
+#include <vector>
+
+namespace fascia::app {
+
+/// Names of all warnings, which `silence` of a scene takes, with their meaning.
+const std::vector<Choice>& warning_names();
+
+}  // namespace fascia::app

@@ -1,0 +1,231 @@
+#include "core/geometry/surface_touching.hpp"
+
+#include "core/math/index.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace fascia::surface_parts {
+namespace {
+
+/// A triangle at an edge: its angle about it, and whether what the surface bounds lies behind it as the angle grows.
+struct Side {
+  double angle = 0;
+  bool opens = false;
+  int triangle = 0;
+};
+
+int third_node(const Triangle& t, const Edge& edge) {
+  for (const int node : t.nodes)
+    if (node != edge.low && node != edge.high) return node;
+  return edge.low;
+}
+
+std::vector<Side> sides_of(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles,
+                           std::span<const Edge> edges) {
+  const Vec3d from = points[at(edges[0].low)], axis = normalized(points[at(edges[0].high)] - from);
+  int least = 0;
+  for (int a = 1; a < 3; ++a)
+    if (std::abs(axis[a]) < std::abs(axis[least])) least = a;
+  Vec3d e{};
+  e[least] = 1;
+  const Vec3d u = normalized(cross(axis, e)), v = cross(axis, u);
+  std::vector<Side> sides;
+  for (const Edge& edge : edges) {
+    const Vec3d d = points[at(third_node(triangles[at(edge.triangle)], edge))] - from;
+    // A triangle that runs along the axis faces the way in which the angle grows: it closes a wedge.
+    sides.push_back({std::atan2(dot(d, v), dot(d, u)), !edge.forward, edge.triangle});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return a.angle != b.angle ? a.angle < b.angle : std::pair(!a.opens, a.triangle) < std::pair(!b.opens, b.triangle);
+  });
+  return sides;
+}
+
+/// Each side that opens a wedge with the next one that closes it, inner pairs first.
+std::vector<std::array<int, 2>> pair_up(std::vector<Side> sides) {
+  std::vector<std::array<int, 2>> pairs;
+  while (!sides.empty()) {
+    const std::size_t n = sides.size();
+    std::size_t k = 0;
+    while (!(sides[k].opens && !sides[(k + 1) % n].opens)) ++k;  // balanced: there is one
+    const std::size_t other = (k + 1) % n;
+    pairs.push_back({sides[k].triangle, sides[other].triangle});
+    sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(std::max(k, other)));
+    sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(std::min(k, other)));
+  }
+  return pairs;
+}
+
+/// Calls act(edges of one name).
+template <class Act>
+void for_each_run(const std::vector<Edge>& edges, const Act& act) {
+  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
+    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
+    act(std::span(edges).subspan(e, end - e));
+  }
+}
+
+/// Things that are joined, by a representative.
+class Joined {
+ public:
+  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int root(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
+  }
+  void join(int a, int b) {
+    const auto [low, high] = std::minmax({root(a), root(b)});
+    parent_[at(high)] = low;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// Corners of triangles (three a triangle) that stay joined.
+class JoinedCorners {
+ public:
+  explicit JoinedCorners(const std::vector<Triangle>& triangles)
+      : triangles_(triangles), joined_(3 * triangles.size()) {}
+  int root(int triangle, int node) { return joined_.root(corner(triangle, node)); }
+  void join(int a, int b, int node) { joined_.join(corner(a, node), corner(b, node)); }
+
+ private:
+  int corner(int triangle, int node) const {
+    const auto& nodes = triangles_[at(triangle)].nodes;
+    return 3 * triangle + static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+  }
+  const std::vector<Triangle>& triangles_;
+  Joined joined_;
+};
+
+/// Joins the corners at one end of an edge where the wedges that met there would be parts of their own. Returns how
+/// often.
+std::size_t keep_parts_joined(const std::vector<TouchingEdge>& touching, const std::vector<Triangle>& triangles,
+                              const std::vector<bool>& touched, JoinedCorners& corners) {
+  Joined parts(triangles.size());
+  std::map<int, int> of_node, of_corner;  // a triangle
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const int node : triangles[t].nodes) {
+      const int triangle = static_cast<int>(t);
+      const auto place = touched[at(node)] ? of_corner.try_emplace(corners.root(triangle, node), triangle).first
+                                           : of_node.try_emplace(node, triangle).first;
+      parts.join(triangle, place->second);
+    }
+  std::size_t count = 0;
+  for (const TouchingEdge& edge : touching)
+    for (std::size_t p = 1; p < edge.pairs.size(); ++p) {
+      const int a = edge.pairs[0][0], b = edge.pairs[p][0];
+      if (parts.root(a) == parts.root(b)) continue;
+      corners.join(a, b, edge.low);
+      parts.join(a, b);
+      ++count;
+    }
+  return count;
+}
+
+}  // namespace
+
+bool balanced(std::span<const Edge> edges) {
+  const auto forward = std::count_if(edges.begin(), edges.end(), [](const Edge& e) { return e.forward; });
+  return 2 * static_cast<std::size_t>(forward) == edges.size();
+}
+
+bool encloses(const std::vector<Triangle>& triangles) {
+  bool all = true;
+  for_each_run(sorted_edges(triangles), [&](std::span<const Edge> run) { all = all && balanced(run); });
+  return all;
+}
+
+bool branches(const std::vector<Triangle>& triangles) {
+  bool any = false;
+  for_each_run(sorted_edges(triangles),
+               [&](std::span<const Edge> run) { any = any || (run.size() > 2 && !balanced(run)); });
+  return any;
+}
+
+std::vector<TouchingEdge> touching_edges(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles) {
+  std::vector<TouchingEdge> touching;
+  for_each_run(sorted_edges(triangles), [&](std::span<const Edge> run) {
+    if (run.size() > 2 && balanced(run))
+      touching.push_back({run[0].low, run[0].high, pair_up(sides_of(points, triangles, run))});
+  });
+  return touching;
+}
+
+PartedSurface part_at(const std::vector<TouchingEdge>& touching, std::size_t point_count,
+                      std::vector<Triangle> triangles) {
+  PartedSurface result;
+  const std::size_t former = triangles.size();
+  const std::vector<Triangle> before = triangles;
+  JoinedCorners corners(before);
+  for_each_run(sorted_edges(before), [&](std::span<const Edge> run) {
+    if (run.size() != 2) return;
+    for (const int node : {run[0].low, run[0].high}) corners.join(run[0].triangle, run[1].triangle, node);
+  });
+  std::vector<bool> touched(point_count, false);
+  for (const TouchingEdge& edge : touching)
+    for (const int node : {edge.low, edge.high}) {
+      touched[at(node)] = true;
+      for (const auto& [a, b] : edge.pairs) corners.join(a, b, node);
+    }
+
+  result.joined = keep_parts_joined(touching, before, touched, corners);
+
+  // The corners that hold the lowest triangle keep the node, others get a copy.
+  std::vector<int> keeper(point_count, -1);
+  std::map<int, int> copy_of_root;
+  const auto add = [&](int a, int b) {
+    result.added.push_back({a, b});
+    return static_cast<int>(point_count + result.added.size()) - 1;
+  };
+  for (std::size_t t = 0; t < former; ++t)
+    for (int& node : triangles[t].nodes) {
+      if (!touched[at(node)]) continue;
+      const int root = corners.root(static_cast<int>(t), node);
+      if (keeper[at(node)] < 0) keeper[at(node)] = root;
+      if (keeper[at(node)] == root) continue;
+      const auto [copy, fresh] = copy_of_root.try_emplace(root, 0);
+      if (fresh) copy->second = add(node, node);
+      node = copy->second;
+    }
+
+  // The node of a former triangle's corner, and the piece of it that has an edge.
+  const auto now = [&](int triangle, int node) {
+    const auto copy = copy_of_root.find(corners.root(triangle, node));
+    return copy == copy_of_root.end() ? node : copy->second;
+  };
+  const auto halve = [&](int triangle, int a, int b, int middle) {
+    const auto has = [&](const Triangle& t) {
+      return std::ranges::count(t.nodes, a) == 1 && std::ranges::count(t.nodes, b) == 1;
+    };
+    std::size_t piece = at(triangle);
+    for (std::size_t h = 0; h < result.half_of.size() && !has(triangles[piece]); ++h)
+      if (result.half_of[h] == triangle) piece = former + h;
+    Triangle other = triangles[piece];
+    std::ranges::replace(triangles[piece].nodes, b, middle);
+    std::ranges::replace(other.nodes, a, middle);
+    triangles.push_back(other);
+    result.half_of.push_back(triangle);
+  };
+  for (const TouchingEdge& edge : touching)
+    for (std::size_t p = 1; p < edge.pairs.size(); ++p) {
+      const auto ends = [&](std::size_t pair) {
+        return std::pair(now(edge.pairs[pair][0], edge.low), now(edge.pairs[pair][0], edge.high));
+      };
+      bool shared = false;
+      for (std::size_t other = 0; other < p; ++other) shared = shared || ends(other) == ends(p);
+      if (!shared) continue;
+      const auto [a, b] = ends(p);
+      const int middle = add(a, b);
+      for (const int triangle : edge.pairs[p]) halve(triangle, a, b, middle);
+    }
+  result.triangles = std::move(triangles);
+  return result;
+}
+
+}  // namespace fascia::surface_parts

@@ -1,0 +1,35 @@
+#include "io/picture/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::io {
+
+int font_of(const std::array<int, 2>& size) {
+  constexpr double part = 50, smallest = 9, largest = 80;
+  const double mean = std::sqrt(static_cast<double>(size[0]) * size[1]);
+  return static_cast<int>(std::clamp(mean / part, smallest, largest));
+}
+
+std::vector<Area> tiles_of(const Area& area, std::size_t count, double width, double height, double label) {
+  std::size_t columns = 1;
+  double largest = 0;
+  for (std::size_t c = 1; c <= count; ++c) {
+    const auto across = static_cast<double>(c), down = static_cast<double>((count + c - 1) / c);
+    const double scale = std::min(area.width() / across / width, (area.height() / down - label) / height);
+    if (scale <= largest) continue;
+    largest = scale;
+    columns = c;
+  }
+  const std::size_t rows = (count + columns - 1) / columns;
+  const double w = area.width() / static_cast<double>(columns), h = area.height() / static_cast<double>(rows);
+  std::vector<Area> tiles;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = area.low.x + w * static_cast<double>(i % columns);
+    const double y = area.high.y - h * static_cast<double>(i / columns + 1);
+    tiles.push_back({{x, y}, {x + w, y + h}});
+  }
+  return tiles;
+}
+
+}  // namespace fascia::io

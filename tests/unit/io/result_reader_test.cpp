@@ -1,0 +1,55 @@
+#include "io/result_reader.hpp"
+
+#include "core/model/errors.hpp"
+#include "io/result_writer.hpp"
+#include "tests/unit/io/mesh_samples.hpp"
+
+#include <cmath>
+
+namespace fascia::io::result_reader_test {
+namespace {
+
+using samples::TemporaryDirectory;
+
+TEST(ReadResultArrays, GivesBackWhatWasWritten) {
+  const TemporaryDirectory directory;
+  VisualMesh mesh;
+  mesh.points = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 2.5, 0}}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.point_fields = {{"stress", 1, {1e-300, -2, 1.0 / 3}, "Pa"}};
+  mesh.provenance = "{\"scene\":\"title = \\\"x\\\"\\n\"}";
+  write_vtu(directory.path() / "a.vtu", mesh);
+  const ResultArrays arrays = read_result_arrays(directory.path() / "a.vtu");
+  EXPECT_EQ(arrays.at("stress"), mesh.point_fields[0].values);
+  EXPECT_EQ(arrays.at("points"), (std::vector<double>{0, 0, 0, 1, 0, 0, 1, 2.5, 0}));
+  directory.write("b.vtu", "no mesh");
+  EXPECT_THROW(read_result_arrays(directory.path() / "b.vtu"), InputError);
+}
+
+TEST(ReadCollection, GivesTimesAndFiles) {
+  const TemporaryDirectory directory;
+  Collection collection(directory.path() / "a.pvd");
+  collection.add(0, "liver & co", "liver_00000.vtu");
+  collection.add(0.04, "liver & co", "liver_00001.vtu");
+  const std::vector<CollectionEntry> entries = read_collection(directory.path() / "a.pvd");
+  ASSERT_EQ(entries.size(), 2u);
+  EXPECT_EQ(entries[1].time, 0.04);
+  EXPECT_EQ(entries[1].body, "liver & co");
+  EXPECT_EQ(entries[1].file, "liver_00001.vtu");
+  directory.write("b.pvd", "<VTKFile/>");
+  EXPECT_THROW(read_collection(directory.path() / "b.pvd"), InputError);
+}
+
+TEST(ReadNumberTable, KnowsEmptyCellsAndRefusesWords) {
+  const TemporaryDirectory directory;
+  const NumberTable table = read_number_table(directory.write("a.csv", "time,tip.x\n0,1.5\n0.1,\n"));
+  EXPECT_EQ(table.columns, (std::vector<std::string>{"time", "tip.x"}));
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0][1], 1.5);
+  EXPECT_TRUE(std::isnan(table.rows[1][1]));
+  EXPECT_THROW(read_number_table(directory.write("b.csv", "time\nnoon\n")), InputError);
+  EXPECT_THROW(read_number_table(directory.write("c.csv", "time,x\n1\n")), InputError);
+}
+
+}  // namespace
+}  // namespace fascia::io::result_reader_test
