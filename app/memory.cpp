@@ -167,19 +167,15 @@ class Setup {
     system_->executor().assemble(lin_, tangent.matrix());
     const bool load = solver.control == StaticControl::load;
     factorizes_ = tangent.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
-                  (solver.kind == SolverKind::statics && load && factor_is_cheap());
+                  (solver.kind == SolverKind::statics && load && tangent.factor_is_cheap(guessed_products()));
     if (!factorizes_) return;
     take(tangent.factor(), tangent.matrix());
     if (!load) beyond_ = bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any), tangent.matrix());
   }
 
   /// At the end of statics a factor tells whether the equilibrium is stable, where it is cheap beside what CG has done:
-  /// about where it would have been chosen.
-  bool factor_is_cheap() {
-    SolverSettings settings = settings_of(s_.scene.solver);
-    settings.linear = LinearMethod::automatic;
-    return TangentSolver(s_.model, system_->executor(), system_->filter(), settings).direct();
-  }
+  /// about ten iterations for each node along an edge of a cube, three times.
+  long guessed_products() const { return std::lround(30 * std::cbrt(s_.model.node_count())); }
 
   /// The lower triangle of a matrix, by columns, takes this.
   static double bytes_of(const BlockMatrix& matrix) {

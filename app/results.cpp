@@ -123,7 +123,7 @@ ResultFiles::BodyTensors ResultFiles::tensors(const SimulatedBody& b, const Stat
   return {std::move(points), std::move(nodes)};
 }
 
-/// Cells on the nodes, with tensors by cell and averaged at the nodes.
+/// Cells on the nodes, with tensors by cell and recovered at the nodes.
 io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) {
   const ModelBody& body = *b.body;
   const auto first = at(body.first_node());
@@ -239,7 +239,7 @@ void ResultFiles::add_state(double time, const State& state) {
   seconds_ += seconds_since(start);
 }
 
-double ResultFiles::estimated_size(const State& state) const {
+double ResultFiles::estimated_size(const State& state) {
   double size = 0;
   for (const SimulatedBody& body : simulation_.bodies) size += io::estimated_size(visual(body, state));
   return size;

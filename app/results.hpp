@@ -34,7 +34,7 @@ class ResultFiles {
   /// @throws FileError, InputError
   void add_state(double time, const State& state);
   /// Bytes of the .vtu files of a state, about.
-  double estimated_size(const State& state) const;
+  double estimated_size(const State& state);
   /// Waits until probes.csv and the .pvd are on the disk.
   void synchronise() const;
 

@@ -24,7 +24,7 @@ io::ResultNames names_of(const Simulation& s) {
 RunResult::RunResult(const Simulation& simulation)
     : running_(running_summary(simulation, provenance_of(simulation))),
       directory_(simulation.scene.output.directory, names_of(simulation)),
-      files_(simulation, directory_.path(), simulation.scene.path.stem().string(), provenance().dump()),
+      files_(simulation, directory_.path(), simulation.scene.path.stem().string(), json_text(provenance())),
       started_(Clock::now()),
       written_(started_) {
   write(running_);

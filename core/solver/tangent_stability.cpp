@@ -14,8 +14,6 @@ constexpr int kRoundsOfFactor = 4, kRoundsOfCg = 1;
 
 }  // namespace
 
-/// A factor takes less than a tenth of the time of CG so far: its operations run several times faster than those of
-/// products, which wait for memory.
 bool TangentSolver::factor_is_cheap(long made) {
   constexpr double kSpeedup = 5, kShare = 0.1, kMostBytes = 2e9;
   constexpr int kAlways = 5000;  // less than a second, whatever the shape

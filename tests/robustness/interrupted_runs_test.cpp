@@ -129,7 +129,7 @@ TEST_F(InterruptedRuns, ASecondOneIntoTheSameDirectoryIsRefused) {
   const ProgramResult result = in_shell(
       "\"$PROGRAM\" run long.toml --output out --quiet & first=$!\n"
       "while [ ! -e out/long.pvd ]; do sleep 0.05; done\n"
-      "\"$PROGRAM\" run short.toml --output out; second=$?\n"
+      "\"$PROGRAM\" run short.toml --output out --quiet; second=$?\n"
       "kill -TERM $first; wait $first; echo $second $?");
   EXPECT_EQ(result.out, "4 143\n") << result.err;
   EXPECT_NE(result.err.find("another run writes its result there (process "), std::string::npos) << result.err;

@@ -104,6 +104,14 @@ class SceneRun {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
+  /// What `fascia compare` finds between the two results, files with fields among them; empty where all numbers are
+  /// equal.
+  std::string difference_to(const SceneRun& other) const {
+    const ProgramResult compare = run_program(
+        {fascia::test::program(), "compare", directory().string(), other.directory().string(), "--tolerance", "0"});
+    return compare.status == 0 ? "" : compare.out + compare.err;
+  }
+
   static double as_number(const nlohmann::json& v) {
     return v.is_number() ? v.get<double>() : std::numeric_limits<double>::quiet_NaN();
   }

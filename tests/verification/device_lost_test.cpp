@@ -33,7 +33,7 @@ class DeviceLost : public ::testing::TestWithParam<std::string> {
   }
   std::optional<Simulation> simulation_;
   State state_;
-  std::vector<std::string> warnings_;
+  app::Warnings warnings_;
 };
 
 TEST_P(DeviceLost, OnTheWayEndsTheRunWithWhatWasSeen) {

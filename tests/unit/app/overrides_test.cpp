@@ -86,7 +86,7 @@ TEST(Overrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(
       errors_of_override("bodies.beam.domain.torus.radius=1"),
       "--set:1:20: bodies.beam.domain.torus: is no known key; known here: box, block, cylinder, ellipsoid, sphere, "
-      "file, rectangle, annulus, line, between, where, as");
+      "file, unit, rectangle, annulus, line, between, where, as");
 }
 
 TEST(Overrides, WrongPaths) {
@@ -102,13 +102,14 @@ TEST(Overrides, WrongPaths) {
 }
 
 TEST(Overrides, ErrorsOfTheFileComeFirst) {
-  EXPECT_EQ(test::errors_of_beam("titel = 1\n", {"foo=1"}),
-            "a.toml:10:1: bodies.beam.titel: is no known key; known here: model, domain, mass, density, material, "
-            "frames, points, weights, initial, transform, thickness, radius, inertia, fluid, formulation, order, "
-            "incompressibility, locking\n"
-            "--set:1:1: foo: is no known key; known here: title, world, materials, bodies, constraints, loads, "
-            "couplings, solver, "
-            "probes, output");
+  EXPECT_EQ(
+      test::errors_of_beam("titel = 1\n", {"foo=1"}),
+      "a.toml:10:1: bodies.beam.titel: is no known key; known here: model, domain, mass, density, material, "
+      "frames, points, weights, initial, transform, thickness, radius, inertia, fluid, formulation, order, "
+      "incompressibility, locking\n"
+      "--set:1:1: foo: is no known key; known here: title, silence, world, materials, bodies, constraints, loads, "
+      "couplings, solver, "
+      "probes, output");
 }
 
 }  // namespace
