@@ -97,7 +97,7 @@ nlohmann::ordered_json read_summary(const fs::path& directory) {
   const fs::path file = directory / "summary.json";
   if (!fs::exists(file))
     throw FileError(fmt::format("{}: is no directory of results: it has no summary.json", directory.string()));
-  const auto summary = nlohmann::ordered_json::parse(io::read_file(file), nullptr, false);
+  auto summary = nlohmann::ordered_json::parse(io::read_file(file), nullptr, false);
   if (!summary.is_object() || !summary.contains("fascia"))
     throw InputError(fmt::format("{}: is no summary of this program", file.string()));
   return summary;

@@ -26,7 +26,7 @@ fs::path scenes_folder() {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
   std::vector<std::string> tried;
   for (const char* place : {"scenes", "../share/fascia/scenes", "../scenes", "../../scenes"}) {
-    const fs::path folder = (program / place).lexically_normal();
+    fs::path folder = (program / place).lexically_normal();
     tried.push_back(folder.string());
     if (fs::is_directory(folder)) return folder;
   }

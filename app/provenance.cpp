@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace fascia::app {
 namespace {
@@ -35,7 +36,7 @@ std::string whole_path(const std::filesystem::path& path) {
 
 void remember_command(int argc, char** argv) {
   std::vector<std::string> words;
-  for (int i = 0; i < argc; ++i) words.push_back(quoted_for_shell(argv[i]));
+  std::transform(argv, argv + argc, std::back_inserter(words), quoted_for_shell);
   command() = fmt::format("{}", fmt::join(words, " "));
 }
 

@@ -15,7 +15,8 @@ std::vector<Area> tiles_of(const Area& area, std::size_t count, double width, do
   std::size_t columns = 1;
   double largest = 0;
   for (std::size_t c = 1; c <= count; ++c) {
-    const auto across = static_cast<double>(c), down = static_cast<double>((count + c - 1) / c);
+    const std::size_t lines = (count + c - 1) / c;
+    const auto across = static_cast<double>(c), down = static_cast<double>(lines);
     const double scale = std::min(area.width() / across / width, (area.height() / down - label) / height);
     if (scale <= largest) continue;
     largest = scale;
@@ -25,8 +26,8 @@ std::vector<Area> tiles_of(const Area& area, std::size_t count, double width, do
   const double w = area.width() / static_cast<double>(columns), h = area.height() / static_cast<double>(rows);
   std::vector<Area> tiles;
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = area.low.x + w * static_cast<double>(i % columns);
-    const double y = area.high.y - h * static_cast<double>(i / columns + 1);
+    const std::size_t row = i / columns, column = i % columns;
+    const double x = area.low.x + w * static_cast<double>(column), y = area.high.y - h * static_cast<double>(row + 1);
     tiles.push_back({{x, y}, {x + w, y + h}});
   }
   return tiles;

@@ -33,9 +33,8 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     const std::string longer = lines.empty() ? word : lines.back() + " " + word;
-    if (lines.empty())
-      lines.push_back(word);
-    else if (lines.size() == most || fits(longer, style, width))
+    const bool joins = !lines.empty() && (lines.size() == most || fits(longer, style, width));
+    if (joins)
       lines.back() = longer;
     else
       lines.push_back(word);
