@@ -39,6 +39,8 @@ int check_scene(const RunOptions& options) {
                body_text(*b.body));
   for (const SimulatedBody& b : s.bodies)
     if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
+  for (const SimulatedBody& b : s.bodies)
+    for (const std::string& choice : b.body->choices()) fmt::print("body {}: {}\n", b.name, choice);
   for (const FluidOfBody& f : s.fluids)
     fmt::print("body {}: its fluid fills {:.6g} m3 at rest\n", s.bodies[at(f.body)].name,
                s.model.surfaces[at(f.surface)].rest_volume);

@@ -38,6 +38,49 @@ struct Distance {
 
 using Distances = std::map<std::string, Distance>;
 
+/// What quantities that ought to be zero are measured by.
+struct Scales {
+  double length = 0;   ///< the farthest point of a body [m]
+  double modulus = 0;  ///< the largest stress over the largest strain [Pa]
+};
+
+Scales scales_of(const Distances& distances) {
+  Scales scales;
+  double stress = 0, strain = 0;
+  for (const auto& [name, d] : distances) {
+    if (name.ends_with(": points")) scales.length = std::max(scales.length, d.magnitude);
+    if (name.ends_with(": stress")) stress = std::max(stress, d.magnitude);
+    if (name.ends_with(": strain")) strain = std::max(strain, d.magnitude);
+  }
+  if (strain > 0) scales.modulus = stress / strain;
+  return scales;
+}
+
+/// What rounding may leave of a field, or of a probe of that quantity.
+double rounding_of(const std::string& quantity, const Scales& scales) {
+  constexpr double kRounding = 1e-13;
+  const auto is_one_of = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), quantity) != names.end();
+  };
+  const double volume = scales.length * scales.length * scales.length;
+  if (is_one_of({"rotation", "strain"}) || quantity.starts_with("axis_")) return kRounding;
+  if (is_one_of({"points", "rest_position", "displacement", "position", "max_displacement", "mean_displacement"}))
+    return kRounding * scales.length;
+  if (is_one_of({"stress", "von_mises", "stress_outer", "stress_inner"})) return kRounding * scales.modulus;
+  if (quantity == "energy_density") return kRounding * kRounding * scales.modulus;
+  if (quantity == "energy") return kRounding * kRounding * scales.modulus * volume;
+  if (quantity == "force") return kRounding * scales.modulus * scales.length * scales.length;
+  if (quantity == "moment") return kRounding * scales.modulus * volume;
+  return 0;
+}
+
+/// "beam: stress" → "stress"; of a probe what it measures.
+std::string quantity_of(const std::string& name, const nlohmann::ordered_json& summary) {
+  if (const std::size_t colon = name.find(": "); colon != std::string::npos) return name.substr(colon + 2);
+  const auto probes = summary.find("probes");
+  return probes != summary.end() && probes->contains(name) ? probes->at(name).value("quantity", "") : "";
+}
+
 /// "tip.x", "tip[3].xy" → "tip": what is scaled together.
 std::string probe_of(const std::string& column) { return column.substr(0, column.find_first_of(".[")); }
 
@@ -71,10 +114,15 @@ void compare_states(const fs::path& a, const fs::path& b, const io::CollectionEn
     if (!p.contains(name)) difference.structure.push_back(fmt::format("{} alone has \"{}\"", y.file, name));
 }
 
-/// NAME.pvd; empty where nothing was saved.
+/// NAME.pvd; empty where nothing was saved. @throws InputError  states that it should list are there without it
 fs::path collection_of(const fs::path& directory, const nlohmann::ordered_json& summary) {
-  const fs::path file = directory / (fs::path(summary.value("scene", "")).stem().string() + ".pvd");
-  return fs::exists(file) ? file : fs::path();
+  fs::path file = directory / (fs::path(summary.value("scene", "")).stem().string() + ".pvd");
+  std::error_code none;
+  if (fs::exists(file, none)) return file;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
+    if (entry.path().extension() == ".vtu")
+      throw InputError(fmt::format("{}: is missing, and lists the states of this result", file.string()));
+  return {};
 }
 
 std::string status_of(const nlohmann::ordered_json& summary) { return summary.value("status", ""); }
@@ -87,6 +135,11 @@ double ResultDifference::largest() const {
   return most;
 }
 
+bool ResultDifference::exact() const {
+  return structure.empty() &&
+         std::all_of(quantities.begin(), quantities.end(), [](const QuantityDifference& q) { return q.absolute == 0; });
+}
+
 std::size_t ResultDifference::numbers() const {
   std::size_t sum = 0;
   for (const QuantityDifference& q : quantities) sum += q.numbers;
@@ -95,7 +148,8 @@ std::size_t ResultDifference::numbers() const {
 
 nlohmann::ordered_json read_summary(const fs::path& directory) {
   const fs::path file = directory / "summary.json";
-  if (!fs::exists(file))
+  std::error_code none;
+  if (!fs::exists(file, none))
     throw FileError(fmt::format("{}: is no directory of results: it has no summary.json", directory.string()));
   auto summary = nlohmann::ordered_json::parse(io::read_file(file), nullptr, false);
   if (!summary.is_object() || !summary.contains("fascia"))
@@ -103,7 +157,7 @@ nlohmann::ordered_json read_summary(const fs::path& directory) {
   return summary;
 }
 
-ResultDifference compare_results(const fs::path& a, const fs::path& b) {
+ResultDifference compare_results(const fs::path& a, const fs::path& b) try {
   const nlohmann::ordered_json x = read_summary(a), y = read_summary(b);
   ResultDifference difference;
   Distances distances;
@@ -116,21 +170,31 @@ ResultDifference compare_results(const fs::path& a, const fs::path& b) {
   if (!first.empty() && !second.empty()) {
     const std::vector<io::CollectionEntry> p = io::read_collection(first), q = io::read_collection(second);
     if (p.size() != q.size())
-      difference.structure.push_back(fmt::format("{} states in the first and {} in the second", p.size(), q.size()));
+      difference.structure.push_back(
+          fmt::format("{} files of states in the first and {} in the second", p.size(), q.size()));
     for (std::size_t i = 0; i < std::min(p.size(), q.size()); ++i) {
-      if (p[i].body == q[i].body)
+      if (p[i].body == q[i].body && p[i].time == q[i].time)
         compare_states(a, b, p[i], q[i], difference, distances);
+      else if (p[i].body == q[i].body)
+        difference.structure.push_back(
+            fmt::format("{} is of the time {:.6g}, {} of {:.6g}", p[i].file, p[i].time, q[i].file, q[i].time));
       else
         difference.structure.push_back(fmt::format("{} is of another body than {}", p[i].file, q[i].file));
     }
   }
+  const Scales scales = scales_of(distances);
   for (const auto& [name, d] : distances) {
-    const double relative = d.largest == 0 ? 0 : std::isfinite(d.largest) ? d.largest / d.magnitude : d.largest;
+    const bool rounding = d.largest <= rounding_of(quantity_of(name, x), scales);
+    const double relative = rounding || d.largest == 0 ? 0
+                            : std::isfinite(d.largest) ? d.largest / d.magnitude
+                                                       : d.largest;
     difference.quantities.push_back({name, relative, d.largest, d.at, d.numbers});
   }
   std::stable_sort(difference.quantities.begin(), difference.quantities.end(),
                    [](const QuantityDifference& p, const QuantityDifference& q) { return p.relative > q.relative; });
   return difference;
+} catch (const nlohmann::json::exception& e) {
+  throw InputError(fmt::format("{} or {}: summary.json is damaged: {}", a.string(), b.string(), e.what()));
 }
 
 nlohmann::ordered_json json_of(const ResultDifference& difference) {
@@ -149,7 +213,8 @@ nlohmann::ordered_json json_of(const ResultDifference& difference) {
 bool print_difference(const ResultDifference& difference, double tolerance) {
   constexpr std::size_t shown = 12;
   for (const std::string& s : difference.structure) fmt::print("{}\n", s);
-  if (difference.largest() == 0 && difference.structure.empty()) {
+  if (difference.numbers() == 0) fmt::print("the results hold no numbers\n");
+  if (difference.exact()) {
     fmt::print("equal in every digit: {} numbers of {} quantities\n", difference.numbers(),
                difference.quantities.size());
     return true;

@@ -10,10 +10,11 @@ namespace fascia::app {
 
 /// How far one quantity of two results is apart.
 struct QuantityDifference {
-  std::string name;         ///< a probe, or "BODY: FIELD"
-  double relative = 0;      ///< largest difference over all times, over the largest magnitude of the quantity in either
-  double absolute = 0;      ///< that difference, in the quantity's own unit
-  double at = 0;            ///< its time
+  std::string name;     ///< a probe, or "BODY: FIELD"
+  double relative = 0;  ///< largest difference over all times, over the largest magnitude of the quantity in either;
+                        ///< 0 where it is rounding: 1e-13 of lengths, of 1 (strains, turns), of the modulus
+  double absolute = 0;  ///< that difference, in the quantity's own unit
+  double at = 0;        ///< its time
   std::size_t numbers = 0;  ///< compared
 };
 
@@ -22,6 +23,7 @@ struct ResultDifference {
   std::vector<std::string> structure;  ///< sentences: other columns, times, bodies, arrays, an end before the other's
   std::vector<QuantityDifference> quantities;
   double largest() const;  ///< of QuantityDifference::relative
+  bool exact() const;      ///< every number is the same
   std::size_t numbers() const;
 };
 

@@ -45,6 +45,8 @@ std::string title_of(const fs::path& scene) {
     return "";
   } catch (const InputError&) {
     return "";
+  } catch (const FileError&) {
+    return "";
   }
 }
 

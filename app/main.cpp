@@ -14,6 +14,7 @@
 
 #include <fcntl.h>
 #include <fmt/ranges.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
@@ -25,6 +26,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <system_error>
@@ -177,6 +179,7 @@ void open_standard_streams() {
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  prctl(PR_SET_NAME, "fascia");  // "exe" where hold_blas_to_one_thread() has started it again
   remember_command(argc, argv);
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // told as errors of what is written
   try {
@@ -205,11 +208,16 @@ int main(int argc, char** argv) {
     say("out of memory: {:.3g} MB are free{}; use a smaller grid, or linear = {{ kind = \"cg\" }}{}\n",
         left.bytes / 1e6, left.limit, left.limit.empty() ? "" : ", or raise the limit");
     return kWrongInput;
+  } catch (const std::filesystem::filesystem_error& e) {
+    say("fascia: {}\n", e.what());
+    return kFileProblem;
   } catch (const std::system_error& e) {
-    if (e.code() != std::errc::resource_unavailable_try_again) throw;
+    if (e.code() != std::errc::resource_unavailable_try_again) {
+      say("fascia: {}\n", e.what());
+      return kFileProblem;
+    }
     say("fascia: a thread cannot be started: {}; use --threads 1, or raise the limit on memory or processes (ulimit "
-        "-v, "
-        "-u)\n",
+        "-v, -u)\n",
         e.code().message());
     return kWrongInput;
   } catch (const std::exception& e) {

@@ -5,47 +5,39 @@
 #include <algorithm>
 
 namespace fascia::app {
-namespace {
 
-Vec3d displacement(const MatterPoint& p, const State& state) { return field_at(p.field, state).u; }
-
-}  // namespace
-
-MatterPoint matter_at(int node) {
-  Influence whole{};
-  whole.w = 1;
-  return {{{node}, {whole}, -1}, 0};
+void MatterDisplacement::add(const Vec3d& u, double volume) {
+  largest_ = std::max(largest_, norm(u));
+  weighted_ += u * volume;
+  volume_ += volume;
+  sum_ += u;
+  ++places_;
 }
 
-std::vector<MatterPoint> matter_of(const SimulatedBody& b) {
+void MatterDisplacement::add(const SimulatedBody& b, const State& state) {
   const ModelBody& body = *b.body;
-  std::vector<MatterPoint> matter;
   for (std::size_t q = 0; q < body.points().size(); ++q)
-    matter.push_back({body.attach_point(q), body.points()[q].volume});
+    add(field_at(body.attach_point(q), state).u, body.points()[q].volume);
   if (b.groups() != nullptr || body.surface().points.empty())
-    for (const int node : b.node_ids) matter.push_back(matter_at(node));
+    for (const int node : b.node_ids) add(state.u[at(node)], 0);
   else
-    for (std::size_t i = 0; i < body.surface().points.size(); ++i) matter.push_back({body.attach_surface(i), 0});
-  return matter;
+    for (std::size_t i = 0; i < body.surface().points.size(); ++i) add(field_at(body.attach_surface(i), state).u, 0);
 }
 
-double largest_displacement(const std::vector<MatterPoint>& matter, const State& state) {
-  double largest = 0;
-  for (const MatterPoint& p : matter) largest = std::max(largest, norm(displacement(p, state)));
-  return largest;
+Vec3d MatterDisplacement::mean() const {
+  if (volume_ > 0) return weighted_ * (1 / volume_);
+  return sum_ * (1 / static_cast<double>(std::max<std::size_t>(1, places_)));
 }
 
-Vec3d mean_displacement(const std::vector<MatterPoint>& matter, const State& state) {
-  Vec3d weighted, sum;
-  double volume = 0;
-  for (const MatterPoint& p : matter) {
-    const Vec3d u = displacement(p, state);
-    weighted += u * p.volume;
-    volume += p.volume;
-    sum += u;
+MatterDisplacement displacement_of_matter(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  MatterDisplacement displacement;
+  if (probe.probe->where) {
+    for (const int node : probe.nodes) displacement.add(state.u[at(node)], 0);
+    return displacement;
   }
-  return volume > 0 ? weighted * (1 / volume)
-                    : sum * (1 / static_cast<double>(std::max<std::size_t>(1, matter.size())));
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    if (probe.body < 0 || at(probe.body) == b) displacement.add(s.bodies[b], state);
+  return displacement;
 }
 
 }  // namespace fascia::app

@@ -4,17 +4,24 @@
 
 namespace fascia::app {
 
-/// The places of a body's matter: its integration points, and the nodes of its mesh or, of a meshless or rigid body,
+/// Displacements of matter: of its integration points, and of the nodes of its mesh or, of a meshless or rigid body, of
 /// the points of its surface. Frames of a grid that lie outside are none.
-std::vector<MatterPoint> matter_of(const SimulatedBody& body);
+class MatterDisplacement {
+ public:
+  /// Of one place. @param volume  of an integration point [m³]; 0 elsewhere
+  void add(const Vec3d& u, double volume);
+  void add(const SimulatedBody& body, const State& state);
 
-/// A node by itself.
-MatterPoint matter_at(int node);
+  double largest() const { return largest_; }  ///< [m]
+  Vec3d mean() const;  ///< weighted with volume at rest; of what has none that of its places [m]
 
-/// The largest displacement of matter [m].
-double largest_displacement(const std::vector<MatterPoint>& matter, const State& state);
+ private:
+  Vec3d weighted_{}, sum_{};
+  double largest_ = 0, volume_ = 0;
+  std::size_t places_ = 0;
+};
 
-/// The mean displacement of matter [m], weighted with volume at rest; of what has none the mean of its places.
-Vec3d mean_displacement(const std::vector<MatterPoint>& matter, const State& state);
+/// Of what a probe measures: the nodes of its region, or the matter of its body or of all bodies.
+MatterDisplacement displacement_of_matter(const Simulation& simulation, const ResolvedProbe& probe, const State& state);
 
 }  // namespace fascia::app

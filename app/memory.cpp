@@ -3,8 +3,10 @@
 #include "app/bodies.hpp"
 #include "app/domains.hpp"
 #include "app/process_memory.hpp"
+#include "app/recovery.hpp"
 #include "app/scene/errors.hpp"
 #include "app/solver_settings.hpp"
+#include "core/geometry/bounds.hpp"
 #include "core/math/index.hpp"
 #include "core/solver/explicit_step.hpp"
 #include "core/solver/mechanical_system.hpp"
@@ -115,6 +117,18 @@ double attachment_bytes(const Simulation& s) {
   return bytes;
 }
 
+/// Results keep how strains at nodes follow from those at integration points.
+double recovery_bytes(const Simulation& s) {
+  double bytes = 0;
+  for (const SimulatedBody& b : s.bodies) {
+    const bool wanted = b.groups() == nullptr || FieldBytes(s.scene.output, true).of_tensors > 0;
+    if (!wanted || b.body->points().empty()) continue;
+    const auto shares = static_cast<double>(b.body->points().size() * b.body->attach_point(0).nodes.size());
+    bytes += shares * sizeof(NodalRecovery::Share);
+  }
+  return bytes;
+}
+
 /// All that a run holds while it solves: set up, with what is still to come.
 class Setup {
  public:
@@ -125,6 +139,9 @@ class Setup {
       of_steps(on_gpu);
     for (const SimulatedBody& b : s.bodies) to_come_.pass(output_bytes(s, b));
     to_come_.keep(attachment_bytes(s) + kCodeOfRun);
+    const double recovery = recovery_bytes(s);
+    to_come_.pass(3 * recovery);  // patches, which grow by doubling, beside what is made of them
+    to_come_.keep(recovery);
   }
   const ToCome& to_come() const { return to_come_; }
   bool factorizes() const { return factorizes_; }
@@ -174,8 +191,15 @@ class Setup {
   }
 
   /// At the end of statics a factor tells whether the equilibrium is stable, where it is cheap beside what CG has done:
-  /// about ten iterations for each node along an edge of a cube, three times.
-  long guessed_products() const { return std::lround(30 * std::cbrt(s_.model.node_count())); }
+  /// about ten iterations for each node along a body, three times.
+  long guessed_products() const {
+    double along = 1;
+    for (const SimulatedBody& b : s_.bodies) {
+      const Vec3d extent = bounds_of(b.nodes).extent();
+      along = std::max(along, 1 + std::max({extent[0], extent[1], extent[2]}) / std::max(mean_spacing(b), 1e-300));
+    }
+    return std::lround(30 * std::min(along, static_cast<double>(s_.model.node_count())));
+  }
 
   /// The lower triangle of a matrix, by columns, takes this.
   static double bytes_of(const BlockMatrix& matrix) {

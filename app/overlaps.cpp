@@ -10,6 +10,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 namespace fascia::app {
@@ -85,7 +86,7 @@ Deepest deepest_in(const InsideTest& solid, const Bounds& bounds, const std::vec
 
 void warn_of_overlaps(Simulation& s) {
   const std::size_t n = s.bodies.size();
-  if (n < 2) return;
+  if (n < 2 || s.warnings.silences("overlap")) return;
   const std::set<std::array<std::string, 2>> joined = joined_pairs(s.scene);
   std::vector<Bounds> bounds;
   for (const SimulatedBody& b : s.bodies)
@@ -97,8 +98,10 @@ void warn_of_overlaps(Simulation& s) {
   };
   std::map<std::size_t, std::unique_ptr<InsideTest>> tests;
   std::map<std::size_t, std::vector<Vec3d>> places;
+  std::vector<std::optional<bool>> solid(n);
   const auto look = [&](std::size_t inner, std::size_t outer) -> Deepest {
-    if (!is_solid(s, outer)) return {};
+    if (!solid[outer]) solid[outer] = is_solid(s, outer);
+    if (!*solid[outer]) return {};
     if (!tests.contains(outer)) tests[outer] = std::make_unique<InsideTest>(s.bodies[outer].body->surface());
     if (!places.contains(inner)) places[inner] = places_of(*s.bodies[inner].body);
     return deepest_in(*tests[outer], bounds[outer], places[inner]);

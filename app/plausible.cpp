@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 namespace fascia::app {
 namespace {
@@ -17,12 +18,14 @@ namespace {
 constexpr double kSoftest = 20, kStiffest = 1.5e12;       // [Pa] mucus and loose gels; diamond
 constexpr double kLightest = 15, kHeaviest = 23000;       // [kg/m³] aerogel-like foams, lungs: 200; platinum
 constexpr double kLightestOfAMass = 0.05;                 // [kg/m³] where the mass is given: scaled models
-constexpr double kMetal = 4000, kSoftForAMetal = 1e8;     // [kg/m³], [Pa]
+constexpr double kMetal = 4000, kSoftForAMetal = 1e9;     // [kg/m³], [Pa] lead: 11,300 and 16 GPa
 constexpr double kWatery = 1300, kStiffForTissue = 3e10;  // [kg/m³], [Pa] bone: 2000 and 20 GPa
 constexpr double kSoft = 1e8;                             // [Pa] tissue, gel, rubber
 constexpr double kLongestSoft = 20, kLongest = 5000;      // [m]
 constexpr double kHeaviestSoft = 5000;                    // [kg]
 constexpr double kShortest = 1e-6;                        // [m]
+constexpr double kTiny = 1e-4, kUsual = 0.01;             // [m] length after and before transform.scale
+constexpr double kThinnest = 5000;                        // length over thickness of soft walls
 constexpr double kSlender = 4;                            // length over thickness
 constexpr double kCrushed = 5;                            // weight on the base over Young's modulus
 
@@ -31,11 +34,24 @@ bool mass_matters(const Scene& scene) {
   return scene.solver.kind != SolverKind::statics || squared_norm(scene.world.gravity) > 0;
 }
 
-void warn_of_stiffness(Simulation& s, const Body& body, const BodyScale& scale) {
+/// A unit cube of unit stiffness and mass, as tests have it.
+bool in_units_of_its_own(double young, double density) {
+  constexpr double kRounding = 1e-12;
+  return std::abs(young - 1) < kRounding && std::abs(density - 1) < kRounding;
+}
+
+void warn_of_stiffness(Simulation& s, const Body& body, const BodyScale& scale, std::set<std::string>& told) {
   for (const MaterialUse& use : body.materials) {
+    if (!told.insert(use.material.place.key).second) continue;
     const double E = use.material.young();
     const Place place = place_of_material(s.scene, use.material, "young");
-    if (E < kSoftest)
+    if (use.material.poisson() < 0)
+      s.warnings.add(
+          "stiffness", place_of_material(s.scene, use.material, "poisson"),
+          fmt::format("{:.3g} makes body \"{}\" wider where it is stretched, as foams with folded cells are; "
+                      "tissue has 0.3 to 0.5",
+                      use.material.poisson(), body.name));
+    if (E < kSoftest && !in_units_of_its_own(E, scale.density))
       s.warnings.add(
           "stiffness", place,
           fmt::format("{} is softer than any tissue (brain: 1 kPa, liver: 5 kPa); write the unit, as \"5 kPa\"",
@@ -44,10 +60,11 @@ void warn_of_stiffness(Simulation& s, const Body& body, const BodyScale& scale) 
       s.warnings.add("stiffness", place,
                      fmt::format("{} is stiffer than diamond; write the unit, as \"210 GPa\"", pressure_text(E)));
     else if (scale.density > kMetal && E < kSoftForAMetal)
-      s.warnings.add("stiffness", place,
-                     fmt::format("{} is as soft as tissue or rubber, and body \"{}\" as heavy as metal ({:.4g} kg/m3); "
-                                 "write the unit, as \"{:.6g} MPa\"",
-                                 pressure_text(E), body.name, scale.density, E));
+      s.warnings.add(
+          "stiffness", place,
+          fmt::format("{} is softer than any metal, and body \"{}\" as heavy as one ({:.4g} kg/m3); write the "
+                      "unit, as \"210 GPa\", or another density",
+                      pressure_text(E), body.name, scale.density));
     else if (scale.density > 0 && scale.density < kWatery && E > kStiffForTissue)
       s.warnings.add(
           "stiffness", place,
@@ -94,6 +111,29 @@ bool warn_of_size(Simulation& s, const Body& body, const BodyScale& scale, doubl
         fmt::format("the body has a mass of {} ({}){}; {}", mass_text(mass), box_text(scale.extent), material, remedy));
   else
     return true;
+  return false;
+}
+
+/// A wall of soft material that is much thinner than skin for its size. (One thicker than the body is long is told when
+/// the body is built.)
+void warn_of_thickness(Simulation& s, const Body& body, const BodyScale& scale) {
+  if (body.thickness.empty() || scale.softest >= kSoft || scale.length <= kThinnest * scale.thickness) return;
+  s.warnings.add(
+      "size", body.thickness_place,
+      fmt::format("{} of a body of {}, which is as soft as tissue or rubber; write lengths with their unit, as "
+                  "\"2 mm\"",
+                  length_text(scale.thickness), box_text(scale.extent)));
+}
+
+/// A factor for a file in millimetres on lengths that are in metres already.
+bool warn_of_scale(Simulation& s, const Body& body, const BodyScale& scale) {
+  const std::string key = "bodies." + body.name + ".transform.scale";
+  const double before = scale.length / body.transform.scale;
+  if (!s.scene.says(key) || scale.length > kTiny || before < kUsual || before > kLongestSoft) return true;
+  s.warnings.add("size", s.scene.place_of(key),
+                 fmt::format("makes the body {} long, which would be {} without: leave it out where lengths are in "
+                             "metres already",
+                             length_text(scale.length), length_text(before)));
   return false;
 }
 
@@ -157,7 +197,7 @@ Place place_of_material(const Scene& scene, const Material& material, const char
 }
 
 void warn_of_bodies(Simulation& s) {
-  std::vector<std::string> told;  // materials, once each
+  std::set<std::string> told;  // materials, once each
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const Body& body = s.scene.bodies[b];
     if (body.model == BodyModel::surface) continue;
@@ -165,16 +205,41 @@ void warn_of_bodies(Simulation& s) {
     const bool right_density = warn_of_density(s, body, scale);
     if (is_carrier(body) || body.materials.empty()) continue;
     warn_of_single_cell(s, body, scale);
-    const std::string material = body.materials.front().material.place.key;
-    if (std::find(told.begin(), told.end(), material) == told.end() && right_density) warn_of_stiffness(s, body, scale);
-    told.push_back(material);
+    warn_of_thickness(s, body, scale);
+    if (!warn_of_scale(s, body, scale)) continue;
+    if (right_density) warn_of_stiffness(s, body, scale, told);
     if (right_density && warn_of_size(s, body, scale, s.bodies[b].body->mass())) warn_of_sag(s, body, scale);
   }
+}
+
+std::vector<NamedSchedule> schedules_of(const Scene& scene) {
+  std::vector<NamedSchedule> all{{"world", &scene.world.schedule}};
+  for (std::size_t i = 0; i < scene.constraints.size(); ++i)
+    all.push_back({fmt::format("constraints[{}]", i), &scene.constraints[i].schedule});
+  for (std::size_t i = 0; i < scene.loads.size(); ++i)
+    all.push_back({fmt::format("loads[{}]", i), &scene.loads[i].schedule});
+  for (const Body& b : scene.bodies)
+    if (b.fluid) all.push_back({"bodies." + b.name + ".fluid", &b.fluid->schedule});
+  return all;
+}
+
+bool grows_over(const Schedule& schedule) {
+  return std::holds_alternative<LinearProfile>(schedule.profile) ||
+         std::holds_alternative<SmoothProfile>(schedule.profile);
+}
+
+double largest_factor(const Schedule& schedule) {
+  const auto* table = std::get_if<TableProfile>(&schedule.profile);
+  if (table == nullptr) return 1;
+  double largest = 0;
+  for (const auto& [time, factor] : table->points) largest = std::max(largest, std::abs(factor));
+  return largest;
 }
 
 void warn_of_the_implausible(Simulation& s) {
   warn_of_bodies(s);
   warn_of_loads(s);
+  warn_of_couplings(s);
   warn_of_times(s);
   warn_of_no_effect(s);
   warn_of_overlaps(s);

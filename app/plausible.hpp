@@ -11,11 +11,13 @@ void warn_of_the_implausible(Simulation& simulation);
 
 /// Stiffness, density, size and weight of bodies, gravity's sag.
 void warn_of_bodies(Simulation& simulation);
-/// Loads, motions and springs against the stiffness of what they act on.
+/// Loads and motions against the stiffness of what they act on, gravity against the earth's; app/plausible_actions.cpp.
 void warn_of_loads(Simulation& simulation);
-/// Time steps and durations against loads and vibrations.
+/// Springs against what they hold, gaps in other couplings; app/plausible_couplings.cpp.
+void warn_of_couplings(Simulation& simulation);
+/// Time steps, durations and damping against loads and vibrations; app/plausible_times.cpp.
 void warn_of_times(Simulation& simulation);
-/// Keys that do nothing.
+/// Keys that do nothing; app/plausible_idle.cpp.
 void warn_of_no_effect(Simulation& simulation);
 /// Bodies that intersect at rest and that nothing couples; app/overlaps.cpp.
 void warn_of_overlaps(Simulation& simulation);
@@ -32,6 +34,17 @@ struct BodyScale {
   double slowest_period() const;     ///< of bending as a cantilever, or along the length [s]
 };
 BodyScale scale_of(const Simulation& simulation, std::size_t body);
+
+/// A schedule of a scene with the table that it stands in, as "loads[0]".
+struct NamedSchedule {
+  std::string table;
+  const Schedule* schedule;
+};
+std::vector<NamedSchedule> schedules_of(const Scene& scene);
+/// It grows from 0 to 1 within Schedule::over; other profiles have times of their own.
+bool grows_over(const Schedule& schedule);
+/// The largest absolute value that it takes.
+double largest_factor(const Schedule& schedule);
 
 /// Where a body's material has a key: in its own table or the named one. @param use  index of its materials
 Place place_of_material(const Scene& scene, const Material& material, const char* key);

@@ -1,26 +1,25 @@
 #include "app/plausible.hpp"
 #include "app/readable.hpp"
+#include "app/scene/errors.hpp"
 #include "core/math/index.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 namespace fascia::app {
 namespace {
 
-constexpr double kStretched = 3;                          // strain that a load would cause by Hooke's law
-constexpr double kFast = 50, kFastForWaves = 0.2;         // [m/s]; of the speed of waves
-constexpr double kStiffSpring = 1e5, kSoftSpring = 1e-7;  // of the body's own stiffness E A / L
-constexpr double kIdleSpring = 1.0 / 500;                 // of another one on the same body
-constexpr double kApart = 0.25;                           // of a body's size
-constexpr double kOverdampedByMass = 1000;                // likewise; settling a body takes up to a hundred
-constexpr double kOverdamped = 50;                        // damping ratio of the slowest mode
-constexpr double kMostSteps = 2e7, kMostExplicitSteps = 1e9;
-constexpr double kNothingYet = 0.01;  // of a wave's way through a body, of a load's growth
+constexpr double kStretched = 3;                   // strain that a load would cause by Hooke's law
+constexpr double kUnseen = 1e-9;                   // the same of one that does nothing, slenderness included
+constexpr double kBurst = 1;                       // hoop stress over Young's modulus: rubber balloons give way at 0.4
+constexpr double kFast = 50, kFastForWaves = 0.2;  // [m/s]; of the speed of waves
+constexpr double kDrawnOut = 8;                    // way of a part over the body's size, where another part is held
+constexpr double kHeavyGravity = 100, kLightGravity = 0.05;  // [m/s²]: ten times the earth's; moons have 0.1
+constexpr double kThinnerThanAir = 1000;                     // [Pa] bulk modulus; air: 100 kPa
 
 bool is_elastic(const Simulation& s, std::size_t body) { return scale_of(s, body).softest > 0; }
 
@@ -32,14 +31,19 @@ struct Pull {
 
 Pull pull_of(const Simulation& s, const Load& load, std::size_t body) {
   Pull pull;
-  const auto take = [&](double force, const char* key) {
-    if (force > pull.force) pull = {force, key};
+  const BodyScale scale = scale_of(s, body);
+  const auto take = [&, factor = largest_factor(load.schedule)](double force, const char* key) {
+    if (factor * force > pull.force) pull = {factor * force, key};
   };
   if (load.total_force) take(norm(*load.total_force), "total_force");
   if (load.force) take(norm(*load.force), "force");
+  if (load.line_force) take(norm(*load.line_force) * scale.length, "line_force");
   if (load.force_per_node && load.where)
     take(norm(*load.force_per_node) * static_cast<double>(find_nodes(s, static_cast<int>(body), *load.where).size()),
          "force_per_node");
+  if (scale.thickness <= 0) return pull;
+  if (load.total_torque) take(norm(*load.total_torque) / scale.thickness, "total_torque");
+  if (load.torque) take(norm(*load.torque) / scale.thickness, "torque");
   return pull;
 }
 
@@ -48,17 +52,56 @@ void warn_of_strength(Simulation& s, std::size_t index, const Load& load, std::s
   const std::string path = fmt::format("loads[{}].", index);
   const Pull pull = pull_of(s, load, b);
   const double held = scale.area * scale.stiffest;
+  const bool torque = std::string(pull.key).ends_with("torque");
   if (pull.force > kStretched * held)
     s.warnings.add(
         "load", s.scene.place_of(path + pull.key),
-        fmt::format("{:.4g} N on body \"{}\", whose mean section of {:.3g} m2 and Young's modulus of {} make "
-                    "{:.4g} N at a strain of 1; write the unit, as \"5 mN\"",
-                    pull.force, s.bodies[b].name, scale.area, pressure_text(scale.stiffest), held));
-  const double pressure = std::max(std::abs(load.pressure.value_or(0)), norm(load.traction.value_or(Vec3d{})));
+        fmt::format("{:.4g} {} on body \"{}\", whose mean section of {:.3g} m2 and Young's modulus of {} make "
+                    "{:.4g} N at a strain of 1; write the unit, as \"5 m{}\"",
+                    torque ? pull.force * scale.thickness : pull.force, torque ? "N m" : "N", s.bodies[b].name,
+                    scale.area, pressure_text(scale.stiffest), held, torque ? "N m" : "N"));
+  const double pressure = largest_factor(load.schedule) *
+                          std::max(std::abs(load.pressure.value_or(0)), norm(load.traction.value_or(Vec3d{})));
+  const Place place = s.scene.place_of(path + (load.pressure ? "pressure" : "traction"));
   if (pressure > kStretched * scale.stiffest)
-    s.warnings.add("load", s.scene.place_of(path + (load.pressure ? "pressure" : "traction")),
+    s.warnings.add("load", place,
                    fmt::format("{} on body \"{}\", whose Young's modulus is {}; write the unit, as \"2 kPa\"",
                                pressure_text(pressure), s.bodies[b].name, pressure_text(scale.stiffest)));
+  const double slenderness = scale.thickness > 0 ? scale.length / scale.thickness : 1;
+  const double strain = std::max(held > 0 ? pull.force / held : 0, pressure / scale.softest);
+  if (strain > 0 && strain * slenderness * slenderness < kUnseen)
+    s.warnings.add(
+        "load", pull.force > 0 ? s.scene.place_of(path + pull.key) : place,
+        fmt::format("strains body \"{}\" ({}) by about {:.1e}: nothing to see; write the unit, as {}", s.bodies[b].name,
+                    pressure_text(scale.stiffest), strain, pull.force > 0 ? "\"5 kN\"" : "\"2 kPa\""));
+}
+
+/// A thin wall holds no pressure whose hoop stress, p R / t, comes near its modulus.
+void warn_of_burst(Simulation& s, std::size_t b, double pressure, const Place& place) {
+  if (s.scene.bodies[b].thickness.empty()) return;
+  const BodyScale scale = scale_of(s, b);
+  std::array<double, 3> extents{scale.extent[0], scale.extent[1], scale.extent[2]};
+  std::sort(extents.begin(), extents.end());
+  const double radius = extents[1] / 2, stress = std::abs(pressure) * radius / scale.thickness;
+  if (stress > kBurst * scale.stiffest && std::abs(pressure) <= kStretched * scale.stiffest)
+    s.warnings.add("load", place,
+                   fmt::format("{} strains the wall of body \"{}\" ({} thick, {} across, {}) by more than 1: it "
+                               "bursts; write the unit, as \"13 kPa\", or see its thickness",
+                               pressure_text(std::abs(pressure)), s.bodies[b].name, length_text(scale.thickness),
+                               length_text(2 * radius), pressure_text(scale.stiffest)));
+}
+
+void warn_of_fluid(Simulation& s, std::size_t b) {
+  const std::optional<Fluid>& fluid = s.scene.bodies[b].fluid;
+  if (!fluid) return;
+  if (fluid->pressure)
+    warn_of_burst(s, b, *fluid->pressure * largest_factor(fluid->schedule),
+                  s.scene.place_of(fluid->place.key + ".pressure"));
+  if (fluid->bulk_modulus && *fluid->bulk_modulus < kThinnerThanAir)
+    s.warnings.add("load", s.scene.place_of(fluid->place.key + ".bulk_modulus"),
+                   fmt::format("{} is softer than air (100 kPa), and resists nothing; write the unit, as \"2.2 GPa\" "
+                               "of water",
+                               pressure_text(*fluid->bulk_modulus)));
 }
 
 void warn_of_speed(Simulation& s, std::size_t b, double speed, const Place& place) {
@@ -70,237 +113,80 @@ void warn_of_speed(Simulation& s, std::size_t b, double speed, const Place& plac
                              speed, s.bodies[b].name, scale.wave_speed()));
 }
 
-/// Nothing else than one spring bears a body.
-bool hangs_on_springs(const Scene& scene, const std::string& body) {
-  const auto holds = [&](const Constraint& c) { return c.body == body; };
-  const auto concerns = [&](const Coupling& c) { return c.body == body || c.to == body; };
-  return std::none_of(scene.constraints.begin(), scene.constraints.end(), holds) &&
-         std::count_if(scene.couplings.begin(), scene.couplings.end(), concerns) == 1;
+/// More than a turn by an angle that is a round one in no unit but degrees.
+bool is_angle_in_degrees(double angle) {
+  constexpr double kRound = std::numbers::pi / 12;
+  return std::abs(angle) > 2.001 * std::numbers::pi && std::abs(std::remainder(angle, kRound)) > 1e-6 * kRound;
 }
 
-void warn_of_springs(Simulation& s) {
-  for (const Coupling& c : s.scene.couplings) {
-    const auto b = static_cast<std::size_t>(body_index(s, c.body));
-    if (c.kind != CouplingKind::spring || !is_elastic(s, b)) continue;
-    const BodyScale scale = scale_of(s, b);
-    const double own = scale.stiffest * scale.area / scale.length, ratio = c.stiffness / own;
-    if (ratio > kStiffSpring || ratio < kSoftSpring)
-      s.warnings.add("spring", s.scene.place_of("couplings." + c.name + ".stiffness"),
-                     fmt::format("{:.4g} N/m, {:.1e} of what stretches body \"{}\" ({:.4g} N/m); write the unit, as "
-                                 "\"50 N/m\"",
-                                 c.stiffness, ratio, s.bodies[b].name, own));
-    for (const Coupling& other : s.scene.couplings)
-      if (other.kind == CouplingKind::spring && other.body == c.body && c.stiffness < kIdleSpring * other.stiffness)
-        s.warnings.add("spring", s.scene.place_of("couplings." + c.name + ".stiffness"),
-                       fmt::format("{:.4g} N/m does next to nothing beside couplings.{}, {:.4g} N/m, on the same body; "
-                                   "write the unit, as \"0.2 N/mm\"",
-                                   c.stiffness, other.name, other.stiffness));
-    const double sag = norm(s.scene.world.gravity) * s.bodies[b].body->mass() / c.stiffness;
-    if (hangs_on_springs(s.scene, c.body) && sag > s.bodies[b].body->size())
-      s.warnings.add("spring", s.scene.place_of("couplings." + c.name + ".stiffness"),
-                     fmt::format("{:.4g} N/m: body \"{}\" ({}) hangs {} below where it is drawn; write the unit, as "
-                                 "\"0.2 N/mm\"",
-                                 c.stiffness, c.body, mass_text(s.bodies[b].body->mass()), length_text(sag)));
-  }
+/// The middle of the nodes that a region selects.
+Vec3d middle_of(const Simulation& s, int body, const Region& region) {
+  const std::vector<int> nodes = find_nodes(s, body, region);
+  Vec3d sum{};
+  for (const int node : nodes) sum += s.model.rest_position[at(node)];
+  return sum * (1 / static_cast<double>(std::max<std::size_t>(1, nodes.size())));
 }
 
-void warn_of_gaps(Simulation& s) {
-  for (std::size_t k = 0; k < s.scene.couplings.size(); ++k) {
-    const Coupling& c = s.scene.couplings[k];
-    if (c.kind == CouplingKind::spring) continue;
-    const ModelBody& own = *s.bodies[at(body_index(s, c.body))].body;
-    const ModelBody& other = *s.bodies[at(body_index(s, c.to))].body;
-    double gap = 0;
-    for (const int node : s.couplings[k].nodes) gap = std::max(gap, other.distance(s.model.rest_position[at(node)]));
-    if (gap > kApart * own.size())
-      s.warnings.add("apart", s.scene.place_of("couplings." + c.name + ".where"),
-                     fmt::format("takes nodes up to {} away from \"{}\"; take those beside it, or move one of the two",
-                                 length_text(gap), c.to));
-  }
-}
-
-/// Nodes that do not move at all.
-std::set<int> fixed_nodes(const Simulation& s) {
-  std::set<int> fixed;
-  for (const FrameConstraint& c : s.model.constraints) {
-    const auto still = [](int motion) { return motion < 0; };
-    if (c.translations == 3 && (c.rotations == 3 || c.whole || s.model.kind(c.node) == FrameKind::vertex) &&
-        std::all_of(c.translation_motion.begin(), c.translation_motion.end(), still) &&
-        std::all_of(c.rotation_motion.begin(), c.rotation_motion.end(), still))
-      fixed.insert(c.node);
-  }
-  return fixed;
-}
-
-void warn_of_held(Simulation& s, const std::set<int>& fixed) {
-  const auto all_fixed = [&](const std::vector<int>& nodes) {
-    return !nodes.empty() && std::all_of(nodes.begin(), nodes.end(), [&](int n) { return fixed.contains(n); });
+void warn_of_motion(Simulation& s, std::size_t index) {
+  const Constraint& c = s.scene.constraints[index];
+  const std::string move = fmt::format("constraints[{}].move.", index);
+  const auto b = static_cast<std::size_t>(body_index(s, c.body));
+  if (is_angle_in_degrees(c.motion->angle))
+    s.warnings.add("load", s.scene.place_of(move + "rotate.angle"),
+                   fmt::format("turns by {:.4g} rad, {:.3g} times round; write the unit, as \"{:.4g} degree\"",
+                               c.motion->angle, c.motion->angle / (2 * std::numbers::pi), c.motion->angle));
+  if (!is_elastic(s, b)) return;
+  const double way = norm(c.motion->translate) * largest_factor(c.schedule), size = s.bodies[b].body->size();
+  const Vec3d moved = middle_of(s, static_cast<int>(b), c.where);
+  const auto is_drawn_from = [&](const Constraint& other) {
+    const bool holds = other.body == c.body && !other.motion && other.fixed[0] && other.fixed[1] && other.fixed[2];
+    return holds && way > kDrawnOut * std::max(size / 4, norm(middle_of(s, static_cast<int>(b), other.where) - moved));
   };
-  for (std::size_t b = 0; b < s.bodies.size(); ++b)
-    if (!is_carrier(s.scene.bodies[b]) && all_fixed(s.bodies[b].node_ids)) {
-      const auto by = std::find_if(s.scene.constraints.begin(), s.scene.constraints.end(),
-                                   [&](const Constraint& c) { return c.body == s.bodies[b].name; });
-      const auto number = by - s.scene.constraints.begin();
-      s.warnings.add("held", s.scene.place_of(fmt::format("constraints[{}].where", number)),
-                     fmt::format("holds all {} {}s of body \"{}\", which cannot move; take fewer, or model = \"rigid\"",
-                                 s.bodies[b].node_ids.size(), s.bodies[b].node_word(), s.bodies[b].name));
-    }
-  for (std::size_t l = 0; l < s.scene.loads.size(); ++l) {
-    const Load& load = s.scene.loads[l];
-    if (load.where && !load.pressure && !load.traction &&
-        all_fixed(find_nodes(s, body_index(s, load.body), *load.where)))
-      s.warnings.add("no-effect", s.scene.place_of(fmt::format("loads[{}].where", l)),
-                     "takes nodes that are all held: the load moves nothing");
-  }
+  if (std::any_of(s.scene.constraints.begin(), s.scene.constraints.end(), is_drawn_from))
+    s.warnings.add("load", s.scene.place_of(move + "translate"),
+                   fmt::format("draws body \"{}\", which is {} in size and held elsewhere, out by {}; write lengths "
+                               "with their unit, as \"5 mm\"",
+                               c.body, length_text(size), length_text(way)));
+  if (c.schedule.over > 0 && grows_over(c.schedule) && is_dynamic(s.scene.solver.kind))
+    warn_of_speed(s, b, way / c.schedule.over, s.scene.place_of(move + "translate"));
 }
 
-/// A schedule of the scene with the table that it stands in.
-struct NamedSchedule {
-  std::string table;
-  const Schedule* schedule;
-};
-
-std::vector<NamedSchedule> schedules_of(const Scene& scene) {
-  std::vector<NamedSchedule> all{{"world", &scene.world.schedule}};
-  for (std::size_t i = 0; i < scene.constraints.size(); ++i)
-    all.push_back({fmt::format("constraints[{}]", i), &scene.constraints[i].schedule});
-  for (std::size_t i = 0; i < scene.loads.size(); ++i)
-    all.push_back({fmt::format("loads[{}]", i), &scene.loads[i].schedule});
-  for (const Body& b : scene.bodies)
-    if (b.fluid) all.push_back({"bodies." + b.name + ".fluid", &b.fluid->schedule});
-  return all;
+void warn_of_initial_motion(Simulation& s, std::size_t b) {
+  const InitialMotion& initial = s.scene.bodies[b].initial;
+  const std::string path = "bodies." + s.bodies[b].name + ".initial.";
+  warn_of_speed(s, b, norm(initial.velocity), s.scene.place_of(path + "velocity"));
+  warn_of_speed(s, b, norm(initial.angular_velocity) * scale_of(s, b).length / 2,
+                s.scene.place_of(path + "angular_velocity"));
 }
 
-void warn_of_coarse_times(Simulation& s, const NamedSchedule& named) {
-  const Solver& solver = s.scene.solver;
-  const Schedule& schedule = *named.schedule;
-  const Place place = s.scene.place_of("solver.time_step");
-  if (const auto* sine = std::get_if<SineProfile>(&schedule.profile); sine && solver.time_step > sine->period / 4)
-    s.warnings.add("time-step", place,
-                   fmt::format("{} is more than a quarter of the period of {}.profile, {}", time_text(solver.time_step),
-                               named.table, time_text(sine->period)));
-  if (!schedule.has_over || schedule.over <= 0) return;
-  if (solver.time_step > schedule.over * 1.001)
-    s.warnings.add("time-step", place,
-                   fmt::format("{} is longer than {}.over, {}: all of it happens within one step",
-                               time_text(solver.time_step), named.table, time_text(schedule.over)));
-  if (solver.duration && *solver.duration < kNothingYet * schedule.over)
-    s.warnings.add("duration", s.scene.place_of("solver.duration"),
-                   fmt::format("{} ends when {}, over {}, has hardly begun", time_text(*solver.duration), named.table,
-                               time_text(schedule.over)));
-}
-
-void warn_of_damping(Simulation& s) {
-  std::set<std::string> told;
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const double period = scale_of(s, b).slowest_period();
-    for (const MaterialUse& use : s.scene.bodies[b].materials) {
-      const Material& m = use.material;
-      if (period <= 0 || !told.insert(m.place.key).second) continue;
-      const double omega = 2 * std::numbers::pi / period;
-      const double of_mass = m.mass_damping / (2 * omega), of_stiffness = m.stiffness_damping * omega / 2;
-      const bool mass = of_mass > kOverdampedByMass;
-      if (!mass && of_stiffness < kOverdamped) continue;
-      s.warnings.add(
-          "damping", place_of_material(s.scene, m, mass ? "damping.mass" : "damping.stiffness"),
-          fmt::format("is {:.2g} times what stops the slowest vibration of body \"{}\" (about {}): it creeps; "
-                      "usual are {}",
-                      mass ? of_mass : of_stiffness, s.bodies[b].name, time_text(period),
-                      mass ? "0.1 to 10 1/s" : "\"1 ms\" to \"50 ms\""));
-    }
-  }
+void warn_of_gravity(Simulation& s) {
+  const double g = norm(s.scene.world.gravity);
+  if (g == 0 || (g >= kLightGravity && g <= kHeavyGravity)) return;
+  s.warnings.add(
+      "load", s.scene.place_of("world.gravity"),
+      fmt::format("{:.4g} m/s2, {:.3g} times the earth's; write 9.81, or the unit, as \"9.81 m/s2\"", g, g / 9.81));
 }
 
 }  // namespace
 
 void warn_of_loads(Simulation& s) {
+  warn_of_gravity(s);
   for (std::size_t i = 0; i < s.scene.loads.size(); ++i) {
-    const auto b = static_cast<std::size_t>(body_index(s, s.scene.loads[i].body));
-    if (is_elastic(s, b)) warn_of_strength(s, i, s.scene.loads[i], b);
+    const Load& load = s.scene.loads[i];
+    const auto b = static_cast<std::size_t>(body_index(s, load.body));
+    if (!is_elastic(s, b)) continue;
+    warn_of_strength(s, i, load, b);
+    if (load.pressure)
+      warn_of_burst(s, b, *load.pressure * largest_factor(load.schedule),
+                    s.scene.place_of(fmt::format("loads[{}].pressure", i)));
   }
-  for (std::size_t b = 0; b < s.bodies.size(); ++b)
-    if (is_elastic(s, b))
-      warn_of_speed(s, b, norm(s.scene.bodies[b].initial.velocity),
-                    s.scene.place_of("bodies." + s.bodies[b].name + ".initial.velocity"));
-  for (std::size_t i = 0; i < s.scene.constraints.size(); ++i) {
-    const Constraint& c = s.scene.constraints[i];
-    const auto b = static_cast<std::size_t>(body_index(s, c.body));
-    if (c.motion && c.schedule.over > 0 && is_dynamic(s.scene.solver.kind) && is_elastic(s, b))
-      warn_of_speed(s, b, norm(c.motion->translate) / c.schedule.over,
-                    s.scene.place_of(fmt::format("constraints[{}].move.translate", i)));
-  }
-  warn_of_springs(s);
-  warn_of_gaps(s);
-}
-
-void warn_of_times(Simulation& s) {
-  const Solver& solver = s.scene.solver;
-  if (!is_dynamic(solver.kind)) return;
-  const double duration = solver.duration.value_or(solver.steps * solver.time_step);
-  if (is_implicit_dynamics(solver.kind))
-    for (const NamedSchedule& named : schedules_of(s.scene)) warn_of_coarse_times(s, named);
-  double slowest = 0, crossing = 0;
-  std::string slow_body;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const BodyScale scale = scale_of(s, b);
-    if (scale.slowest_period() > slowest) slow_body = s.bodies[b].name;
-    slowest = std::max(slowest, scale.slowest_period());
-    const double across = scale.wave_speed() > 0 ? scale.length / scale.wave_speed() : 0;
-    crossing = crossing > 0 && across > 0 ? std::min(crossing, across) : std::max(crossing, across);
+    if (!is_elastic(s, b)) continue;
+    warn_of_initial_motion(s, b);
+    warn_of_fluid(s, b);
   }
-  if (is_implicit_dynamics(solver.kind) && slowest > 0 && solver.time_step > slowest && solver.time_step > 0)
-    s.warnings.add("time-step", s.scene.place_of("solver.time_step"),
-                   fmt::format("{} is longer than the slowest vibration of body \"{}\" (about {}): no vibration is "
-                               "resolved; use a shorter step, or kind = \"static\"",
-                               time_text(solver.time_step), slow_body, time_text(slowest)));
-  // Explicit runs may be about waves alone.
-  const bool falls = is_implicit_dynamics(solver.kind) && squared_norm(s.scene.world.gravity) > 0;
-  if (falls && duration < kNothingYet * slowest)
-    s.warnings.add("duration", s.scene.place_of(s.scene.says("solver.duration") ? "solver.duration" : "solver.steps"),
-                   fmt::format("{} is next to nothing of the slowest vibration of body \"{}\" (about {}): it hardly "
-                               "moves",
-                               time_text(duration), slow_body, time_text(slowest)));
-  else if (duration < kNothingYet * crossing)
-    s.warnings.add("duration", s.scene.place_of(s.scene.says("solver.duration") ? "solver.duration" : "solver.steps"),
-                   fmt::format("{} ends long before a wave has crossed a body ({}): nothing happens",
-                               time_text(duration), time_text(crossing)));
-  const double most = is_implicit_dynamics(solver.kind) ? kMostSteps : kMostExplicitSteps;
-  if (solver.steps > most)
-    s.warnings.add("duration", s.scene.place_of("solver.time_step"),
-                   fmt::format("makes {:.3g} steps; use a longer time_step or a shorter duration",
-                               static_cast<double>(solver.steps)));
-  warn_of_damping(s);
-}
-
-void warn_of_no_effect(Simulation& s) {
-  const bool statics = s.scene.solver.kind == SolverKind::statics;
-  for (const NamedSchedule& named : schedules_of(s.scene)) {
-    const std::string over = named.table + ".over";
-    if (!s.scene.says(over)) continue;
-    const bool linear = std::holds_alternative<LinearProfile>(named.schedule->profile) ||
-                        std::holds_alternative<SmoothProfile>(named.schedule->profile);
-    if (!linear)
-      s.warnings.add("no-effect", s.scene.place_of(over),
-                     "does nothing beside this profile, which has its own times; remove it");
-    else if (statics)
-      s.warnings.add(
-          "no-effect", s.scene.place_of(over),
-          "does nothing in a static solve, where all grows with the load factor; remove it, or use a dynamic "
-          "solver");
-  }
-  std::set<std::string> used;
-  for (const Body& b : s.scene.bodies)
-    for (const MaterialUse& use : b.materials) {
-      const Material& m = use.material;
-      if (used.insert(m.place.key).second && !is_dynamic(s.scene.solver.kind) &&
-          m.mass_damping + m.stiffness_damping > 0)
-        s.warnings.add("no-effect", place_of_material(s.scene, m, "damping"),
-                       "does nothing without time; remove it, or use a dynamic solver");
-    }
-  for (const auto& [key, place] : s.scene.places)
-    if (key.starts_with("materials.") && key.find('.', 10) == std::string::npos && !used.contains(key))
-      s.warnings.add("no-effect", place, "no body is made of it; name it as material, or remove it");
-  warn_of_held(s, fixed_nodes(s));
+  for (std::size_t i = 0; i < s.scene.constraints.size(); ++i)
+    if (s.scene.constraints[i].motion) warn_of_motion(s, i);
 }
 
 }  // namespace fascia::app

@@ -1,4 +1,3 @@
-#include "app/matter.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
 
@@ -76,21 +75,6 @@ std::vector<int> nodes_of(const Simulation& s, const ResolvedProbe& r) {
   return nodes;
 }
 
-/// The matter of a displacement without a region; of nodes with one, since these are what it selects.
-void find_matter(const Simulation& s, ResolvedProbe& r) {
-  const Quantity q = r.probe->quantity;
-  if (q != Quantity::max_displacement && q != Quantity::mean_displacement) return;
-  if (r.probe->where) {
-    for (const int node : r.nodes) r.matter.push_back(matter_at(node));
-    return;
-  }
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    if (r.body >= 0 && at(r.body) != b) continue;
-    std::vector<MatterPoint> more = matter_of(s.bodies[b]);
-    r.matter.insert(r.matter.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-  }
-}
-
 /// Inertia lies at nodes: at shared ones that of all their bodies, at followed ones that of what follows.
 void warn_of_shared_mass(Simulation& s, const ResolvedProbe& r) {
   const Quantity q = r.probe->quantity;
@@ -161,7 +145,6 @@ void resolve_probes(Simulation& s) {
     } else {
       r.nodes = nodes_of(s, r);
     }
-    find_matter(s, r);
     warn_of_shared_mass(s, r);
     r.about = probe.about.value_or(Vec3d{});
     if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))

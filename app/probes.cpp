@@ -284,10 +284,10 @@ std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, c
       push(out, momentum(s, probe, state).angular);
       break;
     case Quantity::max_displacement:
-      out.push_back(largest_displacement(probe.matter, state));
+      out.push_back(displacement_of_matter(s, probe, state).largest());
       break;
     case Quantity::mean_displacement:
-      push(out, mean_displacement(probe.matter, state));
+      push(out, displacement_of_matter(s, probe, state).mean());
       break;
     case Quantity::fluid_volume:
       out.push_back(fluid_state(s, probe.fluid, state).volume);

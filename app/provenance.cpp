@@ -4,18 +4,24 @@
 #include "app/version.hpp"
 #include "io/digest.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <ctime>
 #include <iterator>
 
 namespace fascia::app {
 namespace {
 
-std::string& command() {
-  static std::string text;
-  return text;
+struct Start {
+  std::string command, time;
+};
+
+Start& start() {
+  static Start start;
+  return start;
 }
 
 std::string quoted_for_shell(const std::string& word) {
@@ -28,8 +34,8 @@ std::string quoted_for_shell(const std::string& word) {
 
 std::string whole_path(const std::filesystem::path& path) {
   std::error_code failed;
-  const std::filesystem::path whole = std::filesystem::absolute(path, failed);
-  return (failed ? path : whole.lexically_normal()).string();
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, failed);
+  return (failed ? path : whole).string();
 }
 
 }  // namespace
@@ -37,7 +43,8 @@ std::string whole_path(const std::filesystem::path& path) {
 void remember_command(int argc, char** argv) {
   std::vector<std::string> words;
   std::transform(argv, argv + argc, std::back_inserter(words), quoted_for_shell);
-  command() = fmt::format("{}", fmt::join(words, " "));
+  start().time = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  start().command = fmt::format("{}", fmt::join(words, " "));
 }
 
 std::vector<std::filesystem::path> input_files(const Scene& scene) {
@@ -64,8 +71,8 @@ nlohmann::ordered_json provenance_of(const Simulation& s) {
   j["files"] = nlohmann::ordered_json::array();
   for (const std::filesystem::path& file : input_files(s.scene))
     j["files"].push_back({{"path", whole_path(file)}, {"sha256", io::sha256_of(file)}});
-  j["command"] = command();
-  j["started"] = m.date;
+  j["command"] = start().command;
+  j["started"] = start().time;
   j["units"] = "SI: m, kg, s, N, Pa, rad";
   j["program"] = {{"version", m.fascia}, {"commit", m.commit}, {"backends", m.backends}, {"compiler", m.compiler},
                   {"flags", m.flags},    {"build", m.build},   {"processor", tuning()}};

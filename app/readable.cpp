@@ -20,13 +20,15 @@ constexpr Unit kLengths[] = {{1000, 1000, "km"}, {1, 1, "m"},        {0.1, 0.01,
                              {1e-3, 1e-3, "mm"}, {1e-6, 1e-6, "um"}, {0, 1e-9, "nm"}};
 constexpr Unit kMasses[] = {{1000, 1000, "t"}, {1, 1, "kg"}, {1e-3, 1e-3, "g"}, {1e-6, 1e-6, "mg"}, {0, 1e-9, "ug"}};
 constexpr Unit kVolumes[] = {
-    {1, 1, "m3"}, {1e-3, 1e-3, "l"}, {1e-6, 1e-6, "cm3"}, {1e-9, 1e-9, "mm3"}, {0, 1e-18, "um3"}};
+    {1, 1, "m3"}, {1e-3, 1e-3, "l"}, {1e-6, 1e-6, "cm3"}, {1e-12, 1e-9, "mm3"}, {0, 1e-18, "um3"}};
 constexpr Unit kPressures[] = {{1e9, 1e9, "GPa"}, {1e6, 1e6, "MPa"}, {1e3, 1e3, "kPa"}, {1, 1, "Pa"}, {0, 1e-3, "mPa"}};
 constexpr Unit kTimes[] = {{3600, 3600, "h"},  {120, 60, "min"},   {1, 1, "s"},
                            {1e-3, 1e-3, "ms"}, {1e-6, 1e-6, "us"}, {0, 1e-9, "ns"}};
 
 const Unit& unit_for(std::span<const Unit> units, double value) {
-  return *std::find_if(units.begin(), units.end() - 1, [&](const Unit& u) { return std::abs(value) >= u.from; });
+  constexpr double kRounding = 5e-4;  // of three digits
+  return *std::find_if(units.begin(), units.end() - 1,
+                       [&](const Unit& u) { return std::abs(value) >= u.from * (1 - kRounding); });
 }
 
 std::string text(std::span<const Unit> units, double value) {

@@ -14,9 +14,27 @@ namespace {
 /// the face of a hexahedron of 2 × 2 × 2 points, up to 7 at that of tetrahedra of one.
 constexpr double kFarthest = 9;
 
+/// Points lie in a plane or on a line where their spread along an axis is this part of the largest; rounding leaves
+/// 1e-16.
+constexpr double kFlat = 1e-10;
+
 using Vector = Eigen::Vector3d;
 
 Vector vector_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
+
+/// Stresses jump where materials or thicknesses meet: no slope goes across.
+void keep_nearest_material(const ModelBody& body, const Vec3d& X, std::vector<NodalRecovery::Share>& patch) {
+  const auto point = [&](const NodalRecovery::Share& s) -> const BodyPoint& { return body.points()[at(s.point)]; };
+  const auto nearest = std::min_element(patch.begin(), patch.end(), [&](const auto& a, const auto& b) {
+    return squared_norm(point(a).X - X) < squared_norm(point(b).X - X);
+  });
+  if (nearest == patch.end()) return;
+  const BodyPoint own = point(*nearest);
+  std::erase_if(patch, [&](const auto& s) {
+    const BodyPoint& p = point(s);
+    return p.lambda != own.lambda || p.mu != own.mu || p.law != own.law;
+  });
+}
 
 }  // namespace
 
@@ -32,6 +50,7 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
   const auto place = [&](const Share& s) { return vector_of(body.points()[at(s.point)].X); };
   for (std::size_t i = 0; i < patches.size(); ++i) {
     std::vector<Share>& patch = patches[i];
+    keep_nearest_material(body, b.nodes[i], patch);
     double sum = 0;
     for (const Share& s : patch) sum += s.weight;
     Vector centre = Vector::Zero();
@@ -47,7 +66,7 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
     for (int k = 0; k < 3; ++k) {
       const Vector axis = axes.eigenvectors().col(k);
       const double o = axis.dot(offset), o2 = o * o;
-      const double reach = std::max(axes.eigenvalues()[k], o2 / kFarthest);
+      const double reach = std::max({axes.eigenvalues()[k], o2 / kFarthest, kFlat * axes.eigenvalues()[2]});
       if (o2 > 0) slope += axis * (o / reach);
     }
     for (const Share& s : patch) shares_.push_back({s.point, s.weight * (1 + slope.dot(place(s) - centre))});

@@ -18,6 +18,8 @@ using Json = nlohmann::ordered_json;
 
 /// The digest of a file, or that it is not there.
 std::string digest_of(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return "";  // a terminal or pipe would be waited for
   try {
     return io::sha256_of(file);
   } catch (const FileError&) {
@@ -25,11 +27,16 @@ std::string digest_of(const fs::path& file) {
   }
 }
 
+/// JSON holds UTF-8 alone: other bytes of a name stand as replacement characters.
+const char* broken_name(const fs::path& file) {
+  return file.string().find("\xEF\xBF\xBD") == std::string::npos ? "" : ", or has a name that is no UTF-8";
+}
+
 void tell_changed_files(const Json& then) {
   const fs::path scene = then.at("scene_file").get<std::string>();
   const std::string now = digest_of(scene);
   if (now.empty())
-    say("{} is no longer there; the text that the result holds is run\n", scene.string());
+    say("{} is no longer there{}; the text that the result holds is run\n", scene.string(), broken_name(scene));
   else if (now != then.at("scene_sha256"))
     say("{} has changed since; the text that the result holds is run\n", scene.string());
   for (const Json& file : then.at("files")) {
@@ -72,11 +79,11 @@ int rerun_result(const RerunOptions& options) {
     throw InputError(
         fmt::format("{}: its provenance is damaged: {}", (options.directory / "summary.json").string(), e.what()));
   }
-  fs::path beside = options.directory;
-  if (beside.filename().empty()) beside = beside.parent_path();
+  std::error_code none;
+  fs::path beside = fs::weakly_canonical(options.directory, none);
+  if (none) beside = options.directory;
   run.output = options.output.value_or(fs::path(beside.string() + ".rerun"));
   run.quiet = options.quiet;
-  std::error_code none;
   if (fs::equivalent(*run.output, options.directory, none))
     throw InputError(fmt::format("--output {}: is the result itself; name another directory", run.output->string()));
   const int status = run_scene(run);

@@ -2,11 +2,14 @@
 
 #include "app/messages.hpp"
 #include "app/probes.hpp"
+#include "app/provenance.hpp"
 #include "app/results.hpp"
+#include "app/run_text.hpp"
 #include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +81,7 @@ ResultSize forecast_result(const Simulation& s) {
   const Counts counts = counts_of(s.scene);
   double columns = 1;
   for (const ResolvedProbe& p : s.probes) columns += static_cast<double>(probe_columns(p).size());
-  ResultFiles files(s, {}, "", "");
+  ResultFiles files(s, {}, "", json_text(provenance_of(s)));
   return {counts.states, counts.at_most, files.estimated_size(bent_state(s)), counts.rows * columns * kNumberInCsv};
 }
 

@@ -61,22 +61,15 @@ struct TetheredMaterial {
   Attachment field;
 };
 
-/// A place of a body's matter.
-struct MatterPoint {
-  Attachment field;
-  double volume = 0;  ///< of an integration point; 0 on the surface [m³]
-};
-
 /// A probe with what it selects resolved.
 struct ResolvedProbe {
   const Probe* probe = nullptr;
   int body = -1;  ///< −1: the whole scene
   std::vector<ProbePoint> points;
-  std::vector<int> nodes;           ///< of the model, by `where`
-  std::vector<int> tethered;        ///< of Simulation::tethered
-  std::vector<MatterPoint> matter;  ///< that displacements of whole bodies are those of
-  int fluid = -1;                   ///< of Simulation::fluids
-  Vec3d about{};                    ///< of moments and angular momentum
+  std::vector<int> nodes;     ///< of the model, by `where`
+  std::vector<int> tethered;  ///< of Simulation::tethered
+  int fluid = -1;             ///< of Simulation::fluids
+  Vec3d about{};              ///< of moments and angular momentum
 };
 
 /// A weld, embedding or spring of the scene in the model.

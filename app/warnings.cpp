@@ -10,8 +10,12 @@ std::string Warning::summary() const {
   return fmt::format("{}{} [{}]", place && !place->key.empty() ? place->key + ": " : "", text, name);
 }
 
+bool Warnings::silences(const std::string& name) const {
+  return std::find(silenced_.begin(), silenced_.end(), name) != silenced_.end();
+}
+
 void Warnings::add(Warning warning) {
-  if (std::find(silenced_.begin(), silenced_.end(), warning.name) != silenced_.end())
+  if (silences(warning.name))
     ++left_out_;
   else
     all_.push_back(std::move(warning));

@@ -32,6 +32,7 @@ class Warnings {
   void tell(const std::filesystem::path& scene);
 
   std::size_t size() const { return all_.size(); }
+  bool silences(const std::string& name) const;
   std::size_t silenced() const { return left_out_; }  ///< how many were
   std::vector<std::string> summary() const;
 

@@ -81,7 +81,7 @@ void ElementBody::choose_formulation(const ElementBodySpec& spec) {
   if (averaged_ && !can_average)
     throw InputError("locking = \"f-bar\" is for linear tetrahedra of large strain; must be \"none\" here");
   if (averaged_ && spec.locking == ElementLocking::automatic)
-    messages_.push_back(
+    choices_.push_back(
         "Poisson ratio above 0.45: the volumetric strain is averaged about the nodes (locking = \"f-bar\")");
   if (nearly && !averaged_ && order_of(mesh().shape) == 1)
     messages_.push_back(

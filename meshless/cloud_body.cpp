@@ -222,7 +222,7 @@ void CloudBody::warn_of_overlap(const CloudSpec& spec, const std::vector<Scatter
 
 void CloudBody::describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights) {
   warn_of_locking(spec);
-  if (spec.grid && !share_.empty()) messages_.push_back(replaced_by_shares(share_.size()));
+  if (spec.grid && !share_.empty()) choices_.push_back(replaced_by_shares(share_.size()));
   if (spec.grid) return;
   warn_of_overlap(spec, weights);
   std::size_t least = frame_position_.size(), most = 0, lowered = 0, first_lowered = 0;

@@ -42,7 +42,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
         "selective integration takes a part of the bending stiffness of affine frames away, which do not "
         "lock; use integration = \"auto\"");
   if (selective_ && spec.integration == IntegrationKind::automatic)
-    messages_.push_back("Poisson ratio above 0.45: lambda is integrated at one point a cell (selective integration)");
+    choices_.push_back("Poisson ratio above 0.45: lambda is integrated at one point a cell (selective integration)");
 
   std::vector<char> held(still_.empty() ? 0 : at(model.node_count()));
   // Weights of a point's blended rotation, among nodes that turn; 0: no stabilisation.

@@ -105,8 +105,8 @@ void GridBody::find_owners(const GridSpec& spec, const std::vector<Sample>& samp
   }
   if (lent > 0) advise(spec, full_count);
   if (lent > 0)
-    messages_.push_back(std::to_string(lent) +
-                        " points in cells that the domain hardly fills were given to neighbouring cells");
+    choices_.push_back(std::to_string(lent) +
+                       " points in cells that the domain hardly fills were given to neighbouring cells");
   std::vector<double> volume(cells_.size());
   for (const Sample& s : samples) {
     const int owner = cells_[at(s.cell)].owner;
@@ -178,7 +178,7 @@ void GridBody::number_frames(const GridSpec& spec, const std::vector<Sample>& sa
     model.frame_kind.push_back(spec.affine ? FrameKind::affine : FrameKind::rigid);
   }
   node_count_ = model.node_count() - first_node_;
-  if (dropped > 0) messages_.push_back(std::to_string(dropped) + " frames without points were dropped");
+  if (dropped > 0) choices_.push_back(std::to_string(dropped) + " frames without points were dropped");
 }
 
 /// Which frames of the grid others stand for. Those at a frame without points move nothing.
@@ -204,7 +204,7 @@ void GridBody::place_shared(const GridSpec& spec) {
   }
   shared_ = distinct_nodes(share_);
   still_ = still_nodes(share_);
-  if (!share_.empty()) messages_.push_back(replaced_by_shares(share_.size()));
+  if (!share_.empty()) choices_.push_back(replaced_by_shares(share_.size()));
   if (left_out > 0) messages_.push_back(unreached_shares(left_out));
 }
 

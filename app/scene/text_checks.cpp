@@ -39,6 +39,7 @@ std::string_view wide_encoding(std::string_view text) {
 }
 
 std::string_view line_of(std::string_view text, int line) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (int k = 1; k < line; ++k) {
     const std::size_t end = text.find('\n');
     if (end == std::string_view::npos) return {};

@@ -103,7 +103,8 @@ class ModelBody {
   const TriangleMesh& surface() const { return surface_; }  ///< at rest; of a sheet its middle
   /// Pairs of points of the surface mesh that a line runs between.
   const std::vector<std::array<int, 2>>& segments() const { return segments_; }
-  const std::vector<std::string>& messages() const { return messages_; }
+  const std::vector<std::string>& messages() const { return messages_; }  ///< what a user should mind
+  const std::vector<std::string>& choices() const { return choices_; }    ///< what was chosen for it, and why
   int first_group = 0, group_count = 0;  ///< in the model's point set; set by who closes the set
   int first_block = 0, block_count = 0;  ///< of elements, likewise
   int first_shell = 0, shell_count = 0;  ///< blocks of shells, likewise
@@ -165,7 +166,7 @@ class ModelBody {
   std::vector<Mat3d> axes_;
   TriangleMesh surface_;
   std::vector<std::array<int, 2>> segments_;
-  std::vector<std::string> messages_;
+  std::vector<std::string> messages_, choices_;
   std::vector<BodyGroup> groups_;
   BodyCells cells_;
   std::vector<double> weights_;

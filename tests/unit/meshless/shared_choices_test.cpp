@@ -109,7 +109,7 @@ TEST(SharedChoices, HalvesOfAGridAreTheWhole) {
     half.translation = {};
     add_grid(s, half);
     s.finish();
-    EXPECT_TRUE(says(s.body->messages(), "9 frames coincide with shared ones"));
+    EXPECT_TRUE(says(s.body->choices(), "9 frames coincide with shared ones"));
     EXPECT_EQ(s.body->node_count(), 18);
     EXPECT_EQ(s.body->shared_nodes().size(), 9U);
     expect_same(whole.model, s.model);
@@ -123,7 +123,7 @@ TEST(SharedChoices, HalvesOfASheetAreTheWhole) {
   for (const int i : {8, 2, 5}) s.shared.push_back({i, s.model.rest_position[at(i)]});
   const CloudBody body(sheet_at(0, 1, 3, s.shared), s.model, s.points);
   s.finish();
-  EXPECT_TRUE(says(body.messages(), "3 frames coincide with shared ones"));
+  EXPECT_TRUE(says(body.choices(), "3 frames coincide with shared ones"));
   EXPECT_EQ(body.shared_nodes(), (std::vector<int>{2, 5, 8}));
   EXPECT_EQ(body.nodes_on_boundary().size(), 9U);
   expect_same(whole.model, s.model);
