@@ -86,6 +86,44 @@ TEST(Plausible, LoadsAndMotions) {
              "couplings.band.stiffness", "spring");
 }
 
+/// What a thin wall, a turn and the earth can have.
+TEST(Plausible, WallsTurnsAndGravity) {
+  const auto wall = [](const std::string& thickness, const std::string& pressure) {
+    return "[bodies.wall]\nmodel = \"shell\"\nmaterial = \"liver\"\ndensity = 1060\nthickness = " + thickness +
+           "\ndomain = { sphere = { center = [0, 0, 1], radius = 0.03, cells = [12] } }\n"
+           "[[constraints]]\nbody = \"wall\"\nwhere = { halfspace = { point = [0, 0, 0.98], normal = [0, 0, 1] } }\n"
+           "fix = \"all\"\n[[loads]]\nbody = \"wall\"\nwhere = \"all\"\npressure = " +
+           pressure;
+  };
+  const Words still{.gravity = "[0, 0, 0]", .solver = "kind = \"static\""};
+  const auto with_rest = [&](const std::string& rest) {
+    Words words = still;
+    words.rest = rest;
+    return words;
+  };
+  EXPECT_EQ(warnings_of(with_rest(wall("\"3 mm\"", "\"100 Pa\""))), std::vector<std::string>{});
+  expect_one(with_rest(wall("\"3 mm\"", "\"1 kPa\"")), "loads[0].pressure", "load");
+  expect_one(with_rest(wall("\"3 um\"", "\"0.1 Pa\"")), "bodies.wall.thickness", "size");
+  const auto turn = [](const std::string& angle) {
+    return "[[constraints]]\nbody = \"organ\"\nwhere = { box = { min = [-1, -1, 0.079], max = [1, 1, 1] } }\n"
+           "move = { rotate = { axis = [0, 0, 1], center = [0, 0, 0], angle = " +
+           angle + " } }";
+  };
+  expect_one(with_rest(turn("30")), "constraints[1].move.rotate.angle", "load");
+  EXPECT_EQ(warnings_of(with_rest(turn("\"720 degree\""))), std::vector<std::string>{});
+  expect_one({.gravity = "[0, 0, -9810]", .young = "\"5 GPa\"", .solver = "kind = \"static\""}, "world.gravity",
+             "load");
+}
+
+/// A material that creeps to its end within the run may be meant; one that hardly moves is not.
+TEST(Plausible, CreepThatEndsInTime) {
+  Words words{.material = "damping = { stiffness = \"20 s\" }",
+              .solver = "kind = \"implicit-euler\"\ntime_step = \"5 s\"\nduration = \"10 min\""};
+  EXPECT_EQ(warnings_of(words), std::vector<std::string>{});
+  words.solver = "kind = \"implicit-euler\"\ntime_step = 0.01\nduration = 1";
+  expect_one(words, "materials.liver.damping.stiffness", "damping");
+}
+
 TEST(Plausible, Times) {
   const std::string load = "[[loads]]\nbody = \"organ\"\nat = [0.16, 0.1, 0.08]\nforce = [0.1, 0, 0]\n";
   expect_one({.rest = load + "over = \"1 ms\""}, "solver.time_step", "time-step");

@@ -10,11 +10,11 @@
 namespace fascia::app::recovery_test {
 namespace {
 
-Simulation body(const std::string& keys) {
+Simulation body(const std::string& keys, const std::string& material = "material = { young = 1e4, poisson = 0.3 }\n") {
   return build_simulation(parse_scene_text(
-      fmt::format("[bodies.b]\ndensity = 1000\nmaterial = {{ young = 1e4, poisson = 0.3 }}\n{}\n"
+      fmt::format("[bodies.b]\ndensity = 1000\n{}{}\n"
                   "[[constraints]]\nbody = \"b\"\nwhere = \"all\"\nfix = \"all\"\n[solver]\nkind = \"static\"\n",
-                  keys),
+                  material, keys),
       "b.toml", {}));
 }
 
@@ -49,6 +49,33 @@ TEST(NodalRecovery, FallsBackToTheMeanWhereThereIsNoSlope) {
   for (PointTensors& p : points) p.energy_density = 7;
   for (const PointTensors& n : NodalRecovery(b).at_nodes(points)) EXPECT_NEAR(n.energy_density, 7, 1e-12);
   EXPECT_LT(largest_error(b), 9);  // of a field from 1 to 10
+}
+
+/// Two layers of a bar carry stresses a hundred times apart: each end of a node's patch keeps to its own.
+TEST(NodalRecovery, DoesNotGoAcrossMaterials) {
+  const Simulation s = body(
+      "model = \"meshless\"\nframes = { grid = [6, 3, 3] }\npoints = { per_cell = [2, 2, 2] }\n"
+      "domain = { box = { min = [0, 0, 0], max = [1, 0.4, 0.4] } }\n",
+      "material = [{ where = { box = { min = [-1, 0.1, -1], max = [2, 1, 1] } }, use = { young = 5e4, poisson = 0 } }, "
+      "{ use = { young = 1e3, poisson = 0 } }]\n");
+  const SimulatedBody& b = s.bodies[0];
+  std::vector<PointTensors> points;
+  for (const BodyPoint& p : b.body->points()) points.push_back({{}, Mat3d::identity() * (p.mu * 0.02), 0});
+  const double soft = 1e3 / 2 * 0.02, stiff = 5e4 / 2 * 0.02;
+  for (const PointTensors& n : NodalRecovery(b).at_nodes(points)) {
+    const double value = n.stress(0, 0);
+    EXPECT_LT(std::min(std::abs(value - soft), std::abs(value - stiff)), 1e-9 * stiff) << value;
+  }
+}
+
+/// Points that lie in a plane have no slope across it, however the plane is turned.
+TEST(NodalRecovery, SeesNoSlopeAcrossAPlane) {
+  const Simulation s = body(
+      "model = \"meshless\"\nthickness = 0.01\nframes = { grid = [11, 3] }\n"
+      "points = { per_cell = [3, 3], through = 1 }\n"
+      "transform = { rotate = { axis = [1, 2, 3], angle = 0.7 } }\n"
+      "domain = { rectangle = { origin = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0.2, 0] } }\n");
+  EXPECT_LT(largest_error(s.bodies[0]), 1e-11);
 }
 
 /// Corner frames of a ball's grid lie outside and move further than the ball when it turns.
