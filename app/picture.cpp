@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <string>
@@ -24,7 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// With the first two exit statuses fascia-picture has said what is wrong; the others are as shells give them.
+constexpr int wrong_content = 2, wrong_file = 4, not_started = 127, by_signal = 128;
+
 int run(const std::vector<std::string>& arguments) {
+  signal(SIGCHLD, SIG_DFL);  // where the caller had it ignored, nobody could learn how the program ends
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
@@ -41,10 +46,18 @@ int run(const std::vector<std::string>& arguments) {
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   const int error = posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
-  if (error != 0) return 127;
+  if (error != 0) return not_started;
   int status = 0;
-  waitpid(pid, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  while (waitpid(pid, &status, 0) < 0)
+    if (errno != EINTR) return not_started;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : by_signal + WTERMSIG(status);
+}
+
+/// Says why there is no picture, as far as the exit status tells.
+std::string reason_of(int status, bool virtual_display) {
+  if (status == wrong_content || status == wrong_file) return "; its message tells why";
+  if (virtual_display && status < by_signal) return "; a display, or xvfb-run (Debian: xvfb, xauth), is needed";
+  return fmt::format(" with exit status {}", status);
 }
 
 /// Names of the bodies that nodes of the model belong to, of shared ones the first.
@@ -132,8 +145,9 @@ void make_picture(const Simulation& s, const fs::path& directory, const std::vec
   if (shown < states.size() && modes)
     say("the picture shows the first {} of {} modes; fascia-picture draws others\n", shown, states.size());
   // xvfb-run fails at times while it cleans up, after the picture is written.
-  if (run(command) != 0 && !fs::exists(picture))
-    say("no picture: \"{}\" failed; a display, or xvfb-run (Debian: xvfb, xauth), is needed\n", command.front());
+  const int ended = run(command);
+  if (ended != 0 && !fs::exists(picture))
+    say("no picture: \"{}\" failed{}\n", command.front(), reason_of(ended, command.front() != program.string()));
 }
 
 }  // namespace fascia::app

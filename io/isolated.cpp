@@ -196,6 +196,7 @@ bool ended_well(pid_t child) {
 Mesh read_isolated(const std::string& file, const std::function<Mesh()>& read) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail_start(file, errno);
+  signal(SIGCHLD, SIG_DFL);  // where the caller had it ignored, nobody could learn how the child ends
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);

@@ -35,6 +35,24 @@ std::string gmsh_box(std::size_t first_turned = kTetrahedra.size()) {
   return text + "$EndElements\n";
 }
 
+/// The same box in VTK's format.
+std::string vtk_box() {
+  std::string text = "# vtk DataFile Version 3.0\nbox\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n";
+  for (const auto& corner : kCorners) {
+    for (const double x : corner) text += std::to_string(x) + " ";
+    text += "\n";
+  }
+  text += "CELLS 6 30\n";
+  for (const auto& cell : kTetrahedra) {
+    text += "4";
+    for (const int node : cell) text += " " + std::to_string(node - 1);
+    text += "\n";
+  }
+  text += "CELL_TYPES 6\n";
+  for (std::size_t c = 0; c < kTetrahedra.size(); ++c) text += "10\n";
+  return text;
+}
+
 /// The surface of the same box as an OBJ file, without its last `missing` triangles.
 std::string obj_box(std::size_t missing = 0) {
   constexpr std::array<std::array<int, 3>, 12> triangles = {{{1, 3, 2},
@@ -65,10 +83,14 @@ std::string obj_box(std::size_t missing = 0) {
 
 class BadMesh : public SceneRuns {
  protected:
-  /// Runs the cantilever with the file as its domain.
-  ProgramResult run_with_domain(const std::string& file) const {
+  /// The cantilever with the file as its domain.
+  void write_scene(const std::string& file) const {
     const std::string box = "{ box = { min = [0, 0, 0], max = [1, 0.2, 0.2] } }";
     write("scene.toml", with(kCantilever, box, "{ file = \"" + file + "\" }"));
+  }
+
+  ProgramResult run_with_domain(const std::string& file) const {
+    write_scene(file);
     return fascia({"run", "scene.toml", "--output", "out"});
   }
 
@@ -92,6 +114,17 @@ TEST_F(BadMesh, GoodOnesRun) {
     EXPECT_NEAR(summary("out").at("bodies").at("beam").at("volume").get<double>(), 0.04, 1e-9) << file;
     EXPECT_LT(summary("out").at("probes").at("tip").at("value").at(1).get<double>(), -0.01) << file;
   }
+}
+
+/// Some callers ignore the signal of children that end, and what they start inherits it.
+TEST_F(BadMesh, GoodOnesAreReadWhereEndsOfChildrenAreIgnored) {
+  write("box.vtk", vtk_box());
+  write_scene("box.vtk");
+  ProgramOptions options;
+  options.directory = folder_;
+  options.environment = {"PROGRAM=" + program()};
+  const ProgramResult result = run_program({"sh", "-c", "trap '' CHLD; exec \"$PROGRAM\" check scene.toml"}, options);
+  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(BadMesh, MeshThatIsInsideOutIsTurnedOverWithAMessage) {
