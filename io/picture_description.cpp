@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace fascia::io {
@@ -23,6 +24,17 @@ constexpr std::array<const char*, 3> kinds{"time", "load factor", "frequency"}; 
 StateKind kind_of(const std::string& word) {
   const auto found = std::find(kinds.begin(), kinds.end(), word);
   return found == kinds.end() ? StateKind::time : static_cast<StateKind>(found - kinds.begin());
+}
+
+/// How far a state is from the nearer of those before and after it that differ; 0 where none does.
+double apart_from_neighbours(const std::vector<double>& states, std::size_t state) {
+  double least = 0;
+  const std::size_t first = state > 0 ? state - 1 : 0, last = std::min(state + 1, states.size() - 1);
+  for (std::size_t other = first; other <= last; ++other) {
+    const double apart = std::abs(states[other] - states[state]);
+    if (apart > 0 && (apart < least || !(least > 0))) least = apart;
+  }
+  return least;
 }
 
 nlohmann::json to_json(const Vec3d& v) { return {v[0], v[1], v[2]}; }
@@ -71,13 +83,14 @@ PictureDescription read_description(const std::filesystem::path& directory) {
 std::string state_label(const PictureDescription& description, int state) {
   if (state < 0 || static_cast<std::size_t>(state) >= description.states.size()) return "";
   const double value = description.states[static_cast<std::size_t>(state)];
+  const double apart = apart_from_neighbours(description.states, static_cast<std::size_t>(state));
   std::string label;
   switch (description.kind) {
     case StateKind::time:
-      label = "t = " + quantity_text(value, "s");
+      label = "t = " + quantity_text(value, "s", apart);
       break;
     case StateKind::load_factor:
-      label = fmt::format("load factor {:.4g}", value);
+      label = "load factor " + distinct_text(value, apart);
       break;
     case StateKind::frequency:
       label = fmt::format("mode {}: {}", state + 1, quantity_text(value, "Hz"));

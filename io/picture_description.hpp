@@ -45,7 +45,8 @@ void write_description(const std::filesystem::path& directory, const PictureDesc
 /// @throws InputError  where it is none that fascia wrote
 PictureDescription read_description(const std::filesystem::path& directory);
 
-/// "t = 0.4 s", "load factor 0.5", "mode 3: 12.4 Hz"; empty where the description does not know the state.
+/// "t = 0.4 s", "load factor 0.5", "mode 3: 12.4 Hz", with the digits that tell it from its neighbours; empty where
+/// the description does not know the state.
 std::string state_label(const PictureDescription& description, int state);
 
 }  // namespace fascia::io

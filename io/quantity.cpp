@@ -12,23 +12,24 @@ namespace {
 
 struct KnownField {
   const char *name, *words, *unit;
+  bool of_motion;
 };
 
 constexpr std::array<KnownField, 14> known_fields{{
-    {"displacement", "displacement", "m"},
-    {"rotation", "rotation", "rad"},
-    {"strain", "Green-Lagrange strain, norm", "1"},
-    {"stress", "Cauchy stress, norm", "Pa"},
-    {"von_mises", "von Mises stress", "Pa"},
-    {"energy_density", "energy density", "J/m3"},
-    {"director", "director, length", "1"},
-    {"to_outer_face", "half thickness", "m"},
-    {"thickness", "thickness", "m"},
-    {"membrane_force", "membrane force, norm", "N/m"},
-    {"bending_moment", "bending moment, norm", "N"},
-    {"stress_outer", "stress of the outer face, norm", "Pa"},
-    {"stress_inner", "stress of the inner face, norm", "Pa"},
-    {"rest_position", "distance at rest from the origin", "m"},
+    {"displacement", "displacement", "m", true},
+    {"rotation", "rotation", "rad", true},
+    {"strain", "Green-Lagrange strain, norm", "1", true},
+    {"stress", "Cauchy stress, norm", "Pa", true},
+    {"von_mises", "von Mises stress", "Pa", true},
+    {"energy_density", "energy density", "J/m3", true},
+    {"director", "director, length", "1", false},
+    {"to_outer_face", "half thickness", "m", false},
+    {"thickness", "thickness", "m", false},
+    {"membrane_force", "membrane force, norm", "N/m", true},
+    {"bending_moment", "bending moment, norm", "N", true},
+    {"stress_outer", "stress of the outer face, norm", "Pa", true},
+    {"stress_inner", "stress of the inner face, norm", "Pa", true},
+    {"rest_position", "distance at rest from the origin", "m", false},
 }};
 
 /// Powers of 1000 from −5 to 4.
@@ -36,6 +37,9 @@ constexpr std::array<const char*, 10> prefixes{"f", "p", "n", "µ", "m", "", "k"
 constexpr int smallest_power = -5, largest_power = 4;
 
 constexpr double rounding = 1e-9;  // relative; what is less apart is the same number
+
+/// The number is from 1 to 10 times this power of 10.
+int power_of_ten(double value) { return static_cast<int>(std::floor(std::log10(value * (1 + rounding)))); }
 
 /// Of a number from 1 to 1000 times this power of 1000.
 int power_of_thousand(double value) { return static_cast<int>(std::floor(std::log10(value * (1 + rounding)) / 3)); }
@@ -53,7 +57,7 @@ std::string printed(std::string unit) {
 
 FieldName name_of_field(const std::string& field) {
   for (const KnownField& known : known_fields)
-    if (field == known.name) return {known.words, known.unit};
+    if (field == known.name) return {known.words, known.unit, known.of_motion};
   std::string words = field;
   std::replace(words.begin(), words.end(), '_', ' ');
   return {words, ""};
@@ -115,11 +119,21 @@ std::string length_text(double length) {
   return fmt::format("{:.4g} {}", length * unit.factor, unit.unit);
 }
 
-std::string quantity_text(double value, const std::string& unit) {
+std::string distinct_text(double value, double apart) {
+  constexpr int fewest = 4, most = 15;
+  int digits = fewest;
+  if (std::abs(value) > 0) {
+    const int first = power_of_ten(std::abs(value)), last = apart > 0 ? std::min(power_of_ten(apart), 0) : 0;
+    digits = std::clamp(first - last + 1, fewest, most);
+  }
+  return fmt::format("{:.{}g}", value, digits);
+}
+
+std::string quantity_text(double value, const std::string& unit, double apart) {
   const double size = std::abs(value);
   const bool plain = unit == "s" && size >= 0.01;
   const ReadableUnit scaled = plain ? ReadableUnit{1, unit} : readable_unit(size, unit);
-  return fmt::format("{:.4g} {}", value * scaled.factor, scaled.unit);
+  return distinct_text(value * scaled.factor, apart * scaled.factor) + " " + scaled.unit;
 }
 
 }  // namespace fascia::io

@@ -10,6 +10,7 @@ namespace fascia::io {
 struct FieldName {
   std::string words;  ///< "von Mises stress"; of tensors and vectors with what is shown of them
   std::string unit;   ///< SI, as UDUNITS spells it: "Pa", "J/m3"; "1" for a pure number, empty where it is not known
+  bool of_motion = false;  ///< follows from the displacement, without which it is zero; false where it is not known
 };
 
 /// How the fields that fascia writes are called; of others the name itself, without a unit.
@@ -43,7 +44,10 @@ std::string short_number_text(double value, double step);
 /// "5 cm", "200 µm", "1 km": kilometres, metres, centimetres, millimetres and smaller by thousands. @param length  [m]
 std::string length_text(double length);
 
-/// A number of four digits with a scaled unit: "4 ms", "1.234 kHz". Seconds from 0.01 on stay seconds.
-std::string quantity_text(double value, const std::string& unit);
+/// A number of four digits, or of as many as tell it from one that differs by `apart` (0: from none).
+std::string distinct_text(double value, double apart);
+
+/// The same with a scaled unit: "4 ms", "1.234 kHz". Seconds from 0.01 on stay seconds.
+std::string quantity_text(double value, const std::string& unit, double apart = 0);
 
 }  // namespace fascia::io

@@ -1,52 +1,23 @@
 #include "io/picture/legend.hpp"
 
+#include "io/picture/wrapping.hpp"
 #include "io/quantity.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <sstream>
 
 namespace fascia::io {
 namespace {
 
 constexpr double line_height = 1.35, bar_width = 1.3, gap = 0.45;  // times the font
 
-bool fits(const std::string& text, const TextStyle& style, double width) { return measure(text, style).x <= width; }
-
-/// The text without its last character, which may be of several bytes.
-void drop_last(std::string& text) {
-  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
-  if (!text.empty()) text.pop_back();
-}
-
-std::string shortened(std::string text, const TextStyle& style, double width) {
-  if (fits(text, style, width)) return text;
-  while (!text.empty() && !fits(text + "...", style, width)) drop_last(text);
-  return text + "...";
-}
-
 }  // namespace
-
-std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width, std::size_t most) {
-  std::vector<std::string> lines;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = lines.empty() ? word : lines.back() + " " + word;
-    const bool joins = !lines.empty() && (lines.size() == most || fits(longer, style, width));
-    if (joins)
-      lines.back() = longer;
-    else
-      lines.push_back(word);
-  }
-  for (std::string& line : lines) line = shortened(line, style, width);
-  return lines;
-}
 
 Legend::Legend(const ColorScale& scale, int font, double height, double width)
     : scale_(scale), font_(font), height_(height) {
   const ReadableUnit unit = readable_unit(std::max(std::abs(scale.low), std::abs(scale.high)), scale.unit);
-  title_ = wrapped(scale.words + (unit.unit.empty() ? "" : " [" + unit.unit + "]"), {font, true}, width, 3);
+  const auto width_of = [font](const std::string& text) { return measure(text, {font, true}).x; };
+  title_ = wrapped_with_unit(scale.words, unit.unit.empty() ? "" : "[" + unit.unit + "]", width_of, width, 3);
   const double low = scale.low * unit.factor, high = scale.high * unit.factor;
   const double title_height = line_height * font * static_cast<double>(title_.size()) + 0.6 * font;
   bar_ = std::max(height - title_height - 0.6 * font, 2.0 * font);
@@ -63,7 +34,7 @@ Legend::Legend(const ColorScale& scale, int font, double height, double width)
       if (part > room && part < 1 - room) ticks_.push_back({part, number_text(value, round.step)});
     }
   }
-  for (const std::string& line : title_) width_ = std::max(width_, measure(line, {font, true}).x);
+  for (const std::string& line : title_) width_ = std::max(width_, width_of(line));
   for (const Tick& tick : ticks_)
     width_ = std::max(width_, (bar_width + 2 * gap) * font + measure(tick.text, {font}).x);
 }

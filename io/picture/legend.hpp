@@ -22,7 +22,7 @@ struct ColorScale {
 class Legend {
  public:
   /// @param font  size of its texts [pixels]
-  /// @param height, width  that it may take [pixels]
+  /// @param height, width  that it may take [pixels]; units and numbers that need more width get it
   Legend(const ColorScale& scale, int font, double height, double width);
   double width() const { return width_; }
   /// @param low  its lower left corner
@@ -39,9 +39,5 @@ class Legend {
   std::vector<std::string> title_;
   std::vector<Tick> ticks_;
 };
-
-/// A text in lines of at most this width [pixels], broken between words; what is too long for `most` lines ends with
-/// dots.
-std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width, std::size_t most);
 
 }  // namespace fascia::io

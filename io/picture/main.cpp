@@ -1,6 +1,7 @@
 #include "core/model/errors.hpp"
 #include "io/picture/display.hpp"
 #include "io/picture/picture.hpp"
+#include "io/quantity.hpp"
 #include "io/text_numbers.hpp"
 
 #include <CLI/CLI.hpp>
@@ -64,6 +65,12 @@ std::array<int, 2> size(const std::string& text) {
   return {static_cast<int>(*width), static_cast<int>(*height)};
 }
 
+/// A last file that is no picture is a result, and would be lost.
+void check_picture_name(const std::string& file) {
+  if (std::filesystem::path(file).extension() != ".png")
+    throw InputError(file + ": the last file is the picture to write; must end in .png");
+}
+
 /// The bodies of each state; all in one where not each is wanted for itself.
 std::vector<PictureState> states_of(std::vector<PictureBody> bodies, const PictureDescription& description, bool each) {
   std::map<int, PictureState> states;
@@ -94,7 +101,10 @@ int run(int argc, char** argv) {
                  "looks within 45 degrees of the z axis)");
   app.add_option("--size", pixels, "width and height in pixels")->capture_default_str();
   app.add_option("--field", style.field, "point or cell field that colours the surface (magnitude of vectors)");
-  app.add_option("--range", ends, "values of the first and the last colour, a,b, in SI units (default: those shown)");
+  app.add_option(
+      "--range", ends,
+      "values of the first and the last colour, a,b, in SI units; of modes, whose amplitude is arbitrary, in parts of "
+      "the largest (default: those shown)");
   app.add_option("--title", title, "text above the picture (default: the scene's title)");
   app.add_option("--label", label, "text below the title (default: the time, load factor, or mode)");
   app.add_flag("--sheet", sheet, "each state that the files belong to for itself, side by side and alike");
@@ -106,6 +116,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
+  check_picture_name(files.back());
   style.view = direction("--view", view);
   style.size = size(pixels);
   style.rest = !no_rest;
@@ -116,12 +127,15 @@ int run(int argc, char** argv) {
   if (no_marks) description.springs.clear();
   style.up = up.empty() ? description.up : direction("--up", up);
   style.title = title.value_or(description.title);
-  style.relative = description.kind == fascia::io::StateKind::frequency;
+  // A mode has no amplitude: what follows from its displacement is known up to a factor.
+  const bool of_mode = description.kind == fascia::io::StateKind::frequency;
+  style.relative = of_mode && fascia::io::name_of_field(style.field).of_motion;
 
   const fascia::io::DisplayConnection display;
   std::vector<PictureBody> bodies;
   for (std::size_t f = 0; f + 1 < files.size(); ++f)
     bodies.push_back(fascia::io::read_picture_body(files[f], style.field));
+  check_field(bodies, style.field);
   std::vector<PictureState> states = states_of(std::move(bodies), description, sheet);
   if (label) states.front().label = *label;
   fascia::io::render_picture(std::move(states), style, files.back());

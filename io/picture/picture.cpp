@@ -8,6 +8,7 @@
 #include "io/picture/layout.hpp"
 #include "io/picture/legend.hpp"
 #include "io/picture/values.hpp"
+#include "io/picture/wrapping.hpp"
 #include "io/vtk_errors.hpp"
 
 #include <vtkCamera.h>
@@ -119,8 +120,9 @@ class Figure {
  private:
   void add_title() {
     const TextStyle bold{static_cast<int>(1.15 * font_), true};
+    const auto width_of = [&](const std::string& text) { return measure(text, bold).x; };
     double y = scene_.high.y - 0.5 * font_;
-    for (const std::string& line : wrapped(style_.title, bold, scene_.width() - 2 * font_, 2)) {
+    for (const std::string& line : wrapped(style_.title, width_of, scene_.width() - 2 * font_, 2)) {
       canvas_.text({1.0 * font_, y - 0.5 * line_height * bold.size}, line, bold, ink);
       y -= line_height * bold.size;
     }

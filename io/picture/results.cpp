@@ -7,17 +7,22 @@
 #include "io/text_numbers.hpp"
 #include "io/vtk_errors.hpp"
 
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -26,20 +31,74 @@ namespace {
 
 constexpr int frame_part = 1;
 
+/// Each cell of a type that is shown has so many nodes; 0 stands for other types.
+vtkIdType nodes_per_cell(int type) {
+  switch (type) {
+    case VTK_VERTEX:
+      return 1;
+    case VTK_LINE:
+      return 2;
+    case VTK_TRIANGLE:
+      return 3;
+    case VTK_TETRA:
+      return 4;
+    case VTK_HEXAHEDRON:
+      return 8;
+    case VTK_QUADRATIC_TETRA:
+      return 10;
+    case VTK_QUADRATIC_HEXAHEDRON:
+      return 20;
+    default:
+      return 0;
+  }
+}
+
+/// VTK's reader takes what the file says: a damaged one names points that are not there.
+bool has_sound_cells(vtkUnstructuredGrid& grid) {
+  if (grid.GetNumberOfCells() == 0) return true;
+  vtkCellArray* cells = grid.GetCells();
+  vtkUnsignedCharArray* types = grid.GetCellTypesArray();
+  if (!cells->IsValid() || !types || types->GetNumberOfValues() != grid.GetNumberOfCells()) return false;
+  double ids[2];
+  cells->GetConnectivityArray()->GetRange(ids);
+  if (ids[0] < 0 || ids[1] >= static_cast<double>(grid.GetNumberOfPoints())) return false;
+  for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
+    const vtkIdType nodes = nodes_per_cell(grid.GetCellType(c));
+    if (nodes > 0 && cells->GetCellSize(c) != nodes) return false;
+  }
+  return true;
+}
+
+/// Each array has as many values as there are points, or cells.
+bool has_sound_arrays(vtkFieldData& data, vtkIdType count) {
+  for (int a = 0; a < data.GetNumberOfArrays(); ++a)
+    if (vtkAbstractArray* array = data.GetAbstractArray(a); array && array->GetNumberOfTuples() != count) return false;
+  return true;
+}
+
+bool is_sound(vtkUnstructuredGrid& grid) {
+  return grid.GetNumberOfPoints() > 0 && has_sound_cells(grid) &&
+         has_sound_arrays(*grid.GetPointData(), grid.GetNumberOfPoints()) &&
+         has_sound_arrays(*grid.GetCellData(), grid.GetNumberOfCells());
+}
+
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file) {
   check_readable(file);
   VtkErrors errors;
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
-  if (!errors.first().empty() || reader->GetOutput()->GetNumberOfPoints() == 0)
+  if (!errors.first().empty() || !is_sound(*reader->GetOutput()))
     throw InputError(file.string() + ": is no readable .vtu result; give one that fascia wrote");
   return reader->GetOutput();
 }
 
-void add_names(std::string& names, vtkFieldData& data) {
-  for (int a = 0; a < data.GetNumberOfArrays(); ++a)
-    names += (names.empty() ? "" : ", ") + std::string(data.GetArrayName(a));
+std::vector<std::string> fields_of(vtkUnstructuredGrid& grid) {
+  std::vector<std::string> names;
+  for (vtkFieldData* data : std::array<vtkFieldData*, 2>{grid.GetPointData(), grid.GetCellData()})
+    for (int a = 0; a < data->GetNumberOfArrays(); ++a)
+      if (const char* name = data->GetArrayName(a)) names.emplace_back(name);
+  return names;
 }
 
 /// One value each: the array's own, or the magnitude of its components.
@@ -55,14 +114,11 @@ vtkSmartPointer<vtkDoubleArray> magnitudes(vtkDataArray& array) {
   return values;
 }
 
-ShownValues shown_values(const std::filesystem::path& file, vtkUnstructuredGrid& grid, const std::string& field) {
+ShownValues shown_values(vtkUnstructuredGrid& grid, const std::string& field) {
   if (field.empty()) return {};
   if (vtkDataArray* array = grid.GetPointData()->GetArray(field.c_str())) return {magnitudes(*array), nullptr};
   if (vtkDataArray* array = grid.GetCellData()->GetArray(field.c_str())) return {nullptr, magnitudes(*array)};
-  std::string names;
-  add_names(names, *grid.GetPointData());
-  add_names(names, *grid.GetCellData());
-  throw InputError(file.string() + ": has no field \"" + field + "\"; it has " + (names.empty() ? "none" : names));
+  return {};
 }
 
 /// Cells of a result by what they are.
@@ -135,7 +191,7 @@ void add_name(PictureBody& body, const std::filesystem::path& file) {
 
 PictureBody read_picture_body(const std::filesystem::path& file, const std::string& field) {
   const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
-  const ShownValues values = shown_values(file, *grid, field);
+  const ShownValues values = shown_values(*grid, field);
   const Cells cells = cells_of(*grid);
   const auto sheet = extract(*grid, cells.triangles, values);
   PictureBody body;
@@ -146,7 +202,19 @@ PictureBody read_picture_body(const std::filesystem::path& file, const std::stri
   body.frames = extract(*grid, cells.frames, {});
   add_rest(body, *grid, cells);
   body.shown_on = values.points ? ShownOn::points : values.cells ? ShownOn::cells : ShownOn::nothing;
+  body.fields = fields_of(*grid);
   return body;
+}
+
+void check_field(const std::vector<PictureBody>& bodies, const std::string& field) {
+  const auto shows = [](const PictureBody& body) { return body.shown_on != ShownOn::nothing; };
+  if (field.empty() || std::any_of(bodies.begin(), bodies.end(), shows)) return;
+  std::set<std::string> told;
+  std::string names;
+  for (const PictureBody& body : bodies)
+    for (const std::string& name : body.fields)
+      if (told.insert(name).second) names += (names.empty() ? "" : ", ") + name;
+  throw InputError("the results have no field \"" + field + "\"; they have " + (names.empty() ? "none" : names));
 }
 
 }  // namespace fascia::io

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace fascia::io {
 
@@ -23,7 +24,8 @@ struct PictureBody {
   vtkSmartPointer<vtkPolyData> rest_surface;  ///< the surface at rest
   vtkSmartPointer<vtkPolyData> rest_lines;    ///< the segments at rest
   vtkSmartPointer<vtkPoints> now, rest;       ///< all points, and where they are at rest; null where that is not known
-  ShownOn shown_on = ShownOn::nothing;
+  ShownOn shown_on = ShownOn::nothing;        ///< nothing where it has no such field
+  std::vector<std::string> fields;            ///< names of all that it has, of points, then of cells
 };
 
 /// Name of the array that holds what is shown: the field, or its magnitude.
@@ -34,9 +36,13 @@ inline constexpr const char* shown_array = "shown";
 /// rest comes from the point array "rest_position".
 ///
 /// @param field  point field, or a cell field where no point field has that name; of more than one component its
-///               magnitude is shown; none where empty
+///               magnitude is shown; none where empty or absent
 /// @throws FileError   where the file cannot be read
-/// @throws InputError  where it has no such field (names those it has)
+/// @throws InputError  where it is damaged
 PictureBody read_picture_body(const std::filesystem::path& file, const std::string& field);
+
+/// Bodies of one picture may differ in their fields: one must have the field that is shown, unless it is empty.
+/// @throws InputError  names the fields that there are
+void check_field(const std::vector<PictureBody>& bodies, const std::string& field);
 
 }  // namespace fascia::io

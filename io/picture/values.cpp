@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
 
 namespace fascia::io {
 namespace {
@@ -26,20 +27,22 @@ std::set<vtkDataArray*> values_of(const PictureState& state) {
   return arrays;
 }
 
-std::array<double, 2> range_of(const PictureState& state) {
+/// The range of all values; it is zero where there are none.
+std::array<double, 2> range_of(std::span<const PictureState> states) {
   std::array<double, 2> range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
-  for (vtkDataArray* values : values_of(state)) {
-    double own[2];
-    values->GetRange(own);
-    range = {std::min(range[0], own[0]), std::max(range[1], own[1])};
-  }
+  for (const PictureState& state : states)
+    for (vtkDataArray* values : values_of(state)) {
+      double own[2];
+      values->GetRange(own);
+      range = {std::min(range[0], own[0]), std::max(range[1], own[1])};
+    }
   return range[0] > range[1] ? std::array<double, 2>{0, 0} : range;
 }
 
 }  // namespace
 
 void make_relative(PictureState& state) {
-  const auto [low, high] = range_of(state);
+  const auto [low, high] = range_of(std::span(&state, 1));
   const double largest = std::max(std::abs(low), std::abs(high));
   if (!(largest > 0)) return;
   for (vtkDataArray* values : values_of(state)) {
@@ -50,22 +53,21 @@ void make_relative(PictureState& state) {
 }
 
 ColorScale scale_of(const std::vector<PictureState>& states, const PictureStyle& style) {
-  constexpr double rounding = 1e-6;  // of the largest value: differences below are those of solvers
+  constexpr double of_solvers = 1e-6;   // of the largest value: differences below tell nothing
+  constexpr double of_numbers = 1e-12;  // of the larger end: a range that was asked for has ticks if it is wider
+  constexpr double unseen = 1e-6;       // of the range: values so little beyond it have the colours of its ends
   const FieldName name = name_of_field(style.field);
   ColorScale scale{name.words, name.unit};
   if (style.relative) scale = {name.words + ", relative", "1"};
-  std::array<double, 2> range = range_of(states.front());
-  for (const PictureState& state : states) {
-    const auto [low, high] = range_of(state);
-    range = {std::min(range[0], low), std::max(range[1], high)};
-  }
-  const double largest = std::max(std::abs(range[0]), std::abs(range[1]));
+  std::array<double, 2> range = range_of(states);
   if (style.range) {
-    scale.below = range[0] < (*style.range)[0] - rounding * largest;
-    scale.above = range[1] > (*style.range)[1] + rounding * largest;
+    const auto [low, high] = *style.range;
+    scale.below = range[0] < low - unseen * (high - low);
+    scale.above = range[1] > high + unseen * (high - low);
     range = *style.range;
   }
-  if (range[1] - range[0] <= rounding * largest) range[1] = range[0];
+  const double largest = std::max(std::abs(range[0]), std::abs(range[1]));
+  if (range[1] - range[0] <= (style.range ? of_numbers : of_solvers) * largest) range[1] = range[0];
   scale.low = range[0];
   scale.high = range[1];
   return scale;

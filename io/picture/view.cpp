@@ -6,12 +6,22 @@
 #include <cmath>
 
 namespace fascia::io {
+namespace {
+
+/// The vector gets length 1, however small or large it is; zero stays zero.
+Vec3d direction_of(const Vec3d& v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  if (!(largest > 0)) return {};
+  return normalized(Vec3d{{v[0] / largest, v[1] / largest, v[2] / largest}});
+}
+
+}  // namespace
 
 View view_along(const Vec3d& direction, const std::optional<Vec3d>& up) {
   constexpr double smallest_sine = 0.02;
   View view;
-  view.toward = normalized(direction);
-  Vec3d upright = up ? normalized(*up) : Vec3d{};
+  view.toward = direction_of(direction);
+  Vec3d upright = up ? direction_of(*up) : Vec3d{};
   if (norm(cross(upright, view.toward)) < smallest_sine) {
     const bool along_z = std::abs(view.toward[2]) > std::sqrt(0.5);
     upright = along_z ? Vec3d{{0, 1, 0}} : Vec3d{{0, 0, 1}};

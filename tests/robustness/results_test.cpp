@@ -98,6 +98,38 @@ TEST_F(Results, PictureKnowsTimesAndSupports) {
   EXPECT_FALSE(fs::exists(folder_ / "out/picture.json")) << "it belongs to the older result";
 }
 
+TEST_F(Results, PictureNeverReplacesAResult) {
+  const fs::path program = build_dir() / "fascia-picture";
+  if (!fs::exists(program)) GTEST_SKIP() << "no " << program;
+  write("a_00000.vtu", "one result");
+  write("b_00000.vtu", "another");
+  const auto before = snapshot();
+  ProgramOptions options;
+  options.directory = folder_;
+  const ProgramResult result = run_program({program.string(), "a_00000.vtu", "b_00000.vtu"}, options);
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_NE(result.err.find("b_00000.vtu: the last file is the picture"), std::string::npos) << result.err;
+  EXPECT_EQ(snapshot(), before);
+}
+
+TEST_F(Results, DisplayIsBlamedOnlyWhereItIsTheReason) {
+  if (!fs::exists(build_dir() / "fascia-picture")) GTEST_SKIP() << "no fascia-picture";
+  const std::vector<std::string> run = {"run", "scene.toml", "--output",
+                                        "out", "--set",      "output.picture.size=[200,150]"};
+  const std::string remedy = "a display, or xvfb-run (Debian: xvfb, xauth), is needed";
+  ProgramOptions options;
+  options.environment = {"DISPLAY=:4321"};
+  const ProgramResult silent = fascia(run, options);
+  EXPECT_EQ(silent.status, 0) << silent.err;
+  EXPECT_NE(silent.err.find("\":4321\" does not answer"), std::string::npos) << silent.err;
+  EXPECT_NE(silent.err.find("its message tells why"), std::string::npos) << silent.err;
+  EXPECT_EQ(silent.err.find(remedy), std::string::npos) << silent.err;
+  options.environment = {"DISPLAY=", "PATH=/nonexistent"};
+  const ProgramResult absent = fascia(run, options);
+  EXPECT_EQ(absent.status, 0) << absent.err;
+  EXPECT_NE(absent.err.find(remedy), std::string::npos) << absent.err;
+}
+
 TEST_F(Results, DefaultDirectoryCarriesTheNameOfTheScene) {
   ASSERT_EQ(fascia({"run", "scene.toml"}).status, 0);
   EXPECT_EQ(summary("results/scene").at("status"), "converged");

@@ -53,6 +53,20 @@ TEST(PictureMarks, DescriptionIsReadAsItWasWritten) {
   EXPECT_EQ(state_label(read, 2), "");
 }
 
+TEST(PictureMarks, LabelsTellStatesFromTheirNeighbours) {
+  PictureDescription description;
+  description.states = {10, 10.001, 10.002, 10.0021, 12345.6};
+  EXPECT_EQ(state_label(description, 0), "t = 10 s");
+  EXPECT_EQ(state_label(description, 1), "t = 10.001 s");
+  EXPECT_EQ(state_label(description, 2), "t = 10.002 s");
+  EXPECT_EQ(state_label(description, 3), "t = 10.0021 s");
+  EXPECT_EQ(state_label(description, 4), "t = 12346 s");
+  description.kind = StateKind::load_factor;
+  description.states = {1, 1, 1.00001};
+  EXPECT_EQ(state_label(description, 0), "load factor 1");
+  EXPECT_EQ(state_label(description, 2), "load factor 1.00001");
+}
+
 TEST(PictureMarks, ForeignDescriptionIsNamed) {
   const TemporaryDirectory directory;
   for (const char* text : {"{}", "no JSON", "[1]", "{\"title\": 3}"}) {
@@ -97,6 +111,15 @@ TEST(PictureView, UpIsAsAskedOrFollowsTheView) {
   EXPECT_GT(view_along({{0.3, 0.3, 1}}, std::nullopt).up[1], 0.9);   // a drawing in the plane of x and y
   EXPECT_GT(view_along({{0, 0, 1}}, Vec3d{{0, 0, 1}}).up[1], 0.99);  // one looks along it
   EXPECT_GT(view_along({{0, -1, 0}}, Vec3d{{0, 1, 0}}).up[2], 0.99);
+}
+
+TEST(PictureView, DirectionsMayBeOfAnyLength) {
+  for (const double size : {1e-320, 1e-200, 1e200, 1e308}) {
+    const View view = view_along({{size, 0, 0}}, Vec3d{{0, size, 0}});
+    EXPECT_LT(norm(view.toward - Vec3d{{1, 0, 0}}), 1e-12) << size;
+    EXPECT_LT(norm(view.up - Vec3d{{0, 1, 0}}), 1e-12) << size;
+    EXPECT_LT(norm(view.right - Vec3d{{0, 0, -1}}), 1e-12) << size;
+  }
 }
 
 TEST(PictureView, PlacesBodiesOfEverySizeNearZero) {

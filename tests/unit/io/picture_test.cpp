@@ -124,9 +124,48 @@ TEST(PictureBody, shape_at_rest) {
   EXPECT_NEAR(area_of(*body.rest_surface), 10, 1e-12);
 }
 
-TEST(PictureBody, unknown_field_names_those_there_are) {
-  const std::string e = samples::input_error([] { body_of(row_of_cubes(1, CellType::hexahedron, false), "stress"); });
-  EXPECT_NE(e.find("has no field \"stress\"; it has height, number, part"), std::string::npos) << e;
+TEST(PictureBody, without_the_field_is_drawn_plain_beside_one_that_has_it) {
+  VisualMesh other = row_of_cubes(2, CellType::hexahedron, false);
+  other.point_fields[0].name = "depth";
+  const PictureBody with = body_of(row_of_cubes(1, CellType::hexahedron, false), "height");
+  const PictureBody without = body_of(other, "height");
+  EXPECT_EQ(without.shown_on, ShownOn::nothing);
+  EXPECT_EQ(without.surface->GetNumberOfCells(), 10);
+  EXPECT_EQ(without.surface->GetPointData()->GetScalars(), nullptr);
+  EXPECT_NO_THROW(check_field({without, with}, "height"));
+  EXPECT_NO_THROW(check_field({without}, ""));
+  EXPECT_EQ(samples::input_error([&] {
+              check_field({without, without}, "height");
+            }),
+            "the results have no field \"height\"; they have depth, number, part");
+}
+
+/// A tetrahedron as text.
+std::string vtu_text(const std::string& nodes, const std::string& type, const std::string& heights) {
+  const auto array = [](const std::string& attributes, const std::string& values) {
+    return "<DataArray " + attributes + " format=\"ascii\">" + values + "</DataArray>";
+  };
+  return "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>"
+         "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>" +
+         array("type=\"Float64\" Name=\"height\"", heights) + "</PointData><Points>" +
+         array("type=\"Float64\" NumberOfComponents=\"3\"", "0 0 0 1 0 0 0 1 0 0 0 1") + "</Points><Cells>" +
+         array("type=\"Int64\" Name=\"connectivity\"", nodes) + array("type=\"Int64\" Name=\"offsets\"", "4") +
+         array("type=\"UInt8\" Name=\"types\"", type) + "</Cells></Piece></UnstructuredGrid></VTKFile>";
+}
+
+TEST(PictureBody, damaged_files_are_named) {
+  const TemporaryDirectory directory;
+  const auto read = [&](const std::string& text) {
+    return read_picture_body(directory.write("a.vtu", text), "height");
+  };
+  EXPECT_EQ(read(vtu_text("0 1 2 3", "10", "0 0 0 1")).surface->GetNumberOfCells(), 4);
+  for (const std::string& text :
+       {vtu_text("0 1 2 4", "10", "0 0 0 1"), vtu_text("0 1 2 99999999", "10", "0 0 0 1"),
+        vtu_text("0 1 2 -1", "10", "0 0 0 1"), vtu_text("0 1 2 3", "12", "0 0 0 1"),
+        vtu_text("0 1 2 3", "5", "0 0 0 1"), vtu_text("0 1 2 3", "10", "0 0"), std::string("no XML")}) {
+    const std::string e = samples::input_error([&] { read(text); });
+    EXPECT_NE(e.find("a.vtu: is no readable .vtu result"), std::string::npos) << text << "\n" << e;
+  }
 }
 
 }  // namespace

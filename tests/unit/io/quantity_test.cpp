@@ -67,6 +67,11 @@ TEST(Quantity, TimesAndFrequencies) {
   EXPECT_EQ(quantity_text(3600, "s"), "3600 s");
   EXPECT_EQ(quantity_text(12.4, "Hz"), "12.4 Hz");
   EXPECT_EQ(quantity_text(1234.5678, "Hz"), "1.235 kHz");
+  EXPECT_EQ(quantity_text(12345.6, "s"), "12346 s");
+  EXPECT_EQ(quantity_text(12345.6, "s", 0.1), "12345.6 s");
+  EXPECT_EQ(quantity_text(10.001, "s", 0.001), "10.001 s");
+  EXPECT_EQ(quantity_text(0.3 + 1e-16, "s", 0.1), "0.3 s");
+  EXPECT_EQ(quantity_text(0.00410002, "s", 1e-8), "4.10002 ms");
 }
 
 TEST(Quantity, FieldsHaveWordsAndUnits) {
@@ -74,6 +79,10 @@ TEST(Quantity, FieldsHaveWordsAndUnits) {
   EXPECT_EQ(name_of_field("energy_density").unit, "J/m3");
   EXPECT_EQ(name_of_field("my_field").words, "my field");
   EXPECT_EQ(name_of_field("my_field").unit, "");
+  for (const char* field : {"displacement", "von_mises", "energy_density"})
+    EXPECT_TRUE(name_of_field(field).of_motion) << field;
+  for (const char* field : {"thickness", "rest_position", "part"})
+    EXPECT_FALSE(name_of_field(field).of_motion) << field;
 }
 
 }  // namespace
