@@ -28,6 +28,8 @@ namespace {
 /// A run reads more of the program and its libraries than a check: solvers, the writer of results.
 constexpr double kCodeOfRun = 3.5e6;
 
+constexpr long kGuessedSolves = 3;  // Newton iterations of a static solve
+
 /// A number of bytes for people.
 std::string in_words(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
@@ -183,22 +185,24 @@ class Setup {
     TangentSolver& tangent = system_->tangent();
     system_->executor().assemble(lin_, tangent.matrix());
     const bool load = solver.control == StaticControl::load;
-    factorizes_ = tangent.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
-                  (solver.kind == SolverKind::statics && load && tangent.factor_is_cheap(guessed_products()));
+    factorizes_ =
+        tangent.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
+        tangent.gives_way_to_factor(guessed_iterations()) ||
+        (solver.kind == SolverKind::statics && load && tangent.factor_is_cheap(kGuessedSolves * guessed_iterations()));
     if (!factorizes_) return;
     take(tangent.factor(), tangent.matrix());
     if (!load) beyond_ = bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any), tangent.matrix());
   }
 
-  /// At the end of statics a factor tells whether the equilibrium is stable, where it is cheap beside what CG has done:
-  /// about ten iterations for each node along a body, three times.
-  long guessed_products() const {
+  /// CG takes about ten iterations a solve for each node along a body. At the end of statics a factor tells whether the
+  /// equilibrium is stable, where it is cheap beside what CG has done.
+  long guessed_iterations() const {
     double along = 1;
     for (const SimulatedBody& b : s_.bodies) {
       const Vec3d extent = bounds_of(b.nodes).extent();
       along = std::max(along, 1 + std::max({extent[0], extent[1], extent[2]}) / std::max(mean_spacing(b), 1e-300));
     }
-    return std::lround(30 * std::min(along, static_cast<double>(s_.model.node_count())));
+    return std::lround(10 * std::min(along, static_cast<double>(s_.model.node_count())));
   }
 
   /// The lower triangle of a matrix, by columns, takes this.

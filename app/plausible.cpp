@@ -20,6 +20,7 @@ constexpr double kLightest = 15, kHeaviest = 23000;       // [kg/m³] aerogel-li
 constexpr double kLightestOfAMass = 0.05;                 // [kg/m³] where the mass is given: scaled models
 constexpr double kMetal = 4000, kSoftForAMetal = 1e9;     // [kg/m³], [Pa] lead: 11,300 and 16 GPa
 constexpr double kWatery = 1300, kStiffForTissue = 3e10;  // [kg/m³], [Pa] bone: 2000 and 20 GPa
+constexpr double kFoam = 700;                             // [kg/m³] lighter bodies may be auxetic
 constexpr double kSoft = 1e8;                             // [Pa] tissue, gel, rubber
 constexpr double kLongestSoft = 20, kLongest = 5000;      // [m]
 constexpr double kHeaviestSoft = 5000;                    // [kg]
@@ -45,7 +46,7 @@ void warn_of_stiffness(Simulation& s, const Body& body, const BodyScale& scale, 
     if (!told.insert(use.material.place.key).second) continue;
     const double E = use.material.young();
     const Place place = place_of_material(s.scene, use.material, "young");
-    if (use.material.poisson() < 0)
+    if (use.material.poisson() < 0 && scale.density > kFoam)
       s.warnings.add(
           "stiffness", place_of_material(s.scene, use.material, "poisson"),
           fmt::format("{:.3g} makes body \"{}\" wider where it is stretched, as foams with folded cells are; "

@@ -13,10 +13,12 @@
 namespace fascia::app {
 namespace {
 
-constexpr double kStretched = 3;                   // strain that a load would cause by Hooke's law
+constexpr double kStretched = 1;                   // strain that a load would cause by Hooke's law
 constexpr double kUnseen = 1e-9;                   // the same of one that does nothing, slenderness included
 constexpr double kBurst = 1;                       // hoop stress over Young's modulus: rubber balloons give way at 0.4
 constexpr double kFast = 50, kFastForWaves = 0.2;  // [m/s]; of the speed of waves
+constexpr double kOfTorque = 4, kFastSpin = 600;   // see pull_of(); [rad/s]
+constexpr double kSwollen = 30;                    // volume of a fluid over that at rest
 constexpr double kDrawnOut = 8;                    // way of a part over the body's size, where another part is held
 constexpr double kHeavyGravity = 100, kLightGravity = 0.05;  // [m/s²]: ten times the earth's; moons have 0.1
 constexpr double kThinnerThanAir = 1000;                     // [Pa] bulk modulus; air: 100 kPa
@@ -42,8 +44,9 @@ Pull pull_of(const Simulation& s, const Load& load, std::size_t body) {
     take(norm(*load.force_per_node) * static_cast<double>(find_nodes(s, static_cast<int>(body), *load.where).size()),
          "force_per_node");
   if (scale.thickness <= 0) return pull;
-  if (load.total_torque) take(norm(*load.total_torque) / scale.thickness, "total_torque");
-  if (load.torque) take(norm(*load.torque) / scale.thickness, "torque");
+  // A round bar of section A and thickness h is sheared by 1 at its skin by a torque of G A h / 4.
+  if (load.total_torque) take(kOfTorque * norm(*load.total_torque) / scale.thickness, "total_torque");
+  if (load.torque) take(kOfTorque * norm(*load.torque) / scale.thickness, "torque");
   return pull;
 }
 
@@ -58,8 +61,8 @@ void warn_of_strength(Simulation& s, std::size_t index, const Load& load, std::s
         "load", s.scene.place_of(path + pull.key),
         fmt::format("{:.4g} {} on body \"{}\", whose mean section of {:.3g} m2 and Young's modulus of {} make "
                     "{:.4g} N at a strain of 1; write the unit, as \"5 m{}\"",
-                    torque ? pull.force * scale.thickness : pull.force, torque ? "N m" : "N", s.bodies[b].name,
-                    scale.area, pressure_text(scale.stiffest), held, torque ? "N m" : "N"));
+                    torque ? pull.force * scale.thickness / kOfTorque : pull.force, torque ? "N m" : "N",
+                    s.bodies[b].name, scale.area, pressure_text(scale.stiffest), held, torque ? "N m" : "N"));
   const double pressure = largest_factor(load.schedule) *
                           std::max(std::abs(load.pressure.value_or(0)), norm(load.traction.value_or(Vec3d{})));
   const Place place = s.scene.place_of(path + (load.pressure ? "pressure" : "traction"));
@@ -97,6 +100,15 @@ void warn_of_fluid(Simulation& s, std::size_t b) {
   if (fluid->pressure)
     warn_of_burst(s, b, *fluid->pressure * largest_factor(fluid->schedule),
                   s.scene.place_of(fluid->place.key + ".pressure"));
+  const auto of_body = [&](const FluidOfBody& f) { return at(f.body) == b; };
+  const auto built = std::find_if(s.fluids.begin(), s.fluids.end(), of_body);
+  if (fluid->volume && built != s.fluids.end()) {
+    const double rest = s.model.surfaces[at(built->surface)].rest_volume, ratio = *fluid->volume / rest;
+    if (ratio > kSwollen || ratio < 1 / kSwollen)
+      s.warnings.add("load", s.scene.place_of(fluid->place.key + ".volume"),
+                     fmt::format("{} in body \"{}\", which holds {} at rest; write the unit, as \"250 ml\"",
+                                 volume_text(*fluid->volume), s.bodies[b].name, volume_text(rest)));
+  }
   if (fluid->bulk_modulus && *fluid->bulk_modulus < kThinnerThanAir)
     s.warnings.add("load", s.scene.place_of(fluid->place.key + ".bulk_modulus"),
                    fmt::format("{} is softer than air (100 kPa), and resists nothing; write the unit, as \"2.2 GPa\" "
@@ -151,6 +163,14 @@ void warn_of_motion(Simulation& s, std::size_t index) {
     warn_of_speed(s, b, way / c.schedule.over, s.scene.place_of(move + "translate"));
 }
 
+void warn_of_spin(Simulation& s, std::size_t b) {
+  const double spin = norm(s.scene.bodies[b].initial.angular_velocity);
+  if (spin > kFastSpin)
+    s.warnings.add("velocity", s.scene.place_of("bodies." + s.bodies[b].name + ".initial.angular_velocity"),
+                   fmt::format("{:.4g} rad/s, {:.3g} turns a second; write the unit, as \"{:.4g} degree/s\"", spin,
+                               spin / (2 * std::numbers::pi), spin));
+}
+
 void warn_of_initial_motion(Simulation& s, std::size_t b) {
   const InitialMotion& initial = s.scene.bodies[b].initial;
   const std::string path = "bodies." + s.bodies[b].name + ".initial.";
@@ -181,6 +201,7 @@ void warn_of_loads(Simulation& s) {
                     s.scene.place_of(fmt::format("loads[{}].pressure", i)));
   }
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    warn_of_spin(s, b);
     if (!is_elastic(s, b)) continue;
     warn_of_initial_motion(s, b);
     warn_of_fluid(s, b);

@@ -1,5 +1,6 @@
 #include "app/plausible.hpp"
 #include "app/readable.hpp"
+#include "app/schedule.hpp"
 
 #include <fmt/format.h>
 
@@ -11,11 +12,30 @@
 namespace fascia::app {
 namespace {
 
-constexpr double kOverdamped = 50, kOverdampedByMass = 1000;  // damping ratio of the slowest mode
+constexpr double kOverdamped = 50, kOverdampedByMass = 20, kLittleWay = 0.2;  // damping ratio of the slowest mode
 constexpr double kMostSteps = 2e7, kMostExplicitSteps = 1e9;
 constexpr double kNothingYet = 0.01;  // of a wave's way through a body
 constexpr double kHardlyGrown = 0.1;  // of a load's growth
 constexpr double kCoarse = 0.5;       // of the slowest period
+
+/// The largest absolute value that a table takes until a time.
+double largest_factor_until(const Schedule& schedule, double time) {
+  double largest = std::abs(schedule_factor(schedule, time, false));
+  for (const auto& [when, factor] : std::get<TableProfile>(schedule.profile).points)
+    if (when <= time) largest = std::max(largest, std::abs(factor));
+  return largest;
+}
+
+void warn_of_late_times(Simulation& s, const NamedSchedule& named, double duration) {
+  const auto* table = std::get_if<TableProfile>(&named.schedule->profile);
+  if (table == nullptr) return;
+  const double reached = largest_factor_until(*named.schedule, duration), most = largest_factor(*named.schedule);
+  if (reached < kHardlyGrown * most)
+    s.warnings.add(
+        "duration", s.scene.place_of(named.table + ".profile"),
+        fmt::format("reaches {:.2g} of its largest factor, {:.4g}, within the run, {}; its times are seconds",
+                    reached / most, most, time_text(duration)));
+}
 
 void warn_of_coarse_times(Simulation& s, const NamedSchedule& named) {
   const Solver& solver = s.scene.solver;
@@ -51,18 +71,34 @@ Creep creep_of(const Material& m, double period) {
   return {of_stiffness, m.stiffness_damping, false};
 }
 
-/// @param duration  of the run: what creeps, and gets there in time, may be meant
+/// What gravity and the loads of a body accelerate it by [m/s²].
+double acceleration_of(const Simulation& s, std::size_t b) {
+  double force = norm(s.scene.world.gravity) * s.bodies[b].body->mass();
+  for (const Load& load : s.scene.loads)
+    if (load.body == s.bodies[b].name)
+      force += largest_factor(load.schedule) *
+               (norm(load.total_force.value_or(Vec3d{})) + norm(load.force.value_or(Vec3d{})));
+  return s.bodies[b].body->mass() > 0 ? force / s.bodies[b].body->mass() : 0;
+}
+
+/// Damping keeps a body from getting anywhere within the run: what creeps, and gets there in time, may be meant.
+bool stands_still(const Simulation& s, std::size_t b, const Material& m, const Creep& creep, double duration) {
+  if (creep.time < duration) return false;
+  if (!creep.of_mass) return creep.ratio > kOverdamped;
+  const double way = acceleration_of(s, b) * duration / m.mass_damping;
+  return creep.ratio > kOverdampedByMass && way < kLittleWay * scale_of(s, b).length;
+}
+
 void warn_of_damping(Simulation& s, double duration) {
   std::set<std::string> told;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const double period = scale_of(s, b).slowest_period();
     for (const MaterialUse& use : s.scene.bodies[b].materials) {
-      const Creep creep = creep_of(use.material, period);
-      if (creep.ratio < (creep.of_mass ? kOverdampedByMass : kOverdamped) || creep.time < duration ||
-          !told.insert(use.material.place.key).second)
-        continue;
+      const Material& m = use.material;
+      const Creep creep = creep_of(m, period);
+      if (!stands_still(s, b, m, creep, duration) || !told.insert(m.place.key).second) continue;
       s.warnings.add(
-          "damping", place_of_material(s.scene, use.material, creep.of_mass ? "damping.mass" : "damping.stiffness"),
+          "damping", place_of_material(s.scene, m, creep.of_mass ? "damping.mass" : "damping.stiffness"),
           fmt::format(
               "is {:.2g} times what stops the slowest vibration of body \"{}\" (about {}): it creeps, and takes "
               "{}, longer than the run; usual are {}",
@@ -129,6 +165,7 @@ void warn_of_times(Simulation& s) {
   const double duration = solver.duration.value_or(solver.steps * solver.time_step);
   if (is_implicit_dynamics(solver.kind))
     for (const NamedSchedule& named : schedules_of(s.scene)) warn_of_coarse_times(s, named);
+  for (const NamedSchedule& named : schedules_of(s.scene)) warn_of_late_times(s, named, duration);
   const Vibrations v = vibrations_of(s);
   // Implicit Euler and BDF2 may be taken to let a body settle.
   const bool keeps_energy = solver.kind == SolverKind::newmark || solver.kind == SolverKind::midpoint;

@@ -47,7 +47,7 @@ void set_initial_motion(Simulation& s, const Body& body, const SimulatedBody& bu
     throw SceneError({{body.place,
                        "initial motion is lost on this body: all its nodes belong to other bodies or follow them; give "
                        "those the motion and remove initial"}});
-  if (following > 0)
+  if (2 * following > count)
     s.warnings.add(
         "initial", s.scene.place_of("bodies." + body.name + ".initial"),
         fmt::format("{} of {} {}s follow other bodies, and start as these do", following, count, built.node_word()));

@@ -73,11 +73,13 @@ bool TangentSolver::direct() {
   return *direct_;
 }
 
-/// Where CG was only a guess and reaches its limit (a slender body), a factor that fits into memory takes over.
-bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
+bool TangentSolver::gives_way_to_factor(long iterations) {
   const bool guessed = settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations >= kEnoughForBulk;
-  if (!guessed || !report.usable || report.iterations < settings_.cg.max_iterations) return false;
-  if (factor().factor_bytes() > kMostFactorBytes) return false;
+  return guessed && iterations >= settings_.cg.max_iterations && factor().factor_bytes() <= kMostFactorBytes;
+}
+
+bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
+  if (!report.usable || !gives_way_to_factor(report.iterations)) return false;
   direct_ = true;
   return true;
 }

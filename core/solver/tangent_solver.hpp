@@ -57,6 +57,9 @@ class TangentSolver {
   /// A factor takes less than a tenth of the time of CG so far: its operations run several times faster than those of
   /// products, which wait for memory. (tangent_stability.cpp)
   bool factor_is_cheap(long made);
+  /// A factor that fits into memory takes over where CG, which was only a guess, needs so many iterations for a solve
+  /// (a slender body).
+  bool gives_way_to_factor(long iterations);
 
  private:
   void assemble(const Linearization& at, BlockMatrix& matrix, Entries entries = Entries::all);
