@@ -184,11 +184,10 @@ class Setup {
     const Solver& solver = s_.scene.solver;
     TangentSolver& tangent = system_->tangent();
     system_->executor().assemble(lin_, tangent.matrix());
-    const bool load = solver.control == StaticControl::load;
-    factorizes_ =
-        tangent.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
-        tangent.gives_way_to_factor(guessed_iterations()) ||
-        (solver.kind == SolverKind::statics && load && tangent.factor_is_cheap(kGuessedSolves * guessed_iterations()));
+    const bool load = solver.control == StaticControl::load, statics = solver.kind == SolverKind::statics;
+    factorizes_ = tangent.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
+                  (statics && tangent.gives_way_to_factor(guessed_iterations())) ||
+                  (statics && load && tangent.factor_is_cheap(kGuessedSolves * guessed_iterations()));
     if (!factorizes_) return;
     take(tangent.factor(), tangent.matrix());
     if (!load) beyond_ = bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any), tangent.matrix());

@@ -3,6 +3,7 @@
 #include "core/model/errors.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -69,6 +70,7 @@ double left_by_limit(__rlimit_resource limit, double used) {
 }  // namespace
 
 double resident_memory() {
+  malloc_trim(0);
   const std::optional<double> exact = number_behind("/proc/self/smaps_rollup", "Rss:");
   return exact ? 1024 * *exact : of_process("VmRSS:");
 }

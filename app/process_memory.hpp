@@ -5,7 +5,7 @@
 
 namespace fascia::app {
 
-/// Memory of this process that stands in the machine's [bytes].
+/// Memory of this process that stands in the machine's [bytes]; what it has freed is given back first.
 double resident_memory();
 
 /// The most that there was since the program started [bytes]; not of the process that started it.
