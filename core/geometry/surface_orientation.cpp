@@ -48,7 +48,6 @@ struct Component {
   std::vector<Triangle> triangles;
   Bounds bounds;
   bool outward = true;
-  bool touches = false;  ///< another component, along an edge
 };
 
 std::vector<Component> split(const Solid& solid, const std::vector<Triangle>& triangles, const Components& components) {
@@ -63,17 +62,33 @@ std::vector<Component> split(const Solid& solid, const std::vector<Triangle>& tr
   return result;
 }
 
+/// The middle of a triangle with a node that is none of these, where there is one: it does not lie on what has them.
+Vec3d place_of(const Solid& solid, const std::vector<Triangle>& triangles, const std::vector<bool>& nodes) {
+  const auto apart = [&](const Triangle& t) {
+    return std::ranges::any_of(t.nodes, [&](int node) { return !nodes[at(node)]; });
+  };
+  const auto found = std::ranges::find_if(triangles, apart);
+  Vec3d x{};
+  for (const int node : (found == triangles.end() ? triangles.front() : *found).nodes)
+    x += solid.points[at(node)] * (1.0 / 3);
+  return x;
+}
+
 /// For each component, in how many others it lies.
 std::vector<int> nesting_depths(const Solid& solid, const std::vector<Component>& components) {
   std::vector<int> depth(components.size(), 0);
   for (std::size_t outer = 0; outer < components.size(); ++outer) {
     std::optional<InsideTest> test;
+    std::vector<bool> nodes;  // of the outer one
     for (std::size_t inner = 0; inner < components.size(); ++inner) {
       if (inner == outer || !components[outer].bounds.contains(components[inner].bounds)) continue;
-      if (!test) test.emplace(compact(solid, components[outer].triangles));
-      Vec3d x{};  // the middle of a triangle: its corners may be the other's too
-      for (const int node : components[inner].triangles[0].nodes) x += solid.points[at(node)] * (1.0 / 3);
-      if (test->winding_number(x) != 0) ++depth[inner];
+      if (!test) {
+        test.emplace(compact(solid, components[outer].triangles));
+        nodes.assign(solid.points.size(), false);
+        for (const Triangle& t : components[outer].triangles)
+          for (const int node : t.nodes) nodes[at(node)] = true;
+      }
+      if (test->winding_number(place_of(solid, components[inner].triangles, nodes)) != 0) ++depth[inner];
     }
   }
   return depth;
@@ -135,24 +150,16 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
   for (const TouchingEdge& edge : touching)
     for (const auto& [a, b] : edge.pairs) neighbours.link(a, b);
   const Components numbering(neighbours);
-  std::vector<Component> components = split(solid, triangles, numbering);
-  for (const TouchingEdge& edge : touching)
-    for (const auto& [a, b] : edge.pairs) {
-      const int c = numbering.of[at(a)], other = numbering.of[at(edge.pairs[0][0])];
-      if (c != other) components[at(c)].touches = components[at(other)].touches = true;
-    }
+  const std::vector<Component> components = split(solid, triangles, numbering);
   const std::vector<int> depth = nesting_depths(solid, components);
-  std::size_t wrong = 0, first_wrong = 0, judged = 0;
+  std::size_t wrong = 0, first_wrong = 0;
   for (std::size_t c = components.size(); c-- > 0;) {
-    // Within a part that it touches, one may be a cavity or lie on it: folds of the surface do, and are inside anyway.
-    if (components[c].touches && depth[c] % 2 != 0) continue;
-    ++judged;
     if (components[c].outward == (depth[c] % 2 == 0)) continue;
     ++wrong;
     first_wrong = c;
   }
   if (wrong == 0) return;
-  if (wrong < judged)
+  if (wrong < components.size())
     fail(solid, "the closed part with triangle " + std::to_string(components[first_wrong].triangles[0].file_number) +
                     " is oriented against the others (" + std::to_string(wrong) + " of " +
                     std::to_string(components.size()) +

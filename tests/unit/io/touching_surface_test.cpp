@@ -1,5 +1,6 @@
 #include "core/geometry/inside.hpp"
 #include "core/geometry/mesh_parts.hpp"
+#include "core/geometry/primitives.hpp"
 #include "core/geometry/surface.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
@@ -62,6 +63,37 @@ TEST(TouchingSurface, two_cubes_along_an_edge) {
   }
   const std::string e = input_error([&] { closed_surface(mesh_of(mixed)); });
   EXPECT_TRUE(contains(e, "is oriented against the others (1 of 2 parts)")) << e;
+}
+
+/// Surfaces side by side in one mesh, each on points of its own.
+TriangleMesh together(const std::vector<TriangleMesh>& surfaces) {
+  TriangleMesh all;
+  for (const TriangleMesh& surface : surfaces) {
+    const int shift = static_cast<int>(all.points.size());
+    all.points.insert(all.points.end(), surface.points.begin(), surface.points.end());
+    for (const auto& t : surface.triangles) all.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  }
+  return all;
+}
+
+TEST(TouchingSurface, cavities_that_touch_must_face_inward) {
+  // Two cubes along an edge within a larger one.
+  const TriangleMesh box = box_surface({{-1, -1, -1}}, {{3, 3, 3}}, 1, 1, 1);
+  const TriangleMesh pair = closed_surface(cubes(2, kAlongAnEdge)).mesh;
+  EXPECT_NEAR(closed_surface(mesh_of(together({box, turned(pair)}))).volume, 64 - 2, 1e-12);
+  const std::string e = input_error([&] { closed_surface(mesh_of(together({box, pair}))); });
+  EXPECT_TRUE(contains(e, "is oriented against the others (2 of 3 parts)")) << e;
+
+  // A tetrahedron within a cube, along one of its edges.
+  std::vector<Vec3d> points = samples::cube_points();
+  points.insert(points.end(), {{{0.8, 0.3, 0.5}}, {{0.3, 0.8, 0.5}}});
+  const std::vector<int> cube{0, 3, 2, 0, 2, 1, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                              1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+  std::vector<int> solid{0, 8, 4, 0, 9, 8, 4, 8, 9, 0, 4, 9}, cavity{0, 4, 8, 0, 8, 9, 4, 9, 8, 0, 9, 4};
+  for (std::vector<int>* inner : {&solid, &cavity}) inner->insert(inner->end(), cube.begin(), cube.end());
+  const std::string twice = input_error([&] { closed_surface(mesh_of(CellType::triangle, points, solid)); });
+  EXPECT_TRUE(contains(twice, "is oriented against the others (1 of 2 parts)")) << twice;
+  EXPECT_NEAR(closed_surface(mesh_of(CellType::triangle, points, cavity)).volume, 1 - 0.55 / 6, 1e-14);
 }
 
 TEST(TouchingSurface, cells_at_random_say_what_is_inside) {
