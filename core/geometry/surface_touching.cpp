@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace fascia::surface_parts {
@@ -46,16 +47,22 @@ std::vector<Side> sides_of(const std::vector<Vec3d>& points, const std::vector<T
 }
 
 /// Each side that opens a wedge with the next one that closes it, inner pairs first.
-std::vector<std::array<int, 2>> pair_up(std::vector<Side> sides) {
+std::vector<std::array<int, 2>> pair_up(const std::vector<Side>& sides) {
   std::vector<std::array<int, 2>> pairs;
-  while (!sides.empty()) {
-    const std::size_t n = sides.size();
-    std::size_t k = 0;
-    while (!(sides[k].opens && !sides[(k + 1) % n].opens)) ++k;  // balanced: there is one
-    const std::size_t other = (k + 1) % n;
-    pairs.push_back({sides[k].triangle, sides[other].triangle});
-    sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(std::max(k, other)));
-    sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(std::min(k, other)));
+  std::vector<int> opened, closing;  // the triangles that wait: those that close pair with what opens last of all
+  for (const Side& side : sides) {
+    if (side.opens) {
+      opened.push_back(side.triangle);
+    } else if (opened.empty()) {
+      closing.push_back(side.triangle);
+    } else {
+      pairs.push_back({opened.back(), side.triangle});
+      opened.pop_back();
+    }
+  }
+  for (const int triangle : closing) {
+    pairs.push_back({opened.back(), triangle});  // balanced: there is one
+    opened.pop_back();
   }
   return pairs;
 }
@@ -148,6 +155,31 @@ bool branches(const std::vector<Triangle>& triangles) {
   return any;
 }
 
+std::vector<bool> bounding_triangles(const std::vector<Triangle>& triangles) {
+  const std::vector<Edge> edges = sorted_edges(triangles);
+  const Components patches(Neighbours(triangles.size(), edges));
+  const auto patch_of = [&](const Edge& edge) { return patches.of[at(edge.triangle)]; };
+  std::vector<int> net(at(patches.count), 0);  // of a patch at one edge: triangles forward less those backward
+  std::vector<bool> open(net.size(), false), cluster_open(net.size(), false);
+  Joined clusters(net.size());
+  for_each_run(edges, [&](std::span<const Edge> run) {
+    for (const Edge& edge : run) {
+      clusters.join(patch_of(run[0]), patch_of(edge));
+      net[at(patch_of(edge))] += edge.forward ? 1 : -1;
+    }
+    for (const Edge& edge : run) {
+      if (net[at(patch_of(edge))] != 0) open[at(patch_of(edge))] = true;
+      net[at(patch_of(edge))] = 0;
+    }
+  });
+  for_each_run(edges, [&](std::span<const Edge> run) {
+    if (!balanced(run)) cluster_open[at(clusters.root(patch_of(run[0])))] = true;
+  });
+  std::vector<bool> result;
+  for (const int patch : patches.of) result.push_back(!open[at(patch)] || !cluster_open[at(clusters.root(patch))]);
+  return result;
+}
+
 std::vector<TouchingEdge> touching_edges(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles) {
   std::vector<TouchingEdge> touching;
   for_each_run(sorted_edges(triangles), [&](std::span<const Edge> run) {
@@ -199,31 +231,30 @@ PartedSurface part_at(const std::vector<TouchingEdge>& touching, std::size_t poi
     const auto copy = copy_of_root.find(corners.root(triangle, node));
     return copy == copy_of_root.end() ? node : copy->second;
   };
+  std::map<int, std::vector<std::size_t>> halves;  // that were cut from a triangle
   const auto halve = [&](int triangle, int a, int b, int middle) {
     const auto has = [&](const Triangle& t) {
       return std::ranges::count(t.nodes, a) == 1 && std::ranges::count(t.nodes, b) == 1;
     };
     std::size_t piece = at(triangle);
-    for (std::size_t h = 0; h < result.half_of.size() && !has(triangles[piece]); ++h)
-      if (result.half_of[h] == triangle) piece = former + h;
+    std::vector<std::size_t>& cut = halves[triangle];
+    for (std::size_t h = 0; h < cut.size() && !has(triangles[piece]); ++h) piece = cut[h];
     Triangle other = triangles[piece];
     std::ranges::replace(triangles[piece].nodes, b, middle);
     std::ranges::replace(other.nodes, a, middle);
+    cut.push_back(triangles.size());
     triangles.push_back(other);
     result.half_of.push_back(triangle);
   };
-  for (const TouchingEdge& edge : touching)
-    for (std::size_t p = 1; p < edge.pairs.size(); ++p) {
-      const auto ends = [&](std::size_t pair) {
-        return std::pair(now(edge.pairs[pair][0], edge.low), now(edge.pairs[pair][0], edge.high));
-      };
-      bool shared = false;
-      for (std::size_t other = 0; other < p; ++other) shared = shared || ends(other) == ends(p);
-      if (!shared) continue;
-      const auto [a, b] = ends(p);
+  for (const TouchingEdge& edge : touching) {
+    std::set<std::pair<int, int>> taken;  // ends of the edge as wedges have it
+    for (const auto& pair : edge.pairs) {
+      const int a = now(pair[0], edge.low), b = now(pair[0], edge.high);
+      if (taken.emplace(a, b).second) continue;
       const int middle = add(a, b);
-      for (const int triangle : edge.pairs[p]) halve(triangle, a, b, middle);
+      for (const int triangle : pair) halve(triangle, a, b, middle);
     }
+  }
   result.triangles = std::move(triangles);
   return result;
 }

@@ -25,6 +25,10 @@ bool encloses(const std::vector<Triangle>& triangles);
 /// True where an edge of more than two triangles is not balanced.
 bool branches(const std::vector<Triangle>& triangles);
 
+/// For each triangle whether it bounds something: its patch, which hangs together across edges of two triangles, does
+/// alone, or together with all patches that hang on it.
+std::vector<bool> bounding_triangles(const std::vector<Triangle>& triangles);
+
 /// The surface's edges of more than two triangles that are balanced.
 std::vector<TouchingEdge> touching_edges(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles);
 
