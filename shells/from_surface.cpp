@@ -8,7 +8,6 @@
 #include "shells/surface_checks.hpp"
 
 #include <algorithm>
-#include <map>
 #include <span>
 #include <utility>
 
@@ -49,20 +48,34 @@ void report_choice(const Mesh& mesh, std::vector<std::string>& messages) {
     }
 }
 
-/// @throws InputError  an edge of three triangles or more, where the surface does not just touch itself
+/// The numbers of the triangles at an edge, the first few of many.
+std::string numbers_of(const std::vector<Triangle>& triangles, std::span<const Edge> edges) {
+  constexpr std::size_t most = 3;
+  const std::size_t named = edges.size() > most ? most : edges.size() - 1;
+  const auto number = [&](std::size_t e) { return std::to_string(triangles[at(edges[e].triangle)].file_number); };
+  std::string numbers = number(0);
+  for (std::size_t e = 1; e < named; ++e) numbers += ", " + number(e);
+  return numbers + " and " + (edges.size() > most ? std::to_string(edges.size() - most) + " more" : number(named));
+}
+
+/// @throws InputError  an edge of three triangles or more, where no surfaces that bound something just touch
 void check_edges(const Solid& sheet, const std::vector<Triangle>& triangles) {
   const std::vector<Edge> edges = sorted_edges(triangles);
   std::size_t first = 0, most = 0, count = 0;
+  std::vector<bool> bounds;  // of each triangle; once it is asked
+  const auto bounding = [&](const Edge& edge) -> bool {
+    if (bounds.empty()) bounds = bounding_triangles(triangles);
+    return bounds[at(edge.triangle)];
+  };
   for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
     for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
-    if (end - e <= 2 || balanced(std::span(edges).subspan(e, end - e))) continue;
+    const auto meeting = std::span(edges).subspan(e, end - e);
+    if (end - e <= 2 || (balanced(meeting) && std::ranges::all_of(meeting, bounding))) continue;
     if (count++ == 0) first = e, most = end - e;
   }
   if (count == 0) return;
   const auto node = [&](int n) { return std::to_string(sheet.point_file_number[at(n)]); };
-  const auto number = [&](std::size_t e) { return std::to_string(triangles[at(edges[e].triangle)].file_number); };
-  std::string numbers = number(first);
-  for (std::size_t e = first + 1; e < first + most; ++e) numbers += (e + 1 < first + most ? ", " : " and ") + number(e);
+  const std::string numbers = numbers_of(triangles, std::span(edges).subspan(first, most));
   const Edge& edge = edges[first];
   fail(sheet, "triangles " + numbers + " share the edge between nodes " + node(edge.low) + " and " + node(edge.high) +
                   ", at " + text((sheet.points[at(edge.low)] + sheet.points[at(edge.high)]) * 0.5) +
@@ -109,31 +122,65 @@ void make_unique(std::vector<int>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+/// Adds to groups the triangles that are the boundary of their volume cells.
+void add_boundaries(const std::vector<Cell>& volumes, const std::vector<Triangle>& triangles,
+                    std::vector<BodyGroup>& groups) {
+  std::vector<std::vector<int>> of_cell(volumes.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) of_cell[at(triangles[t].cell)].push_back(static_cast<int>(t));
+  const std::vector<int> first = first_copies(volumes);  // it has the triangles of those that repeat it
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    if (volumes[c].group < 0) continue;
+    std::vector<int>& cells = groups[at(volumes[c].group)].cells;
+    cells.insert(cells.end(), of_cell[at(first[c])].begin(), of_cell[at(first[c])].end());
+  }
+}
+
+/// @param used  what the triangles were made of
 /// @param node  of each point of `all`; −1 where it is none
-/// @param of_volumes  the triangles are the boundary of volume cells, whose file numbers they have
-std::vector<BodyGroup> groups_of(const Mesh& mesh, const Solid& all, const std::vector<Triangle>& triangles,
-                                 const std::vector<int>& node, bool of_volumes) {
+std::vector<BodyGroup> groups_of(const Mesh& mesh, const Solid& all, const Solid& used,
+                                 const std::vector<Triangle>& triangles, const std::vector<int>& node) {
   std::vector<BodyGroup> groups;
   for (const MeshGroup& g : mesh.groups) groups.push_back({g.name, g.number, g.dimension, {}, {}});
   const TriangleFinder finder(triangles);
-  std::multimap<std::int64_t, int> by_number;
-  if (of_volumes)
-    for (std::size_t t = 0; t < triangles.size(); ++t) by_number.emplace(triangles[t].file_number, static_cast<int>(t));
   for (const Cell& cell : all.cells) {
     if (cell.group < 0) continue;
     BodyGroup& group = groups[at(cell.group)];
     for (int n = 0; n < node_count(cell.type); ++n)
       if (const int i = node[at(cell.nodes[at(n)])]; i >= 0) group.nodes.push_back(i);
     add_triangles(cell, finder, group.cells);
-    if (!of_volumes || !is_volume(cell.type)) continue;
-    const auto [begin, end] = by_number.equal_range(cell.file_number);
-    for (auto t = begin; t != end; ++t) group.cells.push_back(t->second);
   }
+  if (is_volume(used.cells.front().type)) add_boundaries(used.cells, triangles, groups);
   for (BodyGroup& group : groups) {
     make_unique(group.nodes);
     make_unique(group.cells);
   }
   return groups;
+}
+
+/// Gives a group the new triangles and nodes. Of a node and its copies a group has those that its triangles use; where
+/// they use none of them, and in groups of points and lines, it has all.
+void part_group(BodyGroup& group, const PartedSurface& parted, int former_nodes, int former_triangles) {
+  const auto has = [](const std::vector<int>& members, int i) { return std::ranges::binary_search(members, i); };
+  for (int t = former_triangles; const int whole : parted.half_of) {
+    if (has(group.cells, whole)) group.cells.push_back(t);
+    ++t;
+  }
+  std::vector<int> used, chosen;  // nodes that its triangles use; nodes of which they choose among the copies
+  if (group.dimension >= 2)
+    for (const int t : group.cells)
+      for (const int node : parted.triangles[at(t)].nodes) used.push_back(node);
+  make_unique(used);
+  for (int added = former_nodes; const auto& [a, b] : parted.added) {
+    if (a == b && (has(used, a) || has(used, added))) chosen.push_back(a);
+    ++added;
+  }
+  make_unique(chosen);
+  for (int added = former_nodes; const auto& [a, b] : parted.added) {
+    const bool all = a == b ? !has(chosen, a) : used.empty();
+    if (has(used, added) || (all && has(group.nodes, a) && has(group.nodes, b))) group.nodes.push_back(added);
+    ++added;
+  }
+  std::erase_if(group.nodes, [&](int node) { return has(chosen, node) && !has(used, node); });
 }
 
 /// Gives what touches along edges nodes of its own there. Groups get the new nodes and triangles too.
@@ -158,19 +205,7 @@ void part_where_touching(ShellMesh& mesh) {
     mesh.triangles.push_back(t.nodes);
     mesh.file_number.push_back(t.file_number);
   }
-  const auto has = [](const std::vector<int>& members, int i) {
-    return std::ranges::find(members, i) != members.end();
-  };
-  for (BodyGroup& group : mesh.groups) {
-    for (int k = 0; const auto& [a, b] : parted.added) {
-      if (has(group.nodes, a) && has(group.nodes, b)) group.nodes.push_back(former_nodes + k);
-      ++k;
-    }
-    for (int k = 0; const int whole : parted.half_of) {
-      if (has(group.cells, whole)) group.cells.push_back(former + k);
-      ++k;
-    }
-  }
+  for (BodyGroup& group : mesh.groups) part_group(group, parted, former_nodes, former);
 }
 
 /// The number of each point among those that triangles use, in their order; −1 for the others.
@@ -202,8 +237,8 @@ ShellMesh shell_mesh(const Mesh& mesh) {
   for (const Cell& cell : all.cells)
     if (of_volumes ? is_volume(cell.type) : is_surface(cell.type)) cells.push_back(cell);
   const Solid used = with_cells(all, std::move(cells));
-  std::vector<Triangle> triangles =
-      of_volumes ? boundary_of_cells(used, result.messages) : triangles_of_cells(used, result.messages);
+  std::vector<Triangle> triangles = of_volumes ? boundary_of_cells(used, result.messages)
+                                               : triangles_of_cells(used, Surface::of_sheet, result.messages);
   orient_sheet(used, triangles, result.messages);
   check_edges(used, triangles);
 
@@ -211,7 +246,7 @@ ShellMesh shell_mesh(const Mesh& mesh) {
   result.nodes = std::move(surface.points);
   result.triangles = std::move(surface.triangles);
   for (const Triangle& t : triangles) result.file_number.push_back(t.file_number);
-  result.groups = groups_of(mesh, all, triangles, number_nodes(used, triangles), of_volumes);
+  result.groups = groups_of(mesh, all, used, triangles, number_nodes(used, triangles));
   part_where_touching(result);
   for (const BodyGroup& group : result.groups)
     if (group.nodes.empty())

@@ -32,7 +32,7 @@ ClosedSurface solid_of(const Solid& all, std::vector<std::string>& messages) {
 
 TriangleMesh sheet_of(const Solid& all, std::vector<std::string>& messages) {
   const Solid sheet = with_cells(all, cells_off_volumes(all));
-  std::vector<Triangle> triangles = triangles_of_cells(sheet, messages);
+  std::vector<Triangle> triangles = triangles_of_cells(sheet, Surface::of_sheet, messages);
   orient_sheet(sheet, triangles, messages);
   return compact(sheet, triangles);
 }

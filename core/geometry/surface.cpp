@@ -16,7 +16,7 @@ ClosedSurface closed_surface(const Mesh& mesh) {
   report_unused(mesh, messages);
   const Solid solid = make_solid(mesh, volume_mesh ? is_volume : is_surface, messages);
   std::vector<Triangle> triangles =
-      volume_mesh ? boundary_of_cells(solid, messages) : triangles_of_cells(solid, messages);
+      volume_mesh ? boundary_of_cells(solid, messages) : triangles_of_cells(solid, Surface::of_solid, messages);
   check_closed(solid, triangles, messages);
   if (!volume_mesh) orient_outward(solid, triangles, messages);
 

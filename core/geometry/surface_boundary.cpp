@@ -61,11 +61,10 @@ Face make_face(const Cell& cell, const LocalFace& local, int cell_index) {
 }
 
 /// Splits a quadrilateral at the node of the lowest index, so that both its cells split it alike.
-void append_triangles(std::span<const int> nodes, std::int64_t file_number, std::vector<Triangle>& triangles) {
+void append_triangles(std::span<const int> nodes, std::vector<Triangle>& triangles) {
   const std::size_t n = nodes.size();
   const auto s = static_cast<std::size_t>(std::min_element(nodes.begin(), nodes.end()) - nodes.begin());
-  for (std::size_t k = 1; k + 1 < n; ++k)
-    triangles.push_back({{nodes[s], nodes[(s + k) % n], nodes[(s + k + 1) % n]}, file_number});
+  for (std::size_t k = 1; k + 1 < n; ++k) triangles.push_back({{nodes[s], nodes[(s + k) % n], nodes[(s + k + 1) % n]}});
 }
 
 /// Volume by the divergence theorem over the cell's split faces.
@@ -73,7 +72,7 @@ double cell_volume(const Solid& solid, const Cell& cell) {
   std::vector<Triangle> triangles;
   for (const LocalFace& local : faces_of(cell.type)) {
     const Face face = make_face(cell, local, 0);
-    append_triangles(std::span(face.nodes).first(static_cast<std::size_t>(face.size)), 0, triangles);
+    append_triangles(std::span(face.nodes).first(static_cast<std::size_t>(face.size)), triangles);
   }
   return triangles.empty() ? 0 : enclosed_volume(solid.points, triangles);
 }
@@ -109,49 +108,81 @@ bool check_orientation(const Solid& solid, const std::vector<Cell>& cells) {
                   std::to_string(cells.size()) + " cells; orient all cells alike");
 }
 
-/// Volume cells without those that a file repeats, because they belong to several groups or by mistake, which a message
-/// says. Of surface cells those of one group are all kept.
-std::vector<Cell> distinct_cells(const Solid& solid, std::vector<std::string>& messages) {
-  struct Entry {
-    std::array<int, 8> key;
-    int cell;
-  };
-  std::vector<Entry> entries;
-  entries.reserve(solid.cells.size());
-  for (std::size_t c = 0; c < solid.cells.size(); ++c) {
-    Entry entry{solid.cells[c].nodes, static_cast<int>(c)};
-    const int size = node_count(solid.cells[c].type);
-    std::fill(entry.key.begin() + size, entry.key.end(), -1);
-    std::sort(entry.key.begin(), entry.key.end());
-    entries.push_back(entry);
+using CellKey = std::array<int, 8>;
+
+CellKey sorted_nodes(const Cell& cell) {
+  CellKey key = cell.nodes;
+  std::fill(key.begin() + node_count(cell.type), key.end(), -1);
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+/// The nodes of a surface cell from the lowest on, in their order around it.
+CellKey nodes_around(const Cell& cell) {
+  CellKey key = cell.nodes;
+  const auto end = key.begin() + node_count(cell.type);
+  std::fill(end, key.end(), -1);
+  std::rotate(key.begin(), std::min_element(key.begin(), end), end);
+  return key;
+}
+
+/// For each cell the first of the same key.
+template <class Key>
+std::vector<int> first_of_key(const std::vector<Cell>& cells, const Key& key_of_cell) {
+  std::vector<std::pair<CellKey, int>> entries;
+  entries.reserve(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) entries.emplace_back(key_of_cell(cells[c]), static_cast<int>(c));
+  std::sort(entries.begin(), entries.end());
+  std::vector<int> first(cells.size());
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const bool again = e > 0 && entries[e].first == entries[e - 1].first;
+    const auto cell = static_cast<std::size_t>(entries[e].second);
+    first[cell] = again ? first[static_cast<std::size_t>(entries[e - 1].second)] : entries[e].second;
   }
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.cell < b.cell; });
-  std::vector<bool> keep(solid.cells.size(), true);
-  std::size_t copies = 0;
-  std::string first;
-  for (std::size_t e = 1; e < entries.size(); ++e) {
-    if (entries[e].key != entries[e - 1].key) continue;
-    const Cell& a = solid.cells[static_cast<std::size_t>(entries[e - 1].cell)];
-    const Cell& b = solid.cells[static_cast<std::size_t>(entries[e].cell)];
-    if (a.group == b.group && !is_volume(b.type)) continue;
-    if (a.group == b.group) {
-      // Four nodes make one tetrahedron only; of other cells their order may make another shape.
-      if (b.type != CellType::tetrahedron && a.nodes != b.nodes)
-        fail(solid, "cells " + number_of(a) + " and " + number_of(b) + " have the same nodes; remove one of them");
-      if (copies++ == 0) first = number_of(b) + ", which repeats cell " + number_of(a);
-    }
-    keep[static_cast<std::size_t>(entries[e].cell)] = false;
+  return first;
+}
+
+/// Indices of the volume cells without those that a file repeats, because they belong to several groups or by mistake,
+/// which a message says.
+std::vector<int> distinct_volumes(const Solid& solid, std::vector<std::string>& messages) {
+  const std::vector<Cell>& cells = solid.cells;
+  const std::vector<int> first = first_copies(cells);
+  std::vector<std::array<int, 3>> copies;  // the first, the group, the cell
+  std::vector<int> kept;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    copies.push_back({first[c], cells[c].group, static_cast<int>(c)});
+    if (first[c] == static_cast<int>(c)) kept.push_back(first[c]);
   }
-  std::vector<Cell> cells;
-  for (std::size_t c = 0; c < keep.size(); ++c)
-    if (keep[c]) cells.push_back(solid.cells[c]);
-  if (copies > 0)
+  std::sort(copies.begin(), copies.end());
+  std::size_t count = 0;
+  std::string which;
+  for (std::size_t k = 1; k < copies.size(); ++k) {
+    if (copies[k][0] != copies[k - 1][0] || copies[k][1] != copies[k - 1][1]) continue;
+    const Cell& a = cells[static_cast<std::size_t>(copies[k - 1][2])];
+    const Cell& b = cells[static_cast<std::size_t>(copies[k][2])];
+    // Four nodes make one tetrahedron only; of other cells their order may make another shape.
+    if (b.type != CellType::tetrahedron && a.nodes != b.nodes)
+      fail(solid, "cells " + number_of(a) + " and " + number_of(b) + " have the same nodes; remove one of them");
+    if (count++ == 0) which = number_of(b) + ", which repeats cell " + number_of(a);
+  }
+  if (count > 0)
     messages.push_back(
-        solid.file + ": left out " + std::to_string(copies) +
-        (copies == 1 ? " cell that repeats another (cell " : " cells that repeat others (the first: cell ") + first +
+        solid.file + ": left out " + std::to_string(count) +
+        (count == 1 ? " cell that repeats another (cell " : " cells that repeat others (the first: cell ") + which +
         ")");
-  return cells;
+  return kept;
+}
+
+/// Indices of the surface cells without those that repeat others because they belong to several groups. Those that one
+/// group repeats stay, and of a solid those that face the other way: without_repeats() judges them.
+std::vector<int> distinct_surfaces(const Solid& solid, Surface surface) {
+  const std::vector<int> first =
+      surface == Surface::of_solid ? first_of_key(solid.cells, nodes_around) : first_copies(solid.cells);
+  std::vector<int> kept;
+  for (std::size_t c = 0; c < first.size(); ++c)
+    if (solid.cells[c].group == solid.cells[static_cast<std::size_t>(first[c])].group)
+      kept.push_back(static_cast<int>(c));
+  return kept;
 }
 
 std::vector<Face> sorted_faces(const std::vector<Cell>& cells) {
@@ -181,6 +212,28 @@ double relative_area(const Solid& solid, const Triangle& t) {
   return longest > 0 ? norm(cross(a, b)) / (2 * longest) : 0;
 }
 
+/// True where the triangles abc and acd, the halves of a quadrilateral, face the same way.
+bool agree(const Solid& solid, int a, int b, int c, int d) {
+  const auto point = [&](int node) { return solid.points[static_cast<std::size_t>(node)]; };
+  const Vec3d diagonal = point(c) - point(a);
+  return dot(cross(point(b) - point(a), diagonal), cross(diagonal, point(d) - point(a))) > 0;
+}
+
+/// The triangles of a surface cell. A quadrilateral is split at its lowest node, unless only the other diagonal lies
+/// inside; one that faces the other way is split alike.
+void append_surface(const Solid& solid, const Cell& cell, std::vector<Triangle>& triangles) {
+  const CellKey n = nodes_around(cell);
+  if (cell.type == CellType::quadrilateral) {
+    const int b = std::min(n[1], n[3]), d = std::max(n[1], n[3]);
+    if (!agree(solid, n[0], b, n[2], d) && agree(solid, b, n[2], d, n[0])) {
+      triangles.push_back({{n[1], n[2], n[3]}});
+      triangles.push_back({{n[1], n[3], n[0]}});
+      return;
+    }
+  }
+  append_triangles(std::span(n).first(static_cast<std::size_t>(node_count(cell.type))), triangles);
+}
+
 using TriangleKey = std::array<int, 3>;
 
 TriangleKey key_of(int a, int b, int c) {
@@ -207,6 +260,8 @@ std::vector<TriangleKey> face_triangles(const Solid& solid) {
 
 }  // namespace
 
+std::vector<int> first_copies(const std::vector<Cell>& cells) { return first_of_key(cells, sorted_nodes); }
+
 std::vector<Cell> cells_off_volumes(const Solid& solid) {
   const std::vector<TriangleKey> faces = face_triangles(solid);
   const auto is_face = [&](const Cell& cell, std::size_t a, std::size_t b, std::size_t c) {
@@ -223,7 +278,9 @@ std::vector<Cell> cells_off_volumes(const Solid& solid) {
 }
 
 std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::string>& messages) {
-  const std::vector<Cell> cells = distinct_cells(solid, messages);
+  const std::vector<int> kept = distinct_volumes(solid, messages);
+  std::vector<Cell> cells;
+  for (const int c : kept) cells.push_back(solid.cells[static_cast<std::size_t>(c)]);
   const bool inverted = check_orientation(solid, cells);
   if (inverted)
     messages.push_back(solid.file + ": all " + std::to_string(cells.size()) + " cells are inverted; turned over");
@@ -236,25 +293,35 @@ std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::str
     if (end - f > 2 || (end - f == 2 && !opposite(faces[f], faces[f + 1])))
       fail(solid, "cells " + number_of(cell(f)) + " and " + number_of(cell(f + 1)) +
                       " overlap: they lie on the same side of a common face; mesh again");
-    if (end - f == 1)
-      append_triangles(std::span(faces[f].nodes).first(static_cast<std::size_t>(faces[f].size)), cell(f).file_number,
-                       triangles);
+    if (end - f > 1) continue;
+    const std::size_t former = triangles.size();
+    append_triangles(std::span(faces[f].nodes).first(static_cast<std::size_t>(faces[f].size)), triangles);
+    for (std::size_t t = former; t < triangles.size(); ++t) {
+      triangles[t].file_number = cell(f).file_number;
+      triangles[t].cell = kept[static_cast<std::size_t>(faces[f].cell)];
+    }
   }
   if (inverted)
     for (Triangle& t : triangles) std::swap(t.nodes[1], t.nodes[2]);
   return triangles;
 }
 
-std::vector<Triangle> triangles_of_cells(const Solid& solid, std::vector<std::string>& messages) {
+std::vector<Triangle> triangles_of_cells(const Solid& solid, Surface surface, std::vector<std::string>& messages) {
   std::vector<Triangle> triangles;
-  for (const Cell& cell : distinct_cells(solid, messages))
-    append_triangles(std::span(cell.nodes).first(static_cast<std::size_t>(node_count(cell.type))), cell.file_number,
-                     triangles);
+  for (const int c : distinct_surfaces(solid, surface)) {
+    const Cell& cell = solid.cells[static_cast<std::size_t>(c)];
+    const std::size_t former = triangles.size();
+    append_surface(solid, cell, triangles);
+    for (std::size_t t = former; t < triangles.size(); ++t) {
+      triangles[t].file_number = cell.file_number;
+      triangles[t].cell = c;
+    }
+  }
   for (const Triangle& t : triangles)
     if (!(relative_area(solid, t) > flat_area))
       fail(solid, "triangle " + std::to_string(t.file_number) + " is flat (its area is below 1e-10 of its longest " +
                       "edge squared); remove it or mesh again");
-  return without_repeats(solid, std::move(triangles), messages);
+  return without_repeats(solid, surface, std::move(triangles), messages);
 }
 
 }  // namespace fascia::surface_parts

@@ -22,7 +22,11 @@ struct Cell {
 struct Triangle {
   std::array<int, 3> nodes{};
   std::int64_t file_number = 0;
+  int cell = -1;  ///< index of that cell, where it is known
 };
+
+/// What triangles make up: of a solid they are the boundary, of a sheet the matter.
+enum class Surface { of_solid, of_sheet };
 
 /// Cells that bound or fill a solid, or make up a sheet or lines, on welded points.
 struct Solid {
@@ -54,18 +58,22 @@ Solid with_cells(const Solid& solid, std::vector<Cell> cells);
 [[noreturn]] void fail(const Solid& solid, const std::string& message);
 
 /// The cells' faces that no other cell has, outward. Turns the solid over where all cells are inverted.
-/// Copies of cells are left out, with a message.
+/// Copies of cells are left out, with a message. Triangles know their cells.
 /// @throws InputError  flat cells, a mixture of orientations, overlapping cells
 std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::string>& messages);
 
-/// Triangles of a surface mesh, quadrilaterals split at the node of the lowest index, without_repeats().
-/// @throws InputError  flat triangles
-std::vector<Triangle> triangles_of_cells(const Solid& solid, std::vector<std::string>& messages);
+/// For each cell the first that has the same nodes in any order; itself where none before it has them.
+std::vector<int> first_copies(const std::vector<Cell>& cells);
 
-/// Leaves out triangles that have the nodes of others, with a message. Where the rest would branch, but closes without
-/// both of two that lie back to back, both go; where it closes only with a triangle twice, because it lies on itself,
-/// both stay.
-std::vector<Triangle> without_repeats(const Solid& solid, std::vector<Triangle> triangles,
+/// Triangles of a surface mesh, without_repeats(). Quadrilaterals are split at the node of the lowest index, or across
+/// it where the surface would fold back on itself there: a concave one has one diagonal inside.
+/// @throws InputError  flat triangles
+std::vector<Triangle> triangles_of_cells(const Solid& solid, Surface surface, std::vector<std::string>& messages);
+
+/// Leaves out triangles that have the nodes of others, with a message. Where the boundary of a solid would branch, but
+/// closes without both of two that lie back to back, both go; where it closes only with a triangle twice, because it
+/// lies on itself, both stay.
+std::vector<Triangle> without_repeats(const Solid& solid, Surface surface, std::vector<Triangle> triangles,
                                       std::vector<std::string>& messages);
 
 /// The surface cells that are no face of a volume cell. A quadrilateral is one in whole or as two triangles, and a

@@ -72,7 +72,7 @@ std::vector<Triangle> those(const std::vector<Triangle>& triangles, const std::v
 
 }  // namespace
 
-std::vector<Triangle> without_repeats(const Solid& solid, std::vector<Triangle> triangles,
+std::vector<Triangle> without_repeats(const Solid& solid, Surface surface, std::vector<Triangle> triangles,
                                       std::vector<std::string>& messages) {
   const std::vector<Copies> all = find_copies(triangles);
   if (all.empty()) return triangles;
@@ -85,7 +85,7 @@ std::vector<Triangle> without_repeats(const Solid& solid, std::vector<Triangle> 
   };
   const std::size_t count = triangles.size();
   std::vector<bool> keep = kept(count, all, one);
-  if (branches(those(triangles, keep))) {
+  if (surface == Surface::of_solid && branches(those(triangles, keep))) {
     for (const std::vector<bool>& other : {kept(count, all, one_of_rest), kept(count, all, rest)}) {
       const std::vector<Triangle> chosen = those(triangles, other);
       if (chosen.empty() || !encloses(chosen)) continue;

@@ -5,6 +5,7 @@
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <array>
+#include <cmath>
 #include <random>
 
 // Solids that touch themselves along edges and in points, and triangles that a file has twice.
@@ -165,6 +166,49 @@ TEST(TouchingSurface, bodies_on_a_common_face) {
   const InsideTest inside(closed_surface(nested).mesh);
   EXPECT_TRUE(inside.contains({{0.3, 0.3, 0.1}}) && inside.contains({{0.25, 0.25, 2}}));
   EXPECT_FALSE(inside.contains({{0.3, 0.3, -0.1}}));
+}
+
+TEST(TouchingSurface, wall_between_two_chambers) {
+  // Two boxes side by side as closed surfaces, both with the wall between them.
+  std::vector<Vec3d> points = samples::cube_points();
+  points.insert(points.end(), {{{2, 0, 0}}, {{2, 1, 0}}, {{2, 0, 1}}, {{2, 1, 1}}});
+  Mesh mesh = mesh_of(CellType::quadrilateral, points,
+                      {0, 3, 2, 1, 4, 5,  6,  7, 0, 1, 5,  4, 1, 2, 6,  5,  2, 3, 7, 6,  3, 0, 4, 7,
+                       1, 2, 9, 8, 5, 10, 11, 6, 1, 8, 10, 5, 8, 9, 11, 10, 9, 2, 6, 11, 2, 1, 5, 6});
+  for (const bool grouped : {false, true}) {
+    if (grouped) {
+      mesh.groups = {{"first", 1, 2}, {"second", 2, 2}};
+      for (std::size_t c = 0; c < 12; ++c) mesh.blocks[0].group[c] = c < 6 ? 0 : 1;
+    }
+    const ClosedSurface solid = closed_surface(mesh);
+    EXPECT_NEAR(solid.volume, 2, 1e-14);
+    EXPECT_EQ(solid.mesh.triangles.size(), 20u) << "of a solid the wall encloses nothing";
+    EXPECT_EQ(mesh_parts(mesh).sheet.triangles.size(), 22u) << "of a sheet it is matter";
+  }
+}
+
+TEST(TouchingSurface, cells_that_repeat_others_of_their_groups) {
+  Mesh mesh = cubes(1, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  mesh.groups = {{"a", 1, 3}, {"b", 2, 3}};
+  mesh.blocks[0].group = {0, 1, 0, 1};
+  const ClosedSurface s = closed_surface(mesh);
+  EXPECT_NEAR(s.volume, 1, 1e-15);
+  EXPECT_EQ(s.messages, std::vector<std::string>{"sample.msh: left out 2 cells that repeat others (the first: cell 3, "
+                                                 "which repeats cell 1)"});
+}
+
+TEST(TouchingSurface, many_triangles_at_one_edge) {
+  // Tetrahedra around the z axis, each apart from its neighbours.
+  const int count = 2000;
+  std::vector<Vec3d> points{{{0, 0, 0}}, {{0, 0, 1}}};
+  std::vector<int> nodes;
+  for (int k = 0; k < count; ++k) {
+    for (const double a : {6.28 * k / count, 6.28 * (k + 0.5) / count})
+      points.push_back({{std::cos(a), std::sin(a), 0.5}});
+    const int b = 2 + 2 * k, c = b + 1;
+    nodes.insert(nodes.end(), {0, b, 1, 0, c, b, 1, b, c, 0, 1, c});
+  }
+  EXPECT_NEAR(closed_surface(mesh_of(CellType::triangle, points, nodes)).volume, 3.14 / 6, 1e-3);
 }
 
 TEST(TouchingSurface, cells_that_repeat_others) {

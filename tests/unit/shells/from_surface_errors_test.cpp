@@ -32,6 +32,28 @@ TEST(ShellFromSurfaceErrors, ThreeTrianglesAtAnEdge) {
   EXPECT_NE(walls.find(" such edges)"), std::string::npos) << walls;
 }
 
+TEST(ShellFromSurfaceErrors, SheetsThatCross) {
+  // Four wings at an edge bound nothing, whichever way they face.
+  const std::vector<Vec3d> points{{{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}, {{-1, 0, 0}}, {{0, 1, 0}}, {{0, -1, 0}}};
+  for (const std::vector<int>& nodes :
+       {std::vector<int>{0, 1, 2, 1, 0, 3, 0, 1, 4, 1, 0, 5}, std::vector<int>{0, 1, 2, 1, 0, 3, 0, 1, 4, 0, 1, 5}}) {
+    const std::string error = error_of(mesh_of(CellType::triangle, points, nodes));
+    EXPECT_NE(error.find("triangles 1, 2, 3 and 1 more share the edge between nodes 1 and 2"), std::string::npos)
+        << error;
+  }
+}
+
+TEST(ShellFromSurfaceErrors, WallThatTwoChambersShare) {
+  // Two boxes side by side, both with the wall between them: of a shell it is matter, and no third may meet there.
+  std::vector<Vec3d> points = samples::cube_points();
+  points.insert(points.end(), {{{2, 0, 0}}, {{2, 1, 0}}, {{2, 0, 1}}, {{2, 1, 1}}});
+  Mesh mesh = mesh_of(CellType::quadrilateral, points,
+                      {0, 3, 2, 1, 4, 5,  6,  7, 0, 1, 5,  4, 1, 2, 6,  5,  2, 3, 7, 6,  3, 0, 4, 7,
+                       1, 2, 9, 8, 5, 10, 11, 6, 1, 8, 10, 5, 8, 9, 11, 10, 9, 2, 6, 11, 2, 1, 5, 6});
+  const std::string error = error_of(mesh);
+  EXPECT_NE(error.find("make the parts that branch off bodies of their own"), std::string::npos) << error;
+}
+
 TEST(ShellFromSurfaceErrors, OneSideOnly) {
   std::vector<Vec3d> points;
   std::vector<int> nodes;

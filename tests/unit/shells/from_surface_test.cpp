@@ -78,9 +78,59 @@ TEST(ShellFromSurface, SkinThatTouchesItselfIsSplitThere) {
       "where a part would come loose (1)");
   ASSERT_EQ(shell.groups.size(), 1u);
   EXPECT_EQ(shell.groups[0].cells.size(), 12u);
+  EXPECT_EQ(shell.groups[0].nodes.size(), 8u) << "and nothing of the other cube";
   for (const int t : shell.groups[0].cells)
     for (const int node : shell.triangles[at(t)])
       EXPECT_TRUE(std::ranges::count(shell.groups[0].nodes, node) == 1) << "copies are in the group too";
+}
+
+TEST(ShellFromSurface, GroupsOfWhatTouchesHaveTheirOwnSide) {
+  // The same two cubes, each a group; and the edge between them, which has the nodes of both sides.
+  std::vector<Vec3d> points = cube_points();
+  points.insert(points.end(), {{{2, 1, 0}}, {{2, 2, 0}}, {{1, 2, 0}}, {{2, 1, 1}}, {{2, 2, 1}}, {{1, 2, 1}}});
+  Mesh mesh = mesh_of(CellType::quadrilateral, points,
+                      {0, 3,  2, 1, 4, 5,  6,  7,  0, 1, 5,  4, 1, 2, 6,  5,  2, 3,  7,  6,  3,  0, 4, 7,
+                       2, 10, 9, 8, 6, 11, 12, 13, 2, 8, 11, 6, 8, 9, 12, 11, 9, 10, 13, 12, 10, 2, 6, 13});
+  mesh.groups = {{"left", 1, 2}, {"right", 2, 2}, {"seam", 3, 1}};
+  for (std::size_t c = 0; c < 12; ++c) mesh.blocks[0].group[c] = c < 6 ? 0 : 1;
+  add_block(mesh, CellType::line, {2, 6}, 2, 13);
+  const ShellMesh shell = shell_mesh(mesh);
+  ASSERT_EQ(shell.groups.size(), 3u);
+  EXPECT_EQ(shell.groups[2].nodes.size(), 3u);
+  for (std::size_t g = 0; g < 2; ++g) {
+    std::set<int> used;
+    for (const int t : shell.groups[g].cells) used.insert(shell.triangles[at(t)].begin(), shell.triangles[at(t)].end());
+    EXPECT_EQ(shell.groups[g].nodes, std::vector<int>(used.begin(), used.end())) << g;
+    EXPECT_EQ(used.size(), 8u);
+  }
+}
+
+TEST(ShellFromSurface, GroupsOfVolumeCellsWithOneNumber) {
+  const std::vector<Vec3d> points{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}},
+                                  {{3, 0, 0}}, {{4, 0, 0}}, {{3, 1, 0}}, {{3, 0, 1}}};
+  Mesh mesh = mesh_of(CellType::tetrahedron, points, {0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7});
+  mesh.groups = {{"A", 1, 3}, {"B", 2, 3}, {"C", 3, 3}};
+  mesh.blocks[0].group = {0, 1, 2};
+  mesh.blocks[0].file_number = {1, 1, 1};
+  const ShellMesh shell = shell_mesh(mesh);
+  const std::vector<int> a = shell.groups[0].cells, b = shell.groups[1].cells;
+  EXPECT_EQ(a.size(), 4u);
+  EXPECT_EQ(b.size(), 4u);
+  for (const int t : a) EXPECT_EQ(std::ranges::count(b, t), 0);
+  EXPECT_EQ(shell.groups[2].cells, b) << "it repeats the cell of B";
+}
+
+TEST(ShellFromSurface, ConcaveQuadrilateralsAreCutInside) {
+  const std::vector<Vec3d> points{{{0, 0, 0}}, {{2, 1, 0}}, {{0, 2, 0}}, {{1, 1, 0}}};
+  for (int start = 0; start < 4; ++start) {
+    std::vector<int> nodes;
+    for (int n = 0; n < 4; ++n) nodes.push_back((start + n) % 4);
+    EXPECT_DOUBLE_EQ(area(shell_mesh(mesh_of(CellType::quadrilateral, points, nodes))), 1) << start;
+    std::vector<Vec3d> moved;  // the same shape from another corner
+    for (const int n : nodes) moved.push_back(points[at(n)]);
+    EXPECT_DOUBLE_EQ(area(shell_mesh(mesh_of(CellType::quadrilateral, moved, {0, 1, 2, 3}))), 1) << start;
+    EXPECT_DOUBLE_EQ(area(shell_mesh(mesh_of(CellType::quadrilateral, moved, {3, 2, 1, 0}))), 1) << start;
+  }
 }
 
 TEST(ShellFromSurface, EdgeWhoseEndsHangTogetherGetsANodeInItsMiddle) {
