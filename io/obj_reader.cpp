@@ -54,9 +54,9 @@ class ObjParser {
     if (place_ >= text_.size()) return false;
     line_ = next_line_;
     for (bool continued = true; continued && place_ < text_.size();) {
-      const std::size_t end = std::min(text_.find('\n', place_), text_.size());
-      std::string_view line = text_.substr(place_, end - place_);
-      place_ = end + 1;
+      const LineEnd at = line_end(text_, place_);
+      std::string_view line = text_.substr(place_, at.end - place_);
+      place_ = at.next;
       ++next_line_;
       line = line.substr(0, line.find('#'));
       while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);

@@ -46,9 +46,9 @@ class OffParser {
   void next_line() {
     words_.clear();
     while (words_.empty() && place_ < text_.size()) {
-      const std::size_t end = std::min(text_.find('\n', place_), text_.size());
-      std::string_view line = text_.substr(place_, end - place_);
-      place_ = end + 1;
+      const LineEnd at = line_end(text_, place_);
+      std::string_view line = text_.substr(place_, at.end - place_);
+      place_ = at.next;
       ++line_;
       line = line.substr(0, line.find('#'));
       for (std::size_t begin = 0, stop = 0; begin < line.size(); begin = stop) {

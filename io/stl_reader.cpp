@@ -20,6 +20,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "binary STL is read as it lies in memory");
 
 /// A header of any bytes, the number of triangles, and of each its normal, corners and two more bytes.
+constexpr std::size_t kStartOfText = 512;
 constexpr std::size_t kHeader = 80, kStart = kHeader + sizeof(std::uint32_t), kTriangle = 50, kNormal = 12;
 
 class StlParser {
@@ -51,11 +52,14 @@ class StlParser {
     return value;
   }
 
-  /// Some binary files begin with "solid" too: their length tells them apart, or a zero byte, which no text has.
+  /// Some binary files begin with "solid" too: their length tells them apart, or the words of a first triangle, or a
+  /// zero byte, which no text should have.
   /// @param text  the file, if it is text
   bool is_binary(std::string_view text) const {
-    if (text.find('\0') != std::string_view::npos) return true;
     if (bytes_.size() >= kStart && bytes_.size() == kStart + kTriangle * at<std::uint32_t>(kHeader)) return true;
+    const std::string_view start = text.substr(0, kStartOfText);
+    if (start.find("facet") != std::string_view::npos && start.find("vertex") != std::string_view::npos) return false;
+    if (text.find('\0') != std::string_view::npos) return true;
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return false;
     return !is_word(text.substr(begin, 5), "solid");
@@ -135,7 +139,7 @@ class StlParser {
     fail("found \"end\" and then " + said(what) + "; must be endsolid, endfacet or endloop");
   }
 
-  void skip_line() { place_ = std::min(bytes_.find('\n', place_), bytes_.size()); }
+  void skip_line() { place_ = line_end(bytes_, place_).end; }
 
   static std::string said(std::string_view word) { return word.empty() ? "the end of the file" : quoted(word); }
 

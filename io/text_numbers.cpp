@@ -14,6 +14,12 @@ std::string_view without_plus(std::string_view word) {
 
 }  // namespace
 
+LineEnd line_end(std::string_view text, std::size_t begin) {
+  const std::size_t end = text.find_first_of("\r\n", begin);
+  if (end == std::string_view::npos) return {text.size(), text.size()};
+  return {end, end + (text.substr(end, 2) == "\r\n" ? 2 : 1)};
+}
+
 std::optional<std::int64_t> to_integer(std::string_view word) {
   word = without_plus(word);
   std::int64_t value = 0;

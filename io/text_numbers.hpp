@@ -18,6 +18,12 @@ std::optional<std::int64_t> to_integer(std::string_view word);
 /// A finite number that is all of the word, or nothing.
 std::optional<double> to_number(std::string_view word);
 
+/// Where a line ends, and the next one begins: at \n, \r\n, or \r alone as old systems have it.
+struct LineEnd {
+  std::size_t end = 0, next = 0;
+};
+LineEnd line_end(std::string_view text, std::size_t begin);
+
 /// A text without what some programs put around it: the mark of UTF-8 at its start; zero bytes and the end-of-file mark
 /// of CP/M (0x1A) behind its last line.
 struct BareText {

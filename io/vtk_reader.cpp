@@ -20,6 +20,7 @@
 
 #include <exception>
 #include <fstream>
+#include <regex>
 
 namespace fascia::io {
 namespace {
@@ -61,9 +62,12 @@ std::string true_ending(const std::filesystem::path& path, const std::string& en
   std::ifstream stream(path, std::ios::binary);
   stream.read(start.data(), static_cast<std::streamsize>(longest));
   start.resize(static_cast<std::size_t>(stream.gcount()));
-  if (!start.starts_with('<') || start.find("<VTKFile") == std::string::npos) return ending;
-  if (start.find("\"UnstructuredGrid\"") != std::string::npos) return ".vtu";
-  return start.find("\"PolyData\"") != std::string::npos ? ".vtp" : ending;
+  if (start.starts_with("\xEF\xBB\xBF")) start.erase(0, 3);  // a byte order mark
+  std::smatch type;
+  static const std::regex kRoot(R"(<VTKFile[^>]*\btype\s*=\s*["'](\w+)["'])");
+  if (!start.starts_with('<') || !std::regex_search(start, type, kRoot)) return ending;
+  if (type[1] == "UnstructuredGrid") return ".vtu";
+  return type[1] == "PolyData" ? ".vtp" : ending;
 }
 
 Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mid_nodes) {

@@ -45,6 +45,11 @@ TEST(StlReader, EndsInTwoWordsAndStrayBytesAreRead) {
   const TemporaryDirectory directory;
   std::string text = "solid a\n" + facet("0 0 0", "0 0 1", "0 1e-3 0");
   for (const std::string word : {"loop", "facet"}) text.replace(text.find("end" + word), 3, "END ");
+  for (const std::string stray : {std::string("exported by hand\n"), std::string("\0\n", 2)}) {
+    const auto file = directory.write("a.stl", stray + text + "endsolid\n");
+    EXPECT_NE(input_error([&] { read_mesh(file); }).find("a.stl:1: found "), std::string::npos)
+        << input_error([&] { read_mesh(file); });
+  }
   for (const char* end : {"end solid", "end solid a\n", "End  Solid\n\x1A"}) {
     const Mesh mesh = read_mesh(directory.write("a.stl", text + end));
     EXPECT_EQ(mesh.points.size(), 3u) << end;

@@ -103,6 +103,16 @@ TEST(ObjReader, relative_indices_and_continued_lines) {
   EXPECT_NEAR(closed_surface(read_mesh(file)).volume, 1. / 6, 1e-15);
 }
 
+TEST(ObjReader, lines_end_as_on_any_system) {
+  const TemporaryDirectory directory;
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text;
+    for (const char* line : {"v 0 0 0", "v 1 0 0", "v 0 1 0", "f 1 2 3", "f 1 2 9"}) text += line + end;
+    const auto file = directory.write("a.obj", text);
+    EXPECT_EQ(input_error([&] { read_mesh(file); }).substr(file.string().size()).substr(0, 3), ":5:") << text;
+  }
+}
+
 TEST(ObjReader, stray_bytes_around_the_text_are_left_out) {
   const TemporaryDirectory directory;
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -123,8 +133,10 @@ TEST(VtkReader, xml_in_a_legacy_file_is_read_as_what_it_is) {
       "0 1 0</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 "
       "2</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray type=\"UInt8\" "
       "Name=\"types\" format=\"ascii\">5</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n";
-  for (const char* start : {"", "<?xml version=\"1.0\"?>\n"}) {
-    const auto file = directory.write("a.vtk", start + grid);
+  std::string single = grid;  // the quotes that XML has too
+  std::replace(single.begin(), single.end(), '"', '\'');
+  for (const std::string& text : {grid, "<?xml version=\"1.0\"?>\n" + grid, "\xEF\xBB\xBF" + grid, single}) {
+    const auto file = directory.write("a.vtk", text);
     const Mesh mesh = read_mesh(file);
     EXPECT_EQ(mesh.points.size(), 3u);
     EXPECT_EQ(mesh.messages,
