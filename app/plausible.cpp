@@ -7,28 +7,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <sstream>
 
 namespace fascia::app {
 namespace {
 
 // Limits, each with what lies just inside.
-constexpr double kSoftest = 20, kStiffest = 1.5e12;       // [Pa] mucus and loose gels; diamond
-constexpr double kLightest = 15, kHeaviest = 23000;       // [kg/m³] aerogel-like foams, lungs: 200; platinum
-constexpr double kLightestOfAMass = 0.05;                 // [kg/m³] where the mass is given: scaled models
-constexpr double kMetal = 4000, kSoftForAMetal = 1e9;     // [kg/m³], [Pa] lead: 11,300 and 16 GPa
-constexpr double kWatery = 1300, kStiffForTissue = 3e10;  // [kg/m³], [Pa] bone: 2000 and 20 GPa
-constexpr double kFoam = 700;                             // [kg/m³] lighter bodies may be auxetic
-constexpr double kSoft = 1e8;                             // [Pa] tissue, gel, rubber
-constexpr double kLongestSoft = 20, kLongest = 5000;      // [m]
-constexpr double kHeaviestSoft = 5000;                    // [kg]
-constexpr double kShortest = 1e-6;                        // [m]
-constexpr double kTiny = 1e-4, kUsual = 0.01;             // [m] length after and before transform.scale
-constexpr double kThinnest = 5000;                        // length over thickness of soft walls
-constexpr double kSlender = 4;                            // length over thickness
-constexpr double kCrushed = 5;                            // weight on the base over Young's modulus
+constexpr double kSoftest = 20, kStiffest = 1.5e12;              // [Pa] mucus and loose gels; diamond
+constexpr double kLightest = 15, kHeaviest = 23000;              // [kg/m³] aerogel-like foams, lungs: 200; platinum
+constexpr double kLightestOfAMass = 0.05;                        // [kg/m³] where the mass is given: scaled models
+constexpr double kMetal = 4000, kSoftForAMetal = 1e9;            // [kg/m³], [Pa] lead: 11,300 and 16 GPa
+constexpr double kWatery = 1300, kStiffForTissue = 3e10;         // [kg/m³], [Pa] bone: 2000 and 20 GPa
+constexpr double kFoam = 700;                                    // [kg/m³] lighter bodies may be auxetic
+constexpr double kSoft = 1e8;                                    // [Pa] tissue, gel, rubber
+constexpr double kLongestSoft = 20, kLongest = 5000;             // [m]
+constexpr double kHeaviestSoft = 5000;                           // [kg]
+constexpr double kShortest = 1e-6;                               // [m]
+constexpr double kTiny = 1e-4, kUsual = 0.01;                    // [m] length after and before transform.scale
+constexpr double kThinnest = 5000;                               // length over thickness of soft walls
+constexpr double kFar = 100, kFarForItsSize = 1000;              // [m]; of a body's length
+constexpr double kLargestInertia = 10, kSmallestInertia = 1e-4;  // over mass times size squared
+constexpr double kSlender = 4;                                   // length over thickness
+constexpr double kCrushed = 5;                                   // weight on the base over Young's modulus
 
 /// Weight or inertia count in what is computed.
 bool mass_matters(const Scene& scene) {
@@ -95,6 +99,52 @@ Place place_of_size(const Scene& scene, const Body& body) {
   return body.domain_place;
 }
 
+/// The value of a key is a bare number, which stands for SI units or for those of the scene's own.
+bool is_bare_number(const Scene& scene, const Place& place) {
+  if (place.file == "--set" || place.line < 1) return false;
+  std::istringstream lines(scene.text);
+  std::string line;
+  for (int i = 0; i < place.line; ++i) std::getline(lines, line);
+  const std::string name = place.key.substr(place.key.rfind('.') + 1);
+  const std::size_t at = line.find(name + " ");
+  const std::size_t equals = at == std::string::npos ? line.find(name + "=") : line.find('=', at);
+  if (equals == std::string::npos) return false;
+  const std::size_t value = line.find_first_not_of("= ", equals);
+  return value != std::string::npos &&
+         (std::isdigit(static_cast<unsigned char>(line[value])) != 0 || line[value] == '.');
+}
+
+/// Without weight and inertia a scene may be in any units that agree, as published problems are.
+bool may_have_units_of_its_own(const Scene& scene, const Body& body) {
+  return !mass_matters(scene) &&
+         is_bare_number(scene, place_of_material(scene, body.materials.front().material, "young"));
+}
+
+/// A body far from the origin for its size.
+void warn_of_distance(Simulation& s, const Body& body, const BodyScale& scale, const std::vector<Vec3d>& nodes) {
+  const Bounds bounds = bounds_of(nodes);
+  const double away = norm(bounds.middle());
+  if (away < kFar || away < kFarForItsSize * scale.length) return;
+  const std::string key = "bodies." + body.name + ".transform.translate";
+  s.warnings.add("far", s.scene.says(key) ? s.scene.place_of(key) : body.domain_place,
+                 fmt::format("{} from the origin, which is {:.2g} times the body's length; write lengths with their "
+                             "unit, as \"160 mm\"",
+                             length_text(away), away / scale.length));
+}
+
+/// A rigid body's moment of inertia is that of its mass spread over its size.
+void warn_of_inertia(Simulation& s, const Body& body, const ModelBody& built) {
+  if (!body.inertia || built.mass() <= 0) return;
+  const double size2 = built.size() * built.size();
+  const double largest = std::max({(*body.inertia)(0, 0), (*body.inertia)(1, 1), (*body.inertia)(2, 2)});
+  const double ratio = largest / (built.mass() * size2);
+  if (ratio < kLargestInertia && ratio > kSmallestInertia) return;
+  s.warnings.add("mass", body.inertia_place,
+                 fmt::format("{:.3g} kg m2 for {} of {} in size, {:.1e} of mass times size squared; write the unit, as "
+                             "\"28 kg mm2\"",
+                             largest, mass_text(built.mass()), length_text(built.size()), ratio));
+}
+
 /// @return whether size and mass are those of a body of such a material
 bool warn_of_size(Simulation& s, const Body& body, const BodyScale& scale, double mass) {
   const bool soft = scale.softest < kSoft;
@@ -103,7 +153,8 @@ bool warn_of_size(Simulation& s, const Body& body, const BodyScale& scale, doubl
                                  : "write lengths with their unit, as \"160 mm\"";
   const Place place = place_of_size(s.scene, body);
   const std::string material = soft ? ", and its material as soft as tissue or rubber" : "";
-  if (scale.length > (soft ? kLongestSoft : kLongest) || scale.length < kShortest)
+  const bool any_units = may_have_units_of_its_own(s.scene, body);
+  if (!any_units && (scale.length > (soft ? kLongestSoft : kLongest) || scale.length < kShortest))
     s.warnings.add("size", place,
                    fmt::format("the body is {} long{}; {}", length_text(scale.length), material, remedy));
   else if (soft && mass > kHeaviestSoft && mass_matters(s.scene))
@@ -204,6 +255,8 @@ void warn_of_bodies(Simulation& s) {
     if (body.model == BodyModel::surface) continue;
     const BodyScale scale = scale_of(s, b);
     const bool right_density = warn_of_density(s, body, scale);
+    warn_of_distance(s, body, scale, s.bodies[b].nodes);
+    warn_of_inertia(s, body, *s.bodies[b].body);
     if (is_carrier(body) || body.materials.empty()) continue;
     warn_of_single_cell(s, body, scale);
     warn_of_thickness(s, body, scale);

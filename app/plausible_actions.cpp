@@ -17,8 +17,8 @@ constexpr double kStretched = 1;                   // strain that a load would c
 constexpr double kUnseen = 1e-9;                   // the same of one that does nothing, slenderness included
 constexpr double kBurst = 1;                       // hoop stress over Young's modulus: rubber balloons give way at 0.4
 constexpr double kFast = 50, kFastForWaves = 0.2;  // [m/s]; of the speed of waves
-constexpr double kOfTorque = 4, kFastSpin = 600;   // see pull_of(); [rad/s]
-constexpr double kSwollen = 30;                    // volume of a fluid over that at rest
+constexpr double kOfTorque = 12, kFastSpin = 600;  // see pull_of(); [rad/s]
+constexpr double kSwollen = 10;                    // volume of a fluid over that at rest
 constexpr double kDrawnOut = 8;                    // way of a part over the body's size, where another part is held
 constexpr double kHeavyGravity = 100, kLightGravity = 0.05;  // [m/s²]: ten times the earth's; moons have 0.1
 constexpr double kThinnerThanAir = 1000;                     // [Pa] bulk modulus; air: 100 kPa
@@ -44,7 +44,7 @@ Pull pull_of(const Simulation& s, const Load& load, std::size_t body) {
     take(norm(*load.force_per_node) * static_cast<double>(find_nodes(s, static_cast<int>(body), *load.where).size()),
          "force_per_node");
   if (scale.thickness <= 0) return pull;
-  // A round bar of section A and thickness h is sheared by 1 at its skin by a torque of G A h / 4.
+  // A round bar of section A and thickness h is sheared by 1 at its skin by a torque of G A h / 4, E / G about 3.
   if (load.total_torque) take(kOfTorque * norm(*load.total_torque) / scale.thickness, "total_torque");
   if (load.torque) take(kOfTorque * norm(*load.torque) / scale.thickness, "torque");
   return pull;
