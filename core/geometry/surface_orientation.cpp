@@ -6,8 +6,11 @@
 #include "core/math/index.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -47,6 +50,7 @@ std::string name_of(const Solid& solid, const Edge& edge) {
 struct Component {
   std::vector<Triangle> triangles;
   Bounds bounds;
+  double volume = 0;  ///< negative where it faces inward
   bool outward = true;
 };
 
@@ -57,7 +61,8 @@ std::vector<Component> split(const Solid& solid, const std::vector<Triangle>& tr
   for (Component& component : result) {
     for (const Triangle& t : component.triangles)
       for (const int node : t.nodes) component.bounds.include(solid.points[static_cast<std::size_t>(node)]);
-    component.outward = enclosed_volume(solid.points, component.triangles) > 0;
+    component.volume = enclosed_volume(solid.points, component.triangles);
+    component.outward = component.volume > 0;
   }
   return result;
 }
@@ -144,6 +149,46 @@ void check_closed(const Solid& solid, const std::vector<Triangle>& triangles, st
                        name_of(solid, edges[first_touching]) + "; the solid hangs together there");
 }
 
+namespace {
+
+/// Pairs of components that touch along an edge, each in both orders.
+std::set<std::array<int, 2>> joined_components(const std::vector<TouchingEdge>& touching, const Components& numbering) {
+  std::set<std::array<int, 2>> joined;
+  for (const TouchingEdge& edge : touching)
+    for (const auto& p : edge.pairs)
+      for (const auto& q : edge.pairs)
+        if (const int a = numbering.of[at(p[0])], b = numbering.of[at(q[0])]; a != b) joined.insert({a, b});
+  return joined;
+}
+
+/// Components that fold inward from the one around them, face outward, and hold next to nothing.
+std::vector<bool> find_pockets(const std::vector<Component>& components, const std::vector<int>& depth,
+                               const std::set<std::array<int, 2>>& joined) {
+  constexpr double kSmall = 1e-3;  // of the volume around
+  std::vector<bool> pockets(components.size(), false);
+  for (const auto& [inner, outer] : joined) {
+    const Component &in = components[at(inner)], &around = components[at(outer)];
+    if (in.volume > 0 && in.volume < kSmall * std::abs(around.volume) && depth[at(inner)] % 2 != 0 &&
+        depth[at(outer)] == depth[at(inner)] - 1)
+      pockets[at(inner)] = true;
+  }
+  return pockets;
+}
+
+/// Leaves out what folds inward from the surface of a solid and faces outward: it bounds matter that is there already.
+void leave_out(const Solid& solid, const std::vector<bool>& pockets, const Components& numbering,
+               std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
+  std::vector<Triangle> left;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (!pockets[at(numbering.of[t])]) left.push_back(triangles[t]);
+  if (left.size() == triangles.size()) return;
+  messages.push_back(solid.file + ": left out " + std::to_string(triangles.size() - left.size()) +
+                     " triangles of folds that lie inside the solid, touch its surface and face outward");
+  triangles = std::move(left);
+}
+
+}  // namespace
+
 void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {
   Neighbours neighbours(triangles.size(), sorted_edges(triangles));
   const std::vector<TouchingEdge> touching = touching_edges(solid.points, triangles);
@@ -152,13 +197,17 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
   const Components numbering(neighbours);
   const std::vector<Component> components = split(solid, triangles, numbering);
   const std::vector<int> depth = nesting_depths(solid, components);
-  std::size_t wrong = 0, first_wrong = 0;
+  const std::vector<bool> pockets = find_pockets(components, depth, joined_components(touching, numbering));
+  std::size_t wrong = 0, first_wrong = 0, wrong_pockets = 0;
   for (std::size_t c = components.size(); c-- > 0;) {
     if (components[c].outward == (depth[c] % 2 == 0)) continue;
     ++wrong;
-    first_wrong = c;
+    if (pockets[c])
+      ++wrong_pockets;
+    else
+      first_wrong = c;
   }
-  if (wrong == 0) return;
+  if (wrong == wrong_pockets) return leave_out(solid, pockets, numbering, triangles, messages);
   if (wrong < components.size())
     fail(solid, "the closed part with triangle " + std::to_string(components[first_wrong].triangles[0].file_number) +
                     " is oriented against the others (" + std::to_string(wrong) + " of " +

@@ -1,3 +1,4 @@
+#include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
 #include "core/geometry/surface_touching.hpp"
 #include "core/math/index.hpp"
@@ -70,6 +71,32 @@ std::vector<Triangle> those(const std::vector<Triangle>& triangles, const std::v
   return result;
 }
 
+/// Copies separate two large parts that hang together nowhere else: they are a wall between chambers. Where the surface
+/// is the same on both sides of them they are a fin that bounds nothing.
+bool are_walls(const std::vector<Triangle>& triangles, const std::vector<Copies>& all) {
+  std::vector<bool> is_copy(triangles.size(), false);
+  for (const Copies& copies : all)
+    for (const std::size_t t : copies) is_copy[t] = true;
+  const std::vector<Edge> edges = sorted_edges(triangles);
+  const Components components(Neighbours(triangles.size(), edges));
+  constexpr std::size_t kLarge = 20;  // a part of 1 / kLarge of all triangles
+  std::vector<std::size_t> sizes(at(components.count), 0);
+  for (const int c : components.of) ++sizes[at(c)];
+  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    int beside = -1;
+    bool copies = false, differ = false;
+    for (end = begin; end < edges.size() && edges[end].same_as(edges[begin]); ++end) {
+      const std::size_t t = at(edges[end].triangle);
+      copies = copies || is_copy[t];
+      if (is_copy[t] || kLarge * sizes[at(components.of[t])] < triangles.size()) continue;
+      differ = differ || (beside >= 0 && components.of[t] != beside);
+      beside = components.of[t];
+    }
+    if (copies && differ) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Triangle> without_repeats(const Solid& solid, Surface surface, std::vector<Triangle> triangles,
@@ -85,7 +112,8 @@ std::vector<Triangle> without_repeats(const Solid& solid, Surface surface, std::
   };
   const std::size_t count = triangles.size();
   std::vector<bool> keep = kept(count, all, one);
-  if (surface == Surface::of_solid && branches(those(triangles, keep))) {
+  const bool fins = surface == Surface::of_solid || !are_walls(triangles, all);
+  if (fins && branches(those(triangles, keep))) {
     for (const std::vector<bool>& other : {kept(count, all, one_of_rest), kept(count, all, rest)}) {
       const std::vector<Triangle> chosen = those(triangles, other);
       if (chosen.empty() || !encloses(chosen)) continue;

@@ -125,6 +125,26 @@ TEST(TouchingSurface, cells_at_random_say_what_is_inside) {
   EXPECT_GT(touching, 190);
 }
 
+/// A sliver along an edge, inside the solid and outward, as a fold of the surface leaves it.
+TEST(TouchingSurface, small_folds_are_left_out) {
+  TriangleMesh folded = closed_surface(cubes(1, {{0, 0, 0}})).mesh;
+  const auto node_at = [&](const Vec3d& x) {
+    const auto found = std::find_if(folded.points.begin(), folded.points.end(),
+                                    [&](const Vec3d& p) { return squared_norm(p - x) < 1e-20; });
+    return static_cast<int>(found - folded.points.begin());
+  };
+  const int a = node_at({{0, 0, 0}}), b = node_at({{1, 0, 0}}), c = static_cast<int>(folded.points.size()), d = c + 1;
+  folded.points.push_back({{0.5, 0.02, 0.01}});
+  folded.points.push_back({{0.5, 0.01, 0.02}});
+  for (const std::array<int, 3>& t :
+       {std::array{a, c, b}, std::array{a, b, d}, std::array{a, d, c}, std::array{b, c, d}})
+    folded.triangles.push_back(t);
+  const ClosedSurface s = closed_surface(mesh_of(folded));
+  EXPECT_NEAR(s.volume, 1, 1e-15);
+  ASSERT_EQ(s.messages.size(), 2u);
+  EXPECT_TRUE(contains(s.messages[1], "left out 4 triangles of folds")) << s.messages[1];
+}
+
 TEST(TouchingSurface, copies_are_left_out) {
   const ClosedSurface cube = closed_surface(cubes(1, {{0, 0, 0}}));
   TriangleMesh twice = cube.mesh;
