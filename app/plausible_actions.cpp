@@ -86,7 +86,7 @@ void warn_of_burst(Simulation& s, std::size_t b, double pressure, const Place& p
   std::array<double, 3> extents{scale.extent[0], scale.extent[1], scale.extent[2]};
   std::sort(extents.begin(), extents.end());
   const double radius = extents[1] / 2, stress = std::abs(pressure) * radius / scale.thickness;
-  if (stress > kBurst * scale.stiffest && std::abs(pressure) <= kStretched * scale.stiffest)
+  if (stress > kBurst * scale.stiffest)
     s.warnings.add("load", place,
                    fmt::format("{} strains the wall of body \"{}\" ({} thick, {} across, {}) by more than 1: it "
                                "bursts; write the unit, as \"13 kPa\", or see its thickness",
@@ -150,10 +150,23 @@ void warn_of_motion(Simulation& s, std::size_t index) {
   if (!is_elastic(s, b)) return;
   const double way = norm(c.motion->translate) * largest_factor(c.schedule), size = s.bodies[b].body->size();
   const Vec3d moved = middle_of(s, static_cast<int>(b), c.where);
-  const auto is_drawn_from = [&](const Constraint& other) {
-    const bool holds = other.body == c.body && !other.motion && other.fixed[0] && other.fixed[1] && other.fixed[2];
-    return holds && way > kDrawnOut * std::max(size / 4, norm(middle_of(s, static_cast<int>(b), other.where) - moved));
+  const auto holds = [&](const Constraint& other) {
+    return other.body == c.body && !other.motion && other.fixed[0] && other.fixed[1] && other.fixed[2];
   };
+  const auto is_drawn_from = [&](const Constraint& other) {
+    return holds(other) &&
+           way > kDrawnOut * std::max(size / 4, norm(middle_of(s, static_cast<int>(b), other.where) - moved));
+  };
+  const auto is_pushed_through = [&](const Constraint& other) {
+    if (!holds(other)) return false;
+    const Vec3d apart = middle_of(s, static_cast<int>(b), other.where) - moved;
+    return dot(c.motion->translate, apart) * largest_factor(c.schedule) > squared_norm(apart) && way > size / 100;
+  };
+  if (std::any_of(s.scene.constraints.begin(), s.scene.constraints.end(), is_pushed_through))
+    s.warnings.add("load", s.scene.place_of(move + "translate"),
+                   fmt::format("pushes this end of body \"{}\" by {}, through what is held; write lengths with their "
+                               "unit, as \"5 mm\"",
+                               c.body, length_text(way)));
   if (std::any_of(s.scene.constraints.begin(), s.scene.constraints.end(), is_drawn_from))
     s.warnings.add("load", s.scene.place_of(move + "translate"),
                    fmt::format("draws body \"{}\", which is {} in size and held elsewhere, out by {}; write lengths "
@@ -196,7 +209,8 @@ void warn_of_loads(Simulation& s) {
     const auto b = static_cast<std::size_t>(body_index(s, load.body));
     if (!is_elastic(s, b)) continue;
     warn_of_strength(s, i, load, b);
-    if (load.pressure)
+    if (load.pressure &&
+        std::abs(*load.pressure) * largest_factor(load.schedule) <= kStretched * scale_of(s, b).stiffest)
       warn_of_burst(s, b, *load.pressure * largest_factor(load.schedule),
                     s.scene.place_of(fmt::format("loads[{}].pressure", i)));
   }

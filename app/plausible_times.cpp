@@ -15,6 +15,8 @@ namespace {
 constexpr double kOverdamped = 50, kOverdampedByMass = 20, kLittleWay = 0.2;  // damping ratio of the slowest mode
 constexpr double kMostSteps = 2e7, kMostExplicitSteps = 1e9;
 constexpr double kNothingYet = 0.01;  // of a wave's way through a body
+constexpr double kLoose = 0.05;       // Newton's tolerance
+constexpr double kFallen = 500;       // of a body's length
 constexpr double kHardlyGrown = 0.1;  // of a load's growth
 constexpr double kCoarse = 0.5;       // of the slowest period
 
@@ -135,6 +137,25 @@ Vibrations vibrations_of(const Simulation& s) {
   return v;
 }
 
+/// Nothing holds, ties or drives a body, and it falls out of sight.
+void warn_of_falls(Simulation& s, double fall) {
+  const Scene& scene = s.scene;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const std::string& name = s.bodies[b].name;
+    const auto on_it = [&](const auto& action) { return action.body == name; };
+    const auto ties_it = [&](const Coupling& c) { return c.body == name || c.to == name; };
+    const auto shares = [](const SimulatedBody& other) { return !other.body->shared_nodes().empty(); };
+    if (fall < kFallen * scale_of(s, b).length || std::any_of(s.bodies.begin(), s.bodies.end(), shares) ||
+        std::any_of(scene.constraints.begin(), scene.constraints.end(), on_it) ||
+        std::any_of(scene.loads.begin(), scene.loads.end(), on_it) ||
+        std::any_of(scene.couplings.begin(), scene.couplings.end(), ties_it))
+      continue;
+    s.warnings.add("held", scene.bodies[b].place,
+                   fmt::format("falls by {}: nothing holds it, and world.gravity acts; add a constraint or a coupling",
+                               length_text(fall)));
+  }
+}
+
 void warn_of_duration(Simulation& s, double duration, const Vibrations& v) {
   const Solver& solver = s.scene.solver;
   const Place place = s.scene.place_of(s.scene.says("solver.duration") ? "solver.duration" : "solver.steps");
@@ -161,6 +182,11 @@ void warn_of_duration(Simulation& s, double duration, const Vibrations& v) {
 
 void warn_of_times(Simulation& s) {
   const Solver& solver = s.scene.solver;
+  if (solver.newton_tolerance > kLoose)
+    s.warnings.add("solver", s.scene.place_of("solver.newton.tolerance"),
+                   fmt::format("{:g} ends steps with {:.2g} of the first residual left: that is no equilibrium; usual "
+                               "are 1e-8 to 1e-4",
+                               solver.newton_tolerance, solver.newton_tolerance));
   if (!is_dynamic(solver.kind)) return;
   const double duration = solver.duration.value_or(solver.steps * solver.time_step);
   if (is_implicit_dynamics(solver.kind))
@@ -176,6 +202,8 @@ void warn_of_times(Simulation& s) {
                                "is resolved; use a shorter step, or kind = \"static\"",
                                time_text(solver.time_step), v.body, time_text(v.slowest)));
   warn_of_duration(s, duration, v);
+  if (largest_factor(s.scene.world.schedule) > 0)
+    warn_of_falls(s, 0.5 * norm(s.scene.world.gravity) * duration * duration);
   warn_of_damping(s, duration);
 }
 

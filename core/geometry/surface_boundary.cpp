@@ -280,6 +280,7 @@ std::vector<Cell> cells_off_volumes(const Solid& solid) {
 std::vector<Triangle> boundary_of_cells(const Solid& solid, std::vector<std::string>& messages) {
   const std::vector<int> kept = distinct_volumes(solid, messages);
   std::vector<Cell> cells;
+  cells.reserve(kept.size());
   for (const int c : kept) cells.push_back(solid.cells[static_cast<std::size_t>(c)]);
   const bool inverted = check_orientation(solid, cells);
   if (inverted)
