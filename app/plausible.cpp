@@ -32,6 +32,7 @@ constexpr double kThinnest = 5000;                               // length over 
 constexpr double kFar = 100, kFarForItsSize = 1000;              // [m]; of a body's length
 constexpr double kLargestInertia = 10, kSmallestInertia = 1e-4;  // over mass times size squared
 constexpr double kSlender = 4;                                   // length over thickness
+constexpr double kSofterThanBrain = 300, kLimp = 50;             // [Pa]; see warn_of_sag()
 constexpr double kCrushed = 5;                                   // weight on the base over Young's modulus
 
 /// Weight or inertia count in what is computed.
@@ -190,12 +191,18 @@ bool warn_of_scale(Simulation& s, const Body& body, const BodyScale& scale) {
 }
 
 void warn_of_sag(Simulation& s, const Body& body, const BodyScale& scale) {
+  if (s.scene.solver.kind == SolverKind::modes || scale.softest < kSoftest || scale.thickness <= 0) return;
   const double weight = norm(s.scene.world.gravity) * scale.density * scale.length;
-  if (s.scene.solver.kind == SolverKind::modes || scale.softest < kSoftest || weight < kCrushed * scale.softest) return;
+  const double slenderness = scale.length / scale.thickness;
+  // Sag of a cantilever by theory of small strain over its length: 3/2 of this.
+  const double bent = weight / scale.softest * slenderness * slenderness;
+  const bool limp = scale.softest < kSofterThanBrain && body.thickness.empty() && bent > kLimp;
+  if (weight < kCrushed * scale.softest && !limp) return;
   s.warnings.add("sag", place_of_material(s.scene, body.materials.front().material, "young"),
-                 fmt::format("{} does not bear body \"{}\" ({}, {:.4g} kg/m3): its own weight would crush a column of "
-                             "that length; see young, density, lengths and world.gravity",
-                             pressure_text(scale.softest), body.name, length_text(scale.length), scale.density));
+                 fmt::format("{} does not bear body \"{}\" ({}, {:.4g} kg/m3): its own weight would {}; see young, "
+                             "density, lengths and world.gravity",
+                             pressure_text(scale.softest), body.name, length_text(scale.length), scale.density,
+                             limp ? "fold it over" : "crush a column of that length"));
 }
 
 /// One cell of frames along a body that is much longer than thick: it hardly bends.
