@@ -8,6 +8,7 @@
 #include "app/rerun.hpp"
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
+#include "app/study/study.hpp"
 #include "app/version.hpp"
 #include "core/model/errors.hpp"
 #include "core/solver/settings.hpp"
@@ -82,7 +83,7 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
-constexpr std::array kCommands{"run", "check", "rerun", "compare", "bench", "list", "completion"};
+constexpr std::array kCommands{"run", "check", "rerun", "compare", "study", "bench", "list", "completion"};
 
 CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
   CLI::App* rerun = app.add_subcommand("rerun", "repeat a run from what its result says, and compare the two");
@@ -104,6 +105,25 @@ CLI::App* add_compare(CLI::App& app, CompareOptions& options) {
       ->capture_default_str();
   compare->add_flag("--json", options.json, "print JSON, and nothing else, on standard output");
   return compare;
+}
+
+CLI::App* add_study(CLI::App& app, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand("study", "run variations of a scene, and tell their errors beside their times");
+  study->add_option("study", options.study, "study file (TOML); or a scene, with --vary")->required();
+  const auto repeatable = [&](const char* name, std::vector<std::string>& values, const char* help) {
+    study->add_option(name, values, help)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
+  repeatable("--vary", options.vary, "values of a key: --vary 'solver.threads=[1, 2]' (repeatable)");
+  repeatable("--measure", options.measures, "probe, or a component of it: --measure tip.y (repeatable)");
+  study->add_option("--output", options.output, "directory of the study; otherwise results/NAME");
+  study->add_option("--repeat", options.repeat, "times that each run is timed")->check(number_from(1, false, true));
+  study->add_flag("--untimed", options.untimed, "several runs at once; their times mean little");
+  study->add_option("--jobs", options.jobs, "runs at once of what is not timed")->check(number_from(1, false, true));
+  study->add_option("--svg", options.svg, "directory for the plots as SVG");
+  study->add_option("--png", options.png, "directory for the plots as PNG (needs rsvg-convert)");
+  study->add_flag("--json", options.json, "print study.json, and nothing else, on standard output");
+  study->add_flag("--quiet", options.quiet, "no progress");
+  return study;
 }
 
 /// Prints the script; what it completes is read off the commands themselves.
@@ -147,6 +167,8 @@ int dispatch(int argc, char** argv) {
   const CLI::App* rerun = add_rerun(app, rerun_options);
   CompareOptions compare_options;
   const CLI::App* compare = add_compare(app, compare_options);
+  StudyOptions study_options;
+  const CLI::App* study = add_study(app, study_options);
   BenchOptions bench_options;
   const CLI::App* bench = add_bench(app, bench_options);
   CLI::App* list = app.add_subcommand("list", "list scenes that come with the program, quantities of probes, or units");
@@ -166,6 +188,7 @@ int dispatch(int argc, char** argv) {
   if (bench->parsed()) return run_bench(bench_options);
   if (rerun->parsed()) return rerun_result(rerun_options);
   if (compare->parsed()) return compare_command(compare_options);
+  if (study->parsed()) return run_study(study_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 

@@ -1,12 +1,10 @@
 #include "app/picture.hpp"
 #include "app/messages.hpp"
+#include "app/other_program.hpp"
 #include "core/math/index.hpp"
 #include "io/picture_description.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,8 +15,6 @@
 #include <utility>
 #include <vector>
 
-extern char** environ;
-
 namespace fascia::app {
 
 namespace {
@@ -26,32 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // With the first two exit statuses fascia-picture has said what is wrong; the others are as shells give them.
-constexpr int wrong_content = 2, wrong_file = 4, not_started = 127, by_signal = 128;
-
-int run(const std::vector<std::string>& arguments) {
-  signal(SIGCHLD, SIG_DFL);  // where the caller had it ignored, nobody could learn how the program ends
-  std::vector<char*> argv;
-  argv.reserve(arguments.size() + 1);
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-  argv.push_back(nullptr);
-  pid_t pid = 0;
-  posix_spawnattr_t attributes;  // signals that wait for this process end that one
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  sigset_t usual = none;
-  for (const int signal : {SIGPIPE, SIGXFSZ}) sigaddset(&usual, signal);
-  posix_spawnattr_setsigdefault(&attributes, &usual);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  const int error = posix_spawnp(&pid, argv[0], nullptr, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) return not_started;
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0)
-    if (errno != EINTR) return not_started;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : by_signal + WTERMSIG(status);
-}
+constexpr int wrong_content = 2, wrong_file = 4, by_signal = 128;
 
 /// Says why there is no picture, as far as the exit status tells.
 std::string reason_of(int status, bool virtual_display) {
@@ -145,7 +116,7 @@ void make_picture(const Simulation& s, const fs::path& directory, const std::vec
   if (shown < states.size() && modes)
     say("the picture shows the first {} of {} modes; fascia-picture draws others\n", shown, states.size());
   // xvfb-run fails at times while it cleans up, after the picture is written.
-  const int ended = run(command);
+  const int ended = run_other_program(command);
   if (ended != 0 && !fs::exists(picture))
     say("no picture: \"{}\" failed{}\n", command.front(), reason_of(ended, command.front() != program.string()));
 }

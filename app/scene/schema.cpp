@@ -178,6 +178,12 @@ Shape reference(std::string name, const Shape& (*target)()) {
   return shape;
 }
 
+Shape anything(std::string in_words) {
+  Shape shape = of_type(Type::anything);
+  shape.name = std::move(in_words);
+  return shape;
+}
+
 Key key(std::string name, Shape shape, std::string doc) {
   Key result;
   result.name = std::move(name);
@@ -204,6 +210,7 @@ std::string in_words(const Shape& shape) {
     case Type::integer:
       return with_range("a whole number", shape.range);
     case Type::text:
+    case Type::anything:
       return shape.name;
     case Type::boolean:
       return "true or false";

@@ -26,7 +26,7 @@ Range inside(double min, double max);   ///< limits excluded
 /// Lengths whose fifth powers, of moments of inertia, are doubles [m].
 inline constexpr double kShortest = 1e-50, kLongest = 1e50;
 
-enum class Type { number, integer, text, boolean, choice, array, tuple, table, named_tables, one_of, reference };
+enum class Type { number, integer, text, boolean, choice, array, tuple, table, named_tables, one_of, reference, anything };
 
 /// A word that a key takes.
 struct Choice {
@@ -56,7 +56,7 @@ struct Shape {
   std::vector<Exclusive> exclusive;    ///< table
   std::string selector;                ///< table: the key whose value, if not supported, makes the rest moot
   bool plain_names = false;            ///< named_tables: names become file names and column headers
-  std::string name;                    ///< reference: what the target is called; text: what it is
+  std::string name;                    ///< reference: what the target is called; text, anything: what it is
   const Shape& (*target)() = nullptr;  ///< reference
 
   const Key* find(std::string_view key) const;
@@ -90,6 +90,8 @@ Shape table(std::vector<Key> keys, std::vector<Exclusive> exclusive = {}, std::s
 Shape named_tables(Shape item, bool plain_names, std::size_t min_items = 0);
 Shape one_of(std::vector<Shape> alternatives);
 Shape reference(std::string name, const Shape& (*target)());
+/// A value that somebody else checks.
+Shape anything(std::string in_words);
 Key key(std::string name, Shape shape, std::string doc);
 
 /// The scene, a table.

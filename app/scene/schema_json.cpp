@@ -103,6 +103,8 @@ Json shape_as_json(const Shape& shape) {
       return alternatives_as_json(shape);
     case Type::reference:
       return {{"$ref", "#/$defs/" + shape.name}};
+    case Type::anything:
+      return Json::object();
   }
   return {};
 }

@@ -76,6 +76,8 @@ std::string type_of(const Shape& shape) {
       return "table";
     case Type::reference:
       return fmt::format("[{0}](#{0})", shape.name);
+    case Type::anything:
+      return shape.name;
     case Type::one_of: {
       std::string out;
       for (const Shape& item : shape.items) out += (out.empty() ? "" : "; or ") + type_of(item);

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "app/study/plan.hpp"
+#include "app/study/record.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+/// A measure of one run.
+struct Measured {
+  std::vector<double> value;    ///< empty: the run has none
+  std::vector<double> times;    ///< of a curve [s]: as many blocks of `value`
+  std::optional<double> error;  ///< |value − reference| / |reference|; none without either
+};
+
+/// A run with its outcome.
+struct StudyRun {
+  PlannedRun plan;
+  std::optional<RunRecord> record;  ///< none: not run (refused, left out, interrupted)
+  std::vector<Measured> measured;   ///< by measure
+  Spread cost;                      ///< by Study::cost [s]
+  std::vector<char> on_front;       ///< by measure: nothing is better and cheaper
+
+  bool converged() const { return record && record->converged(); }
+};
+
+/// The value that errors of a measure are distances from.
+struct ReferenceValue {
+  Measured at;
+  double uncertainty = 0;  ///< relative
+  std::string source;      ///< in words
+  std::string trouble;     ///< why there is none; empty where there is one
+};
+
+/// Runs that differ in one axis alone, by which unknowns or time steps change: errors over them show an order.
+struct Series {
+  std::size_t axis = 0;
+  std::vector<std::size_t> runs;             ///< of decreasing h
+  std::vector<double> h;                     ///< of each: unknowns^(-1/dimension), or the axis's own number
+  std::vector<std::optional<double>> order;  ///< by measure
+};
+
+struct StudyResult {
+  Study study;
+  std::vector<StudyRun> runs;
+  std::vector<ReferenceValue> references;  ///< by measure
+  std::vector<Series> series;
+  int dimension = 3;
+  StudyCost cost = StudyCost::solve;
+  bool interrupted = false;
+};
+
+/// Reads what a measure asks for from a result. @param directory  of the run
+Measured measure(const StudyMeasure& measure, const RunRecord& record, const std::filesystem::path& directory);
+
+/// Distance of two values relative to the second, both at their times: the curve of the reference is interpolated.
+/// @return none where they do not fit together, or the reference is 0
+std::optional<double> relative_error(const Measured& value, const Measured& reference);
+
+/// Fills in measures, references, errors, fronts, series. @param directory  of the study
+/// @param reference_runs  by measure; none where its reference needs no run
+void evaluate(StudyResult& result, const std::filesystem::path& directory,
+              const std::vector<std::optional<StudyRun>>& reference_runs);
+
+/// Runs of which none is better: no other has both a cost that is lower by more than the spread and an error that is
+/// not larger. Errors below the reference's uncertainty are equal. @param runs  indices
+std::vector<std::size_t> front_of(const StudyResult& result, std::size_t measure, const std::vector<std::size_t>& runs);
+
+}  // namespace fascia::app
