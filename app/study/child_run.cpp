@@ -99,6 +99,7 @@ ChildResult run_child(const ChildRun& run, const std::function<bool()>& stop) {
   const Words messages;
   std::vector<std::string> texts = arguments_of(run);
   std::vector<char*> words;
+  words.reserve(texts.size() + 1);
   for (std::string& text : texts) words.push_back(text.data());
   words.push_back(nullptr);
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);

@@ -20,34 +20,30 @@ std::vector<double> decades(std::vector<double> values) {
 }
 
 template <class Amount>
-std::vector<Budget> budgets_of(const StudyResult& result, std::size_t m, std::vector<double> limits,
+std::vector<Budget> budgets_of(const StudyResult& result, const Question& question, std::vector<double> limits,
                                const Amount& amount) {
+  const std::vector<std::size_t> runs = runs_with_error(result, question);
+  const auto error = [&](std::size_t r) { return *result.runs[r].measured[question.measure].error; };
   std::vector<double> amounts;
-  for (const StudyRun& run : result.runs)
-    if (run.measured[m].error) amounts.push_back(amount(run));
+  for (const std::size_t r : runs) amounts.push_back(amount(result.runs[r]));
   if (limits.empty()) limits = decades(amounts);
   std::sort(limits.begin(), limits.end());
   std::vector<Budget> budgets;
   for (const double limit : limits) {
     Budget& budget = budgets.emplace_back(limit, std::nullopt);
-    for (std::size_t r = 0; r < result.runs.size(); ++r) {
-      const StudyRun& run = result.runs[r];
-      if (!run.measured[m].error || amount(run) > limit) continue;
-      if (!budget.best || *run.measured[m].error < *result.runs[*budget.best].measured[m].error) budget.best = r;
-    }
+    for (const std::size_t r : runs)
+      if (amount(result.runs[r]) <= limit && (!budget.best || error(r) < error(*budget.best))) budget.best = r;
   }
   return budgets;
 }
 
 }  // namespace
 
-std::optional<Choices> choices_of(const StudyResult& result, std::size_t m) {
-  std::vector<std::size_t> runs;
-  for (std::size_t r = 0; r < result.runs.size(); ++r)
-    if (result.runs[r].measured[m].error) runs.push_back(r);
+std::optional<Choices> choices_of(const StudyResult& result, const Question& question) {
+  const std::vector<std::size_t> runs = runs_with_error(result, question);
   if (runs.empty()) return std::nullopt;
   const auto cost = [&](std::size_t r) { return result.runs[r].cost.median; };
-  const auto error = [&](std::size_t r) { return *result.runs[r].measured[m].error; };
+  const auto error = [&](std::size_t r) { return *result.runs[r].measured[question.measure].error; };
   const auto cheaper = [&](std::size_t a, std::size_t b) { return cost(a) < cost(b); };
   Choices choices;
   choices.fastest = *std::min_element(runs.begin(), runs.end(), cheaper);
@@ -61,7 +57,7 @@ std::optional<Choices> choices_of(const StudyResult& result, std::size_t m) {
     return choices;
   }
   // log(time) + log(error) is least where the front has the slope −1: beyond, a factor of error costs more of time.
-  const double floor = std::max(result.references[m].uncertainty, 1e-12);
+  const double floor = std::max(question.reference.uncertainty, 1e-12);
   const auto weight = [&](std::size_t r) {
     return std::log(std::max(cost(r), 1e-9)) + std::log(std::max(error(r), floor));
   };
@@ -70,12 +66,12 @@ std::optional<Choices> choices_of(const StudyResult& result, std::size_t m) {
   return choices;
 }
 
-std::vector<Budget> by_cost(const StudyResult& result, std::size_t measure) {
-  return budgets_of(result, measure, result.study.budgets, [](const StudyRun& run) { return run.cost.median; });
+std::vector<Budget> by_cost(const StudyResult& result, const Question& question) {
+  return budgets_of(result, question, result.study.budgets, [](const StudyRun& run) { return run.cost.median; });
 }
 
-std::vector<Budget> by_unknowns(const StudyResult& result, std::size_t measure) {
-  return budgets_of(result, measure, result.study.sizes,
+std::vector<Budget> by_unknowns(const StudyResult& result, const Question& question) {
+  return budgets_of(result, question, result.study.sizes,
                     [](const StudyRun& run) { return static_cast<double>(run.record->dofs); });
 }
 

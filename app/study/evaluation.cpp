@@ -58,13 +58,14 @@ std::optional<Series> series_of(const StudyResult& result, std::size_t axis, con
 }
 
 /// The run with the most unknowns, then the most steps.
-std::optional<std::size_t> finest_run(const StudyResult& result, std::size_t measure) {
+std::optional<std::size_t> finest_run(const StudyResult& result, const Question& question) {
   std::optional<std::size_t> finest;
   const auto finer = [&](const RunRecord& a, const RunRecord& b) {
     return a.dofs != b.dofs ? a.dofs > b.dofs : a.steps > b.steps;
   };
   for (std::size_t r = 0; r < result.runs.size(); ++r)
-    if (result.runs[r].converged() && !result.runs[r].measured[measure].value.empty() &&
+    if (belongs(result, question, result.runs[r]) && result.runs[r].converged() &&
+        !result.runs[r].measured[question.measure].value.empty() &&
         (!finest || finer(*result.runs[r].record, *result.runs[*finest].record)))
       finest = r;
   return finest;
@@ -79,9 +80,10 @@ std::string label_of(const StudyResult& result, const PlannedRun& plan) {
 }
 
 /// The finest run, to which each axis that varies a size adds what Richardson's extrapolation says.
-ReferenceValue finest_value(const StudyResult& result, std::size_t measure) {
+ReferenceValue finest_value(const StudyResult& result, const Question& question) {
+  const std::size_t measure = question.measure;
   ReferenceValue reference;
-  const std::optional<std::size_t> finest = finest_run(result, measure);
+  const std::optional<std::size_t> finest = finest_run(result, question);
   if (!finest) {
     reference.trouble = "no run converged with a value";
     return reference;
@@ -121,10 +123,11 @@ ReferenceValue finest_value(const StudyResult& result, std::size_t measure) {
   return reference;
 }
 
-void find_reference(StudyResult& result, std::size_t m, const std::filesystem::path& directory,
+void find_reference(StudyResult& result, Question& question, const std::filesystem::path& directory,
                     const std::optional<StudyRun>& run) {
-  const StudyMeasure& wanted = result.study.measures[m];
-  ReferenceValue& reference = result.references[m];
+  const StudyMeasure& wanted = result.study.measures[question.measure];
+  ReferenceValue& reference = question.reference;
+  reference = {};
   switch (wanted.reference.kind) {
     case StudyReference::Kind::none:
       reference.trouble = "the study names none";
@@ -133,7 +136,7 @@ void find_reference(StudyResult& result, std::size_t m, const std::filesystem::p
       reference = {{wanted.reference.value, {}, {}}, wanted.reference.uncertainty, wanted.reference.source, ""};
       break;
     case StudyReference::Kind::finest:
-      reference = finest_value(result, m);
+      reference = finest_value(result, question);
       break;
     case StudyReference::Kind::scene:
       if (!run || !run->converged()) {
@@ -150,6 +153,12 @@ void find_reference(StudyResult& result, std::size_t m, const std::filesystem::p
     reference.trouble = "it is 0, of which no error is a part";
 }
 
+double uncertainty_of(const StudyResult& result, std::size_t measure, const StudyRun& run) {
+  for (const Question& question : result.questions)
+    if (question.measure == measure && belongs(result, question, run)) return question.reference.uncertainty;
+  return 0;
+}
+
 void find_series(StudyResult& result) {
   std::vector<char> seen;
   for (std::size_t axis = 0; axis < result.study.axes.size(); ++axis) {
@@ -164,7 +173,7 @@ void find_series(StudyResult& result) {
         for (std::size_t i = 0; i < series->runs.size(); ++i) {
           const std::optional<double> error = result.runs[series->runs[i]].measured[m].error;
           // Errors near the reference's own uncertainty tell of the reference.
-          if (!error || *error < 3 * result.references[m].uncertainty) continue;
+          if (!error || *error < 3 * uncertainty_of(result, m, result.runs[series->runs[i]])) continue;
           h.push_back(series->h[i]);
           errors.push_back(*error);
         }
@@ -177,18 +186,41 @@ void find_series(StudyResult& result) {
 
 }  // namespace
 
-std::vector<std::size_t> front_of(const StudyResult& result, std::size_t measure,
-                                  const std::vector<std::size_t>& runs) {
-  const double floor = result.references[measure].uncertainty;
+std::vector<Question> questions_of(const Study& study) {
+  std::vector<Question> questions;
+  for (std::size_t m = 0; m < study.measures.size(); ++m) {
+    const StudyMeasure& measure = study.measures[m];
+    if (!measure.per) {
+      questions.push_back({m, {}, measure.name, {}});
+      continue;
+    }
+    const StudyAxis& axis = study.axes[*measure.per];
+    for (std::size_t v = 0; v < axis.values.size(); ++v)
+      questions.push_back({m, v, fmt::format("{}, {} {}", measure.name, axis.name, axis.values[v].label), {}});
+  }
+  return questions;
+}
+
+bool belongs(const StudyResult& result, const Question& question, const StudyRun& run) {
+  return !question.group || run.plan.at[*result.study.measures[question.measure].per] == *question.group;
+}
+
+std::vector<std::size_t> runs_with_error(const StudyResult& result, const Question& question) {
+  std::vector<std::size_t> runs;
+  for (std::size_t r = 0; r < result.runs.size(); ++r)
+    if (belongs(result, question, result.runs[r]) && result.runs[r].measured[question.measure].error) runs.push_back(r);
+  return runs;
+}
+
+std::vector<std::size_t> front_of(const StudyResult& result, const Question& question) {
+  const std::vector<std::size_t> runs = runs_with_error(result, question);
   const auto error = [&](std::size_t r) {
-    return std::max(floor, result.runs[r].measured[measure].error.value_or(HUGE_VAL));
+    return std::max(question.reference.uncertainty, *result.runs[r].measured[question.measure].error);
   };
   const auto faster = [&](std::size_t a, std::size_t b) { return result.runs[a].cost.high < result.runs[b].cost.low; };
   std::vector<std::size_t> front;
   for (const std::size_t r : runs) {
-    if (!result.runs[r].measured[measure].error) continue;
     const bool beaten = std::any_of(runs.begin(), runs.end(), [&](std::size_t other) {
-      if (other == r || !result.runs[other].measured[measure].error) return false;
       return (faster(other, r) && error(other) <= error(r)) || (!faster(r, other) && error(other) < error(r));
     });
     if (!beaten) front.push_back(r);
@@ -207,17 +239,15 @@ void evaluate(StudyResult& result, const std::filesystem::path& directory,
     for (std::size_t m = 0; m < measures; ++m)
       run.measured[m] = measure(result.study.measures[m], *run.record, directory / run.plan.directory);
   }
-  result.references.assign(measures, {});
   result.series.clear();
-  for (std::size_t m = 0; m < measures; ++m) {
-    find_reference(result, m, directory, reference_runs[m]);
-    if (!result.references[m].trouble.empty()) continue;
-    std::vector<std::size_t> all;
-    for (std::size_t r = 0; r < result.runs.size(); ++r) {
-      result.runs[r].measured[m].error = relative_error(result.runs[r].measured[m], result.references[m].at);
-      if (result.runs[r].converged()) all.push_back(r);
-    }
-    for (const std::size_t r : front_of(result, m, all)) result.runs[r].on_front[m] = 1;
+  for (std::size_t q = 0; q < result.questions.size(); ++q) {
+    Question& question = result.questions[q];
+    find_reference(result, question, directory, reference_runs[q]);
+    if (!question.reference.trouble.empty()) continue;
+    for (StudyRun& run : result.runs)
+      if (Measured& m = run.measured[question.measure]; belongs(result, question, run))
+        m.error = relative_error(m, question.reference.at);
+    for (const std::size_t r : front_of(result, question)) result.runs[r].on_front[question.measure] = 1;
   }
   find_series(result);
 }

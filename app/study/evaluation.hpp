@@ -35,6 +35,14 @@ struct ReferenceValue {
   std::string trouble;     ///< why there is none; empty where there is one
 };
 
+/// A measure with the runs that share a reference: all, or those of one value of StudyMeasure::per.
+struct Question {
+  std::size_t measure = 0;
+  std::optional<std::size_t> group;  ///< index of that value
+  std::string name;                  ///< "tip", "tip, poisson 0.3"
+  ReferenceValue reference;
+};
+
 /// Runs that differ in one axis alone, by which unknowns or time steps change: errors over them show an order.
 struct Series {
   std::size_t axis = 0;
@@ -46,7 +54,7 @@ struct Series {
 struct StudyResult {
   Study study;
   std::vector<StudyRun> runs;
-  std::vector<ReferenceValue> references;  ///< by measure
+  std::vector<Question> questions;
   std::vector<Series> series;
   int dimension = 3;
   StudyCost cost = StudyCost::solve;
@@ -60,13 +68,22 @@ Measured measure(const StudyMeasure& measure, const RunRecord& record, const std
 /// @return none where they do not fit together, or the reference is 0
 std::optional<double> relative_error(const Measured& value, const Measured& reference);
 
+/// The questions of a study, without their references.
+std::vector<Question> questions_of(const Study& study);
+
+/// A run is compared with the reference of a question.
+bool belongs(const StudyResult& result, const Question& question, const StudyRun& run);
+
+/// Runs of a question that have an error, in the order of the study.
+std::vector<std::size_t> runs_with_error(const StudyResult& result, const Question& question);
+
 /// Fills in measures, references, errors, fronts, series. @param directory  of the study
-/// @param reference_runs  by measure; none where its reference needs no run
+/// @param reference_runs  by question; none where its reference needs no run
 void evaluate(StudyResult& result, const std::filesystem::path& directory,
               const std::vector<std::optional<StudyRun>>& reference_runs);
 
-/// Runs of which none is better: no other has both a cost that is lower by more than the spread and an error that is
-/// not larger. Errors below the reference's uncertainty are equal. @param runs  indices
-std::vector<std::size_t> front_of(const StudyResult& result, std::size_t measure, const std::vector<std::size_t>& runs);
+/// Runs of a question of which none is better: no other has both a cost that is lower by more than the spread and an
+/// error that is not larger. Errors below the reference's uncertainty are equal.
+std::vector<std::size_t> front_of(const StudyResult& result, const Question& question);
 
 }  // namespace fascia::app

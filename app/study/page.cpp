@@ -22,17 +22,17 @@ namespace fs = std::filesystem;
 constexpr int kPlotWidth = 860, kPlotHeight = 520;
 
 /// Plots that have something to show, with names for files.
-std::vector<std::pair<std::string, Plot>> plots_of(const StudyResult& result, std::size_t m) {
+std::vector<std::pair<std::string, Plot>> plots_of(const StudyResult& result, const Question& question) {
   std::vector<std::pair<std::string, Plot>> plots;
-  const std::string name = result.study.measures[m].name;
-  if (!result.references[m].trouble.empty()) return plots;
-  plots.emplace_back(name + "_cost", front_plot(result, m));
-  Plot convergence = convergence_plot(result, m);
+  const std::string& name = question.name;
+  if (!question.reference.trouble.empty()) return plots;
+  plots.emplace_back(name + "_cost", front_plot(result, question));
+  Plot convergence = convergence_plot(result, question);
   if (!convergence.series.empty()) plots.emplace_back(name + "_convergence", std::move(convergence));
   return plots;
 }
 
-void add_budgets(HtmlPage& page, const StudyResult& result, std::size_t m, const std::string& limit_name,
+void add_budgets(HtmlPage& page, const StudyResult& result, std::size_t measure, const std::string& limit_name,
                  const std::vector<Budget>& budgets, bool time) {
   ReportTable table;
   table.caption = "Smallest error within a limit";
@@ -43,34 +43,34 @@ void add_budgets(HtmlPage& page, const StudyResult& result, std::size_t m, const
       table.rows.push_back({limit, "none is that cheap", ""});
       continue;
     }
-    const double error = *result.runs[*b.best].measured[m].error;
+    const double error = *result.runs[*b.best].measured[measure].error;
     table.rows.push_back({limit, {error_text(error), error}, label_of(result, result.runs[*b.best])});
   }
   if (!table.rows.empty()) page.table(table);
 }
 
-void add_measure(HtmlPage& page, const StudyResult& result, std::size_t m) {
-  const ReferenceValue& reference = result.references[m];
-  page.heading(result.study.measures[m].name);
+void add_question(HtmlPage& page, const StudyResult& result, const Question& question) {
+  const ReferenceValue& reference = question.reference;
+  page.heading(question.name);
   if (!reference.trouble.empty())
     return page.notice("There are no errors, for want of a reference: " + reference.trouble + ".");
   page.paragraph(fmt::format(
       "Errors are distances from the reference, relative to it. The reference is {}; its own uncertainty is {}.",
       reference.source, reference.uncertainty == 0 ? "nothing" : error_text(reference.uncertainty)));
-  for (const auto& [name, plot] : plots_of(result, m)) page.plot(svg_of(plot, kPlotWidth, kPlotHeight));
-  if (const std::optional<Choices> choices = choices_of(result, m)) {
+  for (const auto& [name, plot] : plots_of(result, question)) page.plot(svg_of(plot, kPlotWidth, kPlotHeight));
+  if (const std::optional<Choices> choices = choices_of(result, question)) {
     const auto sentence = [&](const char* which, std::size_t r) {
       const StudyRun& run = result.runs[r];
       return fmt::format("{}: {}, {}, error {}.", which, label_of(result, run), seconds_text(run.cost.median),
-                         error_text(*run.measured[m].error));
+                         error_text(*run.measured[question.measure].error));
     };
     page.list({sentence("Fastest", choices->fastest), sentence("Most accurate", choices->most_accurate),
                sentence(result.study.need ? "Chosen, the cheapest that is good enough"
                                           : "Chosen, where more accuracy begins to cost more than it gains",
                         choices->chosen)});
   }
-  add_budgets(page, result, m, cost_name(result.cost), by_cost(result, m), true);
-  add_budgets(page, result, m, "unknowns", by_unknowns(result, m), false);
+  add_budgets(page, result, question.measure, cost_name(result.cost), by_cost(result, question), true);
+  add_budgets(page, result, question.measure, "unknowns", by_unknowns(result, question), false);
 }
 
 ReportTable table_of_runs(const StudyResult& result) {
@@ -171,7 +171,7 @@ void add_pictures(HtmlPage& page, const StudyResult& result, const fs::path& dir
 void write_page(const StudyResult& result, const fs::path& directory) {
   HtmlPage page(result.study.title.empty() ? "Study of " + result.study.base.filename().string() : result.study.title);
   if (result.interrupted) page.notice("This study was interrupted; the same command goes on where it stopped.");
-  for (std::size_t m = 0; m < result.study.measures.size(); ++m) add_measure(page, result, m);
+  for (const Question& question : result.questions) add_question(page, result, question);
   add_pictures(page, result, directory);
   page.heading("Runs");
   page.table(table_of_runs(result));
@@ -185,8 +185,8 @@ void write_page(const StudyResult& result, const fs::path& directory) {
 
 void write_plots(const StudyResult& result, const fs::path& directory, bool png) {
   io::make_directories(directory);
-  for (std::size_t m = 0; m < result.study.measures.size(); ++m)
-    for (const auto& [name, plot] : plots_of(result, m)) {
+  for (const Question& question : result.questions)
+    for (const auto& [name, plot] : plots_of(result, question)) {
       std::string stem;
       for (const char c : name)
         stem += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '_';

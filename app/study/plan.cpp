@@ -133,12 +133,21 @@ std::vector<PlannedRun> plan_study(Study& study) {
   return runs;
 }
 
-PlannedRun plan_reference(const Study& study, const StudyReference& reference) {
+PlannedRun plan_reference(const Study& study, const StudyMeasure& measure, std::optional<std::size_t> group) {
+  const StudyReference& reference = measure.reference;
+  const std::filesystem::path& path = reference.scene.empty() ? study.base : reference.scene;
   PlannedRun run;
   if (reference.scene.empty()) run.overrides = study.overrides;
+  if (group) {
+    const StudyAxis& axis = study.axes[*measure.per];
+    add_changes(study, axis, axis.values[*group], run.overrides);
+  }
   run.overrides.insert(run.overrides.end(), reference.overrides.begin(), reference.overrides.end());
-  const Scene scene = parse_scene_file(reference.scene.empty() ? study.base : reference.scene, run.overrides);
-  if (scene.output.picture) run.overrides.emplace_back("output.picture=");
+  Scene scene = parse_scene_file(path, run.overrides);
+  if (scene.output.picture) {
+    run.overrides.emplace_back("output.picture=");
+    scene = parse_scene_file(path, run.overrides);
+  }
   run.key = key_of(scene);
   run.directory = "runs/" + run.key;
   return run;

@@ -22,7 +22,8 @@ struct PlannedRun {
 /// @throws InputError  none of the combinations is a valid scene; a probe that the scene has not, with near ones
 std::vector<PlannedRun> plan_study(Study& study);
 
-/// A run of the base or another scene that gives a reference.
-PlannedRun plan_reference(const Study& study, const StudyReference& reference);
+/// A run of the base or another scene that gives a measure's reference. @param group  index of the value of
+/// StudyMeasure::per, whose changes it has too
+PlannedRun plan_reference(const Study& study, const StudyMeasure& measure, std::optional<std::size_t> group);
 
 }  // namespace fascia::app

@@ -17,10 +17,6 @@ PlotLine uncertainty_line(const ReferenceValue& reference) {
   return {reference.uncertainty, false, "uncertainty of the reference"};
 }
 
-std::string error_title(const StudyResult& result, std::size_t m) {
-  return fmt::format("error of {} [-]", result.study.measures[m].name);
-}
-
 PlotPoint point_of(const StudyResult& result, std::size_t m, const StudyRun& run) {
   PlotPoint point;
   point.y = *run.measured[m].error;
@@ -41,11 +37,12 @@ std::optional<std::size_t> series_axis(const StudyResult& result) {
   return std::nullopt;
 }
 
-Plot front_plot(const StudyResult& result, std::size_t m) {
+Plot front_plot(const StudyResult& result, const Question& question) {
+  const std::size_t m = question.measure;
   Plot plot;
-  plot.title = fmt::format("{}: what accuracy costs", result.study.measures[m].name);
+  plot.title = fmt::format("{}: what accuracy costs", question.name);
   plot.x_title = cost_name(result.cost) + " [s]";
-  plot.y_title = error_title(result, m);
+  plot.y_title = fmt::format("error of {} [-]", question.name);
   plot.log_x = plot.log_y = true;
   plot.ring_name = "nothing is better and cheaper";
   const std::optional<std::size_t> axis = series_axis(result);
@@ -57,7 +54,7 @@ Plot front_plot(const StudyResult& result, std::size_t m) {
     // Of more axes a line would join what does not belong together.
     series.joined = result.study.axes.size() <= 2;
     for (const StudyRun& run : result.runs) {
-      if (!run.measured[m].error || (axis && run.plan.at[*axis] != s)) continue;
+      if (!belongs(result, question, run) || !run.measured[m].error || (axis && run.plan.at[*axis] != s)) continue;
       PlotPoint point = point_of(result, m, run);
       point.x = run.cost.median;
       point.x_low = run.cost.low;
@@ -74,21 +71,23 @@ Plot front_plot(const StudyResult& result, std::size_t m) {
     std::sort(series.points.begin(), series.points.end(),
               [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
   }
-  if (result.references[m].uncertainty > 0) plot.lines.push_back(uncertainty_line(result.references[m]));
+  if (question.reference.uncertainty > 0) plot.lines.push_back(uncertainty_line(question.reference));
   return plot;
 }
 
-Plot convergence_plot(const StudyResult& result, std::size_t m) {
+Plot convergence_plot(const StudyResult& result, const Question& question) {
+  const std::size_t m = question.measure;
   Plot plot;
-  plot.title = fmt::format("{}: convergence", result.study.measures[m].name);
-  plot.y_title = error_title(result, m);
+  plot.title = fmt::format("{}: convergence", question.name);
+  plot.y_title = fmt::format("error of {} [-]", question.name);
   plot.log_x = plot.log_y = true;
   const std::optional<std::size_t> grouped = series_axis(result);
   for (const Series& s : result.series) {
     const StudyRun& first = result.runs[s.runs.front()];
+    const std::optional<std::size_t> per = result.study.measures[m].per;
     bool shown = true;
     for (std::size_t a = 0; a < first.plan.at.size(); ++a)
-      shown = shown && (a == s.axis || (grouped && a == *grouped) || first.plan.at[a] == 0);
+      shown = shown && (a == s.axis || (grouped && a == *grouped) || (per && a == *per) || first.plan.at[a] == 0);
     if (!shown) continue;
     const bool unknowns = result.runs[s.runs.front()].record->dofs != result.runs[s.runs.back()].record->dofs;
     const std::string x_title = unknowns ? "unknowns" : result.study.axes[s.axis].name;
@@ -102,7 +101,7 @@ Plot convergence_plot(const StudyResult& result, std::size_t m) {
     if (s.order[m]) series.note = fmt::format("order {:.2f}", *s.order[m]);
     for (std::size_t i = 0; i < s.runs.size(); ++i) {
       const StudyRun& run = result.runs[s.runs[i]];
-      if (!run.measured[m].error) continue;
+      if (!belongs(result, question, run) || !run.measured[m].error) continue;
       PlotPoint point = point_of(result, m, run);
       point.marked = false;
       point.x = unknowns ? run.record->dofs : s.h[i];
@@ -110,7 +109,7 @@ Plot convergence_plot(const StudyResult& result, std::size_t m) {
     }
     if (!series.points.empty()) plot.series.push_back(std::move(series));
   }
-  if (result.references[m].uncertainty > 0) plot.lines.push_back(uncertainty_line(result.references[m]));
+  if (question.reference.uncertainty > 0) plot.lines.push_back(uncertainty_line(question.reference));
   return plot;
 }
 

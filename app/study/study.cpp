@@ -56,6 +56,7 @@ class StudyDriver {
       : options_(options), directory_(std::move(directory)), start_(Clock::now()) {
     result_.study = std::move(study);
     for (PlannedRun& plan : plan_study(result_.study)) result_.runs.push_back({std::move(plan), {}, {}, {}, {}});
+    result_.questions = questions_of(result_.study);
     const Scene base = parse_scene_file(result_.study.base, result_.study.overrides);
     result_.dimension = result_.study.dimension.value_or(dimension_of(base));
     result_.cost = result_.study.cost.value_or(is_dynamic(base.solver.kind) ? StudyCost::step : StudyCost::solve);
@@ -97,17 +98,18 @@ class StudyDriver {
   }
 
   void run_references() {
-    reference_runs_.resize(result_.study.measures.size());
-    for (std::size_t m = 0; m < reference_runs_.size() && !stopped(); ++m) {
-      const StudyReference& reference = result_.study.measures[m].reference;
-      if (reference.kind != StudyReference::Kind::scene) continue;
-      StudyRun& run = reference_runs_[m].emplace();
-      run.plan = plan_reference(result_.study, reference);
+    reference_runs_.resize(result_.questions.size());
+    for (std::size_t q = 0; q < reference_runs_.size() && !stopped(); ++q) {
+      const Question& question = result_.questions[q];
+      const StudyMeasure& measure = result_.study.measures[question.measure];
+      if (measure.reference.kind != StudyReference::Kind::scene) continue;
+      StudyRun& run = reference_runs_[q].emplace();
+      run.plan = plan_reference(result_.study, measure, question.group);
       run.record = read_record(directory_ / run.plan.directory, run.plan.key);
       if (run.record) continue;
-      tell("the reference of {} is computed", result_.study.measures[m].name);
-      run.record = record_run(child_of(reference.scene.empty() ? result_.study.base : reference.scene, run.plan),
-                              run.plan.key, false, 0, 1, [this] { return stopped(); });
+      tell("the reference of {} is computed", question.name);
+      const fs::path& scene = measure.reference.scene.empty() ? result_.study.base : measure.reference.scene;
+      run.record = record_run(child_of(scene, run.plan), run.plan.key, false, 0, 1, [this] { return stopped(); });
       if (run.record) write_record(directory_ / run.plan.directory, *run.record);
     }
   }
@@ -210,7 +212,7 @@ class StudyDriver {
   /// Pictures of the fastest, the most accurate and the chosen run, where the program that draws is there.
   void make_pictures() {
     const fs::path drawer = fs::read_symlink("/proc/self/exe").parent_path() / "fascia-picture";
-    const std::optional<Choices> choices = choices_of(result_, 0);
+    const std::optional<Choices> choices = choices_of(result_, result_.questions.front());
     if (!choices || !fs::exists(drawer)) return;
     for (const auto& [name, r] : {std::pair{"fastest", choices->fastest},
                                   {"most_accurate", choices->most_accurate},
@@ -254,7 +256,7 @@ class StudyDriver {
   fs::path directory_;
   Clock::time_point start_;
   StudyResult result_;
-  std::vector<std::optional<StudyRun>> reference_runs_;  ///< by measure
+  std::vector<std::optional<StudyRun>> reference_runs_;  ///< by question
   std::size_t settled_ = 0, computed_ = 0;
   std::mutex telling_;
 };

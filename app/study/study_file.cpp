@@ -176,7 +176,8 @@ StudyReference read_reference(const TableReader& owner) {
   return reference;
 }
 
-StudyMeasure read_measure(const TableReader& table, const fs::path& folder) {
+StudyMeasure read_measure(const TableReader& table, const Study& study) {
+  const fs::path folder = study.path.parent_path();
   StudyMeasure measure;
   measure.place = table.place();
   measure.probe = table.text("probe").value_or("");
@@ -192,6 +193,14 @@ StudyMeasure read_measure(const TableReader& table, const fs::path& folder) {
   }
   const std::string moment = table.text("moment").value_or("end");
   measure.moment = moment == "largest" ? Moment::largest : moment == "curve" ? Moment::curve : Moment::end;
+  if (const auto per = table.text("per")) {
+    std::vector<std::string> known;
+    for (std::size_t a = 0; a < study.axes.size(); ++a) {
+      known.push_back(study.axes[a].name);
+      if (known.back() == *per) measure.per = a;
+    }
+    if (!measure.per) table.error("per", unknown_name("axis", *per, known));
+  }
   measure.reference = read_reference(table);
   if (!measure.reference.scene.empty()) measure.reference.scene = folder / measure.reference.scene;
   if (measure.moment == Moment::curve && measure.reference.kind == StudyReference::Kind::value)
@@ -242,10 +251,10 @@ Study read_study(const fs::path& path) {
   study.path = path;
   study.title = table.text("title").value_or("");
   study.base = path.parent_path() / table.text("base").value_or("");
-  study.overrides = changes_of(table, "set");
+  for (const std::string& key : texts_of(table, "remove")) study.overrides.push_back(key + "=");
+  for (std::string& change : changes_of(table, "set")) study.overrides.push_back(std::move(change));
   for (const TableReader& axis : table.tables("axes")) study.axes.push_back(read_axis(axis));
-  for (const TableReader& measure : table.tables("measures"))
-    study.measures.push_back(read_measure(measure, path.parent_path()));
+  for (const TableReader& measure : table.tables("measures")) study.measures.push_back(read_measure(measure, study));
   const std::string mode = table.text("mode").value_or("all"), cost = table.text("cost").value_or("");
   study.mode = mode == "paired" ? StudyMode::paired : mode == "front" ? StudyMode::front : StudyMode::all;
   if (!cost.empty())

@@ -48,6 +48,7 @@ struct StudyMeasure {
   std::string name, probe;
   std::vector<std::size_t> entry;  ///< of the probe's value: indices into lists; empty: the whole value
   Moment moment = Moment::end;
+  std::optional<std::size_t> per;  ///< axis of which each value is a problem with a reference of its own
   StudyReference reference;
 };
 

@@ -62,6 +62,7 @@ Shape measure() {
                    {"curve", "All saved times; the error is that of the curve, in the mean square."}}),
            "When it is looked at.")
            .defaults("\"end\""),
+       key("per", text("the name of an axis"), "An axis of which each value is a problem with a reference of its own."),
        key("reference", reference_shape(), "What errors are distances from; without it values are told alone.")});
 }
 
@@ -72,6 +73,7 @@ const Shape& study_schema() {
       {key("title", text(), "One line for people."),
        key("base", text("the path of a scene"), "The scene that is varied, relative to the study.").needed(),
        key("set", changes(), "Keys of the base scene that are changed in all runs."),
+       key("remove", array(text("a key")), "Keys of the base scene that all runs are without."),
        key("axes", array(axis(), 1), "What is varied.").needed(),
        key("measures", array(measure(), 1), "What is looked at.").needed(),
        key("mode",

@@ -70,22 +70,23 @@ Json run_json(const StudyResult& result, const StudyRun& run) {
   return j;
 }
 
-Json budgets_json(const StudyResult& result, std::size_t m, const std::vector<Budget>& budgets) {
+Json budgets_json(const StudyResult& result, std::size_t measure, const std::vector<Budget>& budgets) {
   Json list = Json::array();
   for (const Budget& b : budgets) {
     Json entry{{"limit", b.limit}};
     if (b.best) {
       entry["run"] = *b.best;
-      entry["error"] = *result.runs[*b.best].measured[m].error;
+      entry["error"] = *result.runs[*b.best].measured[measure].error;
     }
     list.push_back(entry);
   }
   return list;
 }
 
-Json measure_json(const StudyResult& result, std::size_t m) {
-  const ReferenceValue& reference = result.references[m];
-  Json j{{"name", result.study.measures[m].name}, {"probe", result.study.measures[m].probe}};
+Json question_json(const StudyResult& result, const Question& question) {
+  const ReferenceValue& reference = question.reference;
+  const StudyMeasure& measure = result.study.measures[question.measure];
+  Json j{{"name", question.name}, {"measure", measure.name}, {"probe", measure.probe}};
   if (reference.trouble.empty()) {
     j["reference"] = {
         {"value", reference.at.value}, {"uncertainty", reference.uncertainty}, {"source", reference.source}};
@@ -93,25 +94,25 @@ Json measure_json(const StudyResult& result, std::size_t m) {
   } else {
     j["reference"] = {{"missing", reference.trouble}};
   }
-  if (const std::optional<Choices> choices = choices_of(result, m))
+  if (const std::optional<Choices> choices = choices_of(result, question))
     j["choices"] = {
         {"fastest", choices->fastest}, {"most_accurate", choices->most_accurate}, {"chosen", choices->chosen}};
-  j["by_cost"] = budgets_json(result, m, by_cost(result, m));
-  j["by_unknowns"] = budgets_json(result, m, by_unknowns(result, m));
+  j["by_cost"] = budgets_json(result, question.measure, by_cost(result, question));
+  j["by_unknowns"] = budgets_json(result, question.measure, by_unknowns(result, question));
   return j;
 }
 
-std::string front_text(const StudyResult& result, std::size_t m) {
+std::string front_text(const StudyResult& result, const Question& question) {
   std::vector<std::size_t> front;
-  for (std::size_t r = 0; r < result.runs.size(); ++r)
-    if (result.runs[r].on_front[m]) front.push_back(r);
+  for (const std::size_t r : runs_with_error(result, question))
+    if (result.runs[r].on_front[question.measure]) front.push_back(r);
   std::sort(front.begin(), front.end(),
             [&](std::size_t a, std::size_t b) { return result.runs[a].cost.median < result.runs[b].cost.median; });
   std::string text;
   for (const std::size_t r : front) {
     const StudyRun& run = result.runs[r];
     text += fmt::format("  {:>9}  {:>8}  {:>9} unknowns  {}\n", seconds_text(run.cost.median),
-                        error_text(*run.measured[m].error), run.record->dofs, label_of(result, run));
+                        error_text(*run.measured[question.measure].error), run.record->dofs, label_of(result, run));
   }
   return text;
 }
@@ -161,8 +162,7 @@ Json json_of(const StudyResult& result) {
     j["axes"].push_back({{"name", axis.name}, {"keys", axis.keys}, {"values", values}});
   }
   j["measures"] = Json::array();
-  for (std::size_t m = 0; m < result.study.measures.size(); ++m) j["measures"].push_back(measure_json(result, m));
-  for (const StudyRun& run : result.runs) j["runs"].push_back(run_json(result, run));
+  for (const Question& question : result.questions) j["measures"].push_back(question_json(result, question));
   j["series"] = Json::array();
   for (const Series& s : result.series) {
     Json orders = Json::array();
@@ -185,17 +185,16 @@ std::string text_of(const StudyResult& result) {
                       refused, result.interrupted ? "; interrupted: call again to go on" : "");
   if (busy > 0 && result.study.timed)
     text += fmt::format("the machine did other work during {} of them: their times are too long\n", busy);
-  for (std::size_t m = 0; m < result.study.measures.size(); ++m) {
-    const ReferenceValue& reference = result.references[m];
-    const std::string& name = result.study.measures[m].name;
+  for (const Question& question : result.questions) {
+    const ReferenceValue& reference = question.reference;
     if (!reference.trouble.empty()) {
-      text += fmt::format("\n{}: no errors, for want of a reference: {}\n", name, reference.trouble);
+      text += fmt::format("\n{}: no errors, for want of a reference: {}\n", question.name, reference.trouble);
       continue;
     }
-    text += fmt::format("\n{}: error against {} (uncertain by {}), beside the time of a {}:\n", name, reference.source,
-                        reference.uncertainty == 0 ? "nothing" : error_text(reference.uncertainty),
+    text += fmt::format("\n{}: error against {} (uncertain by {}), beside the time of a {}:\n", question.name,
+                        reference.source, reference.uncertainty == 0 ? "nothing" : error_text(reference.uncertainty),
                         result.study.timed ? cost_name(result.cost) : cost_name(result.cost) + ", not timed with care");
-    text += front_text(result, m);
+    text += front_text(result, question);
   }
   return text;
 }

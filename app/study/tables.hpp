@@ -18,21 +18,21 @@ std::string text_of(const StudyResult& result);
 /// The values of a run's axes: "grid [9, 3, 3], threads 1".
 std::string label_of(const StudyResult& result, const StudyRun& run);
 
-/// Runs that a reader looks for, by one measure: the least cost, the least error, and the best choice, which is the
+/// Runs that a reader looks for, by one question: the least cost, the least error, and the best choice, which is the
 /// cheapest below Study::need or, without it, the one of the front where a further factor of error costs more than a
 /// factor of time.
 struct Choices {
   std::size_t fastest = 0, most_accurate = 0, chosen = 0;
 };
-std::optional<Choices> choices_of(const StudyResult& result, std::size_t measure);
+std::optional<Choices> choices_of(const StudyResult& result, const Question& question);
 
 /// The least error at a cost or size that is not exceeded.
 struct Budget {
   double limit = 0;
   std::optional<std::size_t> best;  ///< run; none: nothing is that cheap
 };
-std::vector<Budget> by_cost(const StudyResult& result, std::size_t measure);
-std::vector<Budget> by_unknowns(const StudyResult& result, std::size_t measure);
+std::vector<Budget> by_cost(const StudyResult& result, const Question& question);
+std::vector<Budget> by_unknowns(const StudyResult& result, const Question& question);
 
 /// "1.2 ms", "35 s"; "3.2 %", "4e-05"
 std::string seconds_text(double seconds);
