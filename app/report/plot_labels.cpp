@@ -22,8 +22,9 @@ std::optional<PlotLabels::Place> PlotLabels::first_free(const std::vector<PlotBo
   return std::nullopt;
 }
 
-std::optional<PlotLabels::Place> PlotLabels::beside_point(const std::string& text, double size, double x, double y) {
-  constexpr double gap = 8;
+std::optional<PlotLabels::Place> PlotLabels::beside_point(const std::string& text, double size, double x, double y,
+                                                          double radius) {
+  const double gap = radius + 3;
   const double width = text_width(text, size);
   const auto box = [&](double left, double top) { return PlotBox{left, top, left + width, top + size}; };
   const double right = x + gap, left = x - gap - width, above = y - gap - size, below = y + gap;
@@ -33,26 +34,28 @@ std::optional<PlotLabels::Place> PlotLabels::beside_point(const std::string& tex
                     size);
 }
 
-std::optional<PlotLabels::Place> PlotLabels::above_line(const std::string& text, double size, double y) {
+PlotLabels::Place PlotLabels::above_line(const std::string& text, double size, double y) {
   constexpr double gap = 3;
   const double width = text_width(text, size), left = inside_.left + 6, right = inside_.right - 6;
   const double above = y - gap - size, below = y + gap;
-  return first_free({{right - width, above, right, above + size},
-                     {right - width, below, right, below + size},
-                     {left, above, left + width, above + size},
-                     {left, below, left + width, below + size}},
-                    size);
+  const auto free = first_free({{right - width, above, right, above + size},
+                                {right - width, below, right, below + size},
+                                {left, above, left + width, above + size},
+                                {left, below, left + width, below + size}},
+                               size);
+  return free.value_or(Place{right - width, above + 0.8 * size});
 }
 
-std::optional<PlotLabels::Place> PlotLabels::beside_line(const std::string& text, double size, double x) {
+PlotLabels::Place PlotLabels::beside_line(const std::string& text, double size, double x) {
   constexpr double gap = 5;
   const double width = text_width(text, size), top = inside_.top + 4, bottom = inside_.bottom - 4;
   const double right = x + gap, left = x - gap - width;
-  return first_free({{right, top, right + width, top + size},
-                     {left, top, left + width, top + size},
-                     {right, bottom - size, right + width, bottom},
-                     {left, bottom - size, left + width, bottom}},
-                    size);
+  const auto free = first_free({{right, top, right + width, top + size},
+                                {left, top, left + width, top + size},
+                                {right, bottom - size, right + width, bottom},
+                                {left, bottom - size, left + width, bottom}},
+                               size);
+  return free.value_or(Place{right, top + 0.8 * size});
 }
 
 }  // namespace fascia::app

@@ -25,11 +25,11 @@ class PlotLabels {
   struct Place {
     double x = 0, y = 0;
   };
-  /// Next to a point; none where there is no room.
-  std::optional<Place> beside_point(const std::string& text, double size, double x, double y);
-  /// Along a line across the plot at this height, or at this x; none where there is no room.
-  std::optional<Place> above_line(const std::string& text, double size, double y);
-  std::optional<Place> beside_line(const std::string& text, double size, double x);
+  /// Next to a point of this radius; none where there is no room.
+  std::optional<Place> beside_point(const std::string& text, double size, double x, double y, double radius);
+  /// Along a line across the plot at this height, or at this x. It covers points where nothing is free.
+  Place above_line(const std::string& text, double size, double y);
+  Place beside_line(const std::string& text, double size, double x);
 
  private:
   std::optional<Place> first_free(const std::vector<PlotBox>& boxes, double size);
