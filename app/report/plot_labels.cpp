@@ -28,10 +28,12 @@ std::optional<PlotLabels::Place> PlotLabels::beside_point(const std::string& tex
   const double width = text_width(text, size);
   const auto box = [&](double left, double top) { return PlotBox{left, top, left + width, top + size}; };
   const double right = x + gap, left = x - gap - width, above = y - gap - size, below = y + gap;
-  return first_free({box(right, y - size / 2), box(left, y - size / 2), box(x - width / 2, above),
-                     box(x - width / 2, below), box(right - gap / 2, above), box(right - gap / 2, below),
-                     box(left + gap / 2, above), box(left + gap / 2, below)},
-                    size);
+  const double beside = y - size / 2, middle = x - width / 2;
+  // Lines and bars pass through points from side to side.
+  return first_free(
+      {box(right - gap / 2, above + 3), box(right - gap / 2, below - 3), box(middle, above), box(middle, below),
+       box(left + gap / 2, above + 3), box(left + gap / 2, below - 3), box(right, beside), box(left, beside)},
+      size);
 }
 
 PlotLabels::Place PlotLabels::above_line(const std::string& text, double size, double y) {

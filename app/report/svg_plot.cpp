@@ -186,6 +186,7 @@ void Drawing::add_error_bars(const PlotSeries& series, const SeriesStyle& style)
   for (const PlotPoint& p : series.points) {
     if (!within(p) || !(p.x_low < p.x_high)) continue;
     const double low = x_of(p.x_low), high = x_of(p.x_high), y = y_of(p.y);
+    labels_.take({low, y - 3, high, y + 3});
     add("<path class=\"line {0}\" d=\"M{1} {3}v6M{2} {3}v6M{1} {4}H{2}\" fill=\"none\" stroke=\"{5}\"/>\n", style.name,
         coordinate(low), coordinate(high), coordinate(y - 3), coordinate(y), style.colour);
   }
@@ -259,13 +260,14 @@ void Drawing::add_labels() {
   }
   std::size_t points = 0;
   for (const PlotSeries& series : plot_.series) {
-    points += series.points.size();
+    points += static_cast<std::size_t>(std::count_if(series.points.begin(), series.points.end(), has_numbers));
     if (!series.points.empty()) add_label(series.note, series.points[series.points.size() / 2]);
   }
   for (const bool marked : {true, false})
     for (const PlotSeries& series : plot_.series)
       for (const PlotPoint& p : series.points)
         if (p.marked == marked && (marked || points <= kLabelledPoints)) add_label(p.label, p);
+  if (points == 0) words((frame_.left + frame_.right) / 2, (frame_.top + frame_.bottom) / 2, "middle", "No points.");
 }
 
 void Drawing::add_legend() {

@@ -189,6 +189,11 @@ TEST(ReportPlot, HasWhatItWasGiven) {
     EXPECT_TRUE(texts.contains(text)) << text;
 }
 
+TEST(ReportPlot, WithoutPointsSaysSo) {
+  EXPECT_NE(svg_of({}, 640, 420).find("No points."), std::string::npos);
+  EXPECT_EQ(svg_of(sample(), 640, 420).find("No points."), std::string::npos);
+}
+
 TEST(ReportPlot, IsTheSameEachTime) { EXPECT_EQ(svg_of(sample(), 640, 420), svg_of(sample(), 640, 420)); }
 
 TEST(ReportPlot, PutsAnArrowWhereAnAxisDoesNotReach) {
