@@ -248,7 +248,11 @@ void Drawing::add_label(const std::string& text, const PlotPoint& p) {
   if (text.empty() || !has_numbers(p)) return;
   const std::string label = shortened(text, kLabelText);
   const Pixel at = pixel_of(p);
-  if (const auto place = labels_.beside_point(label, kText, at.x, at.y, radius(p))) add_label(label, *place);
+  for (const double further : {0, 12, 24}) {
+    const auto place = labels_.beside_point(label, kText, at.x, at.y, radius(p) + further);
+    if (place) return add_label(label, *place);
+    if (!p.marked) return;
+  }
 }
 
 void Drawing::add_labels() {
