@@ -11,19 +11,25 @@ double text_width(const std::string& text, double size) {
   return mean * size * static_cast<double>(characters(text));
 }
 
-std::optional<PlotLabels::Place> PlotLabels::first_free(const std::vector<PlotBox>& boxes, double size) {
-  for (const PlotBox& box : boxes) {
-    const bool within = box.left >= inside_.left && box.right <= inside_.right && box.top >= inside_.top &&
-                        box.bottom <= inside_.bottom;
-    if (!within || std::any_of(taken_.begin(), taken_.end(), [&](const PlotBox& b) { return b.meets(box); })) continue;
-    taken_.push_back(box);
-    return Place{box.left, box.bottom - 0.2 * size};
+std::optional<PlotLabels::Place> PlotLabels::first_free(const std::vector<PlotBox>& boxes, double size, bool covers) {
+  const auto meets_any = [](const std::vector<PlotBox>& others, const PlotBox& box) {
+    return std::any_of(others.begin(), others.end(), [&](const PlotBox& other) { return other.meets(box); });
+  };
+  for (const bool over_points : {false, true}) {
+    if (over_points && !covers) break;
+    for (const PlotBox& box : boxes) {
+      const bool within = box.left >= inside_.left && box.right <= inside_.right && box.top >= inside_.top &&
+                          box.bottom <= inside_.bottom;
+      if (!within || meets_any(texts_, box) || (!over_points && meets_any(taken_, box))) continue;
+      texts_.push_back(box);
+      return Place{box.left, box.bottom - 0.2 * size};
+    }
   }
   return std::nullopt;
 }
 
 std::optional<PlotLabels::Place> PlotLabels::beside_point(const std::string& text, double size, double x, double y,
-                                                          double radius) {
+                                                          double radius, bool covers) {
   const double gap = radius + 3;
   const double width = text_width(text, size);
   const auto box = [&](double left, double top) { return PlotBox{left, top, left + width, top + size}; };
@@ -33,7 +39,7 @@ std::optional<PlotLabels::Place> PlotLabels::beside_point(const std::string& tex
   return first_free(
       {box(right - gap / 2, above + 3), box(right - gap / 2, below - 3), box(middle, above), box(middle, below),
        box(left + gap / 2, above + 3), box(left + gap / 2, below - 3), box(right, beside), box(left, beside)},
-      size);
+      size, covers);
 }
 
 PlotLabels::Place PlotLabels::above_line(const std::string& text, double size, double y) {
@@ -44,7 +50,7 @@ PlotLabels::Place PlotLabels::above_line(const std::string& text, double size, d
                                 {right - width, below, right, below + size},
                                 {left, above, left + width, above + size},
                                 {left, below, left + width, below + size}},
-                               size);
+                               size, true);
   return free.value_or(Place{right - width, above + 0.8 * size});
 }
 
@@ -56,7 +62,7 @@ PlotLabels::Place PlotLabels::beside_line(const std::string& text, double size, 
                                 {left, top, left + width, top + size},
                                 {right, bottom - size, right + width, bottom},
                                 {left, bottom - size, left + width, bottom}},
-                               size);
+                               size, true);
   return free.value_or(Place{right, top + 0.8 * size});
 }
 

@@ -248,11 +248,7 @@ void Drawing::add_label(const std::string& text, const PlotPoint& p) {
   if (text.empty() || !has_numbers(p)) return;
   const std::string label = shortened(text, kLabelText);
   const Pixel at = pixel_of(p);
-  for (const double further : {0, 12, 24}) {
-    const auto place = labels_.beside_point(label, kText, at.x, at.y, radius(p) + further);
-    if (place) return add_label(label, *place);
-    if (!p.marked) return;
-  }
+  if (const auto place = labels_.beside_point(label, kText, at.x, at.y, radius(p), p.marked)) add_label(label, *place);
 }
 
 void Drawing::add_labels() {
