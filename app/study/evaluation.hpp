@@ -30,7 +30,7 @@ struct StudyRun {
 /// The value that errors of a measure are distances from.
 struct ReferenceValue {
   Measured at;
-  double uncertainty = 0;  ///< relative
+  double uncertainty = 0;  ///< relative; 0 where nothing is known of it
   std::string source;      ///< in words
   std::string trouble;     ///< why there is none; empty where there is one
 };

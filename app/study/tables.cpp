@@ -192,9 +192,9 @@ std::string text_of(const StudyResult& result) {
       text += fmt::format("\n{}: no errors, for want of a reference: {}\n", question.name, reference.trouble);
       continue;
     }
-    text += fmt::format("\n{}: error against {} (uncertain by {}), beside the time of a {}:\n", question.name,
-                        reference.source, reference.uncertainty == 0 ? "nothing" : error_text(reference.uncertainty),
-                        result.study.timed ? cost_name(result.cost) : cost_name(result.cost) + ", not timed with care");
+    text += fmt::format("\n{}, beside the time of a {}{}\n  reference: {}; uncertainty: {}\n", question.name,
+                        cost_name(result.cost), result.study.timed ? "" : ", not timed with care", reference.source,
+                        uncertainty_text(result, question));
     text += front_text(result, question);
   }
   return text;
