@@ -27,11 +27,10 @@ bool same_mesh(const io::VisualMesh& a, const io::VisualMesh& b) {
 }
 
 /// @return 0 or 1: whose samples are taken
-int sampled_of(const RestField& a, const std::vector<Sample>& of_a, const RestField& b,
-               const std::vector<Sample>& of_b) {
+int sampled_of(const RestField& a, const RestField& b) {
   if (a.dimension() != b.dimension()) return a.dimension() < b.dimension() ? 0 : 1;
   if (a.has_cells() != b.has_cells()) return a.has_cells() ? 0 : 1;
-  return of_a.size() >= of_b.size() ? 0 : 1;
+  return a.resolution() >= b.resolution() ? 0 : 1;
 }
 
 }  // namespace
@@ -41,17 +40,16 @@ BodyPair pair_bodies(const io::VisualMesh& a, double volume_a, const io::VisualM
   pair.same_mesh = same_mesh(a, b);
   const auto field_a = rest_field(a, volume_a);
   const auto field_b = pair.same_mesh ? nullptr : rest_field(b, volume_b);
-  std::vector<Sample> samples = field_a->samples();
-  if (field_b) pair.checks_a = field_a->checks();
   pair.size = field_a->size();
   if (field_b) {
-    std::vector<Sample> of_b = field_b->samples();
-    pair.checks_b = field_b->checks();
+    pair.sampled = sampled_of(*field_a, *field_b);
     pair.size = std::max(pair.size, field_b->size());
-    pair.sampled = sampled_of(*field_a, samples, *field_b, of_b);
-    if (pair.sampled == 1) samples = std::move(of_b);
+    pair.checks_a = field_a->checks();
+    pair.checks_b = field_b->checks();
   }
-  pair.dimension = (pair.sampled == 0 ? field_a : field_b)->dimension();
+  const RestField& own = pair.sampled == 0 ? *field_a : *field_b;
+  std::vector<Sample> samples = own.samples();
+  pair.dimension = own.dimension();
   const RestField* other = pair.sampled == 0 ? field_b.get() : field_a.get();
   constexpr double kOn = 1e-6;  // of the size: on it, but for rounding
   for (Sample& s : samples) {

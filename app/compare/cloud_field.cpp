@@ -94,11 +94,11 @@ Stencil CloudField::stencil_at(const Vec3d& X) const {
 }
 
 std::vector<Sample> CloudField::solid_samples() const {
-  constexpr double kCells = 2500;
-  constexpr int kLeast = 2;
+  constexpr int kLeast = 2;  // cells along an axis
+  const double cells = std::clamp(static_cast<double>(points_.size()) / 2, 250.0, 5000.0);
   const Bounds box = bounds_of(fit_.places());
   const Vec3d extent = box.extent();
-  const double side = std::cbrt(extent[0] * extent[1] * extent[2] / kCells);
+  const double side = std::cbrt(extent[0] * extent[1] * extent[2] / cells);
   std::array<int, 3> count{};
   Vec3d step;
   for (int c = 0; c < 3; ++c) {

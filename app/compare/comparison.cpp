@@ -25,8 +25,8 @@ RunKind kind_of(const SceneSettings& settings, const Json& summary) {
 
 std::map<std::string, double> volumes_of(const Json& summary) {
   std::map<std::string, double> volumes;
-  for (const auto& [name, body] : summary.value("bodies", Json::object()).items())
-    volumes[name] = body.value("volume", 0.0);
+  const Json bodies = summary.value("bodies", Json::object());
+  for (const auto& [name, body] : bodies.items()) volumes[name] = body.value("volume", 0.0);
   return volumes;
 }
 

@@ -21,7 +21,8 @@ using MeshPointer = std::shared_ptr<const io::VisualMesh>;
 constexpr double kMostTurn = 3;
 
 bool is_compared(const std::string& name) {
-  static const std::set<std::string> left_out = {"rest_position", "to_outer_face", "axis_x", "axis_y", "axis_z"};
+  static const std::set<std::string> left_out = {"rest_position", "to_outer_face", "director",
+                                                 "axis_x",        "axis_y",        "axis_z"};
   return !left_out.contains(name);
 }
 

@@ -112,21 +112,28 @@ std::string verdict_text(const Comparison& c, double tolerance) {
   return text + fmt::format(" ({}, {})", counted, c.array_by_array ? "array by array" : "meshes or times differ");
 }
 
-/// Of the field that differs most; empty where no field does.
+std::string largest_text(const FieldDifference& d) {
+  std::string text = fmt::format("{}: largest difference {} at {} at rest, time {:.4g}: {} in A, {} in B\n", d.name(),
+                                 with_unit(d.largest, d.unit), place_text(d.place), d.time, value_text(d.a, d.unit),
+                                 value_text(d.b, d.unit));
+  if (d.relative > 0 && d.interpolation > 0.1 * d.relative)
+    text += fmt::format("{}: up to {} of it may be interpolation between the points of a meshless body\n", d.name(),
+                        percent(d.interpolation));
+  return text;
+}
+
+/// Of the field that differs most, and of the displacement that does; empty where none does.
 std::string largest_text(const Comparison& c) {
+  const FieldDifference *field = nullptr, *displacement = nullptr;
   for (const FieldDifference& d : c.fields.fields) {
     const bool counts = std::any_of(c.quantities.begin(), c.quantities.end(),
                                     [&](const QuantityDifference& q) { return q.name == d.name(); });
     if (!counts || d.largest == 0) continue;
-    std::string text = fmt::format("{}: largest difference {} at {} at rest, time {:.4g}: {} in A, {} in B\n", d.name(),
-                                   with_unit(d.largest, d.unit), place_text(d.place), d.time, value_text(d.a, d.unit),
-                                   value_text(d.b, d.unit));
-    if (d.relative > 0 && d.interpolation > 0.1 * d.relative)
-      text += fmt::format("{}: up to {} of it may be interpolation between the points of a meshless body\n", d.name(),
-                          percent(d.interpolation));
-    return text;
+    if (field == nullptr) field = &d;
+    if (displacement == nullptr && d.field == "displacement") displacement = &d;
   }
-  return "";
+  if (field == nullptr) return "";
+  return largest_text(*field) + (displacement != nullptr && displacement != field ? largest_text(*displacement) : "");
 }
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json("missing in one"); }

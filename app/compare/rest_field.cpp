@@ -35,6 +35,7 @@ class ElementField final : public RestField {
       : RestField(rest), locator_(elements_of(mesh, rest)) {}
 
   int dimension() const override { return 3; }
+  std::size_t resolution() const override { return mesh().size(); }
 
   Stencil stencil_at(const Vec3d& X) const override {
     const Located place = locator_.locate(X);
@@ -85,6 +86,7 @@ class SurfaceField final : public RestField {
       : RestField(rest), surface_(triangles_of(mesh, rest)), tree_(surface_), flat_(mesh.triangles.size()) {}
 
   int dimension() const override { return flat_ > 0 ? 2 : 1; }
+  std::size_t resolution() const override { return surface_.triangles.size(); }
 
   Stencil stencil_at(const Vec3d& X) const override {
     Vec3d nearest;

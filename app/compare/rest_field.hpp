@@ -45,6 +45,8 @@ class RestField {
   virtual std::vector<Stencil> checks() const { return {}; }
   /// Whether cells do.
   virtual bool has_cells() const { return true; }
+  /// Number of cells, or of points where there are none.
+  virtual std::size_t resolution() const = 0;
 
   double size() const { return size_; }  ///< diagonal of the bounding box [m]
 

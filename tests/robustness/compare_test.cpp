@@ -23,7 +23,7 @@ fix = ["x"]
 [[constraints]]
 body = "block"
 where = "all"
-fix = ["y", "z"]
+fix = GUIDE
 
 [[constraints]]
 body = "block"
@@ -68,7 +68,9 @@ class Compare : public SceneRuns {
 
   /// A stretched block by another length. @param end  of its displacement at x = 2 [m]
   void stretch(const std::string& output, const std::string& body, double end, const std::string& plane = "0.5") const {
-    run(output, with(with(kStretch, "BODY", body), "PLANE", plane),
+    const bool nodes = body.find("hedra") != std::string::npos;  // have no rotations
+    const std::string guide = nodes ? R"(["y", "z"])" : R"(["y", "z", "rx", "ry", "rz"])";
+    run(output, with(with(with(kStretch, "BODY", body), "PLANE", plane), "GUIDE", guide),
         {"constraints[2].move.translate=[" + std::to_string(end) + ",0,0]"});
   }
 
@@ -113,7 +115,7 @@ TEST_F(Compare, SolidsOfDifferentMeshesDifferByTheKnownField) {
     EXPECT_NEAR(j.at("fields").at("block: strain").at("relative").get<double>(), 1 - 0.22 / 0.28125, 1e-5);
   }
   expect({"compare", "frames", "hexahedra", "--tolerance", "1e-5"}, 0, "within the tolerance");
-  expect({"compare", "frames", "tetrahedra", "--tolerance", "0.3"}, 0, "meshes or times differ");
+  expect({"compare", "frames", "tetrahedra", "--tolerance", "0.4"}, 0, "meshes or times differ");
   expect({"compare", "frames", "tetrahedra", "--tolerance", "0.21"}, 1, "block: ");  // the stress differs by more
   expect({"compare", "frames", "tetrahedra", "--tolerance", "0.21", "--only", "displacement,end"}, 0, "within");
   expect({"compare", "frames", "tetrahedra", "--only", "speed"}, 2, "--only speed: is no field or probe");
@@ -167,8 +169,8 @@ every_steps = 2
 TEST_F(Compare, ModesAreScaledToOneAnother) {
   const std::string modes =
       with(with(kCantilever, "\"static\"", "\"modes\"\ncount = 1"), "[1, 0.2, 0.2]", "[1, 0.2, 0.1]");
-  run("a", modes, {"bodies.beam.frames.grid=[9,3,3]"});
-  run("b", modes, {"bodies.beam.frames.grid=[11,4,3]"});
+  run("a", modes, {"bodies.beam.frames.grid=[9,3,3]", "probes.tip="});
+  run("b", modes, {"bodies.beam.frames.grid=[11,4,3]", "probes.tip="});
   const Json j = compared("a", "b");
   EXPECT_LT(j.at("fields").at("beam: displacement").at("relative").get<double>(), 0.01);
   EXPECT_EQ(j.at("fields").size(), 1u);
@@ -188,10 +190,17 @@ TEST_F(Compare, IsSymmetric) {
 TEST_F(Compare, WhatCannotBeComparedIsTold) {
   stretch("a", kFrames, 0.5);
   stretch("b", kTetrahedra, 0.5);
-  run("other",
-      with(with(with(with(kStretch, "BODY", kTetrahedra), "PLANE", "0.5"), "[bodies.block]", "[bodies.brick]"),
-           "[probes.end]\nbody = \"block\"", "[probes.end]\nbody = \"brick\""),
-      {"constraints[0].body=brick", "constraints[1].body=brick", "constraints[2].body=brick"});
+  const std::string brick = R"([bodies.brick]
+model = "tetrahedra"
+domain = { box = { min = [0, 0, 0], max = [2, 1, 1], cells = [1, 1, 1] } }
+density = 1000
+material = { young = "10 kPa", poisson = 0 }
+[[constraints]]
+body = "brick"
+where = "all"
+fix = "all"
+)";
+  run("other", brick);
   expect({"compare", "a", "other", "--tolerance", "1"}, 1, "body \"block\" is in A alone");
   const std::string far = with(with(kTetrahedra, "[0, 0, 0]", "[0, 0, 7]"), "[2, 1, 1]", "[2, 1, 8]");
   stretch("far", far, 0.5, "7.5");

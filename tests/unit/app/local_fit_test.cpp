@@ -81,7 +81,7 @@ TEST(LocalFit, LeavesAPlaceOut) {
 }
 
 TEST(LocalFit, OfOnePlaceIsItsValue) {
-  const LocalFit fit({{{1, 2, 3}}});
+  const LocalFit fit(std::vector<Vec3d>{{{1, 2, 3}}});
   EXPECT_EQ(fit.shares_at({{5, 5, 5}}), (std::vector<LocalFit::Share>{{0, 1.0}}));
 }
 
