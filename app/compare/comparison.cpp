@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 namespace fascia::app {
@@ -14,6 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+/// How sentences on probes begin that only one result has, from compare_results() and compare_probes().
+constexpr const char* kOtherColumns = "probes.csv has other columns";
 
 /// @param settings  of the result's scene; without them the summary tells dynamics
 RunKind kind_of(const SceneSettings& settings, const Json& summary) {
@@ -48,8 +52,7 @@ void use_arrays(Comparison& c) {
   const ResultDifference arrays = compare_results(c.a, c.b);
   const bool columns_are_told = !c.probes.structure.empty();
   for (const std::string& sentence : arrays.structure)
-    if (!(columns_are_told && sentence == "probes.csv has other columns") &&
-        !sentence.starts_with("the first ended as"))
+    if (!(columns_are_told && sentence.starts_with(kOtherColumns)) && !sentence.starts_with("the first ended as"))
       append(c.structure, {sentence});
   c.array_by_array = true;
   c.exact = arrays.exact();
@@ -69,6 +72,7 @@ void use_fields_and_probes(Comparison& c) {
     c.quantities.push_back({d.name, d.relative, d.largest, d.time, d.a.size()});
     c.numbers += d.a.size();
   }
+  if (c.quantities.empty()) c.structure.emplace_back("there is no field and no probe that both have");
   std::stable_sort(c.quantities.begin(), c.quantities.end(),
                    [](const auto& p, const auto& q) { return p.relative > q.relative; });
 }
@@ -90,6 +94,10 @@ void keep_only(Comparison& c, const std::vector<std::string>& only) {
   std::erase_if(c.quantities, [&](const QuantityDifference& q) {
     return std::none_of(only.begin(), only.end(), [&](const std::string& word) { return means(word, q.name); });
   });
+  // A probe that only one has is none of these.
+  const auto others = [](const std::string& sentence) { return sentence.starts_with(kOtherColumns); };
+  std::copy_if(c.structure.begin(), c.structure.end(), std::back_inserter(c.notes), others);
+  std::erase_if(c.structure, others);
   c.notes.push_back(fmt::format("for the tolerance counts only: {}", fmt::join(only, ", ")));
 }
 

@@ -117,7 +117,7 @@ std::string largest_text(const FieldDifference& d) {
                                  with_unit(d.largest, d.unit), place_text(d.place), d.time, value_text(d.a, d.unit),
                                  value_text(d.b, d.unit));
   if (d.relative > 0 && d.interpolation > 0.1 * d.relative)
-    text += fmt::format("{}: up to {} of it may be interpolation between the points of a meshless body\n", d.name(),
+    text += fmt::format("{}: interpolation between the points of a meshless body adds {} at most\n", d.name(),
                         percent(d.interpolation));
   return text;
 }
