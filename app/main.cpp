@@ -1,5 +1,5 @@
 #include "app/bench/benchmark.hpp"
-#include "app/compare_results.hpp"
+#include "app/compare/command.hpp"
 #include "app/completion.hpp"
 #include "app/list.hpp"
 #include "app/messages.hpp"
@@ -98,12 +98,13 @@ CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
 }
 
 CLI::App* add_compare(CLI::App& app, CompareOptions& options) {
-  CLI::App* compare = app.add_subcommand("compare", "compare two results: every probe, every saved field");
+  CLI::App* compare = app.add_subcommand("compare", "compare two results: fields, probes, energies, cost, settings");
   compare->add_option("a", options.a, "directory of results")->required();
   compare->add_option("b", options.b, "another one")->required();
   compare->add_option("--tolerance", options.tolerance, "relative difference that is still equal")
       ->check(number_from(0, false, false))
       ->capture_default_str();
+  compare->add_option("--only", options.only, "fields and probes that count: --only displacement,tip")->delimiter(',');
   compare->add_flag("--json", options.json, "print JSON, and nothing else, on standard output");
   return compare;
 }
