@@ -1,6 +1,6 @@
 #include "app/verify/runs.hpp"
 
-#include "app/compare_results.hpp"
+#include "app/compare/arrays.hpp"
 #include "app/provenance.hpp"
 #include "app/run_scene.hpp"
 #include "app/scene/diagnostics.hpp"
