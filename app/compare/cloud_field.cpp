@@ -9,7 +9,7 @@
 namespace fascia::app {
 namespace {
 
-/// What a surface encloses [m³]; 0 where it does not close.
+/// Volume that a surface encloses [m³]; 0 where it does not close.
 double enclosed_volume(const TriangleMesh& surface) {
   std::map<std::pair<int, int>, int> edges;  // how often forward more than backward
   double volume = 0;
@@ -37,6 +37,7 @@ std::vector<int> points_with_values(const TriangleMesh& surface, std::vector<int
 
 std::vector<Vec3d> places_of(const TriangleMesh& surface, const std::vector<int>& points) {
   std::vector<Vec3d> places;
+  places.reserve(points.size());
   for (const int p : points) places.push_back(surface.points[at(p)]);
   return places;
 }
@@ -108,7 +109,8 @@ std::vector<Sample> CloudField::solid_samples() const {
   const double gauss = 0.5 / std::sqrt(3.0);  // of a cell's side, from its middle
   // Two Gauss points a cell and axis; each stands for an eighth of the cell.
   const auto coordinate = [&](int axis, int i) {
-    return box.low[axis] + step[axis] * (0.5 + i / 2 + (i % 2 == 0 ? -gauss : gauss));
+    const int cell = i / 2;
+    return box.low[axis] + step[axis] * (cell + 0.5 + (i % 2 == 0 ? -gauss : gauss));
   };
   std::vector<Sample> all;
   for (int i = 0; i < 2 * count[0]; ++i)

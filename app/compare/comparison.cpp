@@ -47,7 +47,7 @@ void tell_ends(const Json& x, const Json& y, Comparison& c) {
       c.structure.push_back(fmt::format("{} still runs, or was killed: what it has saved so far is compared", name));
 }
 
-/// The same meshes and times: array by array, as `rerun` does.
+/// Equal meshes and times are compared array by array, as `rerun` does it.
 void use_arrays(Comparison& c) {
   const ResultDifference arrays = compare_results(c.a, c.b);
   const bool columns_are_told = !c.probes.structure.empty();

@@ -20,8 +20,8 @@ struct Comparison {
   bool array_by_array = false;         ///< the meshes and times are the same, and `quantities` those of arrays
   bool exact = false;                  ///< then: every number is the same
   std::size_t numbers = 0;             ///< compared
-  /// What counts for the tolerance, the largest first: of the same meshes and times every array, see compare_results();
-  /// else the fields and probes.
+  /// These count for the tolerance, the largest first: where meshes and times are the same every array, see
+  /// compare_results(); else the fields and probes.
   std::vector<QuantityDifference> quantities;
   FieldComparison fields;
   ProbeComparison probes;

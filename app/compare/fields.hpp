@@ -48,7 +48,7 @@ struct FieldSource {
 };
 
 /// Compares all point fields that the bodies of two results have in common, as functions of the rest position.
-/// Of modes the displacement alone, scaled to one another: their size and sign mean nothing.
+/// Modes are compared by their displacement alone, scaled to one another: their size and sign mean nothing.
 /// @throws FileError, InputError  see SavedStates
 FieldComparison compare_fields(FieldSource& a, FieldSource& b);
 

@@ -51,6 +51,7 @@ std::vector<double> times_of(const io::NumberTable& table) {
 std::vector<double> values_at(const io::NumberTable& table, const std::vector<std::size_t>& columns,
                               const TimePlace& place) {
   std::vector<double> values;
+  values.reserve(columns.size());
   const auto &below = table.rows[place.below], &above = table.rows[place.above];
   for (const std::size_t c : columns)
     values.push_back(place.fraction == 0 ? below[c] : below[c] + place.fraction * (above[c] - below[c]));

@@ -117,12 +117,12 @@ std::string largest_text(const FieldDifference& d) {
                                  with_unit(d.largest, d.unit), place_text(d.place), d.time, value_text(d.a, d.unit),
                                  value_text(d.b, d.unit));
   if (d.relative > 0 && d.interpolation > 0.1 * d.relative)
-    text += fmt::format("{}: interpolation between the points of a meshless body adds {} at most\n", d.name(),
+    text += fmt::format("{}: interpolation between the points of a meshless body may add {}\n", d.name(),
                         percent(d.interpolation));
   return text;
 }
 
-/// Of the field that differs most, and of the displacement that does; empty where none does.
+/// A line for the field that differs most, and for the displacement that does; empty where none does.
 std::string largest_text(const Comparison& c) {
   const FieldDifference *field = nullptr, *displacement = nullptr;
   for (const FieldDifference& d : c.fields.fields) {

@@ -34,7 +34,7 @@ class RestField {
   RestField(const RestField&) = delete;
   RestField& operator=(const RestField&) = delete;
 
-  /// Of the matter: 3, 2 of a surface, 1 of lines, 0 of points alone.
+  /// Dimension of the matter: 3, 2 of a surface, 1 of lines, 0 of points alone.
   virtual int dimension() const = 0;
   /// The fields' stencil at X or, where X is not in the body, at the place of it that is nearest.
   virtual Stencil stencil_at(const Vec3d& X) const = 0;
@@ -43,7 +43,7 @@ class RestField {
   /// Where cells do not say what the fields are between points: stencils of the interpolation's error at some of the
   /// points, each from its neighbours alone. Empty where cells do.
   virtual std::vector<Stencil> checks() const { return {}; }
-  /// Whether cells do.
+  /// Says whether cells do.
   virtual bool has_cells() const { return true; }
   /// Number of cells, or of points where there are none.
   virtual std::size_t resolution() const = 0;
@@ -60,8 +60,8 @@ class RestField {
 /// Rest positions of the points of a .vtu [m]. @throws InputError  where it does not hold them
 std::vector<Vec3d> rest_positions(const io::VisualMesh& mesh);
 
-/// Of elements the shape functions, of shells and surfaces the linear functions of the triangles. A meshless body has
-/// no cells: its fields are interpolated (LocalFit) between its integration points and those of its surface.
+/// Elements have their shape functions, shells and surfaces the linear functions of their triangles. A meshless body
+/// has no cells: its fields are interpolated (LocalFit) between its integration points and those of its surface.
 /// @param volume  of the matter, as summary.json says it; tells a closed sheet from a solid [m³]
 std::unique_ptr<RestField> rest_field(const io::VisualMesh& mesh, double volume);
 

@@ -54,7 +54,7 @@ std::shared_ptr<const io::VisualMesh> SavedStates::state(const std::string& body
 }
 
 std::shared_ptr<const io::VisualMesh> SavedStates::at(const std::string& body, const TimePlace& time) {
-  const auto below = state(body, time.below);
+  auto below = state(body, time.below);
   if (time.fraction == 0 || time.above == time.below) return below;
   const auto above = state(body, time.above);
   auto mixed = std::make_shared<io::VisualMesh>(*below);

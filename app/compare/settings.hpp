@@ -13,7 +13,7 @@ struct Difference {
   std::string a, b;  ///< as they were written; empty: that result does not have it
 };
 
-/// What a result's scene says after its overrides: "bodies.beam.frames.grid" → "[3, 2, 2]", in the order of the text.
+/// Keys of a result's scene after its overrides: "bodies.beam.frames.grid" → "[3, 2, 2]", in the order of the text.
 /// Lists of tables count from zero: "constraints[0].body".
 struct SceneSettings {
   struct Entry {

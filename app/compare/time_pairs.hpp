@@ -6,7 +6,7 @@
 
 namespace fascia::app {
 
-/// What the times of a result are: load factors, steps of a path that is followed, numbers of modes, or seconds.
+/// Times of a result are load factors, steps of a path that is followed, numbers of modes, or seconds.
 enum class RunKind { statics, path, modes, dynamics };
 
 /// A time of a result: at an entry, or between two.

@@ -159,7 +159,7 @@ TEST_F(Compare, ColumnsUnderOtherWeightsDifferAsTheClosedFormSays) {
   EXPECT_NEAR(field.at("largest").at("difference").get<double>(), a - b, 0.005 * (a - b));
 }
 
-/// The same mesh: array by array, with norms and places beside.
+/// Results of one mesh are compared array by array, with norms and places beside.
 TEST_F(Compare, OfOneMeshHasPlacesToo) {
   stretch("a", kTetrahedra, 0.5);
   stretch("b", kTetrahedra, 0.4);

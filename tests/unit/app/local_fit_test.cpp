@@ -19,6 +19,7 @@ std::vector<Vec3d> scattered(int count, double depth) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(0, 1);
   std::vector<Vec3d> places;
+  places.reserve(at(count));
   for (int i = 0; i < count; ++i) places.push_back({{2 * part(random), part(random), depth * part(random)}});
   return places;
 }
@@ -41,7 +42,7 @@ void expect_quadratics(const std::vector<Vec3d>& places, double depth) {
 
 TEST(LocalFit, MeetsQuadratics) { expect_quadratics(scattered(800, 1), 1); }
 
-/// Of a sheet that lies in a plane; nothing is known across it.
+/// A sheet may lie in a plane; nothing is known across it.
 TEST(LocalFit, MeetsQuadraticsOfAPlane) { expect_quadratics(scattered(300, 0), 0); }
 
 TEST(LocalFit, MeetsQuadraticsOfALine) {
