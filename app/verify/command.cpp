@@ -63,6 +63,8 @@ void write_files(const Verification& v, const VerifyOptions& options, const Veri
 }  // namespace
 
 int verify_command(const VerifyOptions& options) {
+  if (options.validation && (!options.full || !options.names.empty()))
+    throw InputError("verify: --write-validation needs every case; add --full, and leave the names out");
   const Registry registry = read_registry(options.cases ? *options.cases : cases_folder());
   ChosenRuns chosen = choose(registry, options.names, options.full || options.list);
   if (options.list) {

@@ -33,7 +33,7 @@ void check_word(const TableReader& table, std::string_view key, const std::strin
 }
 
 std::string read_name(const TableReader& table, const std::string& what, Names& names) {
-  const std::string name = table.text("name").value_or("");
+  std::string name = table.text("name").value_or("");
   if (!table.value("name")) return name;
   check_word(table, "name", name);
   const auto [other, is_new] = names.emplace(name, table.place("name"));
@@ -63,7 +63,7 @@ Entry read_entry(const TableReader& table) {
 
 /// @param probes  of the scene; none where it could not be read
 std::string read_probe_name(const TableReader& table, const char* key, const std::vector<std::string>* probes) {
-  const std::string name = table.text(key).value_or("");
+  std::string name = table.text(key).value_or("");
   if (table.value(key) && probes && std::find(probes->begin(), probes->end(), name) == probes->end())
     table.error(key, unknown_name("probe of the scene", name, *probes));
   return name;

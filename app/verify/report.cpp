@@ -83,6 +83,7 @@ Counts count(const Verification& v) {
   Counts counts;
   for (const RunOutcome& run : v.outcomes) {
     counts.processor_seconds += run.processor_seconds;
+    if (!run.done) ++counts.not_made;
     for (const CaseOutcome& c : run.cases)
       ++(c.verdict == Verdict::passed ? counts.passed : c.verdict == Verdict::failed ? counts.failed : counts.skipped);
     counts.repeated += run.repetitions.size();
@@ -135,9 +136,7 @@ std::string text_of(const Verification& v) {
       for (std::size_t c = 0; c < v.runs[r].cases.size(); ++c)
         if (v.outcomes[r].cases[c].verdict == verdict && v.outcomes[r].done)
           text += line_of(v.runs[r].cases[c], v.outcomes[r].cases[c]);
-  std::size_t not_done = 0;
   for (std::size_t r = 0; r < v.outcomes.size(); ++r) {
-    if (!v.outcomes[r].done) ++not_done;
     for (const Repetition& again : v.outcomes[r].repetitions)
       if (!again.equal)
         text += fmt::format("not equal: {} again on {}: {}\n", v.runs[r].name,
@@ -150,7 +149,7 @@ std::string text_of(const Verification& v) {
     text += fmt::format("{} of {} equal bit for bit\n", counts.repeated - counts.unequal,
                         plural(counts.repeated, "repeated run"));
   if (v.long_left > 0) text += fmt::format("{} left out; --full takes them\n", plural(v.long_left, "long run"));
-  if (not_done > 0) text += fmt::format("interrupted: {} not made\n", plural(not_done, "run"));
+  if (counts.not_made > 0) text += fmt::format("interrupted: {} not made\n", plural(counts.not_made, "run"));
   return text;
 }
 

@@ -22,9 +22,10 @@ struct Verification {
 struct Counts {
   std::size_t passed = 0, failed = 0, skipped = 0;
   std::size_t repeated = 0, unequal = 0;  ///< repetitions
+  std::size_t not_made = 0;               ///< runs, by an interruption
   double processor_seconds = 0;
   std::size_t all() const { return passed + failed + skipped; }
-  bool good() const { return failed == 0 && unequal == 0; }
+  bool good() const { return failed == 0 && unequal == 0 && not_made == 0; }
 };
 Counts count(const Verification& v);
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 
 namespace fascia::app {
 namespace {
@@ -170,7 +171,8 @@ std::vector<RunOutcome> run_cases(const Registry& runs, const RunSettings& setti
       queue, settings.jobs,
       [&](std::size_t i, ChildResult result) {
         const Task& task = tasks[i];
-        const bool ended = !(stop() && result.exit_status != 0);
+        // Ctrl-C on a terminal reaches this process and its children.
+        const bool ended = result.exit_status == 0 || (result.exit_status != 128 + SIGINT && !stop());
         results[task.run][task.again] = std::move(result);
         if (task.again > 0 || !ended) return;
         finish(runs[task.run], settings, results[task.run][0], outcomes[task.run]);

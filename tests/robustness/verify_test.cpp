@@ -83,7 +83,8 @@ TEST_F(Verify, SaysWhatFailedAndWhy) {
 
 TEST_F(Verify, RunsAScenesTextWithFilesBesideTheCaseFile) {
   write("cases/frames.csv", "x,y,z\n0,0,0\n0.5,0.1,0.1\n1,0,0\n1,0.2,0.2\n0,0.2,0.2\n0,0.2,0\n");
-  const std::string scene = with(kCantilever, "frames   = { grid = [3, 2, 2] }", "frames = { file = \"frames.csv\" }\npoints = { count = 60 }");
+  const std::string scene = with(kCantilever, "frames   = { grid = [3, 2, 2] }",
+                                 "frames = { file = \"frames.csv\" }\npoints = { count = 60 }");
   write("cases/a.toml", with(run_of("text", 40), "file = \"../beam.toml\"", "scene = '''\n" + scene + "'''"));
   const ProgramResult r = verify({"--output", "out"});
   EXPECT_EQ(r.status, 0) << r.out << r.err;
@@ -99,6 +100,9 @@ TEST_F(Verify, RefusesBadInput) {
       << unknown.err;
   const ProgramResult jobs = verify({"--jobs", "0"});
   EXPECT_EQ(jobs.status, 2);
+  const ProgramResult partial = verify({"good", "--full", "--write-validation", "page.md"});
+  EXPECT_EQ(partial.status, 2);
+  EXPECT_NE(partial.err.find("needs every case"), std::string::npos) << partial.err;
   write("mine/notes.txt", "mine");
   const ProgramResult foreign = verify({"--output", "mine"});
   EXPECT_EQ(foreign.status, 4);
