@@ -26,7 +26,20 @@ Range inside(double min, double max);   ///< limits excluded
 /// Lengths whose fifth powers, of moments of inertia, are doubles [m].
 inline constexpr double kShortest = 1e-50, kLongest = 1e50;
 
-enum class Type { number, integer, text, boolean, choice, array, tuple, table, named_tables, one_of, reference, anything };
+enum class Type {
+  number,
+  integer,
+  text,
+  boolean,
+  choice,
+  array,
+  tuple,
+  table,
+  named_tables,
+  one_of,
+  reference,
+  anything
+};
 
 /// A word that a key takes.
 struct Choice {
