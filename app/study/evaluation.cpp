@@ -44,7 +44,7 @@ void find_reference(StudyResult& result, Question& question, const std::filesyst
         reference.trouble = "its scene did not converge: " + (run && run->record ? run->record->reason : "not run");
         break;
       }
-      reference.at = measure(wanted, *run->record, directory / run->plan.directory);
+      reference.at = measure_run(wanted, *run->record, directory / run->plan.directory);
       reference.source = wanted.reference.scene.empty() ? "the base scene" : wanted.reference.scene.string();
       for (const std::string& change : wanted.reference.overrides) reference.source += ", " + change;
       if (reference.at.value.empty()) reference.trouble = fmt::format("its scene has no probe \"{}\"", wanted.probe);
@@ -66,7 +66,7 @@ void find_series(StudyResult& result) {
     seen.assign(result.runs.size(), 0);
     for (std::size_t r = 0; r < result.runs.size(); ++r) {
       if (seen[r]) continue;
-      std::optional<Series> series = series_of(result, axis, result.runs[r].plan.at);
+      std::optional<SizeSeries> series = series_of(result, axis, result.runs[r].plan.at);
       if (!series) continue;
       for (const std::size_t other : series->runs) seen[other] = 1;
       for (std::size_t m = 0; m < result.study.measures.size(); ++m) {
@@ -138,7 +138,7 @@ void evaluate(StudyResult& result, const std::filesystem::path& directory,
     if (!run.converged()) continue;
     run.cost = cost_of(*run.record, result.cost);
     for (std::size_t m = 0; m < measures; ++m)
-      run.measured[m] = measure(result.study.measures[m], *run.record, directory / run.plan.directory);
+      run.measured[m] = measure_run(result.study.measures[m], *run.record, directory / run.plan.directory);
   }
   result.series.clear();
   for (std::size_t q = 0; q < result.questions.size(); ++q) {
@@ -146,7 +146,7 @@ void evaluate(StudyResult& result, const std::filesystem::path& directory,
     find_reference(result, question, directory, reference_runs[q]);
     if (!question.reference.trouble.empty()) continue;
     for (StudyRun& run : result.runs)
-      if (Measured& m = run.measured[question.measure]; belongs(result, question, run))
+      if (RunMeasure& m = run.measured[question.measure]; belongs(result, question, run))
         m.error = relative_error(m, question.reference.at);
     for (const std::size_t r : front_of(result, question)) result.runs[r].on_front[question.measure] = 1;
   }

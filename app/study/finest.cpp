@@ -50,11 +50,11 @@ Extrapolated extrapolated(const StudyResult& result, std::size_t measure, const 
   double uncertainty = 0;
   bool known = false, ordered = true;
   for (std::size_t axis = 0; axis < result.study.axes.size(); ++axis) {
-    const std::optional<Series> series = series_of(result, axis, run.plan.at);
+    const std::optional<SizeSeries> series = series_of(result, axis, run.plan.at);
     if (!series) continue;
     std::vector<Level> levels;
     for (std::size_t i = 0; i < series->runs.size(); ++i)
-      if (const Measured& m = result.runs[series->runs[i]].measured[measure];
+      if (const RunMeasure& m = result.runs[series->runs[i]].measured[measure];
           m.value.size() == reference.at.value.size())
         levels.push_back({series->h[i], m.value});
     const std::optional<Limit> limit = limit_of(levels);
@@ -86,8 +86,8 @@ bool is_finest_of_its_kind(const StudyResult& result, std::size_t r) {
 
 }  // namespace
 
-std::optional<Series> series_of(const StudyResult& result, std::size_t axis, const std::vector<std::size_t>& like) {
-  Series series;
+std::optional<SizeSeries> series_of(const StudyResult& result, std::size_t axis, const std::vector<std::size_t>& like) {
+  SizeSeries series;
   series.axis = axis;
   for (std::size_t r = 0; r < result.runs.size(); ++r) {
     const StudyRun& run = result.runs[r];

@@ -6,7 +6,7 @@ namespace fascia::app {
 
 /// Runs that share all axes but one with the run at `like`, of decreasing size; none where that axis varies neither the
 /// number of unknowns nor a time step.
-std::optional<Series> series_of(const StudyResult& result, std::size_t axis, const std::vector<std::size_t>& like);
+std::optional<SizeSeries> series_of(const StudyResult& result, std::size_t axis, const std::vector<std::size_t>& like);
 
 /// The best value that a study has of its own: of the runs that are the finest of their kind, each extrapolated by
 /// Richardson's method over every axis that varies a size, the one with the least uncertainty; where none shows an

@@ -112,7 +112,7 @@ ReportTable table_of_runs(const StudyResult& result) {
                              : r.status == "refused" ? ResultState::refused
                                                      : ResultState::stopped,
                              r.status));
-    for (const Measured& m : run.measured)
+    for (const RunMeasure& m : run.measured)
       row.push_back(m.error ? ReportCell(error_text(*m.error), *m.error) : ReportCell("–"));
     for (const double seconds : {r.solve.median, r.solve.low, r.solve.high, r.step.median, r.step_max, r.setup.median})
       row.push_back(number_cell(1e3 * seconds, 3));
