@@ -1,5 +1,6 @@
 #include "fem/refine.hpp"
 
+#include "core/math/mat3.hpp"
 #include "fem/element_mesh_parts.hpp"
 #include "fem/from_mesh.hpp"
 #include "tests/unit/fem/fem_samples.hpp"
