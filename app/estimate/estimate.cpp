@@ -20,13 +20,22 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kRounding = 1e-12;
 
+bool is_solid(const Body& body) {
+  return is_mesh_model(body) || (body.model == BodyModel::meshless && body.thickness.empty() && !body.radius);
+}
+
 /// Orders that theory allows a quantity of a body, or of the scene: linear elements and frames converge as h² and no
-/// faster, quadratic ones up to h⁴ where nothing is singular; strains and stresses, which are derivatives, later. Edges
-/// and corners of supports leave as little as h.
+/// faster, quadratic ones up to h⁴ where nothing is singular; strains and stresses, which are derivatives, later. At
+/// the edges and corners of what holds a solid the strain is singular: there the order is near 1.6, and as little as 1.
 OrderGuard guard_of(const Scene& scene, const std::optional<std::string>& body, bool derivative) {
-  const bool quadratic = std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                     [&](const Body& b) { return b.order == 2 && (!body || b.name == *body); });
-  return {derivative && !quadratic ? 1.0 : 2.0, 1, quadratic ? 4.0 : 2.0};
+  constexpr double singular = 1.6;
+  bool quadratic = false, solid = false;
+  for (const Body& b : scene.bodies) {
+    if ((body && b.name != *body) || is_carrier(b)) continue;
+    quadratic = quadratic || b.order == 2;
+    solid = solid || is_solid(b);
+  }
+  return {derivative && !quadratic ? 1 : solid ? singular : 2, 1, quadratic ? 4.0 : 2.0};
 }
 
 bool is_derivative(Quantity q) { return q == Quantity::strain || q == Quantity::stress; }
@@ -51,7 +60,8 @@ double rounding_of(const Simulation& s, Quantity quantity) {
 
 Json json_of(const std::optional<double>& error) { return error ? Json(*error) : Json(nullptr); }
 
-Json json_of(const EstimatedError& e, const std::string& unit) {
+/// @param of_components  the quantity's own are of interest
+Json json_of(const EstimatedError& e, const std::string& unit, bool of_components) {
   Json j{{"discretisation", json_of(e.discretisation)},
          {"time", json_of(e.time)},
          {"solver", json_of(e.solver)},
@@ -59,6 +69,7 @@ Json json_of(const EstimatedError& e, const std::string& unit) {
          {"total", json_of(e.total())},
          {"scale", e.scale},
          {"unit", unit}};
+  if (!e.components.empty() && of_components) j["components"] = e.components;
   if (e.order > 0) j["order"] = e.order;
   if (e.order > 0) j["order_measured"] = e.order_measured;
   return j;
@@ -131,9 +142,9 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
   if (twins.stopped()) return false;
   const bool precision = simulation_.scene.solver.precision != "double";
   const bool halved = kind == SolverKind::central_differences;
-  const auto told = [&](EstimatedError error, const std::string& unit) {
+  const auto told = [&](EstimatedError error, const std::string& unit, bool of_components) {
     if (residual && has_tolerance(kind)) error.solver = residual;
-    return json_of(error, unit);
+    return json_of(error, unit, of_components);
   };
   Json errors = Json::object();
   for (const Probe& p : simulation_.scene.probes) {
@@ -142,7 +153,7 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
     errors[p.name] = told(measured({own.series(p.name, kind), of_twin, norm, rounding_of(simulation_, p.quantity),
                                     guard_of(simulation_.scene, p.body, is_derivative(p.quantity)), halved},
                                    kind, precision),
-                          probe_unit(p.quantity));
+                          probe_unit(p.quantity), true);
   }
   for (std::size_t b = 0; fields_ && b < fields_->size(); ++b) {
     const auto of_twin = [&](TwinRole role) { return twins.field(role, b); };
@@ -151,7 +162,7 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
                        rounding_of(simulation_, Quantity::displacement),
                        guard_of(simulation_.scene, fields_->body(b), false), halved},
                       kind, precision),
-             "m");
+             "m", false);
   }
   std::vector<std::string> notes = plan_.notes;
   notes.insert(notes.end(), twins.failures().begin(), twins.failures().end());

@@ -29,20 +29,27 @@ class Measurement {
       return e.scale > 0 ? std::optional(error / e.scale) : std::nullopt;
     };
     if (space) e.discretisation = part(space->error);
+    if (space && nearest_) add_last_difference(*against_, *nearest_, space->factor, e.components);
+    const auto add_components = [&](TwinRole role, double factor) {
+      if (const std::optional<Series> other = q_.twin(role)) add_last_difference(q_.own, *other, factor, e.components);
+    };
     e.time = 0;
     if (is_dynamic(kind)) {
       const std::optional<Extrapolation> steps = time(kind);
       e.time = steps ? part(steps->error) : std::nullopt;
+      if (steps) add_components(TwinRole::shorter_step, steps->factor);
     }
     e.solver = 0;
     if (kind != SolverKind::central_differences && kind != SolverKind::modes) {
       const std::optional<double> far = apart(q_.own, TwinRole::exact);
       e.solver = far ? part(*far) : std::nullopt;
+      add_components(TwinRole::exact, 1);
     }
     e.precision = 0;
     if (has_precision) {
       const std::optional<double> far = apart(q_.own, TwinRole::in_double);
       e.precision = far ? part(*far) : std::nullopt;
+      add_components(TwinRole::in_double, 1);
     }
     return e;
   }

@@ -6,7 +6,7 @@
 
 #include <functional>
 #include <optional>
-#include <string>
+#include <vector>
 
 namespace fascia::app {
 
@@ -17,6 +17,9 @@ struct EstimatedError {
   double order = 0;                                               ///< of the discretisation; 0: not known
   bool order_measured = false;
   double scale = 0;  ///< what they are relative to, in the quantity's unit; 1 of frequencies
+
+  /// Of each component at the end, in the quantity's unit: the sum of what is known of it.
+  std::vector<double> components;
 
   std::optional<double> total() const;  ///< their sum; none where one of them is missing
 };

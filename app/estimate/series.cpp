@@ -58,6 +58,16 @@ std::optional<double> distance(const Series& a, const Series& b, SeriesNorm norm
   return most;
 }
 
+void add_last_difference(const Series& a, const Series& b, double factor, std::vector<double>& to) {
+  std::vector<double> last;
+  for_common_times(a, b, [&](std::size_t i, std::size_t j) {
+    last.assign(a.values[i].size(), 0);
+    for (std::size_t k = 0; k < last.size(); ++k) last[k] = factor * std::abs(a.values[i][k] - b.values[j][k]);
+  });
+  to.resize(std::max(to.size(), last.size()));
+  for (std::size_t k = 0; k < last.size(); ++k) to[k] += last[k];
+}
+
 Series mixed(const Series& a, const Series& b, double factor) {
   Series result;
   for_common_times(a, b, [&](std::size_t i, std::size_t j) {

@@ -27,6 +27,9 @@ enum class SeriesNorm {
 /// The largest |a − b| over the times that both have; none where they share no time or have other components.
 std::optional<double> distance(const Series& a, const Series& b, SeriesNorm norm);
 
+/// Adds factor |a − b| of the components at the last time that both have.
+void add_last_difference(const Series& a, const Series& b, double factor, std::vector<double>& to);
+
 /// a + factor (b − a) at the times that both have.
 Series mixed(const Series& a, const Series& b, double factor);
 
