@@ -39,7 +39,7 @@ TEST_F(EstimateRuns, SayWhatTheyFoundAndChangeNothing) {
   EXPECT_TRUE(error.at("order_measured").get<bool>());
   EXPECT_EQ(j.at("estimated_error").at("weight").at("total"), 0) << "a mass is exact";
   EXPECT_GT(j.at("estimated_error").at("bodies").at("beam").at("discretisation"), 0.01);
-  EXPECT_EQ(j.at("estimate").at("runs").size(), 2u);
+  EXPECT_GE(j.at("estimate").at("runs").size(), 2u);
   EXPECT_NE(result.out.find("estimated error of tip: "), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("estimated error of the displacement of \"beam\": "), std::string::npos);
   const ProgramResult check = fascia({"check", "beam.toml", "--estimate"});
@@ -69,7 +69,7 @@ TEST_F(EstimateRuns, OfModes) {
 
 TEST_F(EstimateRuns, SayWhyThereIsNoNumber) {
   const nlohmann::json listed =
-      estimated({"--set",
+      estimated({"--set", "bodies.beam.points={ count = 200 }", "--set",
                  "bodies.beam.frames={ positions = [[0,0,0], [0,0.2,0], [0,0,0.2], [0,0.2,0.2], "
                  "[1,0,0], [1,0.2,0], [1,0,0.2], [1,0.2,0.2]] }"});
   EXPECT_TRUE(listed.at("estimated_error").at("tip").at("total").is_null());
@@ -85,9 +85,9 @@ TEST_F(EstimateRuns, SayWhyThereIsNoNumber) {
 }
 
 TEST_F(EstimateRuns, RefuseWhatMakesNoSense) {
-  expect_refused(with(kCantilever, "kind = \"static\"", "kind = \"modes\"")
-                         .substr(0, std::string(kCantilever).find("[probes.tip]")) +
-                     "[output]\nestimate = true\n",
+  const std::string still = with(kCantilever, "[world]\ngravity = [0, -1, 0]\n", "");
+  const std::string modes = with(still, "kind = \"static\"", "kind = \"modes\"");
+  expect_refused(modes.substr(0, modes.find("[probes.tip]")) + "[output]\nestimate = true\n",
                  {"output.estimate: there is nothing to estimate", "\"frequency\""});
   expect_refused(std::string(kCantilever) + "[output]\nestimate = \"fast\"\n", {"output.estimate: ", "\"finer\""});
   expect_refused(std::string(kCantilever) + "[probes.bodies]\nquantity = \"volume\"\n[output]\nestimate = true\n",
