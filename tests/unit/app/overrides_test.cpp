@@ -86,7 +86,7 @@ TEST(Overrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(
       errors_of_override("bodies.beam.domain.torus.radius=1"),
       "--set:1:20: bodies.beam.domain.torus: is no known key; known here: box, block, cylinder, ellipsoid, sphere, "
-      "file, unit, rectangle, annulus, line, between, where, as");
+      "file, unit, refine, rectangle, annulus, line, between, where, as");
 }
 
 TEST(Overrides, WrongPaths) {
