@@ -140,7 +140,7 @@ class Explainer {
     const auto stop = [this] { return stopped(); };
     const ChildRun run = child("base", {});
     const std::optional<RunRecord> record =
-        record_run(run, "base", !options_.quick, options_.quick ? 0 : 1, options_.repeat, stop);
+        record_run(run, "base", !options_.quick, options_.repeat > 1 ? 1 : 0, options_.repeat, stop);
     if (!record) return;
     e_.base = *record;
     others_ = record->others;
@@ -195,7 +195,7 @@ class Explainer {
 
   void run_part(Part& part) {
     const ChildRun run = child("variant", part.variant.overrides);
-    const int warm_up = e_.base.wall < kShort ? 1 : 0;
+    const int warm_up = e_.base.wall < kShort && options_.repeat > 1 ? 1 : 0;
     part.record = record_run(run, "variant", true, warm_up, options_.repeat, [this] { return stopped(); });
     if (!part.measured()) return;
     part.solve = ratio_of(part.record->solve, e_.base.solve);
