@@ -132,6 +132,9 @@ class Explainer {
     run.overrides = e_.overrides;
     run.overrides.insert(run.overrides.end(), changes.begin(), changes.end());
     run.output = work_->path() / directory;
+    // A run that is refused leaves what is there, which would be taken for its own.
+    std::error_code none;
+    fs::remove_all(run.output, none);
     return run;
   }
 

@@ -39,6 +39,17 @@ Stages stages_of(const nlohmann::ordered_json& summary, const RunRecord& record,
   return stages;
 }
 
+namespace {
+
+/// Without a body another number of iterations is needed, which says nothing about what the body takes in each.
+double seconds_of_iteration(const RunRecord& record) {
+  return record.newton > 0  ? record.solve.median / record.newton
+         : record.steps > 0 ? record.solve.median / record.steps
+                            : record.solve.median;
+}
+
+}  // namespace
+
 void share_out(Explanation& e) {
   double points = 0;
   for (const BodyProfile& b : e.bodies) points += static_cast<double>(b.points);
@@ -47,7 +58,10 @@ void share_out(Explanation& e) {
     for (const VariantKind kind : {VariantKind::rigid, VariantKind::left_out})  // the latter counts where both are
       for (const Part& part : e.parts) {
         if (part.variant.kind != kind || part.variant.body != b.name || !part.measured()) continue;
-        b.time = {1 - part.solve.median, false, kind == VariantKind::rigid ? "as rigid" : "left out"};
+        const double base = seconds_of_iteration(e.base);
+        if (!(base > 0)) continue;
+        b.time = {1 - seconds_of_iteration(*part.record) / base, false,
+                  kind == VariantKind::rigid ? "as rigid" : "left out"};
         b.memory = 1 - part.memory.median;
       }
   }

@@ -100,14 +100,15 @@ std::string largest_text(const Part& part) {
 }
 
 std::string part_table(const Explanation& e) {
-  std::vector<std::vector<std::string>> rows{{"change", "solve", "set-up", "memory", "largest change of a probe"}};
+  std::vector<std::vector<std::string>> rows{
+      {"change", "solve", "iterations", "set-up", "memory", "largest change of a probe"}};
   for (const Part& part : e.parts) {
     if (!part.measured()) continue;
-    rows.push_back({label_of(part.variant), ratio_text(part.solve),
+    rows.push_back({label_of(part.variant), ratio_text(part.solve), std::to_string(part.record->newton),
                     fmt::format("{:+.0f} %", 100 * (part.setup.median - 1)),
                     fmt::format("{:+.0f} %", 100 * (part.memory.median - 1)), largest_text(part)});
   }
-  return rows.size() > 1 ? table_of(rows, {true, false, false, false, true}) : "  none\n";
+  return rows.size() > 1 ? table_of(rows, {true, false, false, false, false, true}) : "  none\n";
 }
 
 std::string failures(const Explanation& e) {
