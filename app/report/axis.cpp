@@ -23,7 +23,7 @@ double round_step(double span, int ticks) {
   const double rough = span / std::max(ticks, 2);
   const double power = std::pow(10.0, exponent_of(rough));
   const double digit = rough / power;
-  return power * (digit <= 1.0001 ? 1 : digit <= 2.0001 ? 2 : digit <= 5.0001 ? 5 : 10);
+  return power * (digit < M_SQRT2 ? 1 : digit < 3.16 ? 2 : digit < 7.07 ? 5 : 10);
 }
 
 /// A multiple of `step` with the digits that the step has; with powers of ten where values of this size need them.
@@ -92,34 +92,31 @@ void Axis::set_logarithmic(int ticks) {
     low_ -= 0.3;
     high_ += 0.3;
   }
-  const double margin = kMargin * (high_ - low_);
-  low_ -= margin;
-  high_ += margin;
-  const double nearly = kToNextDecade * (high_ - low_);
-  if (low_ - std::floor(low_) < nearly) low_ = std::floor(low_);
-  if (std::ceil(high_) - high_ < nearly) high_ = std::ceil(high_);
+  const double margin = kMargin * (high_ - low_), nearly = kToNextDecade * (high_ - low_);
+  const double down = low_ - std::floor(low_), up = std::ceil(high_) - high_;
+  low_ -= down > margin / 2 && down < nearly ? down : margin;
+  high_ += up > margin / 2 && up < nearly ? up : margin;
   if (high_ - low_ < 0.7) {
     const double from = std::pow(10.0, low_), to = std::pow(10.0, high_);
-    add_round_ticks(from, to, round_step(to - from, ticks));
+    add_round_ticks(from, to, round_step(to - from, std::max(ticks, 4)));
   } else {
-    add_decades(static_cast<int>(std::floor(low_)), static_cast<int>(std::floor(high_)), ticks);
+    add_decades(ticks);
   }
 }
 
-void Axis::add_decades(int first, int last, int ticks) {
-  const int stride = (last - first + ticks) / ticks;
-  const bool between = stride == 1 && 3 * (high_ - low_) <= ticks + 1;  // there is room for texts at 2 and 5
-  const bool plain = first >= -4 && last <= 4 && low_ > -3.01;
+void Axis::add_decades(int ticks) {
+  const int first = static_cast<int>(std::floor(low_)), last = static_cast<int>(std::floor(high_));
+  const int within = last - static_cast<int>(std::ceil(low_)) + 1;
+  const int stride = std::max(1, (within + ticks - 1) / ticks);
+  const bool between = within < 2 || 3 * within <= ticks + 2;  // texts at 2 and 5
+  const bool plain = first >= -3 && last <= 4;
   for (int decade = first; decade <= last; ++decade) {
     for (int digit = 1; digit <= (stride == 1 ? 9 : 1); ++digit) {
       const double value = digit * std::pow(10.0, decade);
-      const double at = std::log10(value);
-      if (at < low_ - 1e-9 || at > high_ + 1e-9) continue;
+      if (beyond(value) != Beyond::no || std::log10(value) < low_ - 1e-9 || std::log10(value) > high_ + 1e-9) continue;
       std::string text;
-      if (digit == 1 ? decade % stride == 0 : between && (digit == 2 || digit == 5)) {
-        const std::string factor = digit == 1 ? "" : fmt::format("{}·", digit);
-        text = plain ? number_text(value, 1) : factor + power_of_ten(decade);
-      }
+      if (digit == 1 ? decade % stride == 0 : between && (digit == 2 || digit == 5))
+        text = plain ? number_text(value, 1) : (digit == 1 ? "" : fmt::format("{}·", digit)) + power_of_ten(decade);
       ticks_.push_back({value, text});
     }
   }
@@ -129,6 +126,7 @@ void Axis::add_round_ticks(double low, double high, double step) {
   const double largest = std::max(std::abs(low), std::abs(high));
   for (double count = std::ceil(low / step - 1e-6); count <= high / step + 1e-6; ++count) {
     const double value = multiple(count, step);
+    if (beyond(value) != Beyond::no) continue;
     ticks_.push_back({value, tick_text(value, step, largest)});
   }
 }

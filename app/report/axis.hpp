@@ -32,7 +32,7 @@ class Axis {
  private:
   void set_linear(int ticks);
   void set_logarithmic(int ticks);
-  void add_decades(int first, int last, int ticks);
+  void add_decades(int ticks);
   void add_round_ticks(double low, double high, double step);
   double scaled(double value) const;
 

@@ -66,7 +66,7 @@ std::string html_of(const HeatMap& map) {
       html += html_of(map.cells[r][c], map.rows[r] + ", " + map.columns[c]);
     html += "</tr>\n";
   }
-  return html + "</tbody></table></div>\n<div class=\"chosen\" aria-live=\"polite\" hidden></div>\n</div>\n";
+  return html + "</tbody></table></div>\n<div class=\"chosen\" aria-live=\"polite\" hidden=\"\"></div>\n</div>\n";
 }
 
 }  // namespace fascia::app

@@ -52,6 +52,8 @@ td { max-width: 26rem; }
 .table th button::after { content: " ↕"; color: var(--soft); font-weight: 400; }
 .table th[aria-sort=ascending] button::after { content: " ↑"; color: inherit; }
 .table th[aria-sort=descending] button::after { content: " ↓"; color: inherit; }
+.table .scroll { max-height: min(44rem, 85vh); overflow: auto; width: fit-content; max-width: 100%; }
+.table th { position: sticky; top: 0; z-index: 1; }
 .number { text-align: right; }
 td.number { white-space: nowrap; }
 .unit { color: var(--soft); font-weight: 400; white-space: nowrap; }
@@ -73,7 +75,7 @@ td.number { white-space: nowrap; }
 .map td button { width: 100%; min-height: 2rem; border: 0; background: none; color: inherit; font: inherit; font-weight: 600;
   cursor: pointer; }
 .map td button[aria-pressed=true] { outline: 2px solid var(--link); outline-offset: -2px; }
-.chosen { margin: .6rem 0; padding: .6rem .9rem; border: 1px solid var(--rule); background: var(--face); }
+.chosen { position: sticky; bottom: 0; z-index: 2; margin: .6rem 0; padding: .6rem .9rem; border: 1px solid var(--rule); background: var(--face); }
 .chosen p { white-space: pre-line; margin: 0; }
 .command { display: flex; align-items: flex-start; gap: .5rem; margin: .6rem 0; }
 .command pre { flex: 1; min-width: 0; margin: 0; padding: .5rem .7rem; background: var(--face); overflow-x: auto;
@@ -92,7 +94,8 @@ footer { margin-top: 3rem; padding-top: .6rem; border-top: 1px solid var(--rule)
   body { max-width: none; padding: 0; font-size: 10pt; }
   .filter, .command button { display: none; }
   .table th button::after { content: ""; }
-  .scroll { overflow: visible; }
+  .scroll, .table .scroll { overflow: visible; max-height: none; }
+  .table th { position: static; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   figure, tr, .chosen { break-inside: avoid; }
   h2, h3 { break-after: avoid; }

@@ -54,7 +54,7 @@ std::string html_of(const ReportTable& table) {
   std::string html = "<div class=\"table\">\n";
   if (table.rows.size() >= kFilteredRows)
     html +=
-        "<p class=\"filter\" hidden><label>Filter <input type=\"search\" autocomplete=\"off\" "
+        "<p class=\"filter\" hidden=\"\"><label>Filter <input type=\"search\" autocomplete=\"off\" "
         "placeholder=\"words of a row\"></label> <output></output></p>\n";
   html += "<div class=\"scroll\" tabindex=\"0\"><table>\n";
   if (!table.caption.empty()) html += fmt::format("<caption>{}</caption>\n", escaped(table.caption));

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fascia::app {
@@ -26,7 +27,8 @@ struct ReportCell {
   ReportCell(std::string words, double number) : text(std::move(words)), value(number) {}
 };
 
-/// A number with at most this many digits, sorted by its exact value. A value that is no number is "–" and has none.
+/// A number with at most this many digits, sorted by its exact value. Sorted last: "–" of what
+/// is no number, "∞".
 ReportCell number_cell(double value, int digits = 4);
 /// The same; "–" where there is none.
 ReportCell number_cell(const std::optional<double>& value, int digits = 4);

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace fascia::app {
@@ -19,6 +18,9 @@ namespace {
 constexpr double kText = 12;            // size of all texts but the title [px]
 constexpr double kArrow = 10;           // from the end of an axis to a point beyond it [px]
 constexpr std::size_t kLabelText = 32;  // characters of a label
+constexpr std::size_t kLabelledPoints = 60;
+
+double radius(const PlotPoint& p) { return p.marked ? 9 : 5; }
 
 bool has_numbers(const PlotPoint& p) { return !std::isnan(p.x) && !std::isnan(p.y); }
 
@@ -42,9 +44,11 @@ std::string joint_element(const SeriesStyle& style, const std::string& path) {
 }
 
 std::string ring_element(double x, double y) {
-  return fmt::format(
-      R"(<circle class="ring" cx="{}" cy="{}" r="8.5" fill="none" stroke="#222222" stroke-width="1.5"/>)",
-      coordinate(x), coordinate(y));
+  const auto circle = [&](const char* name, const char* stroke) {
+    return fmt::format(R"(<circle class="{}" cx="{}" cy="{}" r="8.5" fill="none" stroke={}/>)", name, coordinate(x),
+                       coordinate(y), stroke);
+  };
+  return circle("halo", R"("#ffffff" stroke-width="5")") + circle("ring", R"("#222222" stroke-width="2")");
 }
 
 double widest_text(const Axis& axis) {
@@ -85,11 +89,11 @@ class Drawing {
   void add_lines();
   void add_error_bars(const PlotSeries& series, const SeriesStyle& style);
   void add_joints(const PlotSeries& series, const SeriesStyle& style);
-  void add_points(const PlotSeries& series, const SeriesStyle& style);
+  void add_points(bool marked);
   void add_arrows(const PlotPoint& p, const Pixel& at);
   void add_labels();
-  void add_label(const std::string& text, const std::optional<PlotLabels::Place>& place);
-  void add_point_label(const std::string& text, const Pixel& at);
+  void add_label(const std::string& text, const PlotLabels::Place& place);
+  void add_label(const std::string& text, const PlotPoint& p);
   void add_legend();
   std::string tooltip(const PlotSeries& series, const PlotPoint& p) const;
 
@@ -182,6 +186,7 @@ void Drawing::add_error_bars(const PlotSeries& series, const SeriesStyle& style)
   for (const PlotPoint& p : series.points) {
     if (!within(p) || !(p.x_low < p.x_high)) continue;
     const double low = x_of(p.x_low), high = x_of(p.x_high), y = y_of(p.y);
+    labels_.take({low, y - 3, high, y + 3});
     add("<path class=\"line {0}\" d=\"M{1} {3}v6M{2} {3}v6M{1} {4}H{2}\" fill=\"none\" stroke=\"{5}\"/>\n", style.name,
         coordinate(low), coordinate(high), coordinate(y - 3), coordinate(y), style.colour);
   }
@@ -208,15 +213,19 @@ void Drawing::add_arrows(const PlotPoint& p, const Pixel& at) {
   if (y == Beyond::high) arrow("l-4 5h8Z", at.x, frame_.top - 2);
 }
 
-void Drawing::add_points(const PlotSeries& series, const SeriesStyle& style) {
-  for (const PlotPoint& p : series.points) {
-    if (!has_numbers(p)) continue;
-    const Pixel at = pixel_of(p);
-    if (p.marked) svg_ += ring_element(at.x, at.y) + "\n";
-    svg_ += shape_element(style, at.x, at.y) + "><title>" + escaped(tooltip(series, p)) + "</title></path>\n";
-    add_arrows(p, at);
-    const double reach = p.marked ? 9 : 5;
-    labels_.take({at.x - reach, at.y - reach, at.x + reach, at.y + reach});
+void Drawing::add_points(bool marked) {
+  for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+    const PlotSeries& series = plot_.series[i];
+    const SeriesStyle style = series_style(i, series.dashed);
+    for (const PlotPoint& p : series.points) {
+      if (!has_numbers(p) || p.marked != marked) continue;
+      const Pixel at = pixel_of(p);
+      if (marked) svg_ += ring_element(at.x, at.y) + "\n";
+      svg_ += shape_element(style, at.x, at.y) + "><title>" + escaped(tooltip(series, p)) + "</title></path>\n";
+      add_arrows(p, at);
+      const double r = radius(p);
+      labels_.take({at.x - r, at.y - r, at.x + r, at.y + r});
+    }
   }
 }
 
@@ -230,31 +239,35 @@ std::string Drawing::tooltip(const PlotSeries& series, const PlotPoint& p) const
   return p.detail.empty() ? text : text + "\n" + p.detail;
 }
 
-void Drawing::add_label(const std::string& text, const std::optional<PlotLabels::Place>& place) {
+void Drawing::add_label(const std::string& text, const PlotLabels::Place& place) {
   constexpr const char* halo = R"( class="halo" stroke="#ffffff" stroke-width="3" paint-order="stroke")";
-  if (place) words(place->x, place->y, "start", text, halo);
+  words(place.x, place.y, "start", text, halo);
 }
 
-void Drawing::add_point_label(const std::string& text, const Pixel& at) {
-  if (text.empty()) return;
+void Drawing::add_label(const std::string& text, const PlotPoint& p) {
+  if (text.empty() || !has_numbers(p)) return;
   const std::string label = shortened(text, kLabelText);
-  add_label(label, labels_.beside_point(label, kText, at.x, at.y));
+  const Pixel at = pixel_of(p);
+  if (const auto place = labels_.beside_point(label, kText, at.x, at.y, radius(p), p.marked)) add_label(label, *place);
 }
 
 void Drawing::add_labels() {
   for (const PlotLine& l : plot_.lines) {
     if (l.text.empty() || !is_drawn(l)) continue;
-    add_label(l.text, l.vertical ? labels_.beside_line(l.text, kText, x_of(l.value))
-                                 : labels_.above_line(l.text, kText, y_of(l.value)));
+    const std::string label = shortened(l.text, kLabelText);
+    add_label(label, l.vertical ? labels_.beside_line(label, kText, x_of(l.value))
+                                : labels_.above_line(label, kText, y_of(l.value)));
   }
+  std::size_t points = 0;
   for (const PlotSeries& series : plot_.series) {
-    const auto middle = series.points.begin() + static_cast<std::ptrdiff_t>(series.points.size() / 2);
-    if (middle != series.points.end() && has_numbers(*middle)) add_point_label(series.note, pixel_of(*middle));
+    points += static_cast<std::size_t>(std::count_if(series.points.begin(), series.points.end(), has_numbers));
+    if (!series.points.empty()) add_label(series.note, series.points[series.points.size() / 2]);
   }
   for (const bool marked : {true, false})
     for (const PlotSeries& series : plot_.series)
       for (const PlotPoint& p : series.points)
-        if (p.marked == marked && has_numbers(p)) add_point_label(p.label, pixel_of(p));
+        if (p.marked == marked && (marked || points <= kLabelledPoints)) add_label(p.label, p);
+  if (points == 0) words((frame_.left + frame_.right) / 2, (frame_.top + frame_.bottom) / 2, "middle", "No points.");
 }
 
 void Drawing::add_legend() {
@@ -290,8 +303,8 @@ std::string Drawing::text() {
     add_error_bars(plot_.series[i], style);
     if (plot_.series[i].joined) add_joints(plot_.series[i], style);
   }
-  for (std::size_t i = 0; i < plot_.series.size(); ++i)
-    add_points(plot_.series[i], series_style(i, plot_.series[i].dashed));
+  add_points(false);
+  add_points(true);  // on top
   add_labels();
   add_legend();
   const std::string size = fmt::format("width=\"{0}\" height=\"{1}\"", coordinate(width_), coordinate(height_));

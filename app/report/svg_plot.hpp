@@ -8,9 +8,9 @@ namespace fascia::app {
 struct PlotPoint {
   double x = 0, y = 0;
   double x_low = 0, x_high = 0;  ///< spread of x; drawn where x_low < x_high
-  std::string label;             ///< beside the point where there is room, and in its tooltip
+  std::string label;             ///< in its tooltip, and beside it where there is room, of marked points or few (60)
   std::string detail;            ///< lines for its tooltip
-  bool marked = false;           ///< has a ring, and its label is placed first
+  bool marked = false;           ///< has a ring, stands in front, and its label is placed first
 };
 
 struct PlotSeries {

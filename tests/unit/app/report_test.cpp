@@ -4,6 +4,7 @@
 #include "app/report/svg_plot.hpp"
 #include "tests/unit/app/report_xml.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,7 +75,7 @@ TEST(ReportMarkup, ShortensBetweenCharacters) {
 }
 
 TEST(ReportAxis, TicksOfALinearAxisAreRound) {
-  EXPECT_EQ(texts_of(Axis({0.03, 0.97}, false, 5)), (Texts{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
+  EXPECT_EQ(texts_of(Axis({0.03, 0.97}, false, 5)), (Texts{"0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
   EXPECT_EQ(texts_of(Axis({-7, 12}, false, 4)), (Texts{"−10", "−5", "0", "5", "10", "15"}));
   EXPECT_EQ(texts_of(Axis({2e7, 6e7}, false, 4)), (Texts{"2·10⁷", "3·10⁷", "4·10⁷", "5·10⁷", "6·10⁷"}));
 }
@@ -186,6 +187,11 @@ TEST(ReportPlot, HasWhatItWasGiven) {
                            "chosen", "30 frames", "60 a second", "uncertainty of the reference", "order 1.98",
                            "frames: 30 frames\ntime of a step [ms]: 19.2 (17.28 … 23.04)\nerror [-]: 0.03333"})
     EXPECT_TRUE(texts.contains(text)) << text;
+}
+
+TEST(ReportPlot, WithoutPointsSaysSo) {
+  EXPECT_NE(svg_of({}, 640, 420).find("No points."), std::string::npos);
+  EXPECT_EQ(svg_of(sample(), 640, 420).find("No points."), std::string::npos);
 }
 
 TEST(ReportPlot, IsTheSameEachTime) { EXPECT_EQ(svg_of(sample(), 640, 420), svg_of(sample(), 640, 420)); }

@@ -23,7 +23,6 @@ class Reader : public vtkXMLParser {
     reader->InitializeObjectBase();
     return reader;
   }
-  vtkTypeMacro(Reader, vtkXMLParser);
   std::vector<Element> elements;
   bool well_formed = true;
 
