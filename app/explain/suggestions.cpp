@@ -111,6 +111,10 @@ Suggestion suggestion_of(const Explanation& e, const Part& part, const Ratio& so
   } else if (const ProbeChange* largest = part.largest_change()) {
     s.change = *largest;
     s.text += ", and " + change_text(e, *largest);
+    const std::string& body = part.variant.body;
+    if (!body.empty() && std::none_of(e.scene.probes.begin(), e.scene.probes.end(),
+                                      [&](const Probe& p) { return !p.body || p.body == body; }))
+      s.text += "; none is on this body";
   }
   s.text += ".";
   return s;
