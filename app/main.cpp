@@ -1,6 +1,7 @@
 #include "app/bench/benchmark.hpp"
 #include "app/compare/command.hpp"
 #include "app/completion.hpp"
+#include "app/explain/explain.hpp"
 #include "app/list.hpp"
 #include "app/messages.hpp"
 #include "app/process_memory.hpp"
@@ -85,7 +86,7 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
-constexpr std::array kCommands{"run", "check", "rerun", "compare", "study", "verify", "bench", "list", "completion"};
+constexpr std::array kCommands{"run", "check", "rerun", "compare", "explain", "study", "verify", "bench", "list", "completion"};
 
 CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
   CLI::App* rerun = app.add_subcommand("rerun", "repeat a run from what its result says, and compare the two");
@@ -150,6 +151,28 @@ CLI::App* add_verify(CLI::App& app, VerifyOptions& options) {
   return verify;
 }
 
+CLI::App* add_explain(CLI::App& app, ExplainOptions& options) {
+  CLI::App* explain = app.add_subcommand("explain", "say what each part of a scene costs and buys, and what to change");
+  explain->add_option("scene", options.scene, "scene file (TOML)")->required();
+  explain
+      ->add_option("--set", options.overrides,
+                   "set a key: --set key.path=value, or remove it: --set key.path= (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  explain->add_option("--output", options.output,
+                      "directory for explain.json and the run; otherwise they are not kept");
+  explain->add_option("--change", options.change, "relative change of probes that a suggestion may make")
+      ->check(number_from(0, true, false))
+      ->capture_default_str();
+  explain->add_option("--repeat", options.repeat, "times that each run is timed")
+      ->check(number_from(1, false, true))
+      ->capture_default_str();
+  explain->add_flag("--quick", options.quick, "from one run, with estimates");
+  explain->add_flag("--json", options.json, "print explain.json, and nothing else, on standard output");
+  explain->add_flag("--quiet", options.quiet, "no progress");
+  return explain;
+}
+
 /// Prints the script; what it completes is read off the commands themselves.
 int print_completion(const CLI::App& app) {
   std::vector<CommandWords> commands;
@@ -195,6 +218,8 @@ int dispatch(int argc, char** argv) {
   const CLI::App* study = add_study(app, study_options);
   VerifyOptions verify_options;
   const CLI::App* verify = add_verify(app, verify_options);
+  ExplainOptions explain_options;
+  const CLI::App* explain = add_explain(app, explain_options);
   BenchOptions bench_options;
   const CLI::App* bench = add_bench(app, bench_options);
   CLI::App* list = app.add_subcommand("list", "list scenes that come with the program, quantities of probes, or units");
@@ -216,6 +241,7 @@ int dispatch(int argc, char** argv) {
   if (compare->parsed()) return compare_command(compare_options);
   if (study->parsed()) return run_study(study_options);
   if (verify->parsed()) return verify_command(verify_options);
+  if (explain->parsed()) return explain_scene(explain_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "app/explain/explanation.hpp"
+#include "app/study/evaluation.hpp"
+
+#include <filesystem>
+
+namespace fascia::app {
+
+/// v / b, with the least and the largest that their spreads leave; 1 where b is 0.
+Ratio ratio_of(const Spread& v, const Spread& b);
+
+/// Of runs that were made in turns: the median of the ratios of neighbours, and the extremes.
+Ratio ratio_of_pairs(const std::vector<double>& v, const std::vector<double>& b);
+
+/// The probes of a scene's runs, and how far others are from them.
+class VariantProbes {
+ public:
+  /// @param directory  of the base run
+  VariantProbes(const Scene& scene, const RunRecord& base, const std::filesystem::path& directory);
+
+  /// A probe that is 0 in the base run is compared with the largest of its kind.
+  std::vector<ProbeChange> changes(const RunRecord& record, const std::filesystem::path& directory) const;
+
+ private:
+  struct Compared {
+    StudyMeasure measure;
+    Measured base;
+    double largest = 0;  ///< norm of the largest probe of the same quantity
+  };
+  std::vector<Compared> probes_;
+};
+
+}  // namespace fascia::app

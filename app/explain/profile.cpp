@@ -1,0 +1,70 @@
+#include "app/explain/profile.hpp"
+
+#include "core/math/index.hpp"
+#include "core/solver/dof_filter.hpp"
+
+#include <algorithm>
+
+namespace fascia::app {
+
+std::vector<BodyProfile> profile_of(const Simulation& s) {
+  const DofFilter filter(s.model);
+  std::vector<BodyProfile> profiles;
+  for (const SimulatedBody& b : s.bodies) {
+    const ModelBody& body = *b.body;
+    BodyProfile& p = profiles.emplace_back();
+    p.name = b.name;
+    p.model = body.model_name();
+    p.points = body.points().size();
+    p.cells = body.cells().nodes.size() / at(body.cells().nodes_per_cell);
+    p.mass = body.mass();
+    const DofLayout& dofs = s.model.points.dofs;
+    for (int i = body.first_node(); i < body.first_node() + body.node_count(); ++i)
+      for (int dof = dofs.begin(i); dof < dofs.begin(i) + dofs.size(i); ++dof)
+        p.unknowns += filter.is_fixed(at(dof)) ? 0 : 1;
+  }
+  return profiles;
+}
+
+Stages stages_of(const nlohmann::ordered_json& summary, const RunRecord& record, double program, double built) {
+  Stages stages;
+  stages.setup = record.setup.median;
+  stages.solve = record.solve.median;
+  if (const auto seconds = summary.find("seconds"); seconds != summary.end())
+    stages.output = seconds->value("output", 0.0);
+  stages.start = std::max(0.0, record.wall - stages.setup - stages.solve - stages.output);
+  stages.memory_start = std::min(program, record.memory);
+  stages.memory_setup = std::clamp(built - program, 0.0, record.memory - stages.memory_start);
+  stages.memory_run = record.memory - stages.memory_start - stages.memory_setup;
+  return stages;
+}
+
+namespace {
+
+/// Without a body another number of iterations is needed, which says nothing about what the body takes in each.
+double seconds_of_iteration(const RunRecord& record) {
+  return record.newton > 0  ? record.solve.median / record.newton
+         : record.steps > 0 ? record.solve.median / record.steps
+                            : record.solve.median;
+}
+
+}  // namespace
+
+void share_out(Explanation& e) {
+  double points = 0;
+  for (const BodyProfile& b : e.bodies) points += static_cast<double>(b.points);
+  for (BodyProfile& b : e.bodies) {
+    b.time = {points > 0 ? static_cast<double>(b.points) / points : 0, true, ""};
+    for (const VariantKind kind : {VariantKind::rigid, VariantKind::left_out})  // the latter counts where both are
+      for (const Part& part : e.parts) {
+        if (part.variant.kind != kind || part.variant.body != b.name || !part.measured()) continue;
+        const double base = seconds_of_iteration(e.base);
+        if (!(base > 0)) continue;
+        b.time = {1 - seconds_of_iteration(*part.record) / base, false,
+                  kind == VariantKind::rigid ? "as rigid" : "left out"};
+        b.memory = 1 - part.memory.median;
+      }
+  }
+}
+
+}  // namespace fascia::app
