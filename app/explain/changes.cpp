@@ -40,7 +40,7 @@ VariantProbes::VariantProbes(const Scene& scene, const RunRecord& base, const st
     Compared& compared = probes_.emplace_back();
     compared.measure.name = compared.measure.probe = probe.name;
     compared.measure.moment = is_dynamic(scene.solver.kind) ? Moment::curve : Moment::end;
-    compared.base = measure(compared.measure, base, directory);
+    compared.base = measure_run(compared.measure, base, directory);
     double& most = largest[probe.quantity];
     most = std::max(most, norm_of(compared.base.value));
   }
@@ -50,7 +50,7 @@ VariantProbes::VariantProbes(const Scene& scene, const RunRecord& base, const st
 std::vector<ProbeChange> VariantProbes::changes(const RunRecord& record, const std::filesystem::path& directory) const {
   std::vector<ProbeChange> changes;
   for (const Compared& compared : probes_) {
-    const Measured value = measure(compared.measure, record, directory);
+    const RunMeasure value = measure_run(compared.measure, record, directory);
     std::optional<double> relative;
     if (norm_of(compared.base.value) > kZero * compared.largest) {
       relative = relative_error(value, compared.base);

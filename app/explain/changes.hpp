@@ -25,7 +25,7 @@ class VariantProbes {
  private:
   struct Compared {
     StudyMeasure measure;
-    Measured base;
+    RunMeasure base;
     double largest = 0;  ///< norm of the largest probe of the same quantity
   };
   std::vector<Compared> probes_;

@@ -1,6 +1,6 @@
 #include "app/explain/explain.hpp"
 
-#include "app/compare_results.hpp"
+#include "app/compare/arrays.hpp"
 #include "app/explain/changes.hpp"
 #include "app/explain/profile.hpp"
 #include "app/explain/report.hpp"
