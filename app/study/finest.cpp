@@ -103,9 +103,10 @@ std::optional<SizeSeries> series_of(const StudyResult& result, std::size_t axis,
   // Numbers that are sizes of time; others, such as threads or a stiffness, say nothing of an order.
   const bool is_step = std::any_of(varied.keys.begin(), varied.keys.end(),
                                    [](const std::string& k) { return k.ends_with("time_step"); });
-  const bool models =
-      std::any_of(varied.values.begin(), varied.values.end(), [](const AxisValue& v) { return !v.model.empty(); });
-  if (models || (!by_unknowns && !is_step)) return std::nullopt;
+  // Numbers and grids are sizes; a word such as a kind of frames is another model.
+  const bool sizes = std::all_of(varied.values.begin(), varied.values.end(),
+                                 [](const AxisValue& v) { return v.number || v.label.starts_with('['); });
+  if (!sizes || (!by_unknowns && !is_step)) return std::nullopt;
   const auto size = [&](std::size_t r) { return size_of(result, axis, result.runs[r], by_unknowns); };
   std::sort(series.runs.begin(), series.runs.end(), [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
   for (const std::size_t r : series.runs) series.h.push_back(size(r));
