@@ -30,7 +30,8 @@ std::vector<Budget> budgets_of(const StudyResult& result, const Question& questi
   std::sort(limits.begin(), limits.end());
   std::vector<Budget> budgets;
   for (const double limit : limits) {
-    Budget& budget = budgets.emplace_back(limit, std::nullopt);
+    Budget& budget = budgets.emplace_back();
+    budget.limit = limit;
     for (const std::size_t r : runs)
       if (amount(result.runs[r]) <= limit && (!budget.best || error(r) < error(*budget.best))) budget.best = r;
   }
