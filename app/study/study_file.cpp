@@ -127,7 +127,7 @@ StudyAxis read_axis(const TableReader& table) {
   if (table.has("keys")) axis.keys = texts_of(table, "keys");
   if (!axis.keys.empty()) read_rows(table, axis);
   if (table.has("alternatives")) read_alternatives(table, axis);
-  for (const std::string& word : texts_of(table, "models")) axis.values.push_back({word, {}, {}, word});
+  for (const std::string& word : texts_of(table, "models")) axis.values.push_back({word, {}, {}, word, 1});
   if (table.has("models") && axis.body.empty())
     table.error("body", "is missing; must be the name of the body whose models are compared");
   if (table.value("refine") != nullptr) read_refinements(table, axis);
@@ -289,7 +289,7 @@ Study study_of(const fs::path& scene, const std::vector<std::string>& vary, cons
       axis.keys = {text.substr(0, equals)};
       axis.name = last_part(axis.keys[0]);
       for (const Value& value : *values)
-        axis.values.push_back({label_of(value), {axis.keys[0] + "=" + toml_text(value)}, number_of(value)});
+        axis.values.push_back({label_of(value), {axis.keys[0] + "=" + toml_text(value)}, number_of(value), "", 1});
     } catch (const SyntaxError&) {
       diagnostics.add(place, "is no key with a list of values; must be as in --vary 'solver.threads=[1, 2]'");
     }

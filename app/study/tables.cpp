@@ -163,6 +163,7 @@ Json json_of(const StudyResult& result) {
   }
   j["measures"] = Json::array();
   for (const Question& question : result.questions) j["measures"].push_back(question_json(result, question));
+  for (const StudyRun& run : result.runs) j["runs"].push_back(run_json(result, run));
   j["series"] = Json::array();
   for (const Series& s : result.series) {
     Json orders = Json::array();
