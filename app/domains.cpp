@@ -231,6 +231,14 @@ void check_size(const Body& body, double size) {
                                  size, kShortest, kLongest)}});
 }
 
+void check_refinement(const FileDomain& file, std::size_t cells, int children) {
+  constexpr double most = 1e7;
+  const double made = static_cast<double>(cells) * std::pow(children, file.refine);
+  if (made > most)
+    throw SceneError({{file.refine_place, fmt::format("{} makes {:.3g} cells of {}; must leave at most {}", file.refine,
+                                                      made, cells, most)}});
+}
+
 namespace {
 
 Mat3d rotation_of(const Transform& t) {

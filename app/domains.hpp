@@ -13,6 +13,11 @@ namespace fascia::app {
 /// @throws SceneError  one whose volume or moments of inertia leave the range of double numbers
 void check_size(const Body& body, double size);
 
+/// @param cells     of the mesh that a file holds
+/// @param children  of a cell that is cut
+/// @throws SceneError  a refinement that makes too many cells
+void check_refinement(const FileDomain& file, std::size_t cells, int children);
+
 /// The same body with the places of its domain near the origin and a translation that brings it back, if it is far
 /// away: so it is sampled as one at the origin is, with all digits of its size. A mesh follows when it is read.
 Body near_origin(const Body& body);

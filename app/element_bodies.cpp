@@ -1,5 +1,6 @@
 #include "app/bodies.hpp"
 
+#include "app/domains.hpp"
 #include "app/read_files.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
@@ -8,6 +9,7 @@
 #include "fem/element_body.hpp"
 #include "fem/from_mesh.hpp"
 #include "fem/generate.hpp"
+#include "fem/refine.hpp"
 #include "io/mesh_reader.hpp"
 
 #include <fmt/format.h>
@@ -30,9 +32,13 @@ std::array<int, N> cells_of(const Body& body) {
 ElementMesh mesh_of(const Body& body) {
   const ElementFamily family =
       body.model == BodyModel::tetrahedra ? ElementFamily::tetrahedra : ElementFamily::hexahedra;
-  if (const auto* file = std::get_if<FileDomain>(&body.domain))
-    return element_mesh(read_for(file->place, [&] { return io::read_mesh(file->path, io::MidNodes::keep); }), family,
-                        body.order);
+  if (const auto* file = std::get_if<FileDomain>(&body.domain)) {
+    ElementMesh mesh = element_mesh(
+        read_for(file->place, [&] { return io::read_mesh(file->path, io::MidNodes::keep); }), family, body.order);
+    check_refinement(*file, mesh.size(), 8);
+    for (int k = 0; k < file->refine; ++k) mesh = refined(mesh);
+    return mesh;
+  }
   const ElementKind kind{family, body.order, body.cells->split};
   if (const auto* box = std::get_if<BoxDomain>(&body.domain))
     return generate_box(box->min, box->max, cells_of<3>(body), kind);

@@ -235,4 +235,8 @@ bool names_frames(const Region& region) {
   });
 }
 
+bool names_ids(const Region& region) {
+  return any_part(region, [](const Region& r) { return std::holds_alternative<IdsRegion>(r.shape); });
+}
+
 }  // namespace fascia::app

@@ -35,4 +35,7 @@ bool names_boundary(const Region& region);
 /// Whether a region picks single frames anywhere: `nearest` or `ids`.
 bool names_frames(const Region& region);
 
+/// Whether a region has `ids` anywhere.
+bool names_ids(const Region& region);
+
 }  // namespace fascia::app

@@ -1,5 +1,6 @@
 #include "app/shell_meshes.hpp"
 
+#include "app/domains.hpp"
 #include "app/read_files.hpp"
 #include "app/regions.hpp"
 #include "app/scene/errors.hpp"
@@ -7,6 +8,7 @@
 #include "core/model/errors.hpp"
 #include "io/mesh_reader.hpp"
 #include "shells/generate.hpp"
+#include "shells/refine.hpp"
 #include "shells/surface_checks.hpp"
 
 #include <fmt/format.h>
@@ -33,8 +35,12 @@ Diagonal diagonal_of(const Body& body) {
 }
 
 ShellMesh generated_or_read(const Body& body) {
-  if (const auto* file = std::get_if<FileDomain>(&body.domain))
-    return shell_mesh(read_for(file->place, [&] { return io::read_mesh(file->path, io::MidNodes::keep); }));
+  if (const auto* file = std::get_if<FileDomain>(&body.domain)) {
+    ShellMesh mesh = shell_mesh(read_for(file->place, [&] { return io::read_mesh(file->path, io::MidNodes::keep); }));
+    check_refinement(*file, mesh.triangles.size(), 4);
+    for (int k = 0; k < file->refine; ++k) mesh = refined(mesh);
+    return mesh;
+  }
   if (const auto* r = std::get_if<RectangleDomain>(&body.domain))
     return rectangle(r->origin, r->edge_u, r->edge_v, two_cells(body), diagonal_of(body));
   if (const auto* a = std::get_if<AnnulusDomain>(&body.domain))

@@ -37,12 +37,21 @@ void append_edges(const CellBlock& block, std::size_t cell, const std::vector<in
   }
 }
 
+void append_face(const CellBlock& block, std::size_t cell, const std::vector<int>& kept, ElementGroup& group) {
+  if (dimension_of(block.type) != 2) return;
+  std::array<int, 4> face{-1, -1, -1, -1};
+  const std::size_t n = at(node_count(block.type));
+  for (std::size_t k = 0; k < n; ++k)
+    if ((face[k] = kept[at(block.nodes[cell * n + k])]) < 0) return;
+  group.faces.push_back(face);
+}
+
 /// The file's groups with the corners of their cells.
 std::vector<ElementGroup> make_groups(const Mesh& mesh, const Cells& cells, const std::vector<int>& kept) {
   std::vector<ElementGroup> groups;
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
     groups.push_back(
-        {mesh.groups[g].name, mesh.groups[g].number, mesh.groups[g].dimension, {}, cells.elements_of_group[g], {}});
+        {mesh.groups[g].name, mesh.groups[g].number, mesh.groups[g].dimension, {}, cells.elements_of_group[g], {}, {}});
   for (const CellBlock& block : mesh.blocks) {
     const std::size_t n = at(node_count(block.type));
     for (std::size_t c = 0; c < block.size(); ++c) {
@@ -51,6 +60,7 @@ std::vector<ElementGroup> make_groups(const Mesh& mesh, const Cells& cells, cons
       for (std::size_t k = 0; k < n; ++k)
         if (const int node = kept[at(block.nodes[c * n + k])]; node >= 0) group.nodes.push_back(node);
       if (dimension_of(block.type) < 3) append_edges(block, c, kept, group);
+      append_face(block, c, kept, group);
     }
   }
   for (ElementGroup& group : groups) {

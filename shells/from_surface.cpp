@@ -8,6 +8,7 @@
 #include "shells/surface_checks.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -157,6 +158,42 @@ std::vector<BodyGroup> groups_of(const Mesh& mesh, const Solid& all, const Solid
   return groups;
 }
 
+/// The edges of each group's line cells. @param node  as for groups_of
+std::vector<std::vector<std::array<int, 2>>> lines_of(const Mesh& mesh, const Solid& all,
+                                                      const std::vector<int>& node) {
+  std::vector<std::vector<std::array<int, 2>>> lines(mesh.groups.size());
+  for (const Cell& cell : all.cells) {
+    if (cell.group < 0 || cell.type != CellType::line) continue;
+    const auto [low, high] = std::minmax(node[at(cell.nodes[0])], node[at(cell.nodes[1])]);
+    if (low >= 0) lines[at(cell.group)].push_back({low, high});
+  }
+  for (auto& edges : lines) {
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  }
+  return lines;
+}
+
+/// Gives lines along which the surface was split the edges of both sides.
+void part_lines(ShellMesh& mesh, const PartedSurface& parted, int former_nodes) {
+  std::vector<int> original(mesh.nodes.size());
+  std::iota(original.begin(), original.end(), 0);
+  for (std::size_t k = 0; k < parted.added.size(); ++k)
+    if (const auto& [a, b] = parted.added[k]; a == b) original[at(former_nodes) + k] = original[at(a)];
+  for (auto& edges : mesh.lines) {
+    const auto former = edges;
+    for (const Triangle& t : parted.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int a = t.nodes[k], b = t.nodes[(k + 1) % 3];
+        const auto [low, high] = std::minmax(original[at(a)], original[at(b)]);
+        if (std::max(a, b) >= former_nodes && std::ranges::binary_search(former, std::array{low, high}))
+          edges.push_back({std::min(a, b), std::max(a, b)});
+      }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  }
+}
+
 /// Gives a group the new triangles and nodes. Of a node and its copies a group has those that its triangles use; where
 /// they use none of them, and in groups of points and lines, it has all.
 void part_group(BodyGroup& group, const PartedSurface& parted, int former_nodes, int former_triangles) {
@@ -206,6 +243,7 @@ void part_where_touching(ShellMesh& mesh) {
     mesh.file_number.push_back(t.file_number);
   }
   for (BodyGroup& group : mesh.groups) part_group(group, parted, former_nodes, former);
+  part_lines(mesh, parted, former_nodes);
 }
 
 /// The number of each point among those that triangles use, in their order; −1 for the others.
@@ -246,7 +284,9 @@ ShellMesh shell_mesh(const Mesh& mesh) {
   result.nodes = std::move(surface.points);
   result.triangles = std::move(surface.triangles);
   for (const Triangle& t : triangles) result.file_number.push_back(t.file_number);
-  result.groups = groups_of(mesh, all, used, triangles, number_nodes(used, triangles));
+  const std::vector<int> node = number_nodes(used, triangles);
+  result.groups = groups_of(mesh, all, used, triangles, node);
+  result.lines = lines_of(mesh, all, node);
   part_where_touching(result);
   for (const BodyGroup& group : result.groups)
     if (group.nodes.empty())

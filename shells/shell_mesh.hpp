@@ -16,6 +16,8 @@ struct ShellMesh {
   std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise seen from the side that the normal points to
   std::vector<std::int64_t> file_number;      ///< of the triangles, for messages; empty where generated
   std::vector<BodyGroup> groups;              ///< nodes and cells (triangles) of each named group
+  /// Edges of the line cells of each group, as pairs of nodes, ascending; empty where generated.
+  std::vector<std::vector<std::array<int, 2>>> lines;
   std::vector<std::string> messages;          ///< what was repaired or looks bad
   std::string file;                           ///< empty where generated
 };

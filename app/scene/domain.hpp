@@ -38,6 +38,8 @@ struct FileDomain {
   std::filesystem::path path;  ///< already resolved against the scene's folder
   Place place{};               ///< of the key
   double unit = 1;             ///< of its numbers [m]; it is part of Transform::scale
+  int refine = 0;              ///< how often every cell is cut, of elements and shells
+  Place refine_place{};
 };
 /// A parallelogram: origin + u edge_u + v edge_v, u and v from 0 to 1.
 struct RectangleDomain {

@@ -77,6 +77,7 @@ void read_carrier(const TableReader& table, Body& body) {
   table.refuse({"material", "frames", "points", "weights", "thickness", "radius", "fluid", "formulation", "order",
                 "incompressibility", "locking"},
                unused_by(body.model));
+  if (table.table("domain").has("file")) table.table("domain").refuse({"refine"}, unused_by(body.model));
   read_surface(table.table("domain"), body);
   if (body.model == BodyModel::surface)
     return table.refuse({"mass", "density", "inertia", "initial"}, unused_by(body.model));

@@ -111,7 +111,8 @@ double unit_of_file(const TableReader& domain) {
 FileDomain read_file(const TableReader& domain, const std::filesystem::path& folder) {
   const std::string name = *domain.text("file");
   if (name.empty()) domain.error("file", "is empty; must be the path of a mesh");
-  return {folder / name, domain.place("file"), unit_of_file(domain)};
+  return {folder / name, domain.place("file"), unit_of_file(domain), domain.integer("refine").value_or(0),
+          domain.place("refine")};
 }
 
 BetweenDomain read_between(const TableReader& body, const std::vector<std::string>& known) {
@@ -152,8 +153,10 @@ Domain read_domain(const TableReader& body, const std::vector<std::string>& bodi
                    const std::filesystem::path& folder) {
   const TableReader domain = body.table("domain");
   if (domain.value("between")) return read_between(body, bodies);
-  if (!domain.has("file"))
+  if (!domain.has("file")) {
     domain.refuse({"unit"}, "is used only with file; write lengths with their unit, as \"5 mm\"");
+    domain.refuse({"refine"}, "is used only with file; give the number of cells");
+  }
   if (!domain.has("between")) domain.refuse({"where", "as"}, "is used only with between");
   if (domain.value("file")) return read_file(domain, folder);
   if (domain.value("block")) return read_block(domain.table("block"));

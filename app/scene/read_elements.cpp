@@ -132,6 +132,7 @@ void refuse_element_keys(const TableReader& table) {
   const std::string unused = unused_by(BodyModel::meshless);
   table.refuse({"formulation", "order", "incompressibility", "locking"}, unused);
   const TableReader domain = table.table("domain");
+  if (domain.has("file")) domain.refuse({"refine"}, unused + "; give more frames");
   if (domain.has("block"))
     return domain.error("block",
                         "is for mesh models and rigid bodies; must be box, cylinder, ellipsoid, sphere, file, "

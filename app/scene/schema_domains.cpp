@@ -135,6 +135,10 @@ Shape domain_schema() {
            "rigid body or a surface takes the triangles, or the boundary of volume cells where there are none. The "
            "path is relative to the scene file."),
        key("unit", text("a unit of length"), "What a number of `file` means: \"mm\", \"cm\".").defaults("\"m\""),
+       key("refine", integer(between(0, 6)),
+           "How often every cell of `file` is cut: a tetrahedron or hexahedron into 8, a triangle into 4. Groups go "
+           "with their cells, the shape stays. Only for `model = \"tetrahedra\"`, `\"hexahedra\"` and `\"shell\"`.")
+           .defaults("0"),
        key("rectangle", rectangle(), "A flat sheet between two edges; a meshless body or a shell needs `thickness`."),
        key("annulus", annulus(), "A flat ring or a sector of it; for shells, rigid bodies and surfaces."),
        key("line", line(), "A straight line; the body needs `radius`."),

@@ -167,7 +167,7 @@ TEST(ElementErrors, CellsAreNeeded) {
             "a.toml:6:73: bodies.block.domain.ellipsoid.cells: asks for about 1.3e+07 cells; must be at most 10000000");
   EXPECT_EQ(errors_of_domain("file = \"a.msh\", cells = [1, 1, 1]"),
             "a.toml:6:28: bodies.block.domain.cells: is no known key; known here: box, block, cylinder, ellipsoid, "
-            "sphere, file, unit, rectangle, annulus, line, between, where, as");
+            "sphere, file, unit, refine, rectangle, annulus, line, between, where, as");
 }
 
 TEST(ElementErrors, CellsAround) {
