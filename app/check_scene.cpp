@@ -2,6 +2,7 @@
 #include "app/coupling_report.hpp"
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
+#include "app/need/need.hpp"
 #include "app/readable.hpp"
 #include "app/result_size.hpp"
 #include "app/run_scene.hpp"
@@ -27,7 +28,9 @@ std::string describe(const SimulatedBody& b) {
 }  // namespace
 
 int check_scene(const RunOptions& options) {
-  Simulation s = load_scene(options);
+  Scene scene = read_scene(options);
+  if (scene.states_need()) return check_need(options, scene);
+  Simulation s = load_scene(std::move(scene));
   const Backend backend = choose_backend(s);
   warn_of_backend(s, backend);
   const ResultSize results = forecast_result(s);

@@ -85,7 +85,8 @@ void Accuracy::compare(std::size_t wanted) {
     const std::optional<Convergence>& c = of_[f][wanted];
     if (!c || static_cast<int>(f) == best.family) continue;
     const double apart = relative_distance(c->limit, best.convergence->limit).value_or(0);
-    best.uncertainty = std::max(best.uncertainty, apart - c->uncertainty);
+    // Two levels far from the limit say little of it.
+    if (c->measured) best.uncertainty = std::max(best.uncertainty, apart - c->uncertainty);
     best.confirmed = best.confirmed || apart + own <= allowed;
   }
 }

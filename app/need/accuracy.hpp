@@ -10,9 +10,9 @@ namespace fascia::app {
 /// What a quantity converges to as cells become small, by trials of several levels.
 struct Convergence {
   Series limit;
-  double uncertainty = 0;         ///< of the limit, relative to its largest value
-  double order = 0;               ///< p of the error c h^p
-  bool measured = false;          ///< by three levels; else it is assumed
+  double uncertainty = 0;  ///< of the limit, relative to its largest value
+  double order = 0;        ///< p of the error c h^p
+  bool measured = false;   ///< by three levels; else it is assumed
   int levels = 0;
 };
 
@@ -62,7 +62,7 @@ class Accuracy {
   void compare(std::size_t wanted);
 
   const Trials* trials_;
-  std::vector<std::vector<const Trial*>> levels_;              ///< by family
+  std::vector<std::vector<const Trial*>> levels_;            ///< by family
   std::vector<std::vector<std::optional<Convergence>>> of_;  ///< by family and quantity
   std::vector<Best> best_;                                   ///< by quantity
 };

@@ -37,8 +37,9 @@ void write(const Table& members, const std::string& path, int depth, std::string
       continue;
     }
     const Table& table = *m.value.as_table();
-    const bool only_tables = !table.empty() && depth == 0 &&
-                             std::all_of(table.begin(), table.end(), [](const Member& t) { return t.value.as_table(); });
+    const bool only_tables =
+        !table.empty() && depth == 0 &&
+        std::all_of(table.begin(), table.end(), [](const Member& t) { return t.value.as_table(); });
     if (!only_tables) text += fmt::format("\n[{}]\n", whole);
     write(table, whole, depth + 1, text);
   }

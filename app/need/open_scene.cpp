@@ -103,8 +103,7 @@ class Opening {
     open_.dimension = line ? 1 : surface ? 2 : 3;
     // A grid around a curved body needs inner cells; rigid frames of a solid need three through it (manual, section 5).
     const int least = line || surface ? 4 : box ? 2 : 3;
-    if (body_.affine || !says("frames.kind"))
-      family("affine frames", {}, line || surface ? 2 : box ? 1 : 3);
+    if (body_.affine || !says("frames.kind")) family("affine frames", {}, line || surface ? 2 : box ? 1 : 3);
     if (!body_.affine) open_.families.insert(open_.families.begin(), {"rigid frames", {}, least, 2});
     if (!says("frames.kind"))
       for (Family& f : open_.families)
@@ -201,15 +200,14 @@ int OpenScene::families() const {
   return static_cast<int>(most);
 }
 
-bool OpenScene::resizes() const {
-  return std::any_of(bodies.begin(), bodies.end(), resizable);
-}
+bool OpenScene::resizes() const { return std::any_of(bodies.begin(), bodies.end(), resizable); }
 
 bool OpenScene::offers(const Resolution& r) const { return takes(r) && (resizes() || r.level == 1); }
 
 bool OpenScene::takes(const Resolution& r) const {
   if (r.level < 1) return false;
-  if (r.level > 1 && std::none_of(bodies.begin(), bodies.end(), [](const OpenBody& b) { return b.cut || !b.pattern.empty(); }))
+  if (r.level > 1 &&
+      std::none_of(bodies.begin(), bodies.end(), [](const OpenBody& b) { return b.cut || !b.pattern.empty(); }))
     return false;
   const bool power = std::has_single_bit(static_cast<unsigned>(r.level));
   return power || std::none_of(bodies.begin(), bodies.end(), [](const OpenBody& b) { return b.cut; });
@@ -255,7 +253,8 @@ std::string OpenScene::text(const Resolution& r) const {
     std::vector<int> counts = body.pattern;
     for (int& n : counts) n = n * r.level + (body.frames ? 1 : 0);
     if (!counts.empty()) part += fmt::format(", {} {}", fmt::join(counts, " x "), body.frames ? "frames" : "cells");
-    if (body.cut && r.level > 1) part += fmt::format(", cells cut {} times", std::bit_width(static_cast<unsigned>(r.level)) - 1);
+    if (body.cut && r.level > 1)
+      part += fmt::format(", cells cut {} times", std::bit_width(static_cast<unsigned>(r.level)) - 1);
     parts.push_back(part);
   }
   return fmt::format("{}", fmt::join(parts, "; "));

@@ -19,13 +19,13 @@ struct Family {
 /// A body with something to choose.
 struct OpenBody {
   std::string name;
-  std::string key;                ///< of its numbers of cells or frames, or of how often its mesh is cut
-  std::vector<int> pattern;       ///< cells along each direction at resolution 1; empty: they stay, or are of a file
-  bool fixed = false;             ///< the scene says them: other numbers only tell how large errors are
-  bool frames = false;            ///< the key takes frames: one more than cells
-  bool cut = false;               ///< the mesh of a file: resolutions are powers of 2
-  int dimension = 3;              ///< of what it fills
-  std::vector<Family> families;   ///< one at least, from cheap to dear
+  std::string key;               ///< of its numbers of cells or frames, or of how often its mesh is cut
+  std::vector<int> pattern;      ///< cells along each direction at resolution 1; empty: they stay, or are of a file
+  bool fixed = false;            ///< the scene says them: other numbers only tell how large errors are
+  bool frames = false;           ///< the key takes frames: one more than cells
+  bool cut = false;              ///< the mesh of a file: resolutions are powers of 2
+  int dimension = 3;             ///< of what it fills
+  std::vector<Family> families;  ///< one at least, from cheap to dear
 };
 
 /// A choice for all open bodies. Body b takes the family of this number, or its last one.
@@ -39,13 +39,13 @@ struct Resolution {
 struct OpenScene {
   std::vector<OpenBody> bodies;
 
-  int families() const;                ///< 1 where there is no open body
+  int families() const;                    ///< 1 where there is no open body
   bool takes(const Resolution& r) const;   ///< levels of meshes that are cut are powers of 2
   bool offers(const Resolution& r) const;  ///< it may be chosen: where all cells are fixed, level 1 alone
   bool resizes() const;                    ///< some body has a resolution to choose
-  int least(int family) const;            ///< the coarsest level worth a try
+  int least(int family) const;             ///< the coarsest level worth a try
   double order(int family) const;
-  int dimension() const;                  ///< the largest
+  int dimension() const;  ///< the largest
   std::vector<std::string> overrides(const Resolution& r) const;
   /// "beam: quadratic hexahedra, 8 x 1 x 1 cells"; of several bodies one behind the other.
   std::string text(const Resolution& r) const;

@@ -81,8 +81,8 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
     if (const auto& c = accuracy.convergence(found.choice.resolution.family, w))
       e["order"] = c->order, e["order_measured"] = c->measured;
     if (wanted.allowed)
-      told.push_back(fmt::format("{} {} of {} allowed", wanted.name, space ? percent(*space + time + solver[w]) : "unknown",
-                                 percent(*wanted.allowed)));
+      told.push_back(fmt::format("{} {} of {} allowed", wanted.name,
+                                 space ? percent(*space + time + solver[w]) : "unknown", percent(*wanted.allowed)));
     else if (trials.wanted().front().allowed == std::nullopt && w < 3)
       told.push_back(fmt::format("{} {}", wanted.name, space ? percent(*space + time + solver[w]) : "unknown"));
     if (wanted.body.empty())
@@ -97,25 +97,30 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
     Json j{{"choice", trials.text(t.choice)}, {"status", t.status}, {"seconds", t.seconds}, {"unknowns", t.dofs}};
     if (!t.choice.more.empty()) j["twin"] = t.choice.more;
     if (t.choice.steps > 0 || scene_.solver.step_open) j["step_p99"] = t.step;
-    if (const auto ratio = t.choice.steps == own.choice.steps && t.choice.more == own.choice.more ? accuracy.ratio(t) : std::nullopt)
+    if (const auto ratio =
+            t.choice.steps == own.choice.steps && t.choice.more == own.choice.more ? accuracy.ratio(t) : std::nullopt)
       j["error_over_allowed"] = *ratio;
     good += t.good() ? 1 : 0;
     trials_.push_back(std::move(j));
   }
-  sentences_ = {fmt::format("chosen: {}: {:.0f} unknowns, {}", trials.text(found.choice), own.dofs, time_text(own.seconds)),
-                fmt::format("why: {} of {} trials in {}", found.met ? "the cheapest that meets the need" : "the nearest to the need", good, time_text(seconds)),
-                reached_};
+  sentences_ = {
+      fmt::format("chosen: {}: {:.0f} unknowns, {}", trials.text(found.choice), own.dofs, time_text(own.seconds)),
+      fmt::format("why: {} of {} trials in {}",
+                  found.met ? "the cheapest that meets the need" : "the nearest to the need", good, time_text(seconds)),
+      reached_};
   const Trial* coarser = nullptr;
   for (const Trial* t : levels)
     if (t->choice.resolution.level < own.choice.resolution.level) coarser = t;
   if (const auto ratio = coarser ? accuracy.ratio(*coarser) : std::nullopt; ratio && *ratio > 1)
-    sentences_[1] += fmt::format("; {} has {:.2g} times the error that is allowed", trials.open().text(coarser->choice.resolution), *ratio);
+    sentences_[1] += fmt::format("; {} has {:.2g} times the error that is allowed",
+                                 trials.open().text(coarser->choice.resolution), *ratio);
 }
 
 void NeedReport::write(Json& summary) {
   if (scene_.need && scene_.need->step) {
     const auto p99 = summary.at("seconds").at("step_p99").get<double>();
-    sentences_.push_back(fmt::format("99 of 100 steps take at most {}, of {} allowed", time_text(p99), time_text(*scene_.need->step)));
+    sentences_.push_back(
+        fmt::format("99 of 100 steps take at most {}, of {} allowed", time_text(p99), time_text(*scene_.need->step)));
     if (p99 > *scene_.need->step && why_not_.empty()) why_not_ = "steps of the run took longer than those of its trial";
   }
   Json need = scene_.need ? needed(*scene_.need) : Json::object();
@@ -133,6 +138,8 @@ void NeedReport::write(Json& summary) {
   summary["provenance"] = provenance;
 }
 
-std::string NeedReport::not_met() const { return fmt::format("the need is not met: {}; reached: {}", why_not_, reached_); }
+std::string NeedReport::not_met() const {
+  return fmt::format("the need is not met: {}; reached: {}", why_not_, reached_);
+}
 
 }  // namespace fascia::app

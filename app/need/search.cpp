@@ -52,10 +52,11 @@ class Search {
     }
     if (before) return;
     const std::optional<double> ratio = trial.good() ? accuracy_.ratio(trial) : std::nullopt;
-    trials_.tell(fmt::format("need: {}: {}{}", trials_.text(choice),
-                             trial.good() ? fmt::format("{:.0f} unknowns, {}", trial.dofs, time_text(trial.seconds))
-                                          : trial.status + ": " + trial.message,
-                             ratio && has_error_ ? fmt::format(", estimated error {:.2g} of what is allowed", *ratio / limits_.share) : ""));
+    trials_.tell(fmt::format(
+        "need: {}: {}{}", trials_.text(choice),
+        trial.good() ? fmt::format("{:.0f} unknowns, {}", trial.dofs, time_text(trial.seconds))
+                     : trial.status + ": " + trial.message,
+        ratio && has_error_ ? fmt::format(", estimated error {:.2g} of what is allowed", *ratio / limits_.share) : ""));
   }
 
   std::size_t levels() const {
@@ -90,9 +91,12 @@ class Search {
   /// Why a resolution is beyond the limits, a clause; empty where it is not.
   std::string beyond(const Resolution& r) const {
     const Prediction p = cost(r);
-    if (p.memory > limits_.memory) return fmt::format("{} would take {:.2g} GB of memory", trials_.open().text(r), p.memory / 1e9);
-    if (p.step * kStepSpread > limits_.step) return fmt::format("a step of {} takes {}", trials_.open().text(r), time_text(p.step));
-    if (p.seconds > limits_.seconds) return fmt::format("{} would take {}", trials_.open().text(r), time_text(p.seconds));
+    if (p.memory > limits_.memory)
+      return fmt::format("{} would take {:.2g} GB of memory", trials_.open().text(r), p.memory / 1e9);
+    if (p.step * kStepSpread > limits_.step)
+      return fmt::format("a step of {} takes {}", trials_.open().text(r), time_text(p.step));
+    if (p.seconds > limits_.seconds)
+      return fmt::format("{} would take {}", trials_.open().text(r), time_text(p.seconds));
     return "";
   }
 
@@ -178,7 +182,8 @@ class Search {
         if (!trials_.open().offers(r)) continue;
         const bool within = beyond(r).empty();
         const double value = has_error_ ? ratio(r) : error_told(*t);
-        if (within && (has_error_ ? value <= 1 : value < least) && (!has_error_ || !cheapest || t->seconds < cheapest->seconds))
+        if (within && (has_error_ ? value <= 1 : value < least) &&
+            (!has_error_ || !cheapest || t->seconds < cheapest->seconds))
           cheapest = t;
         const double far = within ? value : 1e3 * std::max({value, t->step / limits_.step, t->memory / limits_.memory});
         if (far < least) nearest = t, least = far;
@@ -188,11 +193,11 @@ class Search {
     if (cheapest) nearest = cheapest;
     if (!nearest) return {like_, false, "no trial gave a result: " + failure_};
     if (why_not_.empty())
-      why_not_ = !failure_.empty()              ? failure_
-                 : !sure && cheapest            ? "what the trials converge to is not sure enough"
-                 : made_ >= limits_.trials      ? fmt::format("{} trials did not find it", made_)
+      why_not_ = !failure_.empty()                             ? failure_
+                 : !sure && cheapest                           ? "what the trials converge to is not sure enough"
+                 : made_ >= limits_.trials                     ? fmt::format("{} trials did not find it", made_)
                  : !beyond(nearest->choice.resolution).empty() ? beyond(nearest->choice.resolution)
-                                                : "no resolution that the program takes is fine enough";
+                                                               : "no resolution that the program takes is fine enough";
     return {nearest->choice, false, why_not_};
   }
 
@@ -213,8 +218,10 @@ std::optional<Prediction> predicted_cost(const Trials& trials, const Accuracy& a
   const Trial *nearest = nullptr, *other = nullptr;
   const auto far = [&](const Trial* t) { return std::abs(std::log(1.0 * t->choice.resolution.level / r.level)); };
   for (const Trial* t : levels)
-    if (!nearest || far(t) < far(nearest)) other = nearest, nearest = t;
-    else if (!other || far(t) < far(other)) other = t;
+    if (!nearest || far(t) < far(nearest))
+      other = nearest, nearest = t;
+    else if (!other || far(t) < far(other))
+      other = t;
   if (!nearest) return std::nullopt;
   const int dimension = trials.open().dimension();
   const double more = std::pow(1.0 * r.level / nearest->choice.resolution.level, dimension);

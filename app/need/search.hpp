@@ -10,19 +10,19 @@ namespace fascia::app {
 
 /// What a search may spend.
 struct SearchLimits {
-  double share = 1;         ///< of the allowed errors that discretisation may take
-  double step = INFINITY;   ///< 99th percentile of a step [s]
-  double memory = INFINITY; ///< of a run [bytes]
+  double share = 1;          ///< of the allowed errors that discretisation may take
+  double step = INFINITY;    ///< 99th percentile of a step [s]
+  double memory = INFINITY;  ///< of a run [bytes]
   int trials = 14;
-  double seconds = 1200;    ///< of one run [s]
+  double seconds = 1200;  ///< of one run [s]
 };
 
 /// The choice that a search came to.
 struct Found {
   Choice choice;
   bool met = false;
-  std::string why_not;  ///< a clause: what keeps it from being met
-  std::vector<double> time_error;  ///< of the time steps, by quantity, relative; empty of statics
+  std::string why_not;             ///< a clause: what keeps it from being met
+  std::vector<double> time_error{};  ///< of the time steps, by quantity, relative; empty of statics
 };
 
 /// The cheapest resolution and family whose error is within those allowed, and whose step and memory are within the

@@ -26,7 +26,8 @@ double order_of(const Scene& scene, const Choice& choice) {
 
 class TimeSearch {
  public:
-  TimeSearch(Trials& trials, const SearchLimits& limits) : trials_(trials), limits_(limits), solver_(trials.scene().solver) {}
+  TimeSearch(Trials& trials, const SearchLimits& limits)
+      : trials_(trials), limits_(limits), solver_(trials.scene().solver) {}
 
   Found found(Choice like) {
     // Coarse meshes of the best kind have about the frequencies of fine ones.
@@ -39,7 +40,8 @@ class TimeSearch {
     if (has_error()) {
       space.share = 1 - used;
       if (!(space.share > 0.1))
-        return failed(like, fmt::format("the error of its time steps alone is {:.2g} times what is allowed", used), error);
+        return failed(like, fmt::format("the error of its time steps alone is {:.2g} times what is allowed", used),
+                      error);
     }
     Found found = search_resolution(trials_, like, space);
     if (trials_.stopped()) return found;
@@ -77,7 +79,8 @@ class TimeSearch {
   std::vector<double> apart(const Trial& a, const Trial& b) const {
     if (!a.good() || !b.good()) return {};
     std::vector<double> far;
-    for (std::size_t w = 0; w < a.values.size(); ++w) far.push_back(relative_distance(a.values[w], b.values[w]).value_or(0));
+    for (std::size_t w = 0; w < a.values.size(); ++w)
+      far.push_back(relative_distance(a.values[w], b.values[w]).value_or(0));
     return far;
   }
 
@@ -114,14 +117,14 @@ class TimeSearch {
       if (far.empty()) continue;
       // Of the finer one; the coarser one has 2^p times that.
       const double error = kSafety * largest(far) / (std::exp2(order) - 1) / kShareOfTime;
-      trials_.tell(fmt::format("need: {}: error of the time steps about {:.2g} of what they may have", trials_.text(choice), error));
+      trials_.tell(fmt::format("need: {}: error of the time steps about {:.2g} of what they may have",
+                               trials_.text(choice), error));
       if (error > 1) continue;
       const double steps = choice.steps * std::pow(error, 1 / order);
       constexpr int unit = 16;  // so that trials have times in common
       return std::clamp(unit * static_cast<int>(std::ceil(steps / unit)), unit, choice.steps);
     }
-    if (why_not_.empty())
-      why_not_ = fmt::format("{} time steps are not enough", choice.steps);
+    if (why_not_.empty()) why_not_ = fmt::format("{} time steps are not enough", choice.steps);
     return 0;
   }
 
@@ -154,7 +157,8 @@ class TimeSearch {
     const Trial& trial = trials_.run(choice);
     const std::vector<double> far = apart(trial, *own);
     if (far.empty() || largest(far) > kShareOfTime || trial.seconds >= 0.8 * own->seconds) return;
-    trials_.tell(fmt::format("need: {}: {} in the place of {}", trials_.text(choice), time_text(trial.seconds), time_text(own->seconds)));
+    trials_.tell(fmt::format("need: {}: {} in the place of {}", trials_.text(choice), time_text(trial.seconds),
+                             time_text(own->seconds)));
     found.choice = choice;
     for (std::size_t w = 0; w < far.size(); ++w) found.time_error[w] += far[w];
   }

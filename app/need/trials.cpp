@@ -55,7 +55,8 @@ std::vector<Wanted> wanted_of(const Scene& scene) {
     if (!is_carrier(body)) wanted.push_back(displacement_of(scene, body.name, std::nullopt));
   const auto need = [&](const StatedNeed& stated, const std::string& body) {
     for (Wanted& w : wanted)
-      if (stated.probe ? w.body.empty() && w.probe == *stated.probe : !w.body.empty() && (body.empty() || w.body == body))
+      if (stated.probe ? w.body.empty() && w.probe == *stated.probe
+                       : !w.body.empty() && (body.empty() || w.body == body))
         tighten(w.allowed, stated.error);
   };
   if (scene.need) need(*scene.need, "");
@@ -122,7 +123,8 @@ const Trial& Trials::run(const Choice& choice) {
   append(lean(scene_));
   for (const Wanted& w : wanted_)
     if (!w.body.empty())
-      child.overrides.push_back(fmt::format("probes.{}={{body=\"{}\", quantity=\"max_displacement\"}}", w.probe, w.body));
+      child.overrides.push_back(
+          fmt::format("probes.{}={{body=\"{}\", quantity=\"max_displacement\"}}", w.probe, w.body));
   const ChildResult result = run_child(child, stop_);
   trial.status = result.status();
   trial.message = result.message;

@@ -17,17 +17,17 @@ namespace fascia::app {
 
 /// A quantity whose error counts, or is told.
 struct Wanted {
-  std::string name;              ///< in messages: `"tip"`, `the displacement of "beam"`
-  std::string probe;             ///< column of probes.csv
-  std::string body;              ///< whose largest displacement it is; empty: a probe of the scene
-  std::optional<double> allowed; ///< relative error; none: it is only told
+  std::string name;               ///< in messages: `"tip"`, `the displacement of "beam"`
+  std::string probe;              ///< column of probes.csv
+  std::string body;               ///< whose largest displacement it is; empty: a probe of the scene
+  std::optional<double> allowed;  ///< relative error; none: it is only told
 };
 
 /// What a run may choose.
 struct Choice {
   Resolution resolution;
-  int steps = 0;              ///< of equal length in the duration; 0: the time step is the scene's own
-  std::string scheme;         ///< kind of the solver; empty: the scene's own
+  int steps = 0;                  ///< of equal length in the duration; 0: the time step is the scene's own
+  std::string scheme;             ///< kind of the solver; empty: the scene's own
   std::vector<std::string> more;  ///< changes beside, for twins
 
   auto operator<=>(const Choice&) const = default;
@@ -36,12 +36,12 @@ struct Choice {
 /// What came of it.
 struct Trial {
   Choice choice;
-  std::string status, message;         ///< of its summary; why it gave nothing
-  double seconds = 0;                  ///< set-up and solve, of one run [s]
-  double step = 0;                     ///< 99th percentile of its steps [s]
-  double memory = 0;                   ///< [bytes]
+  std::string status, message;  ///< of its summary; why it gave nothing
+  double seconds = 0;           ///< set-up and solve, of one run [s]
+  double step = 0;              ///< 99th percentile of its steps [s]
+  double memory = 0;            ///< [bytes]
   double dofs = 0, steps = 0, newton = 0;
-  std::vector<Series> values;          ///< by Wanted; empty where it gave nothing
+  std::vector<Series> values;  ///< by Wanted; empty where it gave nothing
 
   bool good() const { return !values.empty(); }
 };

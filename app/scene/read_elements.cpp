@@ -33,8 +33,8 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
   const std::string wanted = in_words(array(any.items.front(), any.max_items, any.max_items));
   body.open = body.under_need && !shape.has("cells");
   if (!shape.has("cells") && !body.open)
-    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}{}", word(body.model), wanted,
-                                     kNeedWouldChoose));
+    shape.error("cells",
+                fmt::format("is missing for model = \"{}\"; must be {}{}", word(body.model), wanted, kNeedWouldChoose));
   const auto count = shape.integers("cells");
   if (!count) return;
   if (count->size() < any.max_items)

@@ -212,12 +212,14 @@ void read_weights(const TableReader& weights, std::optional<Extent> extent, std:
 /// Frames that a need chooses are those of a grid.
 void check_open(const TableReader& table, const TableReader& frames, std::optional<Extent> extent, bool between) {
   const char* only = "; a need chooses grids alone, so say poisson_disk or count";
-  if (between) table.error("frames", std::string("is missing, and a grid cannot fill the space between two bodies") + only);
+  if (between)
+    table.error("frames", std::string("is missing, and a grid cannot fill the space between two bodies") + only);
   if (extent == Extent::thin_mesh)
     table.error("frames", std::string("is missing, and a grid cannot fill sheets and lines of a mesh") + only);
   if (frames.has("share"))
-    frames.error("share", "needs frames that lie on the nodes of the other body, which a need does not look for; say "
-                          "poisson_disk or count");
+    frames.error("share",
+                 "needs frames that lie on the nodes of the other body, which a need does not look for; say "
+                 "poisson_disk or count");
 }
 
 }  // namespace

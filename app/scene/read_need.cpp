@@ -38,8 +38,9 @@ void check_kind(const TableReader& table, const TableReader& need, const Scene& 
   if (solver.kind == SolverKind::modes)
     need.error("cannot be stated with solver.kind = \"modes\" yet; say frames and cells, and use output.estimate");
   if (solver.control != StaticControl::load)
-    need.error("cannot be stated where a path is followed; say frames and cells, and use control = \"load\" or "
-               "output.estimate");
+    need.error(
+        "cannot be stated where a path is followed; say frames and cells, and use control = \"load\" or "
+        "output.estimate");
   if (scene.need && !scene.need->error && !scene.need->step && !scene.need->probe)
     need.error("error or step is missing; give one at least");
 }
@@ -74,15 +75,16 @@ bool states_need(const TableReader& scene) {
 void read_need(const TableReader& table, Scene& scene) {
   scene.need = read_one(table.table("need"), scene.probes);
   for (const TableReader& body : table.tables("bodies")) {
-    const auto found = std::find_if(scene.bodies.begin(), scene.bodies.end(),
-                                    [&](const Body& b) { return b.name == body.name(); });
+    const auto found =
+        std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) { return b.name == body.name(); });
     const TableReader need = body.table("need");
     if (found == scene.bodies.end() || !need.exists()) continue;
     found->need = read_one(need, scene.probes);
     if (is_carrier(*found))
-      need.error(fmt::format("has nothing to choose, as model = \"{}\" has no field of its own; remove it, or name its "
-                             "probe in [need]",
-                             word(found->model)));
+      need.error(
+          fmt::format("has nothing to choose, as model = \"{}\" has no field of its own; remove it, or name its "
+                      "probe in [need]",
+                      word(found->model)));
   }
   if (!scene.states_need()) return;
   const bool top = table.has("need");
@@ -92,8 +94,9 @@ void read_need(const TableReader& table, Scene& scene) {
   check_kind(table, need, scene);
   const bool readable = scene.bodies.size() == table.tables("bodies").size();  // else what is open is not known
   if (readable && table.diagnostics().empty() && !leaves_open(table, scene))
-    need.error("leaves nothing to choose, as the scene says frames, cells, orders and steps itself; remove some of "
-               "them, or remove the need and ask for output.estimate");
+    need.error(
+        "leaves nothing to choose, as the scene says frames, cells, orders and steps itself; remove some of "
+        "them, or remove the need and ask for output.estimate");
 }
 
 }  // namespace fascia::app

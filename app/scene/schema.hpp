@@ -26,7 +26,20 @@ Range inside(double min, double max);   ///< limits excluded
 /// Lengths whose fifth powers, of moments of inertia, are doubles [m].
 inline constexpr double kShortest = 1e-50, kLongest = 1e50;
 
-enum class Type { number, integer, text, boolean, choice, array, tuple, table, named_tables, one_of, reference, anything };
+enum class Type {
+  number,
+  integer,
+  text,
+  boolean,
+  choice,
+  array,
+  tuple,
+  table,
+  named_tables,
+  one_of,
+  reference,
+  anything
+};
 
 /// A word that a key takes.
 struct Choice {
@@ -40,8 +53,8 @@ struct Key;
 /// Keys of a table that exclude one another.
 struct Exclusive {
   std::vector<std::string> keys;
-  bool required = true;         ///< exactly one; otherwise at most one
-  bool unless_needed = false;   ///< none is enough where the scene states a need
+  bool required = true;        ///< exactly one; otherwise at most one
+  bool unless_needed = false;  ///< none is enough where the scene states a need
 };
 
 /// What a value looks like.

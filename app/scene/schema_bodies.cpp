@@ -81,7 +81,8 @@ Shape body_schema() {
       key("material", body_material_schema(),
           "Name, inline table, or a list of which the first that selects a point or a cell's centre counts. Needed by "
           "all but `model = \"rigid\"` and `\"surface\"`."),
-      key("frames", frames_schema(), "The frames of a meshless body, which needs them unless the scene states a `need`."),
+      key("frames", frames_schema(),
+          "The frames of a meshless body, which needs them unless the scene states a `need`."),
       key("points", points_schema(), "The integration points of a meshless body."),
       key("weights", weights_schema(), "The weight functions of a meshless body."),
       key("initial", initial_schema(), "Motion at time 0."),

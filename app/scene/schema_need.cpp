@@ -16,14 +16,15 @@ Key probe_key(const char* otherwise) {
 }  // namespace
 
 Key need_schema() {
-  return key("need",
-             table({error_key(), probe_key("the largest displacement of each body"),
-                    key("step", number("s", above(0)),
-                        "Of dynamics: the 99th percentile of the time that a step takes on this machine."),
-                    key("memory", number("byte", above(0)), "The most memory that the run may take.")}),
-             "What the results must be worth. `fascia run` then chooses what the scene leaves out: frames or cells, "
-             "the order of elements, the kind of frames, the time step, and beside a `duration` the kind of time steps. "
-             "See section 16 of the manual.");
+  return key(
+      "need",
+      table({error_key(), probe_key("the largest displacement of each body"),
+             key("step", number("s", above(0)),
+                 "Of dynamics: the 99th percentile of the time that a step takes on this machine."),
+             key("memory", number("byte", above(0)), "The most memory that the run may take.")}),
+      "What the results must be worth. `fascia run` then chooses what the scene leaves out: frames or cells, "
+      "the order of elements, the kind of frames, the time step, and beside a `duration` the kind of time steps. "
+      "See section 16 of the manual.");
 }
 
 Key body_need_key() {
