@@ -1,5 +1,6 @@
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
+#include "app/estimate/estimate.hpp"
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
 #include "app/need/need.hpp"
@@ -69,6 +70,8 @@ int check_scene(const RunOptions& options) {
                  ? fmt::format(", {:.3g} MB where the path passes a limit point", memory.beyond / 1e6)
                  : "");
   fmt::print("results: {}\n", results.text());
+  if (s.scene.output.estimate)
+    for (const std::string& line : plan_lines(plan_estimate(s))) fmt::print("{}\n", line);
   if (backend == Backend::cuda) fmt::print("computed on the GPU\n");
   fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
              s.warnings.size() == 1 ? "" : "s");

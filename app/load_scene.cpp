@@ -17,6 +17,8 @@ Scene read_scene(const RunOptions& options) {
   if (options.gpus) overrides.push_back(fmt::format("solver.gpus={}", *options.gpus));
   Scene scene = options.text ? parse_scene_text(*options.text, options.scene, overrides)
                              : parse_scene_file(options.scene, overrides);
+  if (options.estimate && !scene.output.estimate) scene.output.estimate = EstimateBy::automatic;
+  if (options.no_estimate) scene.output.estimate.reset();
   if (options.output) scene.output.directory = *options.output;
   return scene;
 }

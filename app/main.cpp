@@ -55,6 +55,7 @@ void add_scene_options(CLI::App& command, RunOptions& options) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--backend", options.backend, "cpu, cuda or auto")->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+  command.add_flag("--estimate", options.estimate, "estimate the errors of the results by runs at other resolutions");
   command.add_option("--gpus", options.gpus, "GPUs that share the points of meshless solids")
       ->check(CLI::Range(1, fascia::kMostDevices));
 }

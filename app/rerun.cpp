@@ -84,6 +84,7 @@ int rerun_result(const RerunOptions& options) {
   if (none) beside = options.directory;
   run.output = options.output.value_or(fs::path(beside.string() + ".rerun"));
   run.quiet = options.quiet;
+  run.no_estimate = true;  // nothing of it is compared
   if (fs::equivalent(*run.output, options.directory, none))
     throw InputError(fmt::format("--output {}: is the result itself; name another directory", run.output->string()));
   const int status = run_scene(run);

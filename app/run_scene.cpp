@@ -2,6 +2,7 @@
 
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
+#include "app/estimate/estimate.hpp"
 #include "app/gpu_run.hpp"
 #include "app/interruption.hpp"
 #include "app/load_scene.hpp"
@@ -81,7 +82,7 @@ struct Outcome {
 };
 
 Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
-                 Interruption& stop) {
+                 Interruption& stop, Estimate* estimate) {
   Outcome out;
   out.warnings = Warnings(s.scene.silenced);
   out.backend = backend;
@@ -105,6 +106,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
     try {
       if (fields) files.add_state(path ? step : time, at);
       files.add_probes(time, {&at, &system, 0, time_step});
+      if (estimate) estimate->add(time, at);
       if (fields) saved_time = time;
       if (fields) saved_step = step;
     } catch (const StateError& e) {
@@ -295,14 +297,14 @@ void finish(const Simulation& s, RunResult& files, const nlohmann::ordered_json&
 
 /// The run. What was saved before an error stays, with a summary that tells it.
 Outcome computed(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
-                 Interruption& stop) {
+                 Interruption& stop, Estimate* estimate) {
   const auto fail = [&](RunStatus status, const std::exception& e) {
     files.end(status, e.what());
     if (files.shown()) say("{}: it ended early{}\n", options.scene.string(), kept(s, true));
   };
   try {
     return s.scene.solver.kind == SolverKind::modes ? find_modes(s, pool, files)
-                                                    : simulate(s, backend, pool, files, options, stop);
+                                                    : simulate(s, backend, pool, files, options, stop, estimate);
   } catch (const StateError& e) {
     fail(RunStatus::diverged, e);
     throw;
@@ -310,6 +312,20 @@ Outcome computed(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
     fail(RunStatus::interrupted, e);
     throw;
   }
+}
+
+/// Runs the twins and tells the errors, in the summary too. @return  whether it was not interrupted
+bool add_estimate(const Simulation& s, const RunOptions& options, Estimate& estimate, RunResult& files,
+                  Interruption& stop, nlohmann::ordered_json& summary) {
+  const auto tell = [&](const std::string& line) {
+    if (!options.quiet && !options.json) fmt::print("{}\n", line), std::fflush(stdout);
+  };
+  if (!estimate.run(files.path(), summary, tell, [&] { return stop.requested(); })) {
+    say("{}: interrupted before its errors were estimated\n", options.scene.string());
+    return false;
+  }
+  finish(s, files, summary);
+  return true;
 }
 
 }  // namespace
@@ -326,6 +342,8 @@ int run_scene(const RunOptions& options) {
   if (may_be_large(s)) warn_of_size(s, forecast_result(s));
   if (!options.quiet && !options.json)
     for (const SimulatedBody& b : s.bodies) fmt::print("body {}: {}\n", b.name, body_text(*b.body));
+  std::optional<Estimate> estimate;
+  if (s.scene.output.estimate) estimate.emplace(s);
   RunResult files(s);
   const Abandonable while_it_lives(stop, [&] {
     const bool saved = files.abandon();
@@ -333,7 +351,7 @@ int run_scene(const RunOptions& options) {
   });
   ThreadPool pool(s.scene.solver.threads);
   const double setup = seconds_since(start);
-  Outcome out = computed(s, backend, pool, files, options, stop);
+  Outcome out = computed(s, backend, pool, files, options, stop, estimate ? &*estimate : nullptr);
   out.times.setup += setup;
   out.warnings.tell(options.scene);
   s.warnings.add(out.warnings);
@@ -344,12 +362,16 @@ int run_scene(const RunOptions& options) {
   if (s.scene.output.picture && out.run.status != RunStatus::interrupted)
     make_picture(s, files.path(), s.scene.solver.kind == SolverKind::modes ? out.frequencies : files.times(),
                  out.run.status);
+  const bool as_asked = out.run.steps_at_limit > 0 && !out.failed;  // steps were accepted as they were
+  const bool done = out.run.status == RunStatus::converged || as_asked;
+  const bool estimated = !estimate || (done && add_estimate(s, options, *estimate, files, stop, j));
   if (options.json)
     fmt::print("{}\n", json_text(j));
   else if (!options.quiet)
     print_summary(s, j, files.shown());
   if (out.run.status != RunStatus::converged) say("{}: {}\n", options.scene.string(), out.run.message);
-  if (out.run.steps_at_limit > 0 && !out.failed) return kDone;  // as asked for
+  if (done && !estimated) return 128 + stop.signal();
+  if (as_asked) return kDone;
   return exit_status(out.run.status, stop.signal());
 }
 

@@ -20,6 +20,8 @@ struct RunOptions {
   std::optional<int> threads, gpus;
   bool quiet = false, json = false, verbose = false;
   std::function<void(nlohmann::ordered_json&)> complete;  ///< adds to the summary of a run before it is written
+  bool estimate = false;     ///< errors are estimated, whether the scene asks for it or not
+  bool no_estimate = false;  ///< nor where the scene asks for it
 };
 
 /// The program returns these; of a run that a signal ended it returns 128 + the signal.

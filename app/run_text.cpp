@@ -1,5 +1,7 @@
 #include "app/run_text.hpp"
 
+#include "app/estimate/estimate.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -49,6 +51,8 @@ void print_summary(const Simulation& s, const nlohmann::ordered_json& j, bool sh
   for (const auto& [name, probe] : j["probes"].items())
     fmt::print("  {} ({}): {} {}\n", name, probe["quantity"].get<std::string>(), short_value(probe["value"]),
                probe["unit"].get<std::string>());
+  if (j.contains("estimated_error"))
+    for (const std::string& line : estimate_lines(j)) fmt::print("  {}\n", line);
   const std::filesystem::path& directory = s.scene.output.directory;
   if (!shown) {
     fmt::print("no new results: {} is as it was\n", directory.string());

@@ -15,10 +15,10 @@ struct ElementGroup {
   std::string name;
   int number = 0;
   int dimension = 0;
-  std::vector<int> nodes;                 ///< ascending
-  std::vector<int> elements;              ///< of volume cells; ascending
-  std::vector<std::array<int, 2>> edges;  ///< edges of its surface and line cells as pairs of corners, ascending
-  std::vector<std::array<int, 4>> faces;  ///< corners of its surface cells, around; a triangle's last is −1
+  std::vector<int> nodes;                   ///< ascending
+  std::vector<int> elements;                ///< of volume cells; ascending
+  std::vector<std::array<int, 2>> edges;    ///< edges of its surface and line cells as pairs of corners, ascending
+  std::vector<std::array<int, 4>> faces{};  ///< corners of its surface cells, around; a triangle's last is −1
 };
 
 /// Finite elements of one shape on shared nodes.

@@ -114,7 +114,9 @@ void restore(const fs::path& directory) {
 }
 
 /// True of files that a process that was killed left, and that belong to nothing.
-bool is_left_over(const std::string& file) { return file == part_of(kSummary).string() || file.starts_with(kOutdated); }
+bool is_left_over(const std::string& file) {
+  return file == part_of(kSummary).string() || file == kTwins || file.starts_with(kOutdated);
+}
 
 void remove_left_over(const fs::path& directory) {
   std::error_code ignored;

@@ -9,6 +9,9 @@
 
 namespace fascia::io {
 
+/// A folder inside of the directory for what is computed beside the result; it goes with the next one at the latest.
+inline constexpr const char* kTwins = ".fascia.twins";
+
 /// The files of a result are called after these.
 struct ResultNames {
   std::string stem;                 ///< of the scene's file: NAME.pvd, NAME.png

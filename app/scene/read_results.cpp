@@ -136,6 +136,15 @@ Picture read_picture(const TableReader& table, bool shells, std::optional<Solver
   return picture;
 }
 
+/// The key `estimate`.
+std::optional<EstimateBy> read_estimate(const TableReader& output) {
+  const Value* estimate = output.value("estimate");
+  if (!estimate) return std::nullopt;
+  const std::string* by = estimate->as_string();
+  if (!by) return std::get<bool>(estimate->data) ? std::optional(EstimateBy::automatic) : std::nullopt;
+  return *by == "finer" ? EstimateBy::finer : EstimateBy::coarser;
+}
+
 }  // namespace
 
 Probe read_probe(const TableReader& table, const std::vector<std::string>& bodies, std::optional<SolverKind> kind) {
@@ -167,6 +176,7 @@ Output read_output(const TableReader& scene, const std::string& scene_name, std:
   output.every = table.number("every").value_or(0);
   output.every_steps = table.integer("every_steps").value_or(0);
   output.fields = read_fields(table, shells);
+  output.estimate = read_estimate(table);
   if (table.value("picture")) output.picture = read_picture(table.table("picture"), shells, kind);
   return output;
 }

@@ -366,6 +366,9 @@ struct Picture {
   std::optional<std::array<double, 2>> range;  ///< of the colours, in SI
 };
 
+/// Which other meshes estimate the errors of results: finer ones where they are small, else coarser ones.
+enum class EstimateBy { automatic, finer, coarser };
+
 struct Output {
   Place place;
   std::filesystem::path directory;
@@ -373,6 +376,7 @@ struct Output {
   int every_steps = 0;  ///< 0: not given
   std::vector<std::string> fields;
   std::optional<Picture> picture;
+  std::optional<EstimateBy> estimate;  ///< none: errors are not estimated
 };
 
 struct Scene {

@@ -93,6 +93,13 @@ Key output_schema() {
              key("every_steps", integer(between(1, 1e9)), "Steps between saved states."),
              key("fields", array(choice(all_field_choices())), "Fields in the files.").defaults("all"),
              key("format", choice({{"vtu", "VTK XML, with a .pvd."}}), "File format.").defaults("\"vtu\""),
+             key("estimate",
+                 one_of({boolean(), choice({{"finer", "By a finer mesh, however long that takes."},
+                                            {"coarser", "By coarser meshes alone."}})}),
+                 "Whether the errors of probes and displacements are estimated, by runs of the same scene at other "
+                 "resolutions; `true`: by a finer mesh where it is small, else by coarser ones. See section 11 of the "
+                 "manual.")
+                 .defaults("false"),
              key("picture", picture_schema(), "A PNG of the end state; of modes, of each side by side.")
                  .defaults("none")},
             {{{"every", "every_steps"}, false}}),

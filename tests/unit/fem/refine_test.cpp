@@ -1,5 +1,6 @@
 #include "fem/refine.hpp"
 
+#include "core/math/mat3.hpp"
 #include "fem/element_mesh_parts.hpp"
 #include "fem/from_mesh.hpp"
 #include "tests/unit/fem/fem_samples.hpp"
@@ -30,9 +31,21 @@ std::vector<Named> meshes() {
   return all;
 }
 
+/// ∫ det dX/dξ, exact for curved tetrahedra too, whose determinant is cubic: the program's own rule for them is not.
+double volume(const ElementMesh& mesh, std::size_t e) {
+  if (family_of(mesh.shape) == ElementFamily::hexahedra) return element_volume(mesh, e);
+  double sum = -0.8 * shape_at(mesh, e, {{0.25, 0.25, 0.25}}).det_J;
+  for (int c = 0; c < 4; ++c) {
+    Vec3d xi{{1.0 / 6, 1.0 / 6, 1.0 / 6}};
+    if (c > 0) xi[c - 1] = 0.5;
+    sum += 0.45 * shape_at(mesh, e, xi).det_J;
+  }
+  return sum / 6;
+}
+
 double volume(const ElementMesh& mesh) {
   double sum = 0;
-  for (std::size_t e = 0; e < mesh.size(); ++e) sum += element_volume(mesh, e);
+  for (std::size_t e = 0; e < mesh.size(); ++e) sum += volume(mesh, e);
   return sum;
 }
 
@@ -51,11 +64,11 @@ TEST(Refine, children_fill_their_element_and_nothing_else) {
     for (std::size_t e = 0; e < mesh.size(); ++e) {
       double children = 0;
       for (std::size_t k = 0; k < 8; ++k) {
-        const double part = element_volume(fine, 8 * e + k);
+        const double part = volume(fine, 8 * e + k);
         EXPECT_GT(part, 0);
         children += part;
       }
-      EXPECT_NEAR(children / element_volume(mesh, e), 1, 1e-13) << "element " << e;
+      EXPECT_NEAR(children / volume(mesh, e), 1, 1e-13) << "element " << e;
     }
     for (std::size_t e = 0; e < fine.size(); ++e)
       for (const Vec3d& xi : reference_corners(family_of(fine.shape))) EXPECT_GT(shape_at(fine, e, xi).det_J, 0);
