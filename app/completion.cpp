@@ -165,7 +165,7 @@ std::string bash_completion(const std::vector<CommandWords>& commands) {
          kRest + cases + fmt::format("    *) words=('{} --help --version') ;;\n", names) +
          R"bash(  esac
   mapfile -t COMPREPLY < <(compgen -W "${words[0]}" -- "$current")
-  if [[ $command != @(bench|list) && $current != -* ]]; then
+  if [[ $command != @(bench|list|verify) && $current != -* ]]; then
     mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -d -S / -- "$current"; compgen -f -X '!*.toml' -- "$current")
     compopt -o filenames 2>/dev/null
   fi

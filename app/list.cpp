@@ -20,20 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the packages and of `cmake --install`; of a bundle, whose program may be started through the loader in its folder
-/// lib; of a build in a checkout.
-fs::path scenes_folder() {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-  std::vector<std::string> tried;
-  for (const char* place : {"scenes", "../share/fascia/scenes", "../scenes", "../../scenes"}) {
-    fs::path folder = (program / place).lexically_normal();
-    tried.push_back(folder.string());
-    if (fs::is_directory(folder)) return folder;
-  }
-  throw FileError(fmt::format("there are no scenes in {}; get them from the source or the package of fascia",
-                              fmt::join(tried, ", ")));
-}
-
 /// Empty where the scene has none or cannot be read.
 std::string title_of(const fs::path& scene) {
   try {
@@ -87,6 +73,20 @@ void list_units() {
 }
 
 }  // namespace
+
+/// Of the packages and of `cmake --install`; of a bundle, whose program may be started through the loader in its folder
+/// lib; of a build in a checkout.
+fs::path scenes_folder() {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+  std::vector<std::string> tried;
+  for (const char* place : {"scenes", "../share/fascia/scenes", "../scenes", "../../scenes"}) {
+    fs::path folder = (program / place).lexically_normal();
+    tried.push_back(folder.string());
+    if (fs::is_directory(folder)) return folder;
+  }
+  throw FileError(fmt::format("there are no scenes in {}; get them from the source or the package of fascia",
+                              fmt::join(tried, ", ")));
+}
 
 std::vector<std::string> listed_things() { return {"scenes", "quantities", "units"}; }
 

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace fascia::app {
+
+/// The scenes that come with the program. @throws FileError  they are not where the program looks for them
+std::filesystem::path scenes_folder();
 
 /// What `fascia list` can list.
 std::vector<std::string> listed_things();

@@ -1,5 +1,5 @@
 #include "app/bench/benchmark.hpp"
-#include "app/compare_results.hpp"
+#include "app/compare/command.hpp"
 #include "app/completion.hpp"
 #include "app/list.hpp"
 #include "app/messages.hpp"
@@ -9,6 +9,7 @@
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
 #include "app/study/study.hpp"
+#include "app/verify/verify.hpp"
 #include "app/version.hpp"
 #include "core/model/errors.hpp"
 #include "core/solver/settings.hpp"
@@ -84,7 +85,7 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
-constexpr std::array kCommands{"run", "check", "rerun", "compare", "study", "bench", "list", "completion"};
+constexpr std::array kCommands{"run", "check", "rerun", "compare", "study", "verify", "bench", "list", "completion"};
 
 CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
   CLI::App* rerun = app.add_subcommand("rerun", "repeat a run from what its result says, and compare the two");
@@ -98,12 +99,13 @@ CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
 }
 
 CLI::App* add_compare(CLI::App& app, CompareOptions& options) {
-  CLI::App* compare = app.add_subcommand("compare", "compare two results: every probe, every saved field");
+  CLI::App* compare = app.add_subcommand("compare", "compare two results: fields, probes, energies, cost, settings");
   compare->add_option("a", options.a, "directory of results")->required();
   compare->add_option("b", options.b, "another one")->required();
   compare->add_option("--tolerance", options.tolerance, "relative difference that is still equal")
       ->check(number_from(0, false, false))
       ->capture_default_str();
+  compare->add_option("--only", options.only, "fields and probes that count: --only displacement,tip")->delimiter(',');
   compare->add_flag("--json", options.json, "print JSON, and nothing else, on standard output");
   return compare;
 }
@@ -125,6 +127,27 @@ CLI::App* add_study(CLI::App& app, StudyOptions& options) {
   study->add_flag("--json", options.json, "print study.json, and nothing else, on standard output");
   study->add_flag("--quiet", options.quiet, "no progress");
   return study;
+}
+
+CLI::App* add_verify(CLI::App& app, VerifyOptions& options) {
+  CLI::App* verify = app.add_subcommand("verify", "compare this program with published and closed-form values");
+  verify->add_option("names", options.names, "runs, cases, topics, features or globs of them; otherwise all");
+  verify->add_option("--output", options.output, "directory of the report")->capture_default_str();
+  verify->add_flag("--full", options.full, "long runs too");
+  verify->add_flag("--list", options.list, "list runs, cases and features, and run nothing");
+  verify->add_option("--jobs", options.jobs, "runs at once, each on one thread; otherwise as many as processors")
+      ->check(number_from(1, false, true));
+  verify->add_option("--backend", options.backend, "cpu, cuda or auto; otherwise as each scene says")
+      ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+  verify->add_option("--time-limit", options.time_limit, "of each run, in seconds; 0: none")
+      ->check(number_from(0, false, false))
+      ->capture_default_str();
+  verify->add_option("--cases", options.cases, "folder of case files in the place of the program's own");
+  verify->add_option("--write-validation", options.validation, "write docs/validation.md to this file");
+  verify->add_flag("--pictures", options.pictures, "pictures of the scenes that have one");
+  verify->add_flag("--json", options.json, "print verify.json, and nothing else, on standard output");
+  verify->add_flag("--quiet", options.quiet, "no progress");
+  return verify;
 }
 
 /// Prints the script; what it completes is read off the commands themselves.
@@ -170,6 +193,8 @@ int dispatch(int argc, char** argv) {
   const CLI::App* compare = add_compare(app, compare_options);
   StudyOptions study_options;
   const CLI::App* study = add_study(app, study_options);
+  VerifyOptions verify_options;
+  const CLI::App* verify = add_verify(app, verify_options);
   BenchOptions bench_options;
   const CLI::App* bench = add_bench(app, bench_options);
   CLI::App* list = app.add_subcommand("list", "list scenes that come with the program, quantities of probes, or units");
@@ -190,6 +215,7 @@ int dispatch(int argc, char** argv) {
   if (rerun->parsed()) return rerun_result(rerun_options);
   if (compare->parsed()) return compare_command(compare_options);
   if (study->parsed()) return run_study(study_options);
+  if (verify->parsed()) return verify_command(verify_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 

@@ -24,14 +24,6 @@ Start& start() {
   return start;
 }
 
-std::string quoted_for_shell(const std::string& word) {
-  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string whole_path(const std::filesystem::path& path) {
   std::error_code failed;
   const std::filesystem::path whole = std::filesystem::weakly_canonical(path, failed);
@@ -40,12 +32,22 @@ std::string whole_path(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string quoted_for_shell(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 void remember_command(int argc, char** argv) {
   std::vector<std::string> words;
   std::transform(argv, argv + argc, std::back_inserter(words), quoted_for_shell);
   start().time = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   start().command = fmt::format("{}", fmt::join(words, " "));
 }
+
+std::string remembered_command() { return start().command; }
 
 std::vector<std::filesystem::path> input_files(const Scene& scene) {
   std::vector<std::filesystem::path> files;

@@ -11,6 +11,10 @@ namespace fascia::app {
 
 /// The command that the process was started with, words quoted for a shell where they must be.
 void remember_command(int argc, char** argv);
+std::string remembered_command();
+
+/// A word as a shell takes it: in quotes where it must be.
+std::string quoted_for_shell(const std::string& word);
 
 /// Where a result comes from, so that it can be repeated: the scene's text and its SHA-256, its file, overrides and
 /// output directory, the files that it reads with theirs, the command, the program (version, commit, compiler, flags,

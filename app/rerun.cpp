@@ -1,6 +1,6 @@
 #include "app/rerun.hpp"
 
-#include "app/compare_results.hpp"
+#include "app/compare/arrays.hpp"
 #include "app/machine.hpp"
 #include "app/messages.hpp"
 #include "app/run_scene.hpp"

@@ -34,6 +34,7 @@ endforeach()
 set(shared ${CMAKE_INSTALL_DATADIR}/fascia)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes ${CMAKE_SOURCE_DIR}/schemas DESTINATION ${shared} COMPONENT fascia)
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/docs/manual.md ${CMAKE_SOURCE_DIR}/docs/scene-reference.md
+  ${CMAKE_SOURCE_DIR}/docs/validation.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT fascia)
 
 # Pages that the program itself describes, where help2man is installed; its completion always.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "io/result_writer.hpp"
+
 #include <filesystem>
 #include <map>
 #include <string>
@@ -12,6 +14,11 @@ using ResultArrays = std::map<std::string, std::vector<double>>;
 
 /// Reads the numbers of a .vtu. @throws InputError  where it is none
 ResultArrays read_result_arrays(const std::filesystem::path& vtu);
+
+/// The points, cells and point fields of a .vtu that write_vtu made, and the part of each cell; not its cell fields,
+/// time and provenance. Triangles come as VisualMesh::triangles, of shells too.
+/// @throws InputError  where it is none, or damaged
+VisualMesh read_vtu(const std::filesystem::path& vtu);
 
 /// A line of a .pvd.
 struct CollectionEntry {

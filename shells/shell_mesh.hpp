@@ -18,8 +18,8 @@ struct ShellMesh {
   std::vector<BodyGroup> groups;              ///< nodes and cells (triangles) of each named group
   /// Edges of the line cells of each group, as pairs of nodes, ascending; empty where generated.
   std::vector<std::vector<std::array<int, 2>>> lines;
-  std::vector<std::string> messages;          ///< what was repaired or looks bad
-  std::string file;                           ///< empty where generated
+  std::vector<std::string> messages;  ///< what was repaired or looks bad
+  std::string file;                   ///< empty where generated
 };
 
 /// The triangles of a file, or the boundary of its volume cells where it has no triangles.

@@ -35,21 +35,6 @@ std::string read_file(const std::filesystem::path& path) {
   return text;
 }
 
-Value parse_document(std::string_view text, Diagnostics& diagnostics) {
-  if (text.size() > max_file_size) {
-    diagnostics.add(Position{}, "toml", "the file is larger than 16 MiB; must be a scene, which is small");
-    diagnostics.throw_if_any();
-  }
-  try {
-    return parse_toml(text);
-  } catch (const SyntaxError& error) {
-    const std::string remedy = error.remedy.empty() ? "" : "; " + error.remedy;
-    diagnostics.add(error.position, "toml", one_line(error.message) + remedy);
-    diagnostics.throw_if_any();
-    throw;
-  }
-}
-
 /// Every key of every table, by its full path.
 void collect_places(const Value& value, const std::string& path, const Diagnostics& diagnostics,
                     std::map<std::string, Place>& places) {
@@ -135,6 +120,21 @@ Place Scene::place_of(const std::string& key) const {
   Place place = says(known) ? places.at(known) : Place{path.string(), 0, 0, ""};
   place.key = key;
   return place;
+}
+
+Value parse_document(std::string_view text, Diagnostics& diagnostics) {
+  if (text.size() > max_file_size) {
+    diagnostics.add(Position{}, "toml", "the file is larger than 16 MiB; must be a scene, which is small");
+    diagnostics.throw_if_any();
+  }
+  try {
+    return parse_toml(text);
+  } catch (const SyntaxError& error) {
+    const std::string remedy = error.remedy.empty() ? "" : "; " + error.remedy;
+    diagnostics.add(error.position, "toml", one_line(error.message) + remedy);
+    diagnostics.throw_if_any();
+    throw;
+  }
 }
 
 Scene parse_scene_text(std::string_view text, const std::filesystem::path& path,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/scene/diagnostics.hpp"
 #include "app/scene/scene.hpp"
 
 #include <filesystem>
@@ -17,5 +18,9 @@ Scene parse_scene_file(const std::filesystem::path& path, const std::vector<std:
 /// The same for a text; `path` gives the name for messages and the folder for relative paths.
 Scene parse_scene_text(std::string_view text, const std::filesystem::path& path,
                        const std::vector<std::string>& overrides);
+
+/// Reads a TOML text of this project, whatever it describes.
+/// @throws SceneError  where it is no TOML, or larger than any such text
+Value parse_document(std::string_view text, Diagnostics& diagnostics);
 
 }  // namespace fascia::app

@@ -124,6 +124,12 @@ Shape text(std::string in_words) {
   return shape;
 }
 
+Shape text_of_lines(std::string in_words) {
+  Shape shape = text(std::move(in_words));
+  shape.of_lines = true;
+  return shape;
+}
+
 Shape boolean() { return of_type(Type::boolean); }
 
 Shape choice(std::vector<Choice> choices) {

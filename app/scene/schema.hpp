@@ -71,6 +71,7 @@ struct Shape {
   std::string selector;                ///< table: the key whose value, if not supported, makes the rest moot
   bool plain_names = false;            ///< named_tables: names become file names and column headers
   std::string name;                    ///< reference: what the target is called; text, anything: what it is
+  bool of_lines = false;               ///< text: may have line breaks
   const Shape& (*target)() = nullptr;  ///< reference
 
   const Key* find(std::string_view key) const;
@@ -95,6 +96,7 @@ struct Key {
 Shape number(std::string unit, Range range = {});
 Shape integer(Range range);
 Shape text(std::string in_words = "a text");
+Shape text_of_lines(std::string in_words);
 Shape boolean();
 Shape choice(std::vector<Choice> choices);
 Shape array(Shape item, std::size_t min_items = 0, std::size_t max_items = std::numeric_limits<std::size_t>::max());

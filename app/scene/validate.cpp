@@ -88,7 +88,7 @@ class Validator {
       case Type::integer:
         return check_integer(value, shape, path, wanted);
       case Type::text:
-        return check_text(value, path, wanted);
+        return check_text(value, shape, path, wanted);
       case Type::boolean:
         if (!std::holds_alternative<bool>(value.data)) wrong_type(value, path, wanted);
         return;
@@ -147,9 +147,10 @@ class Validator {
       fail(value, path, fmt::format("{} is out of range; must be {}", *whole, shape.range.text()));
   }
 
-  void check_text(Value& value, const std::string& path, const std::string& wanted) {
+  void check_text(Value& value, const Shape& shape, const std::string& path, const std::string& wanted) {
     const std::string* words = value.as_string();
     if (!words) return wrong_type(value, path, wanted);
+    if (shape.of_lines) return;
     const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
     if (std::any_of(words->begin(), words->end(), is_control))
       fail(value, path, fmt::format("{} holds a control character; must be one line of text", describe(value)));

@@ -22,7 +22,7 @@ struct ChildRun {
 };
 
 /// How it ended.
-struct ChildResult {  // NOLINT(bugprone-exception-escape): moving JSON throws nothing
+struct ChildResult {               // NOLINT(bugprone-exception-escape): moving JSON throws nothing
   int exit_status = -1;            ///< of the program; 128 + the number of a signal that ended it
   std::string message;             ///< why it failed, on one line; empty where it did not
   nlohmann::ordered_json summary;  ///< summary.json; null where it wrote none

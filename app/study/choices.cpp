@@ -86,6 +86,12 @@ std::string error_text(double error) {
   return error >= 1e-4 ? fmt::format("{:.2g} %", 100 * error) : fmt::format("{:.1e}", error);
 }
 
+std::string uncertainty_text(const StudyResult& result, const Question& question) {
+  if (question.reference.uncertainty > 0) return error_text(question.reference.uncertainty);
+  const bool given = result.study.measures[question.measure].reference.kind == StudyReference::Kind::value;
+  return given ? "exact" : "unknown";
+}
+
 std::string cost_name(StudyCost cost) {
   switch (cost) {
     case StudyCost::step:

@@ -1,5 +1,6 @@
 #include "app/study/evaluation.hpp"
 
+#include "app/study/finest.hpp"
 #include "app/study/richardson.hpp"
 
 #include <fmt/format.h>
@@ -23,106 +24,6 @@ Spread cost_of(const RunRecord& record, StudyCost cost) {
   }
 }
 
-/// Size of what an axis varies in a run: its own number where unknowns stay, else by unknowns.
-double size_of(const StudyResult& result, std::size_t axis, const StudyRun& run, bool by_unknowns) {
-  if (by_unknowns) return std::pow(run.record->dofs, -1.0 / result.dimension);
-  return result.study.axes[axis].values[run.plan.at[axis]].number.value_or(0);
-}
-
-/// Runs that share all axes but one with the run `like`, of decreasing size; none where that axis varies no size.
-std::optional<Series> series_of(const StudyResult& result, std::size_t axis, const std::vector<std::size_t>& like) {
-  Series series;
-  series.axis = axis;
-  for (std::size_t r = 0; r < result.runs.size(); ++r) {
-    const StudyRun& run = result.runs[r];
-    if (!run.converged() || run.record->dofs <= 0) continue;
-    bool same = true;
-    for (std::size_t a = 0; a < like.size(); ++a) same = same && (a == axis || run.plan.at[a] == like[a]);
-    if (same) series.runs.push_back(r);
-  }
-  if (series.runs.size() < 2) return std::nullopt;
-  const auto dofs = [&](std::size_t r) { return result.runs[r].record->dofs; };
-  const bool by_unknowns = dofs(series.runs.front()) != dofs(series.runs.back());
-  const StudyAxis& varied = result.study.axes[axis];
-  // Numbers that are sizes of time; others, such as threads or a stiffness, say nothing of an order.
-  const bool is_step = std::any_of(varied.keys.begin(), varied.keys.end(),
-                                   [](const std::string& k) { return k.ends_with("time_step"); });
-  const bool models =
-      std::any_of(varied.values.begin(), varied.values.end(), [](const AxisValue& v) { return !v.model.empty(); });
-  if (models || (!by_unknowns && !is_step)) return std::nullopt;
-  const auto size = [&](std::size_t r) { return size_of(result, axis, result.runs[r], by_unknowns); };
-  std::sort(series.runs.begin(), series.runs.end(), [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
-  for (const std::size_t r : series.runs) series.h.push_back(size(r));
-  if (!(series.h.back() > 0) || series.h.front() <= series.h.back() * (1 + 1e-9)) return std::nullopt;
-  return series;
-}
-
-/// The run with the most unknowns, then the most steps.
-std::optional<std::size_t> finest_run(const StudyResult& result, const Question& question) {
-  std::optional<std::size_t> finest;
-  const auto finer = [&](const RunRecord& a, const RunRecord& b) {
-    return a.dofs != b.dofs ? a.dofs > b.dofs : a.steps > b.steps;
-  };
-  for (std::size_t r = 0; r < result.runs.size(); ++r)
-    if (belongs(result, question, result.runs[r]) && result.runs[r].converged() &&
-        !result.runs[r].measured[question.measure].value.empty() &&
-        (!finest || finer(*result.runs[r].record, *result.runs[*finest].record)))
-      finest = r;
-  return finest;
-}
-
-std::string label_of(const StudyResult& result, const PlannedRun& plan) {
-  std::string label;
-  for (std::size_t a = 0; a < plan.at.size(); ++a)
-    label += fmt::format("{}{} {}", a == 0 ? "" : ", ", result.study.axes[a].name,
-                         result.study.axes[a].values[plan.at[a]].label);
-  return label;
-}
-
-/// The finest run, to which each axis that varies a size adds what Richardson's extrapolation says.
-ReferenceValue finest_value(const StudyResult& result, const Question& question) {
-  const std::size_t measure = question.measure;
-  ReferenceValue reference;
-  const std::optional<std::size_t> finest = finest_run(result, question);
-  if (!finest) {
-    reference.trouble = "no run converged with a value";
-    return reference;
-  }
-  const StudyRun& run = result.runs[*finest];
-  reference.at = run.measured[measure];
-  reference.at.error.reset();
-  reference.source = fmt::format("finest run ({})", label_of(result, run.plan));
-  if (!reference.at.times.empty()) {
-    reference.source += ", as it is: a curve is not extrapolated";
-    return reference;
-  }
-  double uncertainty = 0;
-  bool known = false;
-  for (std::size_t axis = 0; axis < result.study.axes.size(); ++axis) {
-    const std::optional<Series> series = series_of(result, axis, run.plan.at);
-    if (!series) continue;
-    std::vector<Level> levels;
-    for (std::size_t i = 0; i < series->runs.size(); ++i)
-      if (const Measured& m = result.runs[series->runs[i]].measured[measure];
-          m.value.size() == reference.at.value.size())
-        levels.push_back({series->h[i], m.value});
-    const std::optional<Limit> limit = limit_of(levels);
-    if (!limit) continue;
-    known = true;
-    for (std::size_t i = 0; i < limit->value.size(); ++i)
-      reference.at.value[i] += limit->value[i] - run.measured[measure].value[i];
-    uncertainty += limit->uncertainty;
-    reference.source += limit->order
-                            ? fmt::format(", extrapolated over {} with the observed order {:.2f}",
-                                          result.study.axes[axis].name, *limit->order)
-                            : fmt::format(", whose values over {} show no order", result.study.axes[axis].name);
-  }
-  const double size = norm_of(reference.at.value);
-  reference.uncertainty = size > 0 ? uncertainty / size : 0;
-  if (!known) reference.source += ", with nothing to extrapolate by";
-  return reference;
-}
-
 void find_reference(StudyResult& result, Question& question, const std::filesystem::path& directory,
                     const std::optional<StudyRun>& run) {
   const StudyMeasure& wanted = result.study.measures[question.measure];
@@ -143,7 +44,7 @@ void find_reference(StudyResult& result, Question& question, const std::filesyst
         reference.trouble = "its scene did not converge: " + (run && run->record ? run->record->reason : "not run");
         break;
       }
-      reference.at = measure(wanted, *run->record, directory / run->plan.directory);
+      reference.at = measure_run(wanted, *run->record, directory / run->plan.directory);
       reference.source = wanted.reference.scene.empty() ? "the base scene" : wanted.reference.scene.string();
       for (const std::string& change : wanted.reference.overrides) reference.source += ", " + change;
       if (reference.at.value.empty()) reference.trouble = fmt::format("its scene has no probe \"{}\"", wanted.probe);
@@ -165,7 +66,7 @@ void find_series(StudyResult& result) {
     seen.assign(result.runs.size(), 0);
     for (std::size_t r = 0; r < result.runs.size(); ++r) {
       if (seen[r]) continue;
-      std::optional<Series> series = series_of(result, axis, result.runs[r].plan.at);
+      std::optional<SizeSeries> series = series_of(result, axis, result.runs[r].plan.at);
       if (!series) continue;
       for (const std::size_t other : series->runs) seen[other] = 1;
       for (std::size_t m = 0; m < result.study.measures.size(); ++m) {
@@ -237,7 +138,7 @@ void evaluate(StudyResult& result, const std::filesystem::path& directory,
     if (!run.converged()) continue;
     run.cost = cost_of(*run.record, result.cost);
     for (std::size_t m = 0; m < measures; ++m)
-      run.measured[m] = measure(result.study.measures[m], *run.record, directory / run.plan.directory);
+      run.measured[m] = measure_run(result.study.measures[m], *run.record, directory / run.plan.directory);
   }
   result.series.clear();
   for (std::size_t q = 0; q < result.questions.size(); ++q) {
@@ -245,7 +146,7 @@ void evaluate(StudyResult& result, const std::filesystem::path& directory,
     find_reference(result, question, directory, reference_runs[q]);
     if (!question.reference.trouble.empty()) continue;
     for (StudyRun& run : result.runs)
-      if (Measured& m = run.measured[question.measure]; belongs(result, question, run))
+      if (RunMeasure& m = run.measured[question.measure]; belongs(result, question, run))
         m.error = relative_error(m, question.reference.at);
     for (const std::size_t r : front_of(result, question)) result.runs[r].on_front[question.measure] = 1;
   }

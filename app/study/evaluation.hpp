@@ -10,7 +10,7 @@
 namespace fascia::app {
 
 /// A measure of one run.
-struct Measured {
+struct RunMeasure {
   std::vector<double> value;    ///< empty: the run has none
   std::vector<double> times;    ///< of a curve [s]: as many blocks of `value`
   std::optional<double> error;  ///< |value − reference| / |reference|; none without either
@@ -19,18 +19,18 @@ struct Measured {
 /// A run with its outcome.
 struct StudyRun {
   PlannedRun plan;
-  std::optional<RunRecord> record;  ///< none: not run (refused, left out, interrupted)
-  std::vector<Measured> measured;   ///< by measure
-  Spread cost;                      ///< by Study::cost [s]
-  std::vector<char> on_front;       ///< by measure: nothing is better and cheaper
+  std::optional<RunRecord> record;   ///< none: not run (refused, left out, interrupted)
+  std::vector<RunMeasure> measured;  ///< by measure
+  Spread cost;                       ///< by Study::cost [s]
+  std::vector<char> on_front;        ///< by measure: nothing is better and cheaper
 
   bool converged() const { return record && record->converged(); }
 };
 
 /// The value that errors of a measure are distances from.
 struct ReferenceValue {
-  Measured at;
-  double uncertainty = 0;  ///< relative
+  RunMeasure at;
+  double uncertainty = 0;  ///< relative; 0 where nothing is known of it
   std::string source;      ///< in words
   std::string trouble;     ///< why there is none; empty where there is one
 };
@@ -44,7 +44,7 @@ struct Question {
 };
 
 /// Runs that differ in one axis alone, by which unknowns or time steps change: errors over them show an order.
-struct Series {
+struct SizeSeries {
   std::size_t axis = 0;
   std::vector<std::size_t> runs;             ///< of decreasing h
   std::vector<double> h;                     ///< of each: unknowns^(-1/dimension), or the axis's own number
@@ -55,18 +55,18 @@ struct StudyResult {
   Study study;
   std::vector<StudyRun> runs;
   std::vector<Question> questions;
-  std::vector<Series> series;
+  std::vector<SizeSeries> series;
   int dimension = 3;
   StudyCost cost = StudyCost::solve;
   bool interrupted = false;
 };
 
 /// Reads what a measure asks for from a result. @param directory  of the run
-Measured measure(const StudyMeasure& measure, const RunRecord& record, const std::filesystem::path& directory);
+RunMeasure measure_run(const StudyMeasure& measure, const RunRecord& record, const std::filesystem::path& directory);
 
 /// Distance of two values relative to the second, both at their times: the curve of the reference is interpolated.
 /// @return none where they do not fit together, or the reference is 0
-std::optional<double> relative_error(const Measured& value, const Measured& reference);
+std::optional<double> relative_error(const RunMeasure& value, const RunMeasure& reference);
 
 /// The questions of a study, without their references.
 std::vector<Question> questions_of(const Study& study);

@@ -45,12 +45,12 @@ bool belongs_to(const std::string& column, const std::string& probe) {
 }
 
 /// The measure's numbers in each saved row that has them all.
-Measured curve_of(const std::filesystem::path& csv, const std::string& probe, const Range& range) {
+RunMeasure curve_of(const std::filesystem::path& csv, const std::string& probe, const Range& range) {
   const io::NumberTable table = io::read_number_table(csv);
   std::vector<std::size_t> columns;
   for (std::size_t c = 1; c < table.columns.size(); ++c)
     if (belongs_to(table.columns[c], probe)) columns.push_back(c);
-  Measured curve;
+  RunMeasure curve;
   if (range.end > columns.size()) return curve;
   for (const std::vector<double>& row : table.rows) {
     std::vector<double> numbers;
@@ -63,7 +63,7 @@ Measured curve_of(const std::filesystem::path& csv, const std::string& probe, co
 }
 
 /// Values of a curve at a time, linear between its own; a time outside gives the nearest end.
-std::vector<double> at_time(const Measured& curve, double time) {
+std::vector<double> at_time(const RunMeasure& curve, double time) {
   const std::size_t width = curve.value.size() / curve.times.size();
   const auto row = [&](std::size_t i) { return curve.value.begin() + static_cast<std::ptrdiff_t>(i * width); };
   const auto after = std::lower_bound(curve.times.begin(), curve.times.end(), time);
@@ -83,8 +83,9 @@ std::vector<double> at_time(const Measured& curve, double time) {
 
 }  // namespace
 
-Measured measure(const StudyMeasure& measure, const RunRecord& record, const std::filesystem::path& directory) try {
-  Measured measured;
+RunMeasure measure_run(const StudyMeasure& measure, const RunRecord& record,
+                       const std::filesystem::path& directory) try {
+  RunMeasure measured;
   const auto probe = record.probes.find(measure.probe);
   if (probe == record.probes.end() || !probe->contains("value")) return measured;
   const Json& value = probe->at("value");
@@ -111,7 +112,7 @@ Measured measure(const StudyMeasure& measure, const RunRecord& record, const std
   return {};
 }
 
-std::optional<double> relative_error(const Measured& value, const Measured& reference) {
+std::optional<double> relative_error(const RunMeasure& value, const RunMeasure& reference) {
   if (value.value.empty() || reference.value.empty() || value.times.empty() != reference.times.empty())
     return std::nullopt;
   std::vector<double> expected = reference.value;

@@ -54,9 +54,9 @@ void add_question(HtmlPage& page, const StudyResult& result, const Question& que
   page.heading(question.name);
   if (!reference.trouble.empty())
     return page.notice("There are no errors, for want of a reference: " + reference.trouble + ".");
-  page.paragraph(fmt::format(
-      "Errors are distances from the reference, relative to it. The reference is {}; its own uncertainty is {}.",
-      reference.source, reference.uncertainty == 0 ? "nothing" : error_text(reference.uncertainty)));
+  page.paragraph(
+      fmt::format("Errors are distances from the reference, relative to it. Reference: {}. Its uncertainty: {}.",
+                  reference.source, uncertainty_text(result, question)));
   for (const auto& [name, plot] : plots_of(result, question)) page.plot(svg_of(plot, kPlotWidth, kPlotHeight));
   if (const std::optional<Choices> choices = choices_of(result, question)) {
     const auto sentence = [&](const char* which, std::size_t r) {
@@ -112,7 +112,7 @@ ReportTable table_of_runs(const StudyResult& result) {
                              : r.status == "refused" ? ResultState::refused
                                                      : ResultState::stopped,
                              r.status));
-    for (const Measured& m : run.measured)
+    for (const RunMeasure& m : run.measured)
       row.push_back(m.error ? ReportCell(error_text(*m.error), *m.error) : ReportCell("–"));
     for (const double seconds : {r.solve.median, r.solve.low, r.solve.high, r.step.median, r.step_max, r.setup.median})
       row.push_back(number_cell(1e3 * seconds, 3));

@@ -10,7 +10,7 @@ namespace fascia::app {
 namespace {
 
 bool varies_size(const StudyResult& result, std::size_t axis) {
-  return std::any_of(result.series.begin(), result.series.end(), [&](const Series& s) { return s.axis == axis; });
+  return std::any_of(result.series.begin(), result.series.end(), [&](const SizeSeries& s) { return s.axis == axis; });
 }
 
 PlotLine uncertainty_line(const ReferenceValue& reference) {
@@ -82,7 +82,7 @@ Plot convergence_plot(const StudyResult& result, const Question& question) {
   plot.y_title = fmt::format("error of {} [-]", question.name);
   plot.log_x = plot.log_y = true;
   const std::optional<std::size_t> grouped = series_axis(result);
-  for (const Series& s : result.series) {
+  for (const SizeSeries& s : result.series) {
     const StudyRun& first = result.runs[s.runs.front()];
     const std::optional<std::size_t> per = result.study.measures[m].per;
     bool shown = true;

@@ -14,7 +14,7 @@ struct Spread {
 Spread spread_of(std::vector<double> values);
 
 /// Outcome of a run of a study, as it is kept.
-struct RunRecord {  // NOLINT(bugprone-exception-escape): moving JSON throws nothing
+struct RunRecord {                  // NOLINT(bugprone-exception-escape): moving JSON throws nothing
   std::string key, status, reason;  ///< reason: why it is not "converged"
   int exit_status = 0;
   Spread setup, solve, step;      ///< step: medians of the runs

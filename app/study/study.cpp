@@ -59,7 +59,9 @@ class StudyDriver {
     result_.questions = questions_of(result_.study);
     const Scene base = parse_scene_file(result_.study.base, result_.study.overrides);
     result_.dimension = result_.study.dimension.value_or(dimension_of(base));
-    result_.cost = result_.study.cost.value_or(is_dynamic(base.solver.kind) ? StudyCost::step : StudyCost::solve);
+    // Where steps differ in length, one of them says nothing of the whole.
+    const bool by_step = is_dynamic(base.solver.kind) && !varies_steps();
+    result_.cost = result_.study.cost.value_or(by_step ? StudyCost::step : StudyCost::solve);
   }
 
   int run() {
@@ -81,6 +83,14 @@ class StudyDriver {
 
  private:
   bool stopped() { return stop_.requested(); }
+
+  bool varies_steps() const {
+    for (const StudyAxis& axis : result_.study.axes)
+      for (const AxisValue& value : axis.values)
+        for (const std::string& change : value.overrides)
+          if (change.find("time_step") != std::string::npos) return true;
+    return false;
+  }
 
   ChildRun child_of(const fs::path& scene, const PlannedRun& plan) const {
     ChildRun run;

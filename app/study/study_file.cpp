@@ -170,6 +170,11 @@ StudyReference read_reference(const TableReader& owner) {
   const Array single{*value};
   for (const Value& item : value->as_array() != nullptr ? *value->as_array() : single) {
     const std::string* text = item.as_string();
+    if (text == nullptr && !number_of(item))
+      table.error("value",
+                  fmt::format("{} is of the wrong type; must be a number, a quantity with a unit, or a list of "
+                              "these",
+                              describe(item)));
     reference.quantities.push_back(text != nullptr ? *text : "");
     reference.value.push_back(text != nullptr ? 0 : number_of(item).value_or(0));
   }

@@ -65,7 +65,7 @@ struct Study {
   std::vector<StudyAxis> axes;
   std::vector<StudyMeasure> measures;
   StudyMode mode = StudyMode::all;
-  std::optional<StudyCost> cost;  ///< none: step of dynamics, else solve
+  std::optional<StudyCost> cost;  ///< none: step of dynamics with equal steps, else solve
   std::optional<int> dimension;   ///< of what is refined; none: of the bodies
   std::optional<double> need;     ///< error that is good enough: the chosen run is the cheapest below it
   int repeat = 3, warm_up = 1;    ///< of each run that is timed

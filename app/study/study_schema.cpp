@@ -38,9 +38,7 @@ Shape axis() {
 Shape reference_shape() {
   return one_of(
       {choice({{"finest", "The finest run of the study, extrapolated by Richardson's method, with its uncertainty."}}),
-       table({key("value",
-                  one_of({number("1"), text("a quantity with a unit"),
-                          array(one_of({text("a quantity with a unit"), number("1")}), 1)}),
+       table({key("value", anything("a number, a quantity with a unit, or a list of these"),
                   "In SI or with units; of a vector a list."),
               key("source", text(), "Where the value is from; needed beside a value."),
               key("uncertainty", number("1", between(0, 1)), "Of the value, relative; needed beside it, 0: exact."),
@@ -87,7 +85,7 @@ const Shape& study_schema() {
                    {"step", "Median time of a step."},
                    {"total", "Set-up and solve together."}}),
            "Time that errors are shown against.")
-           .defaults("\"step\" of dynamics, else \"solve\""),
+           .defaults("\"step\" of dynamics whose steps are equally long, else \"solve\""),
        key("dimension", integer(between(1, 3)), "Of what is refined: spacing = unknowns^(-1/dimension).")
            .defaults("that of the bodies"),
        key("need", number("1", above(0)), "An error that is good enough: the cheapest run below it is chosen."),

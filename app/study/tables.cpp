@@ -20,7 +20,7 @@ std::string cell(std::string text) {
   return quoted + "\"";
 }
 
-std::string value_text(const Measured& measured) {
+std::string value_text(const RunMeasure& measured) {
   if (measured.value.empty() || !measured.times.empty()) return "";
   if (measured.value.size() == 1) return fmt::format("{}", measured.value[0]);
   std::string text;
@@ -132,7 +132,7 @@ std::string csv_of(const StudyResult& result) {
     for (std::size_t a = 0; a < run.plan.at.size(); ++a)
       text += cell(result.study.axes[a].values[run.plan.at[a]].label) + ",";
     text += cell(status_of(run));
-    for (const Measured& m : run.measured)
+    for (const RunMeasure& m : run.measured)
       text += "," + (m.error ? fmt::format("{}", *m.error) : "") + "," + cell(value_text(m));
     if (run.record) {
       const RunRecord& r = *run.record;
@@ -165,7 +165,7 @@ Json json_of(const StudyResult& result) {
   for (const Question& question : result.questions) j["measures"].push_back(question_json(result, question));
   for (const StudyRun& run : result.runs) j["runs"].push_back(run_json(result, run));
   j["series"] = Json::array();
-  for (const Series& s : result.series) {
+  for (const SizeSeries& s : result.series) {
     Json orders = Json::array();
     for (const std::optional<double>& order : s.order) orders.push_back(order ? Json(*order) : Json(nullptr));
     j["series"].push_back({{"axis", result.study.axes[s.axis].name}, {"runs", s.runs}, {"h", s.h}, {"order", orders}});
@@ -192,9 +192,9 @@ std::string text_of(const StudyResult& result) {
       text += fmt::format("\n{}: no errors, for want of a reference: {}\n", question.name, reference.trouble);
       continue;
     }
-    text += fmt::format("\n{}: error against {} (uncertain by {}), beside the time of a {}:\n", question.name,
-                        reference.source, reference.uncertainty == 0 ? "nothing" : error_text(reference.uncertainty),
-                        result.study.timed ? cost_name(result.cost) : cost_name(result.cost) + ", not timed with care");
+    text += fmt::format("\n{}, beside the time of a {}{}\n  reference: {}; uncertainty: {}\n", question.name,
+                        cost_name(result.cost), result.study.timed ? "" : ", not timed with care", reference.source,
+                        uncertainty_text(result, question));
     text += front_text(result, question);
   }
   return text;

@@ -38,5 +38,7 @@ std::vector<Budget> by_unknowns(const StudyResult& result, const Question& quest
 std::string seconds_text(double seconds);
 std::string error_text(double error);
 std::string cost_name(StudyCost cost);
+/// "0.2 %", "exact", "unknown"
+std::string uncertainty_text(const StudyResult& result, const Question& question);
 
 }  // namespace fascia::app

@@ -31,7 +31,7 @@ class Completion : public SceneRuns {
 };
 
 TEST_F(Completion, CommandsOptionsAndScenes) {
-  EXPECT_EQ(offered("fascia "), (std::vector<std::string>{"run", "check", "rerun", "compare", "bench", "list",
+  EXPECT_EQ(offered("fascia "), (std::vector<std::string>{"run", "check", "rerun", "compare", "verify", "bench", "list",
                                                           "completion", "--help", "--version", "organs.toml"}));
   EXPECT_EQ(offered("fascia run o"), std::vector<std::string>{"organs.toml"});
   EXPECT_EQ(offered("fascia run --ver"), std::vector<std::string>{"--verbose"});

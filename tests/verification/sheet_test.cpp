@@ -156,50 +156,9 @@ TEST(Sheet, StripAgainstPlateTheory) {
   EXPECT_NEAR(sparse[2], 1, 0.25);  // two or three frames across
 }
 
-TEST(Sheet, StripScenes) {
-  const SceneRun stretch("sheet_stretch"), bending("sheet_bending"), torsion("sheet_torsion");
-  EXPECT_NEAR(stretch.vector("force")[0] / 4.0602, 1, 1e-5);
-  EXPECT_NEAR(stretch.vectors("edges")[0][1] / 0.00030196, 1, 1e-4);
-  EXPECT_NEAR(bending.vector("tip")[2] / -2.50078e-4, 1, 0.04);
-  EXPECT_NEAR(torsion.vector("moment")[0] / (1e5 / 2.6 * 0.2 * 8e-6 / 3 * 1e-3), 1, 0.15);
+TEST(Sheet, TwoThicknessesHaveTheirVolume) {
   const SceneRun halves("sheet_two_thicknesses");
-  std::printf("two thicknesses: force %.6f N, of two bars in a row %.6f N\n", halves.vector("force")[0], 0.08 / 3);
-  EXPECT_NEAR(halves.vector("force")[0] / (0.08 / 3), 1, 0.005);  // the halves hinder each other's contraction
   EXPECT_NEAR(halves.summary()["bodies"]["strip"]["volume"].get<double>(), 0.003, 1e-12);
-}
-
-struct Plate {
-  const char* name;
-  Settings settings;
-  double center, edge;  ///< [m]; edge 0: held
-};
-
-/// Solid elements of the same law, but for the simply supported one: thin plates (Navier), whose supports are the same.
-TEST(Sheet, SquarePlates) {
-  const std::string small = "loads[0].total_force=[0,0,-1e-3]";
-  const Plate plates[] = {{"simply supported",
-                           {small, "constraints[0].fix=['z','rx']", "constraints[1].fix=['z','rx']",
-                            "constraints[2].fix=['z','ry']", "constraints[3].fix=['z','ry']"},
-                           0.004062352661e-3 / 0.0183150183,
-                           0},
-                          {"clamped on two edges",
-                           {small, "constraints[2].where={nearest=[0,0,0]}", "constraints[3].where={nearest=[0,0,0]}"},
-                           1.4045e-4,
-                           1.6015e-4},
-                          {"clamped", {small}, 6.96e-5, 0},
-                          {"clamped, 0.2 Pa", {}, 0.01175, 0}};
-  std::printf("plate                  center [m]    reference     error     middle of a free edge\n");
-  for (const Plate& p : plates) {
-    const SceneRun run("square_plate", p.settings);
-    const double center = -run.vector("center")[2], edge = -run.vector("edge")[2];
-    std::printf("%-22s %.4e   %.4e  %+6.2f %%", p.name, center, p.center, 100 * (center / p.center - 1));
-    if (p.edge > 0) std::printf("   %+6.2f %%", 100 * (edge / p.edge - 1));
-    std::printf("\n");
-    EXPECT_NEAR(center / p.center, 1, 0.03) << p.name;
-    if (p.edge > 0) {
-      EXPECT_NEAR(edge / p.edge, 1, 0.03) << p.name;
-    }
-  }
 }
 
 TEST(Sheet, ThePapersSheet) {

@@ -171,7 +171,7 @@ StudyResult result_of(const std::vector<std::pair<Spread, double>>& runs) {
   result.study.axes.push_back({{}, "n", {}, "", {}});
   result.questions = questions_of(result.study);
   for (const auto& [cost, error] : runs) {
-    result.study.axes[0].values.push_back({std::to_string(result.runs.size()), {}, {}});
+    result.study.axes[0].values.push_back({std::to_string(result.runs.size()), {}, {}, "", 1});
     StudyRun& run = result.runs.emplace_back();
     run.plan.at = {result.runs.size() - 1};
     run.record.emplace().status = "converged";

@@ -3,6 +3,7 @@
 #include "core/model/errors.hpp"
 #include "io/result_writer.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
+#include "tests/unit/io/volume_samples.hpp"
 
 #include <cmath>
 
@@ -24,6 +25,52 @@ TEST(ReadResultArrays, GivesBackWhatWasWritten) {
   EXPECT_EQ(arrays.at("points"), (std::vector<double>{0, 0, 0, 1, 0, 0, 1, 2.5, 0}));
   directory.write("b.vtu", "no mesh");
   EXPECT_THROW(read_result_arrays(directory.path() / "b.vtu"), InputError);
+}
+
+TEST(ReadVtu, GivesBackWhatWasWritten) {
+  const TemporaryDirectory directory;
+  for (const CellType type : {CellType::tetrahedron, CellType::hexahedron})
+    for (const bool quadratic : {false, true}) {
+      VisualMesh mesh = samples::row_of_cubes(2, type, quadratic);
+      mesh.triangles = {{0, 1, 2}};
+      mesh.lines = {{0, 1}};
+      mesh.vertices = {3};
+      mesh.part.insert(mesh.part.end(), {0, 0, 2});
+      write_vtu(directory.path() / "a.vtu", mesh);
+      const VisualMesh read = read_vtu(directory.path() / "a.vtu");
+      EXPECT_EQ(read.points, mesh.points);
+      ASSERT_EQ(read.volumes.size(), 1u);
+      EXPECT_EQ(read.volumes[0].type, type);
+      EXPECT_EQ(read.volumes[0].quadratic, quadratic);
+      EXPECT_EQ(read.volumes[0].nodes, mesh.volumes[0].nodes);
+      EXPECT_EQ(read.triangles, mesh.triangles);
+      EXPECT_EQ(read.lines, mesh.lines);
+      EXPECT_EQ(read.vertices, mesh.vertices);
+      EXPECT_EQ(read.part, mesh.part);
+      ASSERT_EQ(read.point_fields.size(), 1u);
+      EXPECT_EQ(read.point_fields[0].values, mesh.point_fields[0].values);
+    }
+}
+
+TEST(ReadVtu, RefusesWhatIsDamaged) {
+  const TemporaryDirectory directory;
+  const auto file = [&](const std::string& nodes, const std::string& type, const std::string& value) {
+    return directory.write(
+        "a.vtu", R"(<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid><Piece NumberOfPoints="2" )"
+                 R"(NumberOfCells="1"><PointData><DataArray type="Float64" Name="s" format="ascii">)" +
+                     value +
+                     R"( 1</DataArray></PointData><Points><DataArray type="Float64" NumberOfComponents="3" )"
+                     R"(format="ascii">0 0 0 1 0 0</DataArray></Points><Cells><DataArray type="Int64" )"
+                     R"(Name="connectivity" format="ascii">)" +
+                     nodes + R"(</DataArray><DataArray type="Int64" Name="offsets" format="ascii">2</DataArray>)" +
+                     R"(<DataArray type="UInt8" Name="types" format="ascii">)" + type +
+                     R"(</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)");
+  };
+  EXPECT_EQ(read_vtu(file("0 1", "3", "1")).lines.size(), 1u);
+  EXPECT_NE(samples::input_error([&] { read_vtu(file("0 7", "3", "1")); }).find("not there"), std::string::npos);
+  EXPECT_NE(samples::input_error([&] { read_vtu(file("0 1", "4", "1")); }).find("of another kind"), std::string::npos);
+  EXPECT_NE(samples::input_error([&] { read_vtu(file("0 1", "3", "nan")); }), "");
+  EXPECT_THROW(read_vtu(directory.write("b.vtu", "no mesh")), InputError);
 }
 
 TEST(ReadCollection, GivesTimesAndFiles) {

@@ -32,21 +32,22 @@ struct ResultDifference {
 /// @throws FileError, InputError  where one is no result of this program, or damaged
 ResultDifference compare_results(const std::filesystem::path& a, const std::filesystem::path& b);
 
-nlohmann::ordered_json json_of(const ResultDifference& difference);
-
-struct CompareOptions {
-  std::filesystem::path a, b;
-  double tolerance = 1e-6;
-  bool json = false;
+/// The sizes that quantities which ought to be zero are measured by.
+struct Scales {
+  double length = 0;   ///< the farthest point of a body [m]
+  double modulus = 0;  ///< the largest stress over the largest strain [Pa]
 };
 
-/// Prints how two results differ. @return kDone, or kDiffers above the tolerance or where their structure differs
-int compare_command(const CompareOptions& options);
+/// The part of a field, or of a probe of that quantity, that rounding may leave; 0 where nothing is known of it.
+double rounding_of(const std::string& quantity, const Scales& scales);
 
 /// Prints a difference in words. @return whether it is within the tolerance
 bool print_difference(const ResultDifference& difference, double tolerance);
 
 /// summary.json of a directory of results. @throws FileError, InputError  where there is none
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
+
+/// NAME.pvd; empty where nothing was saved. @throws InputError  states that it should list are there without it
+std::filesystem::path collection_of(const std::filesystem::path& directory, const nlohmann::ordered_json& summary);
 
 }  // namespace fascia::app

@@ -1,6 +1,5 @@
-#include "app/compare_results.hpp"
+#include "app/compare/arrays.hpp"
 
-#include "app/run_scene.hpp"
 #include "core/math/index.hpp"
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
@@ -38,12 +37,6 @@ struct Distance {
 
 using Distances = std::map<std::string, Distance>;
 
-/// What quantities that ought to be zero are measured by.
-struct Scales {
-  double length = 0;   ///< the farthest point of a body [m]
-  double modulus = 0;  ///< the largest stress over the largest strain [Pa]
-};
-
 Scales scales_of(const Distances& distances) {
   Scales scales;
   double stress = 0, strain = 0;
@@ -54,24 +47,6 @@ Scales scales_of(const Distances& distances) {
   }
   if (strain > 0) scales.modulus = stress / strain;
   return scales;
-}
-
-/// What rounding may leave of a field, or of a probe of that quantity.
-double rounding_of(const std::string& quantity, const Scales& scales) {
-  constexpr double kRounding = 1e-13;
-  const auto is_one_of = [&](std::initializer_list<const char*> names) {
-    return std::find(names.begin(), names.end(), quantity) != names.end();
-  };
-  const double volume = scales.length * scales.length * scales.length;
-  if (is_one_of({"rotation", "strain"}) || quantity.starts_with("axis_")) return kRounding;
-  if (is_one_of({"points", "rest_position", "displacement", "position", "max_displacement", "mean_displacement"}))
-    return kRounding * scales.length;
-  if (is_one_of({"stress", "von_mises", "stress_outer", "stress_inner"})) return kRounding * scales.modulus;
-  if (quantity == "energy_density") return kRounding * kRounding * scales.modulus;
-  if (quantity == "energy") return kRounding * kRounding * scales.modulus * volume;
-  if (quantity == "force") return kRounding * scales.modulus * scales.length * scales.length;
-  if (quantity == "moment") return kRounding * scales.modulus * volume;
-  return 0;
 }
 
 /// "beam: stress" → "stress"; of a probe what it measures.
@@ -114,7 +89,27 @@ void compare_states(const fs::path& a, const fs::path& b, const io::CollectionEn
     if (!p.contains(name)) difference.structure.push_back(fmt::format("{} alone has \"{}\"", y.file, name));
 }
 
-/// NAME.pvd; empty where nothing was saved. @throws InputError  states that it should list are there without it
+std::string status_of(const nlohmann::ordered_json& summary) { return summary.value("status", ""); }
+
+}  // namespace
+
+double rounding_of(const std::string& quantity, const Scales& scales) {
+  constexpr double kRounding = 1e-13;
+  const auto is_one_of = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), quantity) != names.end();
+  };
+  const double volume = scales.length * scales.length * scales.length;
+  if (is_one_of({"rotation", "strain"}) || quantity.starts_with("axis_")) return kRounding;
+  if (is_one_of({"points", "rest_position", "displacement", "position", "max_displacement", "mean_displacement"}))
+    return kRounding * scales.length;
+  if (is_one_of({"stress", "von_mises", "stress_outer", "stress_inner"})) return kRounding * scales.modulus;
+  if (quantity == "energy_density") return kRounding * kRounding * scales.modulus;
+  if (quantity == "energy") return kRounding * kRounding * scales.modulus * volume;
+  if (quantity == "force") return kRounding * scales.modulus * scales.length * scales.length;
+  if (quantity == "moment") return kRounding * scales.modulus * volume;
+  return 0;
+}
+
 fs::path collection_of(const fs::path& directory, const nlohmann::ordered_json& summary) {
   fs::path file = directory / (fs::path(summary.value("scene", "")).stem().string() + ".pvd");
   std::error_code none;
@@ -124,10 +119,6 @@ fs::path collection_of(const fs::path& directory, const nlohmann::ordered_json& 
       throw InputError(fmt::format("{}: is missing, and lists the states of this result", file.string()));
   return {};
 }
-
-std::string status_of(const nlohmann::ordered_json& summary) { return summary.value("status", ""); }
-
-}  // namespace
 
 double ResultDifference::largest() const {
   double most = 0;
@@ -197,19 +188,6 @@ ResultDifference compare_results(const fs::path& a, const fs::path& b) try {
   throw InputError(fmt::format("{} or {}: summary.json is damaged: {}", a.string(), b.string(), e.what()));
 }
 
-nlohmann::ordered_json json_of(const ResultDifference& difference) {
-  nlohmann::ordered_json j;
-  const auto number = [](double v) { return std::isfinite(v) ? nlohmann::ordered_json(v) : "missing in one"; };
-  j["largest"] = number(difference.largest());
-  j["numbers"] = difference.numbers();
-  j["structure"] = difference.structure;
-  j["quantities"] = nlohmann::ordered_json::object();
-  for (const QuantityDifference& q : difference.quantities)
-    j["quantities"][q.name] = {
-        {"relative", number(q.relative)}, {"absolute", number(q.absolute)}, {"at", q.at}, {"numbers", q.numbers}};
-  return j;
-}
-
 bool print_difference(const ResultDifference& difference, double tolerance) {
   constexpr std::size_t shown = 12;
   for (const std::string& s : difference.structure) fmt::print("{}\n", s);
@@ -231,16 +209,6 @@ bool print_difference(const ResultDifference& difference, double tolerance) {
   fmt::print("{} numbers of {} quantities: {} the tolerance {:g}\n", difference.numbers(), difference.quantities.size(),
              within ? "within" : "above", tolerance);
   return within && difference.structure.empty();
-}
-
-int compare_command(const CompareOptions& options) {
-  const ResultDifference difference = compare_results(options.a, options.b);
-  const bool equal = difference.structure.empty() && difference.largest() <= options.tolerance;
-  if (options.json)
-    fmt::print("{}\n", json_of(difference).dump(2));
-  else
-    print_difference(difference, options.tolerance);
-  return equal ? kDone : kDiffers;
 }
 
 }  // namespace fascia::app

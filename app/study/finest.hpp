@@ -1,0 +1,16 @@
+#pragma once
+
+#include "app/study/evaluation.hpp"
+
+namespace fascia::app {
+
+/// Runs that share all axes but one with the run at `like`, of decreasing size; none where that axis varies neither the
+/// number of unknowns nor a time step.
+std::optional<SizeSeries> series_of(const StudyResult& result, std::size_t axis, const std::vector<std::size_t>& like);
+
+/// The best value that a study has of its own: of the runs that are the finest of their kind, each extrapolated by
+/// Richardson's method over every axis that varies a size, the one with the least uncertainty; where none shows an
+/// order, the run with the most unknowns and steps. A curve is taken as it is.
+ReferenceValue finest_value(const StudyResult& result, const Question& question);
+
+}  // namespace fascia::app

@@ -1,0 +1,59 @@
+#include "app/verify/certificate.hpp"
+
+#include "app/provenance.hpp"
+#include "app/version.hpp"
+#include "io/digest.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace fascia::app {
+namespace {
+
+/// The program, its library and its module for GPUs, as this process has mapped them.
+std::vector<std::string> files_of_program() {
+  std::vector<std::string> files;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t begin = line.find('/');
+    if (begin == std::string::npos) continue;
+    const std::string path = line.substr(begin);
+    const std::string name = std::filesystem::path(path).filename().string();
+    const bool own = name.starts_with("fascia") || name.starts_with("libfascia");
+    if (own && std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
+  }
+  return files;
+}
+
+}  // namespace
+
+Certificate this_certificate() {
+  Certificate certificate;
+  certificate.machine = this_machine();  // which loads the module for GPUs where there is one
+  certificate.command = remembered_command();
+  certificate.processor_level = tuning();
+  for (const std::string& file : files_of_program()) certificate.files.emplace_back(file, io::sha256_of(file));
+  return certificate;
+}
+
+nlohmann::ordered_json json_of(const Certificate& c) {
+  const Machine& m = c.machine;
+  nlohmann::ordered_json j;
+  j["date"] = m.date;
+  j["command"] = c.command;
+  j["program"] = {{"version", m.fascia},           {"commit", m.commit}, {"backends", m.backends},
+                  {"compiler", m.compiler},        {"flags", m.flags},   {"build", m.build},
+                  {"processor", c.processor_level}};
+  j["program"]["libraries"] = nlohmann::ordered_json::object();
+  for (const auto& [name, version] : m.libraries) j["program"]["libraries"][name] = version;
+  j["program"]["sha256"] = nlohmann::ordered_json::object();
+  for (const auto& [file, digest] : c.files) j["program"]["sha256"][file] = digest;
+  j["machine"] = {{"host", m.host},     {"system", m.system}, {"cpu", m.cpu},      {"threads", m.threads},
+                  {"memory", m.memory}, {"gpu", m.gpu},       {"driver", m.driver}};
+  return j;
+}
+
+}  // namespace fascia::app

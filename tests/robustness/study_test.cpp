@@ -1,0 +1,151 @@
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <sstream>
+
+namespace fascia::study_program_test {
+namespace {
+
+using fascia::test::ProgramOptions;
+using fascia::test::ProgramResult;
+using fascia::test::run_program;
+using fascia::test::TemporaryFolder;
+
+std::string content(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::vector<std::vector<std::string>> csv(const std::filesystem::path& file) {
+  std::vector<std::vector<std::string>> rows;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    std::vector<std::string> row{""};
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        row.emplace_back();
+      else
+        row.back() += c;
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// A study of four runs of the soft cantilever, two of which are no valid scene, in a folder of its own.
+class StudyProgram : public testing::Test {
+ protected:
+  StudyProgram() { write("[[5,2,2],[9,2,2]]"); }
+
+  void write(const std::string& grids) const {
+    std::ofstream file(folder_.path / "s.toml");
+    file << "base = \"" << (fascia::test::source_dir() / "scenes/soft_cantilever.toml").string() << "\"\n"
+         << "repeat = 1\nwarm_up = 0\n[[axes]]\nkey = \"bodies.beam.frames.grid\"\nvalues = " << grids
+         << "\n[[axes]]\nname = \"ratio\"\nkey = \"materials.silicone.poisson\"\nvalues = [0.3, 0.6]\n"
+         << "[[measures]]\nname = \"drop\"\nprobe = \"tip\"\ncomponent = \"y\"\n"
+         << "reference = { value = \"-6.5096 m\", source = \"solids\", uncertainty = 2e-4 }\n";
+  }
+
+  ProgramResult study(const std::vector<std::string>& more = {}, ProgramOptions options = {}) const {
+    std::vector<std::string> command{fascia::test::program(), "study", "s.toml", "--output", "out"};
+    command.insert(command.end(), more.begin(), more.end());
+    options.directory = folder_.path;
+    return run_program(command, options);
+  }
+  std::filesystem::path out() const { return folder_.path / "out"; }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(StudyProgram, WritesARowForEachCombination) {
+  const ProgramResult run = study();
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto rows = csv(out() / "study.csv");
+  ASSERT_EQ(rows.size(), 5U);
+  const std::vector<std::string> head(rows[0].begin(), rows[0].begin() + 13);
+  EXPECT_EQ(head, (std::vector<std::string>{"grid", "ratio", "status", "error_drop", "value_drop", "step_median",
+                                            "step_max", "setup", "solve", "memory", "dofs", "newton", "linear"}));
+  EXPECT_EQ(rows[1][2], "converged");
+  EXPECT_EQ(rows[2][2], "refused");  // a ratio of 0.6
+  EXPECT_NE(rows[2].back().find("poisson: 0.6 is out of range"), std::string::npos) << rows[2].back();
+  const double value = std::stod(rows[3][4]), error = std::stod(rows[3][3]);
+  EXPECT_NEAR(error, std::abs(value + 6.5096) / 6.5096, 1e-12);
+  EXPECT_LT(error, std::stod(rows[1][3]));  // the finer grid is better
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+  const std::string page = content(out() / "study.html");
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_EQ(page.find("http://") == std::string::npos || page.find("http://www.w3.org") != std::string::npos, true);
+  EXPECT_EQ(nlohmann::json::parse(content(out() / "study.json"))["runs"].size(), 4U);
+}
+
+TEST_F(StudyProgram, GoesOnWhereItWasInterrupted) {
+  write("[[5,2,2],[9,2,2],[13,3,3],[17,3,3],[21,3,3],[25,4,4],[29,4,4],[33,4,4]]");
+  ProgramOptions options;
+  options.signal = SIGTERM;
+  options.signal_after = std::chrono::milliseconds(600);
+  const ProgramResult broken = study({}, options);
+  ASSERT_TRUE(broken.status == 128 + SIGTERM || broken.status == 0) << broken.status << broken.err;
+  const auto before = csv(out() / "study.csv");
+  const ProgramResult again = study();
+  ASSERT_EQ(again.status, 0) << again.err;
+  const auto after = csv(out() / "study.csv");
+  ASSERT_EQ(before.size(), after.size());
+  if (before[1][2] == "converged") {
+    EXPECT_NE(again.err.find("known from before"), std::string::npos) << again.err;
+    EXPECT_EQ(before[1], after[1]);  // times too: it was not run again
+  }
+  for (std::size_t r = 1; r < after.size(); r += 2) EXPECT_EQ(after[r][2], "converged");
+  const ProgramResult known = study();
+  EXPECT_EQ(csv(out() / "study.csv"), after);
+}
+
+TEST_F(StudyProgram, TakesASceneWithValuesOnTheCommandLine) {
+  const std::string scene = (fascia::test::source_dir() / "scenes/soft_cantilever.toml").string();
+  ProgramOptions options;
+  options.directory = folder_.path;
+  const ProgramResult run =
+      run_program({fascia::test::program(), "study", scene, "--vary", "bodies.beam.frames.grid=[[5,2,2],[9,2,2]]",
+                   "--measure", "tip.y", "--untimed", "--output", "out", "--json"},
+                  options);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["measures"][0]["name"], "tip.y");
+  EXPECT_EQ(json["runs"][1]["status"], "converged");
+}
+
+TEST_F(StudyProgram, RefusesWhatItCannotDo) {
+  std::filesystem::create_directory(out());
+  std::ofstream(out() / "letter.txt") << "mine";
+  const ProgramResult foreign = study();
+  EXPECT_EQ(foreign.status, 4);
+  EXPECT_NE(foreign.err.find("something else than a study"), std::string::npos) << foreign.err;
+  EXPECT_EQ(content(out() / "letter.txt"), "mine");
+  std::filesystem::remove_all(out());
+
+  ProgramOptions options;
+  options.directory = folder_.path;
+  const std::string scene = (fascia::test::source_dir() / "scenes/soft_cantilever.toml").string();
+  const ProgramResult no_vary = run_program({fascia::test::program(), "study", scene}, options);
+  EXPECT_EQ(no_vary.status, 2);
+  EXPECT_NE(no_vary.err.find("this is a scene"), std::string::npos) << no_vary.err;
+  const ProgramResult half = run_program({fascia::test::program(), "study", scene, "--measure", "tip"}, options);
+  EXPECT_EQ(half.status, 2);
+  write("[\"five\"]");
+  const ProgramResult none = study();
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("none of the 2 combinations"), std::string::npos) << none.err;
+}
+
+}  // namespace
+}  // namespace fascia::study_program_test
