@@ -104,6 +104,7 @@ int run_need(const RunOptions& options, const Scene& scene) {
   run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
   run.text = scene.text;
   run.backend.reset(), run.threads.reset(), run.gpus.reset();  // they are among the scene's overrides
+  run.estimate = false, run.no_estimate = true;                // it is the trials'
   run.complete = [&](nlohmann::ordered_json& summary) { report.write(summary); };
   if (!options.quiet && !options.json)
     for (const std::string& line : report.sentences()) fmt::print("{}\n", line);

@@ -17,7 +17,7 @@ namespace {
 /// Of solids: cells of the coarsest pattern may be longer than wide, as bent bodies are. More along one edge than this
 /// would be a dear beginning for thin ones.
 constexpr double kSlender = 4;
-constexpr int kMostOfPattern = 8;
+constexpr int kMostOfPattern = 4;
 
 std::vector<double> edges_of(const BlockDomain& block) {
   const auto edge = [&](std::size_t a, std::size_t b) { return norm(block.corners[b] - block.corners[a]); };
@@ -184,6 +184,24 @@ const Family& family_of(const OpenBody& body, int family) {
   return body.families[std::min(static_cast<std::size_t>(family), body.families.size() - 1)];
 }
 
+/// Numbers of cells or frames of a body, along one direction twice the cells.
+std::vector<int> counts_of(const OpenBody& body, const Resolution& r, int doubled = -1) {
+  const Family& family = family_of(body, r.family);
+  std::vector<int> counts = body.pattern;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const bool settled =
+        std::find(family.settled.begin(), family.settled.end(), static_cast<int>(i)) != family.settled.end();
+    counts[i] *= settled ? std::min(r.level, family.least) : r.level;
+    if (static_cast<int>(i) == doubled) counts[i] *= 2;
+    if (body.frames) ++counts[i];
+  }
+  return counts;
+}
+
+std::string numbers_key(const OpenBody& body, const std::vector<int>& counts) {
+  return fmt::format("{}=[{}]", body.key, fmt::join(counts, ", "));
+}
+
 }  // namespace
 
 std::vector<int> pattern_of(const std::vector<double>& lengths, double slender, int most) {
@@ -238,20 +256,29 @@ std::vector<std::string> OpenScene::overrides(const Resolution& r) const {
     const Family& family = family_of(body, r.family);
     all.insert(all.end(), family.overrides.begin(), family.overrides.end());
     if (body.cut) all.push_back(fmt::format("{}={}", body.key, std::bit_width(static_cast<unsigned>(r.level)) - 1));
-    if (body.pattern.empty()) continue;
-    std::vector<int> counts = body.pattern;
-    for (int& n : counts) n = n * r.level + (body.frames ? 1 : 0);
-    all.push_back(fmt::format("{}=[{}]", body.key, fmt::join(counts, ", ")));
+    if (!body.pattern.empty()) all.push_back(numbers_key(body, counts_of(body, r)));
   }
   return all;
+}
+
+std::vector<int> OpenScene::thin_directions(std::size_t body) const {
+  const OpenBody& b = bodies[body];
+  std::vector<int> thin;
+  if (b.fixed || b.pattern.empty() || std::ranges::max(b.pattern) == 1) return thin;
+  for (std::size_t i = 0; i < b.pattern.size(); ++i)
+    if (b.pattern[i] == 1) thin.push_back(static_cast<int>(i));
+  return thin;
+}
+
+std::string OpenScene::doubled(const Resolution& r, std::size_t body, int direction) const {
+  return numbers_key(bodies[body], counts_of(bodies[body], r, direction));
 }
 
 std::string OpenScene::text(const Resolution& r) const {
   std::vector<std::string> parts;
   for (const OpenBody& body : bodies) {
     std::string part = fmt::format("{}: {}", body.name, family_of(body, r.family).name);
-    std::vector<int> counts = body.pattern;
-    for (int& n : counts) n = n * r.level + (body.frames ? 1 : 0);
+    const std::vector<int> counts = counts_of(body, r);
     if (!counts.empty()) part += fmt::format(", {} {}", fmt::join(counts, " x "), body.frames ? "frames" : "cells");
     if (body.cut && r.level > 1)
       part += fmt::format(", cells cut {} times", std::bit_width(static_cast<unsigned>(r.level)) - 1);

@@ -91,6 +91,9 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
       errors_["bodies"][wanted.body] = std::move(e);
   }
   reached_ = fmt::format("estimated error of {}", fmt::join(told, ", "));
+  how_ = {fmt::format("discretisation: by what trials of {} levels converge to, with its uncertainty", levels.size())};
+  if (is_dynamic(scene_.solver.kind)) how_.emplace_back("time: by a trial of half the step");
+  how_.emplace_back("solver: by a coarse trial with tight tolerances");
   trials_ = Json::array();
   std::size_t good = 0;
   for (const Trial& t : trials.all()) {
@@ -134,6 +137,7 @@ void NeedReport::write(Json& summary) {
   summary.erase("provenance");
   summary["chosen"] = sentences_;
   summary["estimated_error"] = errors_;
+  summary["estimate"] = {{"how", how_}, {"seconds", seconds_}};
   summary["need"] = std::move(need);
   summary["provenance"] = provenance;
 }

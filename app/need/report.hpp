@@ -26,7 +26,7 @@ class NeedReport {
 
  private:
   const Scene& scene_;
-  std::vector<std::string> sentences_;
+  std::vector<std::string> sentences_, how_;
   nlohmann::ordered_json errors_, trials_;
   std::string why_not_, reached_;
   double seconds_ = 0;

@@ -21,7 +21,7 @@ struct SearchLimits {
 struct Found {
   Choice choice;
   bool met = false;
-  std::string why_not;             ///< a clause: what keeps it from being met
+  std::string why_not;               ///< a clause: what keeps it from being met
   std::vector<double> time_error{};  ///< of the time steps, by quantity, relative; empty of statics
 };
 

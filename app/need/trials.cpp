@@ -106,6 +106,11 @@ std::string Trials::text(const Choice& choice) const {
   return text;
 }
 
+void Trials::settle(std::size_t body, int family, int direction) {
+  std::vector<Family>& families = open_.bodies[body].families;
+  families[std::min(static_cast<std::size_t>(family), families.size() - 1)].settled.push_back(direction);
+}
+
 const Trial* Trials::find(const Choice& choice) const {
   const auto found = std::find_if(trials_.begin(), trials_.end(), [&](const Trial& t) { return t.choice == choice; });
   return found == trials_.end() ? nullptr : &*found;

@@ -58,6 +58,8 @@ class Trials {
   const Trial* find(const Choice& choice) const;
   const std::deque<Trial>& all() const { return trials_; }
   const OpenScene& open() const { return open_; }
+  /// Cells of a body along a direction stay as many as they are at the coarsest level of a family.
+  void settle(std::size_t body, int family, int direction);
   const Scene& scene() const { return scene_; }
   const std::vector<Wanted>& wanted() const { return wanted_; }
   bool stopped() const { return stop_(); }
