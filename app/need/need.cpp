@@ -6,6 +6,7 @@
 #include "app/need/chosen.hpp"
 #include "app/need/report.hpp"
 #include "app/need/search.hpp"
+#include "app/need/temporary_folder.hpp"
 #include "app/need/time_search.hpp"
 #include "app/process_memory.hpp"
 #include "app/readable.hpp"
@@ -19,33 +20,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <system_error>
 
 namespace fascia::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder for the results of trials, which goes with this.
-class TrialFolder {
- public:
-  TrialFolder() {
-    std::string name = (fs::temp_directory_path() / "fascia-need-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw FileError(name + ": cannot be made; set TMPDIR to another directory");
-    path_ = name;
-  }
-  ~TrialFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TrialFolder(const TrialFolder&) = delete;
-  TrialFolder& operator=(const TrialFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// What of a scene is wrong shows with any choice: it is told before trials are made.
 void check_first(const Scene& scene, const Trials& trials, const Choice& first) {
@@ -77,7 +56,7 @@ int run_need(const RunOptions& options, const Scene& scene) {
   Found found;
   {
     Interruption stop;
-    const TrialFolder folder;
+    const TemporaryFolder folder("fascia-need");
     const bool silent = options.quiet || options.json;
     const auto tell = [&](const std::string& line) {
       if (!silent) fmt::print("{}\n", line), std::fflush(stdout);

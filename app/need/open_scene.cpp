@@ -104,7 +104,7 @@ class Opening {
     // A grid around a curved body needs inner cells; rigid frames of a solid need three through it (manual, section 5).
     const int least = line || surface ? 4 : box ? 2 : 3;
     if (body_.affine || !says("frames.kind")) family("affine frames", {}, line || surface ? 2 : box ? 1 : 3);
-    if (!body_.affine) open_.families.insert(open_.families.begin(), {"rigid frames", {}, least, 2});
+    if (!body_.affine) open_.families.insert(open_.families.begin(), Family{"rigid frames", {}, least});
     if (!says("frames.kind"))
       for (Family& f : open_.families)
         f.overrides = {path_ + ".frames.kind=\"" + (f.name.starts_with("affine") ? "affine" : "rigid") + "\""};

@@ -41,7 +41,7 @@ void check_kind(const TableReader& table, const TableReader& need, const Scene& 
     need.error(
         "cannot be stated where a path is followed; say frames and cells, and use control = \"load\" or "
         "output.estimate");
-  if (scene.need && !scene.need->error && !scene.need->step && !scene.need->probe)
+  if (scene.need && !need.has("error") && !need.has("step") && !need.has("probe"))
     need.error("error or step is missing; give one at least");
 }
 
