@@ -3,6 +3,8 @@
 #include "app/estimate/estimate.hpp"
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
+#include "app/need/need.hpp"
+#include "app/need/tune.hpp"
 #include "app/readable.hpp"
 #include "app/result_size.hpp"
 #include "app/run_scene.hpp"
@@ -28,7 +30,9 @@ std::string describe(const SimulatedBody& b) {
 }  // namespace
 
 int check_scene(const RunOptions& options) {
-  Simulation s = load_scene(options);
+  Scene scene = read_scene(options);
+  if (scene.states_need()) return check_need(options, scene);
+  Simulation s = load_scene(std::move(scene));
   const Backend backend = choose_backend(s);
   warn_of_backend(s, backend);
   const ResultSize results = forecast_result(s);
@@ -66,6 +70,7 @@ int check_scene(const RunOptions& options) {
              memory.beyond > 1.05 * memory.peak
                  ? fmt::format(", {:.3g} MB where the path passes a limit point", memory.beyond / 1e6)
                  : "");
+  if (const std::string time = time_line(s); !time.empty()) fmt::print("{}\n", time);
   fmt::print("results: {}\n", results.text());
   if (s.scene.output.estimate)
     for (const std::string& line : plan_lines(plan_estimate(s))) fmt::print("{}\n", line);

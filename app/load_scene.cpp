@@ -10,7 +10,7 @@
 
 namespace fascia::app {
 
-Simulation load_scene(const RunOptions& options) {
+Scene read_scene(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.backend) overrides.push_back("solver.backend=" + *options.backend);
   if (options.threads) overrides.push_back(fmt::format("solver.threads={}", *options.threads));
@@ -20,6 +20,12 @@ Simulation load_scene(const RunOptions& options) {
   if (options.estimate && !scene.output.estimate) scene.output.estimate = EstimateBy::automatic;
   if (options.no_estimate) scene.output.estimate.reset();
   if (options.output) scene.output.directory = *options.output;
+  return scene;
+}
+
+Simulation load_scene(const RunOptions& options) { return load_scene(read_scene(options)); }
+
+Simulation load_scene(Scene scene) {
   Simulation s = build_simulation(std::move(scene));
   add_imperfection(s);
   if (s.scene.solver.kind == SolverKind::central_differences) {
@@ -28,7 +34,7 @@ Simulation load_scene(const RunOptions& options) {
     settle_time_step(s, system);
   }
   warn_of_the_implausible(s);
-  s.warnings.tell(options.scene);
+  s.warnings.tell(s.scene.path);
   return s;
 }
 

@@ -6,6 +6,12 @@
 
 namespace fascia::app {
 
+/// The scene of a command with its overrides.
+Scene read_scene(const RunOptions& options);
+
+/// Builds what is simulated; prints the warnings. @param scene  states no need
+Simulation load_scene(Scene scene);
+
 /// Reads the scene of a command with its overrides, and builds what is simulated; prints the warnings.
 Simulation load_scene(const RunOptions& options);
 

@@ -4,6 +4,7 @@
 #include "app/explain/explain.hpp"
 #include "app/list.hpp"
 #include "app/messages.hpp"
+#include "app/need/tune.hpp"
 #include "app/process_memory.hpp"
 #include "app/provenance.hpp"
 #include "app/rerun.hpp"
@@ -86,7 +87,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
-constexpr std::array kCommands{"run", "check", "rerun", "compare", "explain", "study", "verify", "bench", "list", "completion"};
+constexpr std::array kCommands{"run",    "check", "rerun", "compare", "explain",   "study",
+                               "verify", "tune",  "bench", "list",    "completion"};
 
 CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
   CLI::App* rerun = app.add_subcommand("rerun", "repeat a run from what its result says, and compare the two");
@@ -173,6 +175,13 @@ CLI::App* add_explain(CLI::App& app, ExplainOptions& options) {
   return explain;
 }
 
+CLI::App* add_tune(CLI::App& app, TuneOptions& options) {
+  CLI::App* tune = app.add_subcommand("tune", "time small scenes on this machine, so that times can be foretold");
+  tune->add_flag("--quick", options.quick, "only what is needed to fit anything");
+  tune->add_flag("--json", options.json, "print tune.json, and nothing else, on standard output");
+  return tune;
+}
+
 /// Prints the script; what it completes is read off the commands themselves.
 int print_completion(const CLI::App& app) {
   std::vector<CommandWords> commands;
@@ -216,6 +225,8 @@ int dispatch(int argc, char** argv) {
   const CLI::App* compare = add_compare(app, compare_options);
   StudyOptions study_options;
   const CLI::App* study = add_study(app, study_options);
+  TuneOptions tune_options;
+  const CLI::App* tune = add_tune(app, tune_options);
   VerifyOptions verify_options;
   const CLI::App* verify = add_verify(app, verify_options);
   ExplainOptions explain_options;
@@ -240,6 +251,7 @@ int dispatch(int argc, char** argv) {
   if (rerun->parsed()) return rerun_result(rerun_options);
   if (compare->parsed()) return compare_command(compare_options);
   if (study->parsed()) return run_study(study_options);
+  if (tune->parsed()) return run_tune(tune_options);
   if (verify->parsed()) return verify_command(verify_options);
   if (explain->parsed()) return explain_scene(explain_options);
   return run->parsed() ? run_scene(options) : check_scene(options);

@@ -8,6 +8,7 @@
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
 #include "app/messages.hpp"
+#include "app/need/need.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
 #include "app/readable.hpp"
@@ -331,8 +332,10 @@ bool add_estimate(const Simulation& s, const RunOptions& options, Estimate& esti
 
 int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
+  Scene scene = read_scene(options);
+  if (scene.states_need()) return run_need(options, scene);
   Interruption stop;
-  Simulation s = load_scene(options);
+  Simulation s = load_scene(std::move(scene));
   const Backend backend = choose_backend(s);
   warn_of_backend(s, backend);
   check_run_memory(s, backend == Backend::cuda);
@@ -354,6 +357,7 @@ int run_scene(const RunOptions& options) {
   s.warnings.add(out.warnings);
   nlohmann::ordered_json j = summary(s, out.backend, out.gpus, out.run, out.times, pool.size(), out.probes,
                                      out.stabilization, out.fluids, out.couplings, files.provenance());
+  if (options.complete) options.complete(j);
   finish(s, files, j);
   if (s.scene.output.picture && out.run.status != RunStatus::interrupted)
     make_picture(s, files.path(), s.scene.solver.kind == SolverKind::modes ? out.frequencies : files.times(),

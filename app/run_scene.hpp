@@ -1,6 +1,9 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -16,6 +19,7 @@ struct RunOptions {
   std::optional<std::string> backend;
   std::optional<int> threads, gpus;
   bool quiet = false, json = false, verbose = false;
+  std::function<void(nlohmann::ordered_json&)> complete;  ///< adds to the summary of a run before it is written
   bool estimate = false;     ///< errors are estimated, whether the scene asks for it or not
   bool no_estimate = false;  ///< nor where the scene asks for it
 };

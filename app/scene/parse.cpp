@@ -81,7 +81,8 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
   std::vector<std::string> bodies;
   for (const TableReader& body : table.tables("bodies")) bodies.push_back(body.name());
   for (const TableReader& body : table.tables("bodies"))
-    if (body.usable()) scene.bodies.push_back(read_body(body, materials, bodies, path.parent_path()));
+    if (body.usable())
+      scene.bodies.push_back(read_body(body, materials, bodies, path.parent_path(), states_need(table)));
   for (const TableReader& constraint : table.tables("constraints")) {
     scene.constraints.push_back(read_constraint(constraint, bodies));
     check_model(constraint, scene.constraints.back(), scene.bodies);
@@ -100,10 +101,15 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
   const bool shells =
       scene.bodies.size() < bodies.size() || std::any_of(scene.bodies.begin(), scene.bodies.end(), is_shell);
   scene.output = read_output(table, path.stem().string(), kind, shells);
+  read_need(table, scene);
   return scene;
 }
 
 }  // namespace
+
+bool Scene::states_need() const {
+  return need || std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.need.has_value(); });
+}
 
 Place Scene::place_of(const std::string& key) const {
   std::string known = key;

@@ -114,7 +114,8 @@ void check_thin_laws(const TableReader& table, const Body& body) {
 void read_meshless(const TableReader& table, const std::vector<std::string>& bodies,
                    const std::filesystem::path& folder, Body& body) {
   refuse_element_keys(table);
-  if (!table.has("frames")) table.error("frames", "is missing; must be " + in_words(frames_schema()));
+  if (!table.has("frames") && !body.under_need)
+    table.error("frames", "is missing; must be " + in_words(frames_schema()) + kNeedWouldChoose);
   read_section(table, body);
   read_discretisation(table, bodies, folder, body);
   check_thin_laws(table, body);
@@ -185,10 +186,11 @@ std::vector<TableReader> read_choices(const TableReader& table, std::string_view
 }
 
 Body read_body(const TableReader& table, const Materials& materials, const std::vector<std::string>& bodies,
-               const std::filesystem::path& folder) {
+               const std::filesystem::path& folder, bool under_need) {
   Body body;
   body.place = table.place();
   body.name = table.name();
+  body.under_need = under_need;
   body.domain_place = table.place("domain");
   body.domain = read_domain(table, bodies, folder);
   body.transform = read_transform(table.table("transform"));

@@ -31,8 +31,10 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
   const Shape domain = domain_schema();
   const Shape& any = domain.find(kind)->shape.find("cells")->shape;
   const std::string wanted = in_words(array(any.items.front(), any.max_items, any.max_items));
-  if (!shape.has("cells"))
-    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}", word(body.model), wanted));
+  body.open = body.under_need && !shape.has("cells");
+  if (!shape.has("cells") && !body.open)
+    shape.error("cells",
+                fmt::format("is missing for model = \"{}\"; must be {}{}", word(body.model), wanted, kNeedWouldChoose));
   const auto count = shape.integers("cells");
   if (!count) return;
   if (count->size() < any.max_items)

@@ -209,6 +209,19 @@ void read_weights(const TableReader& weights, std::optional<Extent> extent, std:
   body.drilling = weights.number("drilling");
 }
 
+/// Frames that a need chooses are those of a grid.
+void check_open(const TableReader& table, const TableReader& frames, std::optional<Extent> extent, bool between) {
+  const char* only = "; a need chooses grids alone, so say poisson_disk or count";
+  if (between)
+    table.error("frames", std::string("is missing, and a grid cannot fill the space between two bodies") + only);
+  if (extent == Extent::thin_mesh)
+    table.error("frames", std::string("is missing, and a grid cannot fill sheets and lines of a mesh") + only);
+  if (frames.has("share"))
+    frames.error("share",
+                 "needs frames that lie on the nodes of the other body, which a need does not look for; say "
+                 "poisson_disk or count");
+}
+
 }  // namespace
 
 void read_discretisation(const TableReader& table, const std::vector<std::string>& bodies,
@@ -217,6 +230,9 @@ void read_discretisation(const TableReader& table, const std::vector<std::string
   const bool between = table.table("domain").value("between") != nullptr;
   const std::optional<Extent> extent = read_extent(table);
   std::optional<Layout> layout = layout_of(frames);
+  body.open = body.under_need && !layout && (frames.usable() || !table.has("frames"));
+  if (body.open) layout = Layout::grid;
+  if (body.open) check_open(table, frames, extent, between);
   read_frames(frames, bodies, folder, extent, between, body);
   const bool takes_grid = extent != Extent::thin_mesh && !between;
   if (!takes_grid && layout == Layout::grid) layout.reset();  // reported; what goes with it is open

@@ -34,11 +34,12 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
   const bool round = kind == "ellipsoid" || kind == "sphere";
   const std::size_t numbers = round ? 1 : 2;
   body.cells_place = shape.place("cells");
-  if (!shape.has("cells")) {
+  body.open = body.under_need && is_shell(body) && !shape.has("cells");
+  if (!shape.has("cells") && !body.open) {
     const Shape domain = domain_schema();
     const Shape& item = domain.find(kind)->shape.find("cells")->shape.items.front();
-    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}", word(body.model),
-                                     in_words(array(item, numbers, numbers))));
+    shape.error("cells", fmt::format("is missing for model = \"{}\"; must be {}{}", word(body.model),
+                                     in_words(array(item, numbers, numbers)), is_shell(body) ? kNeedWouldChoose : ""));
   }
   const auto count = shape.integers("cells");
   if (!count) return;

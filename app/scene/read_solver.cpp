@@ -51,13 +51,26 @@ void read_automatic_time(const TableReader& table, Solver& solver) {
     table.error("duration", "is missing beside time_step = \"auto\"; must be a time in s above 0");
 }
 
-void read_time(const TableReader& table, Solver& solver) {
+/// A time step that a need chooses; until then one stands for it.
+void read_open_time(const TableReader& table, Solver& solver) {
+  constexpr int steps = 32;
+  if (table.has("steps"))
+    table.error("steps", "says nothing without time_step, which the need chooses; must be duration");
+  else if (!table.has("duration"))
+    table.error("duration", "is missing; must be a time in s above 0");
+  solver.step_open = true;
+  solver.steps = steps;
+  solver.time_step = solver.duration.value_or(1) / steps;
+}
+
+void read_time(const TableReader& table, bool under_need, Solver& solver) {
   solver.duration = table.number("duration");
   const Value* time_step = table.value("time_step");
   if (time_step && time_step->as_string()) return read_automatic_time(table, solver);
   const char* automatic = solver.kind == SolverKind::central_differences ? " or \"auto\"" : "";
+  if (!table.has("time_step") && under_need) return read_open_time(table, solver);
   if (!table.has("time_step"))
-    table.error("time_step", fmt::format("is missing; must be a time in s above 0{}", automatic));
+    table.error("time_step", fmt::format("is missing; must be a time in s above 0{}{}", automatic, kNeedWouldChoose));
   if (!table.has("duration") && !table.has("steps"))
     table.error("duration", "is missing; must be a time in s above 0, or give steps");
   solver.time_step = table.number("time_step").value_or(0);
@@ -156,7 +169,9 @@ std::optional<SolverKind> read_solver_kind(const TableReader& scene) {
   const TableReader solver = scene.table("solver");
   const bool wrong = (scene.has("solver") && !solver.exists()) || (solver.has("kind") && !solver.value("kind"));
   if (wrong) return std::nullopt;
-  const std::string kind = solver.text("kind").value_or("static");
+  // Of a scheme that is left to a need it only matters that it is one of dynamics.
+  const bool chosen = states_need(scene) && !solver.has("kind") && solver.has("duration");
+  const std::string kind = solver.text("kind").value_or(chosen ? "newmark" : "static");
   if (kind == "implicit-euler") return SolverKind::implicit_euler;
   if (kind == "bdf2") return SolverKind::bdf2;
   if (kind == "newmark") return SolverKind::newmark;
@@ -174,7 +189,8 @@ Solver read_solver(const TableReader& scene, const std::vector<std::string>& bod
   const std::optional<SolverKind> kind = read_solver_kind(scene);
   solver.kind = kind.value_or(SolverKind::statics);
   if (kind) check_kind(table, solver);
-  if (is_dynamic(solver.kind)) read_time(table, solver);
+  solver.scheme_open = states_need(scene) && !table.has("kind") && is_dynamic(solver.kind);
+  if (is_dynamic(solver.kind)) read_time(table, states_need(scene), solver);
   if (const Value* load_steps = table.value("load_steps"); load_steps && !load_steps->as_string())
     solver.load_steps = *table.integer("load_steps");
   if (kind == SolverKind::statics) read_control(table, bodies, solver);

@@ -25,8 +25,9 @@ Materials read_materials(const TableReader& scene);
 
 /// @param bodies  names of all bodies
 /// @param folder  to which paths in the scene are relative
+/// @param under_need  the scene states a need: frames and cells may be left out
 Body read_body(const TableReader& table, const Materials& materials, const std::vector<std::string>& bodies,
-               const std::filesystem::path& folder);
+               const std::filesystem::path& folder, bool under_need);
 /// The key `domain` of a body.
 Domain read_domain(const TableReader& body, const std::vector<std::string>& bodies,
                    const std::filesystem::path& folder);
@@ -90,7 +91,14 @@ Load read_load(const TableReader& table, const std::vector<std::string>& bodies)
 World read_world(const TableReader& scene);
 Solver read_solver(const TableReader& scene, const std::vector<std::string>& bodies);
 
-/// The kind of the solver; none where it is wrong.
+/// Something is needed, of the scene or of a body.
+bool states_need(const TableReader& scene);
+/// The keys `need`, and what contradicts them. @param scene  has everything else
+void read_need(const TableReader& table, Scene& scene);
+/// "; or state a [need], by which it is chosen"
+extern const char* const kNeedWouldChoose;
+
+/// The kind of the solver, under a need of a duration alone any of dynamics; none where it is wrong.
 std::optional<SolverKind> read_solver_kind(const TableReader& scene);
 
 /// @param kind  of the solver; without it what depends on it is not checked

@@ -34,6 +34,16 @@ struct Schedule {
   std::variant<LinearProfile, SmoothProfile, TableProfile, SineProfile> profile;
 };
 
+// ------------------------------------------------------------------------------------------------ need
+/// What the results of a scene, or of one body, must be worth. What the scene leaves out is chosen so.
+struct StatedNeed {
+  Place place;
+  std::optional<double> error;       ///< of the probe, or of the largest displacement of each body; relative
+  std::optional<std::string> probe;  ///< its name; none: displacements
+  std::optional<double> step;        ///< the 99th percentile of the time that a step takes [s]
+  std::optional<double> memory;      ///< [bytes]
+};
+
 // ------------------------------------------------------------------------------------------------ bodies
 /// Elastic law of large strain.
 enum class MaterialLaw { st_venant_kirchhoff, neo_hookean };
@@ -186,6 +196,10 @@ struct Body {
   Place incompressibility_place;
   Locking locking = Locking::automatic;
   Place locking_place;
+
+  std::optional<StatedNeed> need;
+  bool under_need = false;  ///< the scene states a need, so that keys may be left out
+  bool open = false;        ///< frames or cells are left out
 };
 
 /// Finite elements of the volume: the nodes are vertices, without rotation.
@@ -305,6 +319,8 @@ struct Solver {
   std::string backend = "auto";                           ///< "auto", "cpu", "cuda"
   int gpus = 1;
   int threads = 0;
+  bool step_open = false;    ///< time_step is left out, under a need
+  bool scheme_open = false;  ///< kind is left out beside a duration, under a need
 };
 
 // ------------------------------------------------------------------------------------------------ results
@@ -378,6 +394,10 @@ struct Scene {
   Solver solver;
   std::vector<Probe> probes;  ///< in the order of the file
   Output output;
+  std::optional<StatedNeed> need;
+
+  /// Something is needed, of the scene or of a body.
+  bool states_need() const;
 
   /// Whether a key is written: "loads[0].over".
   bool says(const std::string& key) const { return places.contains(key); }

@@ -205,7 +205,7 @@ const Shape& scene_schema() {
                  "Warnings that are not told, by the name in brackets at their end.")
                  .defaults("[]"),
              world_schema(), materials_schema(), bodies_schema(), constraints_schema(), loads_schema(),
-             couplings_schema(), solver_schema(), probes_schema(), output_schema()});
+             couplings_schema(), solver_schema(), probes_schema(), output_schema(), need_schema()});
   return scene;
 }
 

@@ -53,7 +53,8 @@ struct Key;
 /// Keys of a table that exclude one another.
 struct Exclusive {
   std::vector<std::string> keys;
-  bool required = true;  ///< exactly one; otherwise at most one
+  bool required = true;        ///< exactly one; otherwise at most one
+  bool unless_needed = false;  ///< none is enough where the scene states a need
 };
 
 /// What a value looks like.
@@ -125,6 +126,7 @@ Key couplings_schema();
 Key solver_schema();
 Key probes_schema();
 Key output_schema();
+Key need_schema();
 
 // Parts that several sections share.
 const Shape& material_schema();
@@ -134,6 +136,7 @@ Shape domain_schema();
 Shape frames_schema();
 Shape points_schema();
 Shape weights_schema();
+Key body_need_key();
 Key over_key();
 Key profile_key();
 std::vector<Choice> field_choices();

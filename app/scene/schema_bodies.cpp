@@ -81,7 +81,8 @@ Shape body_schema() {
       key("material", body_material_schema(),
           "Name, inline table, or a list of which the first that selects a point or a cell's centre counts. Needed by "
           "all but `model = \"rigid\"` and `\"surface\"`."),
-      key("frames", frames_schema(), "The frames of a meshless body, which needs them."),
+      key("frames", frames_schema(),
+          "The frames of a meshless body, which needs them unless the scene states a `need`."),
       key("points", points_schema(), "The integration points of a meshless body."),
       key("weights", weights_schema(), "The weight functions of a meshless body."),
       key("initial", initial_schema(), "Motion at time 0."),
@@ -94,7 +95,8 @@ Shape body_schema() {
           "Inertia of a rigid body about its mass centre, by rows, along the global axes after `transform`; beside "
           "`mass` or `density`.")
           .defaults("of the mass spread evenly over the volume, or over an open surface"),
-      key("fluid", fluid_schema(), "What fills a closed body: its cavities, or all that its surface encloses.")};
+      key("fluid", fluid_schema(), "What fills a closed body: its cavities, or all that its surface encloses."),
+      body_need_key()};
   const std::vector<Key> elements = element_keys();
   keys.insert(keys.end(), elements.begin(), elements.end());
   return table(std::move(keys), {{{"mass", "density"}, false}}, "model");

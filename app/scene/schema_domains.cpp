@@ -6,19 +6,28 @@ namespace {
 /// Cells of a solid, of which rigid bodies and surfaces take the skin.
 Key cells(std::size_t count, const std::string& meaning) {
   return key("cells", array(integer(between(1, 10000)), count, count),
-             meaning + " Needed by `model = \"tetrahedra\"` and `\"hexahedra\"`, refused by `\"meshless\"`.")
+             meaning +
+                 " Needed by `model = \"tetrahedra\"` and `\"hexahedra\"`, unless the scene states a `need`; refused "
+                 "by "
+                 "`\"meshless\"`.")
       .defaults("1 each for `\"rigid\"` and `\"surface\"`");
 }
 
 Key surface_cells(const std::string& meaning) {
-  return key("cells", array(integer(between(1, 10000)), 2, 2),
-             meaning + " Needed by `model = \"shell\"`, `\"rigid\"` and `\"surface\"`, refused by others.");
+  return key(
+      "cells", array(integer(between(1, 10000)), 2, 2),
+      meaning +
+          " Needed by `model = \"shell\"`, unless the scene states a `need`, `\"rigid\"` and `\"surface\"`; refused "
+          "by others.");
 }
 
 /// Cells of a domain that is a solid or its skin.
 Key solid_or_skin_cells(std::size_t least, const std::string& meaning) {
-  return key("cells", array(integer(between(1, 10000)), least, 2),
-             meaning + " Needed by all models but `\"meshless\"`, which refuses them.");
+  return key(
+      "cells", array(integer(between(1, 10000)), least, 2),
+      meaning +
+          " Needed by all models but `\"meshless\"`, which refuses them; of a field of its own not where the scene "
+          "states a `need`.");
 }
 
 std::string skin_models() { return "`model = \"shell\"`, `\"rigid\"` and `\"surface\"`."; }

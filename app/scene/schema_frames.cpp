@@ -52,7 +52,7 @@ Shape frames_schema() {
        key("share", share_schema(),
            "Nodes of other bodies that are frames of this one too, which couples them; beside any of the keys above.")
            .defaults("none")},
-      {{{"grid", "poisson_disk", "count", "positions", "file"}}});
+      {{{"grid", "poisson_disk", "count", "positions", "file"}, true, true}});
 }
 
 Shape points_schema() {

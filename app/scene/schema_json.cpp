@@ -49,7 +49,7 @@ Json exclusive_as_json(const Shape& table, const Exclusive& group) {
   for (const std::string& name : group.keys)
     if (table.find(name)->refusal.empty()) any.push_back({{"required", {name}}});
   one = any;
-  if (!group.required) one.push_back({{"not", {{"anyOf", any}}}});
+  if (!group.required || group.unless_needed) one.push_back({{"not", {{"anyOf", any}}}});
   return {{"oneOf", one}};
 }
 

@@ -147,7 +147,8 @@ class Page {
 
   void exclusive(const Exclusive& group) {
     text_ +=
-        fmt::format("{} of `{}`.\n\n", group.required ? "Exactly one" : "At most one", fmt::join(group.keys, "`, `"));
+        fmt::format("{} of `{}`{}.\n\n", group.required ? "Exactly one" : "At most one", fmt::join(group.keys, "`, `"),
+                    group.unless_needed ? ", or none where the scene states a `need`" : "");
   }
 
   /// What each value of a choice means.

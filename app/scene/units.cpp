@@ -19,7 +19,7 @@ namespace {
 using Dimension = UnitExamples;
 
 /// Units of SI that scenes use, the kind of quantity, a sample with another unit, and further units.
-constexpr std::array<Dimension, 22> dimensions{{
+constexpr std::array<Dimension, 23> dimensions{{
     {"m", "a length", "5 mm", "um cm mm km inch foot"},
     {"s", "a time", "10 ms", "us ms min h day"},
     {"kg", "a mass", "200 g", "mg g t lb"},
@@ -42,7 +42,16 @@ constexpr std::array<Dimension, 22> dimensions{{
     {"1/m", "a curvature", "2 1/mm", "1/mm 1/cm"},
     {"K", "a temperature", "300 K", "mK"},
     {"A", "an electric current", "5 mA", "mA"},
+    {"byte", "an amount of memory", "1 GB", "kB MB GB MiB GiB"},
 }};
+
+constexpr std::array<std::array<const char*, 2>, 7> memory_units{{{"kB", "1e3 byte"},
+                                                                  {"MB", "1e6 byte"},
+                                                                  {"GB", "1e9 byte"},
+                                                                  {"TB", "1e12 byte"},
+                                                                  {"KiB", "1024 byte"},
+                                                                  {"MiB", "1048576 byte"},
+                                                                  {"GiB", "1073741824 byte"}}};
 
 const Dimension* find_dimension(std::string_view unit) {
   for (const Dimension& d : dimensions)
@@ -72,7 +81,11 @@ class Database {
     ut_set_error_message_handler(ut_ignore);
     system_.reset(ut_read_xml(nullptr));
     if (!system_) throw FileError("cannot read the units database of UDUNITS-2 (package libudunits2-data)");
-    if (const Unit degree = parse("degree")) ut_map_name_to_unit("deg", UT_ASCII, degree.get());
+    const auto name = [&](const char* shorter, const char* definition) {
+      if (const Unit unit = parse(definition)) ut_map_name_to_unit(shorter, UT_ASCII, unit.get());
+    };
+    name("deg", "degree");
+    for (const auto& [shorter, definition] : memory_units) name(shorter, definition);
   }
 
   struct FreeSystem {

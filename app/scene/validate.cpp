@@ -67,9 +67,18 @@ bool is_plain_name(std::string_view name) {
   return !name.empty() && name.size() <= max_name_length && std::all_of(name.begin(), name.end(), allowed);
 }
 
+bool states_need(const Value& scene) {
+  if (scene.find("need")) return true;
+  const Value* bodies = scene.find("bodies");
+  const Table* tables = bodies ? bodies->as_table() : nullptr;
+  return tables &&
+         std::any_of(tables->begin(), tables->end(), [](const Member& body) { return body.value.find("need"); });
+}
+
 class Validator {
  public:
-  explicit Validator(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  /// @param needed  the document is a scene that states a need
+  Validator(Diagnostics& diagnostics, bool needed) : diagnostics_(diagnostics), needed_(needed) {}
 
   /// Checks one value; `wanted` says in words what would be right.
   void check(Value& value, const Shape& shape, const std::string& path, const std::string& wanted) {
@@ -267,7 +276,7 @@ class Validator {
     std::vector<const Member*> given;
     for (const Member& member : *value.as_table())
       if (std::find(group.keys.begin(), group.keys.end(), member.key) != group.keys.end()) given.push_back(&member);
-    if (given.empty() && group.required)
+    if (given.empty() && group.required && !(group.unless_needed && needed_))
       return diagnostics_.add(value.position, path,
                               fmt::format("{} is missing; give exactly one", join_or(supported_of(group, shape))));
     for (std::size_t i = 1; i < given.size(); ++i)
@@ -276,13 +285,14 @@ class Validator {
   }
 
   Diagnostics& diagnostics_;
+  bool needed_;
   int depth_ = 0;
 };
 
 }  // namespace
 
 void validate(Value& document, const Shape& schema, Diagnostics& diagnostics) {
-  Validator(diagnostics).check(document, schema, "", in_words(schema));
+  Validator(diagnostics, states_need(document)).check(document, schema, "", in_words(schema));
 }
 
 }  // namespace fascia::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "app/scene/scene.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+/// A scene with what was chosen for it, as TOML: it runs without a search and gives the same results. The output
+/// directory is left out, so that they go beside; paths of files are made relative to `folder`.
+/// @param overrides  that make the choice, behind the scene's own
+/// @param comments   lines for its head
+std::string chosen_scene(const Scene& scene, const std::vector<std::string>& overrides,
+                         const std::vector<std::string>& comments, const std::filesystem::path& folder);
+
+}  // namespace fascia::app

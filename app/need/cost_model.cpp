@@ -1,0 +1,195 @@
+#include "app/need/cost_model.hpp"
+
+#include "core/cpu/thread_pool.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::app {
+namespace {
+
+constexpr double kUsualIterations = 5, kStepIterations = 2;
+/// Up to here stiffness is factorised where the scene does not say how (core/solver/tangent_solver.cpp).
+constexpr double kFactorised = 15000;
+/// The least part of an iteration that the linear solver can have: timing spreads more.
+constexpr double kLeastSolve = 0.1;
+
+int dimension_of(const std::string& kind) { return kind == "shell" ? 2 : 3; }
+
+/// a x + b y = z in the sense of least relative squares, a and b not negative.
+std::array<double, 2> nonnegative_fit(const std::vector<std::array<double, 3>>& rows) {
+  double xx = 0, xy = 0, yy = 0, x = 0, y = 0;
+  for (const auto& [px, py, z] : rows) {
+    const double u = px / z, v = py / z;
+    xx += u * u, xy += u * v, yy += v * v, x += u, y += v;
+  }
+  const double determinant = xx * yy - xy * xy;
+  double a = 0, b = 0;
+  if (determinant > 1e-9 * xx * yy) {
+    a = (x * yy - y * xy) / determinant;
+    b = (xx * y - xy * x) / determinant;
+  }
+  if (a >= 0 && b >= 0 && (a > 0 || b > 0)) return {a, b};
+  // One of them alone: the better.
+  const double only_a = xx > 0 ? x / xx : 0, only_b = yy > 0 ? y / yy : 0;
+  const auto left = [&](double c, double d) {
+    double sum = 0;
+    for (const auto& [px, py, z] : rows) sum += std::pow((c * px + d * py) / z - 1, 2);
+    return sum;
+  };
+  return left(only_a, 0) <= left(0, only_b) ? std::array{only_a, 0.0} : std::array{0.0, only_b};
+}
+
+double iteration_of(const CostSample& s) { return s.solve / std::max(1.0, s.newton); }
+
+/// The time of the same run on one thread over that of this one; 1 where there is none.
+double faster(const std::vector<CostSample>& samples, const CostSample& many) {
+  for (const CostSample& s : samples)
+    if (s.kind == many.kind && s.factorised == many.factorised && s.dynamics == many.dynamics && s.threads == 1 &&
+        s.unknowns == many.unknowns)
+      return std::clamp(iteration_of(s) / iteration_of(many), 0.5, 1.0 * many.threads);
+  return 1;
+}
+
+void fit_threads_and_steps(const std::vector<CostSample>& samples, const std::string& kind, KindCost& cost) {
+  double ratio = 0, count = 0;
+  for (const CostSample& s : samples) {
+    if (s.kind != kind) continue;
+    if (s.threads > 1 && !s.dynamics) (s.factorised ? cost.faster_factor : cost.faster_cg) = faster(samples, s);
+    if (!s.dynamics || s.threads > 1) continue;
+    for (const CostSample& still : samples)
+      if (still.kind == kind && !still.dynamics && still.threads == 1 && still.factorised == s.factorised &&
+          still.unknowns == s.unknowns)
+        ratio += iteration_of(s) / iteration_of(still), count += 1;
+  }
+  if (count > 0) cost.step = std::clamp(ratio / count, 0.2, 5.0);
+}
+
+std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::string& kind) {
+  std::vector<std::array<double, 3>> cg, setup;
+  std::vector<const CostSample*> direct;
+  KindCost cost;
+  double spread = 0;
+  for (const CostSample& s : samples) {
+    if (s.kind != kind || s.threads > 1 || s.dynamics) continue;
+    setup.push_back({1, s.points, s.setup});
+    if (s.factorised) {
+      direct.push_back(&s);
+      continue;
+    }
+    const double n = s.linear / std::max(1.0, s.newton);
+    cg.push_back({s.points, s.unknowns * n, iteration_of(s)});
+    spread += n / std::pow(s.unknowns, 1.0 / dimension_of(kind));
+  }
+  if (cg.size() < 2 || direct.size() < 2) return std::nullopt;
+  cost.spread = spread / static_cast<double>(cg.size());
+  const auto [point, product] = nonnegative_fit(cg);
+  cost.point = point;
+  cost.product = product;
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const CostSample* s : direct) {
+    const double solve = std::max(kLeastSolve * iteration_of(*s), iteration_of(*s) - cost.point * s->points);
+    const double u = std::log(s->unknowns), v = std::log(solve);
+    n += 1, x += u, y += v, xx += u * u, xy += u * v;
+  }
+  const double mean = y / n;
+  cost.exponent = std::clamp((n * xy - x * y) / std::max(1e-12, n * xx - x * x), 1.0, 2.3);
+  cost.factor = std::exp(mean - cost.exponent * x / n);
+  const auto [start, setup_point] = nonnegative_fit(setup);
+  cost.start = start;
+  cost.setup_point = setup_point;
+  fit_threads_and_steps(samples, kind, cost);
+  return cost;
+}
+
+std::string kind_of(const Body& body) {
+  if (is_shell(body)) return "shell";
+  if (body.model == BodyModel::meshless) return body.affine ? "affine" : "frames";
+  return std::string(body.model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra") + (body.order == 2 ? "-2" : "");
+}
+
+/// Keys of a kind's costs with what they hold.
+std::vector<std::pair<const char*, double KindCost::*>> members() {
+  return {{"point", &KindCost::point},
+          {"factor", &KindCost::factor},
+          {"exponent", &KindCost::exponent},
+          {"product", &KindCost::product},
+          {"spread", &KindCost::spread},
+          {"start", &KindCost::start},
+          {"setup_point", &KindCost::setup_point},
+          {"step", &KindCost::step},
+          {"faster_factor", &KindCost::faster_factor},
+          {"faster_cg", &KindCost::faster_cg}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json CostModel::json() const {
+  nlohmann::ordered_json j = nlohmann::ordered_json::object();
+  for (const auto& [kind, cost] : kinds)
+    for (const auto& [key, member] : members()) j[kind][key] = cost.*member;
+  return j;
+}
+
+std::optional<CostModel> CostModel::read(const nlohmann::ordered_json& json) {
+  CostModel model;
+  if (!json.is_object()) return std::nullopt;
+  for (const auto& [kind, values] : json.items())
+    for (const auto& [key, member] : members()) {
+      if (!values.is_object() || !values.contains(key) || !values[key].is_number()) return std::nullopt;
+      const double value = values[key].get<double>();
+      if (!std::isfinite(value) || value < 0) return std::nullopt;
+      model.kinds[kind].*member = value;
+    }
+  return model;
+}
+
+CostModel fitted_costs(const std::vector<CostSample>& samples) {
+  CostModel model;
+  for (const CostSample& s : samples)
+    if (!model.kinds.contains(s.kind))
+      if (const auto cost = fit(samples, s.kind)) model.kinds[s.kind] = *cost;
+  return model;
+}
+
+std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& costs) {
+  const Solver& solver = s.scene.solver;
+  if (solver.kind == SolverKind::modes || solver.control != StaticControl::load) return std::nullopt;
+  const double unknowns = s.model.free_dof_count();
+  const bool many = available_processors() > 1 && solver.threads != 1;
+  double points = 0, setup = 0, most = -1;
+  const KindCost* main = nullptr;
+  bool linear = true;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Body& body = s.scene.bodies[b];
+    if (is_carrier(body)) continue;
+    const auto cost = costs.kinds.find(kind_of(body));
+    if (cost == costs.kinds.end()) return std::nullopt;
+    const auto count = static_cast<double>(s.bodies[b].body->points().size());
+    points += cost->second.point * count;
+    setup += cost->second.start * (main ? 0 : 1) + cost->second.setup_point * count;
+    linear = linear && body.formulation == Formulation::linear;
+    if (s.bodies[b].body->node_count() > most) main = &cost->second, most = s.bodies[b].body->node_count();
+  }
+  if (!main) return std::nullopt;
+  TimeForecast forecast;
+  if (solver.kind == SolverKind::central_differences) {
+    forecast.iterations = solver.steps;
+    forecast.seconds = setup + forecast.iterations * points / (many ? main->faster_cg : 1);
+    return forecast;
+  }
+  const bool dynamics = is_dynamic(solver.kind);
+  forecast.iterations = dynamics ? solver.steps * (linear ? 1 : kStepIterations)
+                                 : std::max(1, solver.load_steps) * (linear ? 1 : kUsualIterations);
+  const bool factorised =
+      solver.linear == LinearKind::cholesky || (solver.linear == LinearKind::automatic && unknowns <= kFactorised);
+  const bool shell = std::all_of(s.scene.bodies.begin(), s.scene.bodies.end(),
+                                 [](const Body& b) { return is_carrier(b) || is_shell(b); });
+  const double solve = factorised ? main->factor * std::pow(unknowns, main->exponent)
+                                  : main->product * unknowns * main->spread * std::pow(unknowns, 1.0 / (shell ? 2 : 3));
+  const double speed = many ? (factorised ? main->faster_factor : main->faster_cg) : 1;
+  forecast.seconds = setup + forecast.iterations * (points + solve) * (dynamics ? main->step : 1) / speed;
+  return forecast;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,112 @@
+#include "app/need/need.hpp"
+
+#include "app/estimate/resolution.hpp"
+#include "app/interruption.hpp"
+#include "app/messages.hpp"
+#include "app/need/chosen.hpp"
+#include "app/need/report.hpp"
+#include "app/need/search.hpp"
+#include "app/need/temporary_folder.hpp"
+#include "app/need/time_search.hpp"
+#include "app/process_memory.hpp"
+#include "app/readable.hpp"
+#include "app/scene/errors.hpp"
+#include "app/scene/parse.hpp"
+#include "app/simulation.hpp"
+#include "core/model/errors.hpp"
+#include "core/solver/clock.hpp"
+#include "io/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fascia::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What of a scene is wrong shows with any choice: it is told before trials are made.
+void check_first(const Scene& scene, const Trials& trials, const NeedChoice& first) {
+  std::vector<std::string> overrides = scene.overrides;
+  const std::vector<std::string> chosen = trials.overrides(first);
+  overrides.insert(overrides.end(), chosen.begin(), chosen.end());
+  build_simulation(parse_scene_text(scene.text, scene.path, overrides));
+}
+
+double memory_of(const Scene& scene) {
+  double memory = 0.9 * free_memory().bytes;
+  if (scene.need && scene.need->memory) memory = std::min(memory, *scene.need->memory);
+  return memory;
+}
+
+SearchLimits limits_of(const Scene& scene) {
+  SearchLimits limits;
+  limits.memory = memory_of(scene);
+  if (scene.need && scene.need->step) limits.step = *scene.need->step;
+  return limits;
+}
+
+}  // namespace
+
+int run_need(const RunOptions& options, const Scene& scene) {
+  const Clock::time_point start = Clock::now();
+  NeedReport report(scene);
+  std::vector<std::string> overrides;
+  Found found;
+  {
+    Interruption stop;
+    const TemporaryFolder folder("fascia-need");
+    const bool silent = options.quiet || options.json;
+    const auto tell = [&](const std::string& line) {
+      if (!silent) fmt::print("{}\n", line), std::fflush(stdout);
+    };
+    Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), tell, [&] { return stop.requested(); });
+    const NeedChoice first = first_choice(trials);
+    check_first(scene, trials, first);
+    found = is_dynamic(scene.solver.kind) ? search_in_time(trials, first, limits_of(scene))
+                                          : search_resolution(trials, first, limits_of(scene));
+    if (stop.requested()) {
+      say("{}: interrupted while it looked for what the need asks for; nothing was written\n", scene.path.string());
+      return 128 + stop.signal();
+    }
+    const Trial* trial = trials.find(found.choice);
+    if (!trial || !trial->good()) {
+      say("{}: {}\n", scene.place_of("need").key, found.why_not);
+      return kNotConverged;
+    }
+    report.add(trials, found, seconds_since(start));
+    overrides = trials.overrides(found.choice);
+  }
+  RunOptions run = options;
+  run.overrides = scene.overrides;
+  run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
+  run.text = scene.text;
+  run.backend.reset(), run.threads.reset(), run.gpus.reset();  // they are among the scene's overrides
+  run.estimate = false, run.no_estimate = true;                // it is the trials'
+  run.complete = [&](nlohmann::ordered_json& summary) { report.write(summary); };
+  if (!options.quiet && !options.json)
+    for (const std::string& line : report.sentences()) fmt::print("{}\n", line);
+  const int status = run_scene(run);
+  if (status != kDone) return status;
+  const fs::path directory = scene.output.directory;
+  io::replace_file(directory / "chosen.toml", chosen_scene(scene, overrides, report.sentences(), directory));
+  if (report.met()) return kDone;
+  say("{}: {}\n", scene.path.string(), report.not_met());
+  return kNotConverged;
+}
+
+int check_need(const RunOptions& options, const Scene& scene) {
+  Trials trials(scene, open_parts(scene), wanted_of(scene), {}, {}, [] { return false; });
+  const NeedChoice first = first_choice(trials);
+  fmt::print("need: chosen by trials of {}; the first: {}\n", families_text(trials.open()), trials.text(first));
+  RunOptions check = options;
+  check.overrides = scene.overrides;
+  const std::vector<std::string> chosen = trials.overrides(first);
+  check.overrides.insert(check.overrides.end(), chosen.begin(), chosen.end());
+  check.text = scene.text;
+  check.backend.reset(), check.threads.reset(), check.gpus.reset();
+  return check_scene(check);
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "app/need/search.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+/// What a search came to, in words and for summary.json.
+class NeedReport {
+ public:
+  explicit NeedReport(const Scene& scene) : scene_(scene) {}
+
+  /// Its result. Runs the trial that tells the error of the solver. @param seconds  that it took
+  void add(Trials& trials, const Found& found, double seconds);
+  /// Puts `chosen`, `estimated_error` and `need` into the summary of the run itself, whose steps and memory count too.
+  void write(nlohmann::ordered_json& summary);
+
+  const std::vector<std::string>& sentences() const { return sentences_; }
+  bool met() const { return why_not_.empty(); }
+  /// What was needed, what keeps it from being met, and what was reached.
+  std::string not_met() const;
+
+ private:
+  const Scene& scene_;
+  std::vector<std::string> sentences_, how_;
+  nlohmann::ordered_json errors_, trials_;
+  std::string why_not_, reached_;
+  double seconds_ = 0;
+};
+
+/// "linear or quadratic hexahedra": the kinds that are tried.
+std::string families_text(const OpenScene& open);
+
+}  // namespace fascia::app

@@ -1,0 +1,158 @@
+#include "app/need/trials.hpp"
+
+#include "app/readable.hpp"
+#include "app/scene/diagnostics.hpp"
+#include "app/scene/toml_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <system_error>
+
+namespace fascia::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Times at which trials are compared: a quarter of what the coarsest steps are.
+constexpr int kComparedTimes = 16;
+
+std::string displacement_probe(const Scene& scene, const std::string& body) {
+  std::string name = "need-displacement-" + body;
+  const auto taken = [&](const Probe& p) { return p.name == name; };
+  while (std::any_of(scene.probes.begin(), scene.probes.end(), taken)) name += "-";
+  return name;
+}
+
+Wanted displacement_of(const Scene& scene, const std::string& body, std::optional<double> allowed) {
+  return {fmt::format("the displacement of {}", in_quotes(body)), displacement_probe(scene, body), body, allowed};
+}
+
+/// The smaller of two allowed errors, of which one or both may be missing.
+void tighten(std::optional<double>& allowed, std::optional<double> other) {
+  if (other) allowed = std::min(allowed.value_or(*other), *other);
+}
+
+/// What the scene's own run needs and a trial does not, and what trials are compared by.
+std::vector<std::string> lean(const Scene& scene) {
+  std::vector<std::string> changes{"output.fields=[\"displacement\"]"};
+  for (const char* key : {"output.picture", "output.estimate", "output.every", "output.every_steps"})
+    if (scene.says(key)) changes.push_back(std::string(key) + "=");
+  if (is_dynamic(scene.solver.kind)) {
+    const double duration = scene.solver.duration.value_or(scene.solver.steps * scene.solver.time_step);
+    changes.push_back(fmt::format("output.every={}", duration / kComparedTimes));
+  }
+  return changes;
+}
+
+}  // namespace
+
+std::vector<Wanted> wanted_of(const Scene& scene) {
+  std::vector<Wanted> wanted;
+  for (const Probe& p : scene.probes) wanted.push_back({in_quotes(p.name), p.name, "", std::nullopt});
+  for (const Body& body : scene.bodies)
+    if (!is_carrier(body)) wanted.push_back(displacement_of(scene, body.name, std::nullopt));
+  const auto need = [&](const StatedNeed& stated, const std::string& body) {
+    for (Wanted& w : wanted)
+      if (stated.probe ? w.body.empty() && w.probe == *stated.probe
+                       : !w.body.empty() && (body.empty() || w.body == body))
+        tighten(w.allowed, stated.error);
+  };
+  if (scene.need) need(*scene.need, "");
+  for (const Body& body : scene.bodies)
+    if (body.need) need(*body.need, body.name);
+  std::stable_partition(wanted.begin(), wanted.end(), [](const Wanted& w) { return w.allowed.has_value(); });
+  return wanted;
+}
+
+std::optional<double> relative_distance(const Series& a, const Series& b) {
+  const std::optional<double> far = distance(a, b, SeriesNorm::euclidean);
+  const double scale = b.largest();
+  return far && scale > 0 ? std::optional(*far / scale) : std::nullopt;
+}
+
+Trials::Trials(const Scene& scene, OpenScene open, std::vector<Wanted> wanted, fs::path folder,
+               std::function<void(const std::string&)> tell, std::function<bool()> stop)
+    : scene_(scene),
+      open_(std::move(open)),
+      wanted_(std::move(wanted)),
+      folder_(std::move(folder)),
+      tell_(std::move(tell)),
+      stop_(std::move(stop)) {}
+
+std::vector<std::string> Trials::overrides(const NeedChoice& choice) const {
+  std::vector<std::string> all;
+  if (scene_.need) all.emplace_back("need=");
+  for (const Body& body : scene_.bodies)
+    if (body.need) all.push_back("bodies." + toml_key(body.name) + ".need=");
+  const std::vector<std::string> chosen = open_.overrides(choice.resolution);
+  all.insert(all.end(), chosen.begin(), chosen.end());
+  if (!choice.scheme.empty()) all.push_back("solver.kind=\"" + choice.scheme + "\"");
+  if (choice.scheme == "explicit" || (choice.steps == 0 && scene_.solver.step_open))
+    all.emplace_back("solver.time_step=\"auto\"");
+  else if (choice.steps > 0)
+    all.push_back(fmt::format("solver.time_step={}", *scene_.solver.duration / choice.steps));
+  all.insert(all.end(), choice.more.begin(), choice.more.end());
+  return all;
+}
+
+std::string Trials::text(const NeedChoice& choice) const {
+  std::string text = open_.text(choice.resolution);
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  if (!choice.scheme.empty()) add(choice.scheme);
+  if (choice.steps > 0)
+    add(fmt::format("{} steps of {}", choice.steps, time_text(*scene_.solver.duration / choice.steps)));
+  return text;
+}
+
+void Trials::settle(std::size_t body, int family, int direction) {
+  std::vector<Family>& families = open_.bodies[body].families;
+  families[std::min(static_cast<std::size_t>(family), families.size() - 1)].settled.push_back(direction);
+}
+
+const Trial* Trials::find(const NeedChoice& choice) const {
+  const auto found = std::find_if(trials_.begin(), trials_.end(), [&](const Trial& t) { return t.choice == choice; });
+  return found == trials_.end() ? nullptr : &*found;
+}
+
+const Trial& Trials::run(const NeedChoice& choice) {
+  if (const Trial* before = find(choice)) return *before;
+  Trial trial;
+  trial.choice = choice;
+  ChildRun child{scene_.path, scene_.overrides, folder_ / std::to_string(trials_.size()), {}, {}};
+  const auto append = [&](const std::vector<std::string>& changes) {
+    child.overrides.insert(child.overrides.end(), changes.begin(), changes.end());
+  };
+  append(overrides(choice));
+  append(lean(scene_));
+  for (const Wanted& w : wanted_)
+    if (!w.body.empty())
+      child.overrides.push_back(
+          fmt::format("probes.{}={{body=\"{}\", quantity=\"max_displacement\"}}", w.probe, w.body));
+  const ChildResult result = run_child(child, stop_);
+  trial.status = result.status();
+  trial.message = result.message;
+  if (result.summary.is_object() && result.exit_status == 0) {
+    const auto& seconds = result.summary.at("seconds");
+    trial.seconds = seconds.at("setup").get<double>() + seconds.at("solve").get<double>();
+    trial.step = seconds.at("step_p99").get<double>();
+    trial.memory = result.summary.at("peak_memory_bytes").get<double>();
+    trial.dofs = result.summary.at("dofs").get<double>();
+    trial.steps = result.summary.at("steps").get<double>();
+    trial.newton = result.summary.at("newton_iterations").get<double>();
+    try {
+      const ProbeTable table(child.output);
+      for (const Wanted& w : wanted_) trial.values.push_back(table.series(w.probe, scene_.solver.kind));
+    } catch (const std::runtime_error& e) {
+      trial.values.clear();
+      trial.message = e.what();
+    }
+  }
+  std::error_code ignored;
+  fs::remove_all(child.output, ignored);
+  trials_.push_back(std::move(trial));
+  return trials_.back();
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,89 @@
+#pragma once
+
+#include "app/estimate/series.hpp"
+#include "app/need/open_scene.hpp"
+#include "app/study/child_run.hpp"
+
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Runs of a scene that look for the cheapest choice that is good enough.
+namespace fascia::app {
+
+/// A quantity whose error counts, or is told.
+struct Wanted {
+  std::string name;               ///< in messages: `"tip"`, `the displacement of "beam"`
+  std::string probe;              ///< column of probes.csv
+  std::string body;               ///< whose largest displacement it is; empty: a probe of the scene
+  std::optional<double> allowed;  ///< relative error; none: it is only told
+};
+
+/// What a run may choose.
+struct NeedChoice {
+  Resolution resolution;
+  int steps = 0;                  ///< of equal length in the duration; 0: the time step is the scene's own
+  std::string scheme;             ///< kind of the solver; empty: the scene's own
+  std::vector<std::string> more;  ///< changes beside, for twins
+
+  auto operator<=>(const NeedChoice&) const = default;
+};
+
+/// What came of it.
+struct Trial {
+  NeedChoice choice;
+  std::string status, message;  ///< of its summary; why it gave nothing
+  double seconds = 0;           ///< set-up and solve, of one run [s]
+  double step = 0;              ///< 99th percentile of its steps [s]
+  double memory = 0;            ///< [bytes]
+  double dofs = 0, steps = 0, newton = 0;
+  std::vector<Series> values;  ///< by Wanted; empty where it gave nothing
+
+  bool good() const { return !values.empty(); }
+};
+
+/// Runs choices, each once, in processes of their own.
+class Trials {
+ public:
+  /// @param scene   with its need, as it was read
+  /// @param folder  for the results of trials, which are removed one by one
+  Trials(const Scene& scene, OpenScene open, std::vector<Wanted> wanted, std::filesystem::path folder,
+         std::function<void(const std::string&)> tell, std::function<bool()> stop);
+
+  const Trial& run(const NeedChoice& choice);
+  const Trial* find(const NeedChoice& choice) const;
+  const std::deque<Trial>& all() const { return trials_; }
+  const OpenScene& open() const { return open_; }
+  /// Cells of a body along a direction stay as many as they are at the coarsest level of a family.
+  void settle(std::size_t body, int family, int direction);
+  const Scene& scene() const { return scene_; }
+  const std::vector<Wanted>& wanted() const { return wanted_; }
+  bool stopped() const { return stop_(); }
+  void tell(const std::string& line) const { tell_(line); }
+
+  /// What makes a scene without a need of a choice, behind the scene's own overrides.
+  std::vector<std::string> overrides(const NeedChoice& choice) const;
+  /// The choice in words: "beam: quadratic hexahedra, 8 x 1 x 1 cells; newmark, 64 steps of 16 ms".
+  std::string text(const NeedChoice& choice) const;
+
+ private:
+  const Scene& scene_;
+  OpenScene open_;
+  std::vector<Wanted> wanted_;
+  std::filesystem::path folder_;
+  std::function<void(const std::string&)> tell_;
+  std::function<bool()> stop_;
+  std::deque<Trial> trials_;  ///< references to them stay
+};
+
+/// What a scene that states a need asks for, then its other probes.
+std::vector<Wanted> wanted_of(const Scene& scene);
+
+/// The largest distance of two quantities over the times that both have, relative to the largest value of the second.
+std::optional<double> relative_distance(const Series& a, const Series& b);
+
+}  // namespace fascia::app

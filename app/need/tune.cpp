@@ -1,0 +1,145 @@
+#include "app/need/tune.hpp"
+
+#include "app/interruption.hpp"
+#include "app/machine.hpp"
+#include "app/messages.hpp"
+#include "app/need/temporary_folder.hpp"
+#include "app/need/tune_scenes.hpp"
+#include "app/readable.hpp"
+#include "app/run_scene.hpp"
+#include "app/study/child_run.hpp"
+#include "core/model/errors.hpp"
+#include "core/solver/clock.hpp"
+#include "io/files.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+namespace fascia::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// No further run is begun after this [s].
+constexpr double kMostSeconds = 18;
+
+Json key_of(const Machine& machine) {
+  return {{"processor", machine.cpu}, {"threads", machine.threads}, {"version", machine.fascia}};
+}
+
+std::optional<CostSample> timed(const TuneCase& c, const fs::path& folder, const std::function<bool()>& stop) {
+  const fs::path scene = folder / "tune.toml";
+  io::write_file(scene, tune_scene(c));
+  const ChildResult result = run_child({scene, {}, folder / "result", c.threads, "cpu", kMostSeconds}, stop);
+  if (result.exit_status != 0 || !result.summary.is_object()) return std::nullopt;
+  const Json &j = result.summary, &seconds = j.at("seconds");
+  CostSample s{c.kind, c.factorised, c.dynamics, j.at("threads").get<int>()};
+  for (const auto& body : j.at("bodies")) s.points += body.at("points").get<double>();
+  s.unknowns = j.at("dofs").get<double>();
+  s.newton = j.at("newton_iterations").get<double>();
+  s.linear = j.at("linear_iterations").get<double>();
+  s.setup = seconds.at("setup").get<double>();
+  s.solve = seconds.at("solve").get<double>();
+  return s;
+}
+
+double iteration(const KindCost& c, double unknowns, double points) {
+  return c.point * points + c.factor * std::pow(unknowns, c.exponent);
+}
+
+/// A table: Newton iterations of 1,000 and 10,000 unknowns.
+void print_table(const CostModel& model, const std::vector<CostSample>& samples) {
+  fmt::print("{:14} {:>16} {:>16} {:>12} {:>10}\n", "", "1,000 unknowns", "10,000 unknowns", "~ unknowns^", "threads");
+  for (const auto& [kind, cost] : model.kinds) {
+    double points = 1;
+    for (const CostSample& s : samples)
+      if (s.kind == kind) points = s.points / s.unknowns;
+    fmt::print("{:14} {:>16} {:>16} {:>12.2f} {:>9.2f}x\n", kind, time_text(iteration(cost, 1e3, 1e3 * points)),
+               time_text(iteration(cost, 1e4, 1e4 * points)), cost.exponent, cost.faster_factor);
+  }
+}
+
+}  // namespace
+
+int run_tune(const TuneOptions& options) {
+  const Clock::time_point start = Clock::now();
+  Interruption stop;
+  const TemporaryFolder folder("fascia-tune");
+  const std::function<bool()> stopped = [&] { return stop.requested(); };
+  std::vector<CostSample> samples;
+  const std::vector<TuneCase> cases = tune_cases(options.quick, this_machine().threads);
+  std::size_t run = 0;
+  for (const TuneCase& c : cases) {
+    if (stopped()) return 128 + stop.signal();
+    if (seconds_since(start) > kMostSeconds) break;
+    if (auto sample = timed(c, folder.path(), stopped)) samples.push_back(*sample);
+    ++run;
+  }
+  const CostModel model = fitted_costs(samples);
+  const double seconds = seconds_since(start);
+  if (model.kinds.empty()) {
+    say("fascia tune: too few of its {} runs ended to fit anything; is the machine busy?\n", cases.size());
+    return kNotConverged;
+  }
+  const Machine machine = this_machine();
+  Json j{
+      {"fascia", machine.fascia}, {"key", key_of(machine)}, {"date", machine.date}, {"seconds", seconds}, {"runs", run},
+      {"kinds", model.json()}};
+  const fs::path file = tune_file();
+  if (!file.empty()) {
+    io::make_directories(file.parent_path());
+    io::replace_file(file, j.dump(2) + "\n");
+  }
+  if (options.json) {
+    fmt::print("{}\n", j.dump(2));
+    return kDone;
+  }
+  fmt::print("a Newton iteration on one thread, by factorisation ({} of {} runs in {}):\n", run, cases.size(),
+             time_text(seconds));
+  print_table(model, samples);
+  if (file.empty())
+    say("fascia tune: neither XDG_CACHE_HOME nor HOME is set, so that nothing was kept\n");
+  else
+    fmt::print("kept in {}\n", file.string());
+  return kDone;
+}
+
+fs::path tune_file() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "fascia/tune.json";
+  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/fascia/tune.json";
+  return {};
+}
+
+std::optional<CostModel> kept_costs(std::string& told) {
+  told.clear();
+  const fs::path file = tune_file();
+  std::error_code none;
+  if (file.empty() || !fs::exists(file, none)) return std::nullopt;
+  std::ifstream stream(file);
+  const Json j = Json::parse(stream, nullptr, false);
+  const auto ignored = [&](const std::string& why) {
+    told = fmt::format("{} {}, and is not used; fascia tune makes another", file.string(), why);
+    return std::nullopt;
+  };
+  if (!j.is_object() || !j.contains("key") || !j.contains("kinds")) return ignored("is not what fascia tune writes");
+  if (j["key"] != key_of(this_machine())) return ignored("is of another machine or version");
+  std::optional<CostModel> costs = CostModel::read(j["kinds"]);
+  return costs ? costs : ignored("is damaged");
+}
+
+std::string time_line(const Simulation& simulation) {
+  std::string told;
+  const std::optional<CostModel> costs = kept_costs(told);
+  if (!costs) return told.empty() ? "" : "time: " + told;
+  const std::optional<TimeForecast> forecast = forecast_time(simulation, *costs);
+  if (!forecast) return "";
+  const bool steps = simulation.scene.solver.kind == SolverKind::central_differences;
+  return fmt::format("time: about {} on this machine ({:.0f} {} assumed)", time_text(forecast->seconds),
+                     forecast->iterations, steps ? "steps" : "Newton iterations");
+}
+
+}  // namespace fascia::app

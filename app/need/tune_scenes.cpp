@@ -1,0 +1,67 @@
+#include "app/need/tune_scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace fascia::app {
+namespace {
+
+struct Sizes {
+  const char* kind;
+  int small, large;  ///< cells across: some 700 and 4,000 unknowns
+};
+constexpr std::array<Sizes, 7> kSizes{{{"frames", 3, 6},
+                                       {"affine", 2, 4},
+                                       {"hexahedra", 4, 8},
+                                       {"hexahedra-2", 2, 4},
+                                       {"tetrahedra", 4, 8},
+                                       {"tetrahedra-2", 2, 4},
+                                       {"shell", 8, 16}}};
+
+std::string body_of(const TuneCase& c) {
+  const int n = c.size;
+  if (c.kind == "shell")
+    return fmt::format(
+        "model = \"shell\"\nthickness = 0.05\ndomain = {{ rectangle = {{ origin = [0, 0, 0], edge_u = [2, 0, 0], "
+        "edge_v = [0, 1, 0], cells = [{}, {}] }} }}\n",
+        2 * n, n);
+  const bool frames = c.kind == "frames" || c.kind == "affine";
+  const std::string box = "min = [0, 0, 0], max = [2, 1, 1]";
+  if (frames)
+    return fmt::format(
+        "model = \"meshless\"\ndomain = {{ box = {{ {} }} }}\nframes = {{ grid = [{}, {}, {}], kind = "
+        "\"{}\" }}\n",
+        box, 2 * n + 1, n + 1, n + 1, c.kind == "affine" ? "affine" : "rigid");
+  const bool quadratic = c.kind.ends_with("-2");
+  return fmt::format("model = \"{}\"\norder = {}\ndomain = {{ box = {{ {}, cells = [{}, {}, {}] }} }}\n",
+                     c.kind.substr(0, c.kind.find('-')), quadratic ? 2 : 1, box, 2 * n, n, n);
+}
+
+}  // namespace
+
+std::vector<TuneCase> tune_cases(bool quick, int threads) {
+  std::vector<TuneCase> cases;
+  for (const Sizes& s : kSizes)
+    for (const int size : {s.small, s.large})
+      for (const bool factorised : {true, false}) cases.push_back({s.kind, size, factorised});
+  if (quick) return cases;
+  for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, true, true});
+  for (const Sizes& s : kSizes)
+    for (const bool factorised : {true, false})
+      if (threads > 1) cases.push_back({s.kind, s.large, factorised, false, threads});
+  for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, false, true});
+  return cases;
+}
+
+std::string tune_scene(const TuneCase& c) {
+  const char* solver =
+      c.dynamics ? "kind = \"newmark\"\ntime_step = \"10 ms\"\nsteps = 10\n" : "kind = \"static\"\nload_steps = 3\n";
+  return fmt::format(
+      "[world]\ngravity = [0, 0, -1]\n\n[bodies.body]\n{}density = 1000\nmaterial = {{ young = \"200 kPa\", poisson = "
+      "0.3 }}\n\n[[constraints]]\nbody = \"body\"\nwhere = {{ box = {{ min = [-1e-6, -1, -1], max = [1e-6, 2, 2] }} "
+      "}}\nfix = \"all\"\n\n[solver]\n{}linear = {{ kind = \"{}\" }}\n\n[output]\nfields = [\"displacement\"]\n",
+      body_of(c), solver, c.factorised ? "cholesky" : "cg");
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,135 @@
+#include "app/need/accuracy.hpp"
+#include "app/need/chosen.hpp"
+#include "app/need/open_scene.hpp"
+#include "tests/unit/app/scene_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+// Scenes that state what their results must be worth: what they may leave out, what that leaves open, and how errors
+// are judged.
+namespace fascia::app::need_test {
+namespace {
+
+using test::beam_with;
+using test::errors_of;
+using test::errors_of_beam;
+using test::parse;
+
+constexpr const char* frames = "frames = { grid = [5, 2, 2] }\n";
+constexpr const char* need = "[need]\nerror = \"2 %\"\n";
+
+std::string open_beam(const std::string& more = need) { return beam_with(frames, "") + more; }
+
+TEST(Need, FramesMayBeLeftOut) {
+  const Scene scene = parse(open_beam());
+  EXPECT_NEAR(*scene.need->error, 0.02, 1e-15);
+  EXPECT_TRUE(scene.bodies[0].open);
+  EXPECT_TRUE(parse(beam_with("{ grid = [5, 2, 2] }", "{ kind = \"affine\" }") + need).bodies[0].open);
+  EXPECT_EQ(
+      errors_of(beam_with("{ grid = [5, 2, 2] }", "{ kind = \"affine\" }")),
+      "a.toml:9:10: bodies.beam.frames: grid, poisson_disk, count, positions or file is missing; give exactly one");
+  EXPECT_TRUE(parse(open_beam("need = { error = 0.01 }\n")).bodies[0].need);
+}
+
+TEST(Need, CellsMayBeLeftOut) {
+  const std::string box = test::mesh_body("hexahedra", "box = { min = [0, 0, 0], max = [4, 1, 1] }");
+  EXPECT_TRUE(parse(box + need).bodies[0].open);
+  EXPECT_NE(errors_of(box).find("cells: is missing"), std::string::npos);
+  EXPECT_TRUE(parse(test::shell_body("sphere = { center = [0, 0, 0], radius = 1 }", "thickness = 0.1\n") + need)
+                  .bodies[0]
+                  .open);
+}
+
+TEST(Need, Contradictions) {
+  EXPECT_EQ(
+      errors_of(open_beam("[need]\nerror = 0.01\nstep = \"5 ms\"\n")),
+      "a.toml:11:8: need.step: is a time of steps, and solver.kind = \"static\" takes none; remove it, or ask for "
+      "dynamics");
+  EXPECT_EQ(errors_of(open_beam("[need]\nerror = 0.01\nprobe = \"tip\"\n")),
+            "a.toml:11:9: need.probe: \"tip\" is no probe, as the scene has none; remove it, or add [probes.tip]");
+  EXPECT_EQ(errors_of(open_beam("[need]\nmemory = \"1 GB\"\n")),
+            "a.toml:9:1: need: error or step is missing; give one at least");
+  EXPECT_EQ(errors_of(open_beam("[need]\nerror = 1.5\n")),
+            "a.toml:10:9: need.error: 1.5 is out of range; must be above 0 and below 1");
+  EXPECT_EQ(errors_of_beam("[solver]\nkind = \"modes\"\n[need]\nerror = 0.01\n"),
+            "a.toml:12:1: need: cannot be stated with solver.kind = \"modes\" yet; say frames and cells, and use "
+            "output.estimate");
+  EXPECT_EQ(errors_of(beam_with("{ grid = [5, 2, 2] }", "{ grid = [5, 2, 2], kind = \"rigid\" }") + need),
+            "a.toml:10:1: need: leaves nothing to choose, as the scene says frames, cells, orders and steps itself; "
+            "remove some of them, or remove the need and ask for output.estimate");
+}
+
+TEST(Need, StepsAndSchemes) {
+  const Scene open = parse(open_beam("[solver]\nduration = \"1 s\"\n[need]\nerror = 0.01\n"));
+  EXPECT_TRUE(open.solver.scheme_open);
+  EXPECT_TRUE(open.solver.step_open);
+  const Scene fixed =
+      parse(open_beam("[solver]\nkind = \"bdf2\"\nduration = 1\ntime_step = 0.1\n[need]\nstep = \"5 ms\"\n"));
+  EXPECT_FALSE(fixed.solver.scheme_open || fixed.solver.step_open);
+  EXPECT_EQ(errors_of(open_beam("[solver]\nkind = \"bdf2\"\nsteps = 3\n[need]\nerror = 0.01\n")),
+            "a.toml:11:9: solver.steps: says nothing without time_step, which the need chooses; must be duration");
+}
+
+TEST(Pattern, CellsAreAboutAsLongAsWide) {
+  EXPECT_EQ(pattern_of({1, 1, 1}, 4, 8), (std::vector{1, 1, 1}));
+  EXPECT_EQ(pattern_of({16, 1, 1}, 4, 8), (std::vector{4, 1, 1}));
+  EXPECT_EQ(pattern_of({10, 10, 0.1}, 4, 8), (std::vector{8, 8, 1}));
+  EXPECT_EQ(pattern_of({2, 1}, 1, 8), (std::vector{2, 1}));
+}
+
+TEST(OpenScene, SaysWhatMakesAChoice) {
+  const OpenScene open =
+      open_parts(parse(test::mesh_body("hexahedra", "box = { min = [0, 0, 0], max = [16, 1, 1] }") + need));
+  EXPECT_EQ(open.families(), 2);
+  EXPECT_EQ(open.overrides({1, 2}),
+            (std::vector<std::string>{"bodies.block.order=2", "bodies.block.domain.box.cells=[8, 2, 2]"}));
+  EXPECT_EQ(open.text({0, 2}), "block: linear hexahedra, 8 x 2 x 2 cells");
+  const OpenScene beam = open_parts(parse(open_beam()));
+  EXPECT_EQ(beam.overrides({1, 2}),
+            (std::vector<std::string>{"bodies.beam.frames.kind=\"affine\"", "bodies.beam.frames.grid=[3, 3, 3]"}));
+}
+
+TEST(OpenScene, FixedCellsOnlyTellErrors) {
+  const OpenScene open = open_parts(parse(test::mesh_body("hexahedra", test::meshed_box) + need));
+  EXPECT_FALSE(open.resizes());
+  EXPECT_TRUE(open.offers({0, 1}));
+  EXPECT_FALSE(open.offers({0, 2}));
+  EXPECT_TRUE(open.takes({0, 2}));
+}
+
+Series number(double v) { return {{0}, {{v}}}; }
+
+TEST(Convergence, OfAPower) {
+  const Series a = number(1 + 0.16), b = number(1 + 0.04), c = number(1 + 0.01);
+  const auto two = convergence_of({1, 0.5}, {&a, &b}, 2), three = convergence_of({1, 0.5, 0.25}, {&a, &b, &c}, 2);
+  EXPECT_NEAR(two->limit.values[0][0], 1, 1e-12);
+  EXPECT_NEAR(two->uncertainty, 0.04, 1e-12);  // as much as was added
+  EXPECT_NEAR(three->limit.values[0][0], 1, 1e-12);
+  EXPECT_NEAR(three->uncertainty, 0.25 * 0.01, 1e-12);
+  EXPECT_TRUE(three->measured);
+}
+
+TEST(Convergence, ClaimsNothingOfValuesThatSwing) {
+  const Series a = number(1), b = number(1.2), c = number(1.1);
+  const auto found = convergence_of({1, 0.5, 0.25}, {&a, &b, &c}, 2);
+  EXPECT_FALSE(found->measured);
+  EXPECT_NEAR(found->limit.values[0][0], 1.1, 1e-12);
+  EXPECT_NEAR(found->uncertainty, 1.5 * 0.1 / 1.1, 1e-12);
+}
+
+TEST(ChosenScene, ReadsBackWithTheChoice) {
+  const Scene scene =
+      parse(open_beam("[output]\ndirectory = \"elsewhere\"\n[probes.mass]\nquantity = \"mass\"\n" + std::string(need)));
+  const std::string text = chosen_scene(scene, {"need=", "bodies.beam.frames.grid=[5, 2, 2]"}, {"why"}, "results");
+  EXPECT_TRUE(text.starts_with("# why\n"));
+  const Scene read = parse(text);
+  EXPECT_FALSE(read.states_need());
+  EXPECT_EQ(std::get<GridFrames>(read.bodies[0].frames).count, (std::vector{5, 2, 2}));
+  EXPECT_EQ(read.probes[0].name, "mass");
+  EXPECT_FALSE(read.says("output.directory"));
+}
+
+}  // namespace
+}  // namespace fascia::app::need_test
