@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/scene/domain.hpp"
+#include "app/scene/profile.hpp"
 #include "app/scene/region.hpp"
 #include "core/math/mat3.hpp"
 
@@ -16,23 +17,6 @@
 /// The scene as the user wrote it, checked key by key, in SI units. The parser makes it; the builder turns it into a
 /// model.
 namespace fascia::app {
-
-// ------------------------------------------------------------------------------------------------ time
-struct LinearProfile {};
-struct SmoothProfile {};
-struct TableProfile {
-  std::vector<std::array<double, 2>> points;
-};  ///< (time [s], factor [-]), times ascending
-struct SineProfile {
-  double period = 1;
-};
-
-/// A factor over time: `over` [s] (0: at once) and `profile`.
-struct Schedule {
-  double over = 0;
-  bool has_over = false;
-  std::variant<LinearProfile, SmoothProfile, TableProfile, SineProfile> profile;
-};
 
 // ------------------------------------------------------------------------------------------------ need
 /// What the results of a scene, or of one body, must be worth. What the scene leaves out is chosen so.

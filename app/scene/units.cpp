@@ -114,10 +114,10 @@ bool same_dimension(const Unit& unit, const Unit& expected) {
   return ratio && ut_is_dimensionless(ratio.get()) != 0;
 }
 
-/// The kind of quantity of a unit: "a mass", or its base units.
+/// The kind of quantity of a unit: "a mass", or its base units. To the database bytes are pure numbers.
 std::string kind_of(const Database& database, const Unit& unit) {
   for (const Dimension& d : dimensions)
-    if (same_dimension(unit, database.parse(d.unit))) return d.noun;
+    if (std::string_view(d.unit) != "byte" && same_dimension(unit, database.parse(d.unit))) return d.noun;
   return ut_is_dimensionless(unit.get()) ? "a pure number" : "in " + definition(unit);
 }
 

@@ -49,7 +49,9 @@ TEST(DynamicsErrors, UnknownKinds) {
 TEST(DynamicsErrors, EveryKindNeedsTime) {
   for (const std::string kind : {"implicit-euler", "bdf2", "newmark", "midpoint"})
     EXPECT_EQ(errors_of(kind, ""),
-              "a.toml:10:1: solver.time_step: is missing; must be a time in s above 0\n"
+              "a.toml:10:1: solver.time_step: is missing; must be a time in s above 0; or state what the results must "
+              "be worth in "
+              "[need], which then chooses it\n"
               "a.toml:10:1: solver.duration: is missing; must be a time in s above 0, or give steps");
   EXPECT_EQ(errors_of("explicit", "steps = 3\n"),
             "a.toml:10:1: solver.time_step: is missing; must be a time in s above 0 or \"auto\"");

@@ -229,14 +229,16 @@ TEST(SceneErrors, Regions) {
 TEST(SceneErrors, FramesAreNeeded) {
   EXPECT_EQ(errors_of(beam_with("frames = { grid = [5, 2, 2] }\n", "")),
             "a.toml:4:1: bodies.beam.frames: is missing; must be a table with grid, poisson_disk, count, positions or "
-            "file");
+            "file; or state what the results must be worth in [need], which then chooses it");
 }
 
 TEST(SceneErrors, Solver) {
   EXPECT_EQ(errors_of_beam("[solver]\ntime_step = 1\n"),
             "a.toml:11:13: solver.time_step: is not used by kind = \"static\"; remove it");
   EXPECT_EQ(errors_of_beam("[solver]\nkind = \"implicit-euler\"\nsteps = 3\n"),
-            "a.toml:10:1: solver.time_step: is missing; must be a time in s above 0");
+            "a.toml:10:1: solver.time_step: is missing; must be a time in s above 0; or state what the results must be "
+            "worth in "
+            "[need], which then chooses it");
   EXPECT_EQ(errors_of_beam("[solver]\nkind = \"implicit-euler\"\ntime_step = 1\n"),
             "a.toml:10:1: solver.duration: is missing; must be a time in s above 0, or give steps");
   EXPECT_EQ(errors_of_beam("[solver]\nkind = \"implicit-euler\"\ntime_step = 1\nsteps = 1\nduration = 1\n"),

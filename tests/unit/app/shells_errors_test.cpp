@@ -56,13 +56,15 @@ TEST(ShellErrors, SolidsAndLinesAreNoSurfaces) {
 }
 
 TEST(ShellErrors, Cells) {
-  const char* two = "is missing for model = \"shell\"; must be a list of 2, each a whole number from 1 to 10000";
+  const char* two =
+      "is missing for model = \"shell\"; must be a list of 2, each a whole number from 1 to 10000; or "
+      "state what the results must be worth in [need], which then chooses it";
   EXPECT_EQ(errors_of_domain(std::string(test::rectangle)),
             std::string("a.toml:6:24: bodies.skin.domain.rectangle.cells: ") + two);
   EXPECT_EQ(errors_of_cylinder("caps = false"), std::string("a.toml:6:23: bodies.skin.domain.cylinder.cells: ") + two);
   EXPECT_EQ(errors_of_domain("sphere = { center = [0, 0, 0], radius = 1 }"),
             "a.toml:6:21: bodies.skin.domain.sphere.cells: is missing for model = \"shell\"; must be a list of 1, each "
-            "a whole number from 1 to 10000");
+            "a whole number from 1 to 10000; or state what the results must be worth in [need], which then chooses it");
   EXPECT_EQ(errors_of_domain("sphere = { center = [0, 0, 0], radius = 1, cells = [8, 2] }"),
             "a.toml:6:63: bodies.skin.domain.sphere.cells: has two numbers, as of a solid; must be one for model = "
             "\"shell\", the cells around");
