@@ -84,7 +84,7 @@ Machine this_machine() {
   m.host = host_name();
   m.fascia = FASCIA_VERSION;
   m.commit = commit();
-  m.backends = backend_list();
+  m.backends = backends_so_far();
   m.compiler = fmt::format("{} {}", FASCIA_COMPILER, __VERSION__);
   m.flags = FASCIA_FLAGS;
   m.build = FASCIA_BUILD;

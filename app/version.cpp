@@ -12,6 +12,12 @@ std::string backend_list() {
   return cuda == nullptr ? "cpu" : fmt::format("cpu, cuda ({})", cuda->description);
 }
 
+std::string backends_so_far() {
+  if (const gpu::DeviceFunctions* cuda = gpu::device_functions_in_use())
+    return fmt::format("cpu, cuda ({})", cuda->description);
+  return gpu::device_module_exists() ? "cpu, cuda" : "cpu";
+}
+
 const char* tuning() { return FASCIA_TUNING; }
 
 std::string version_text() {

@@ -4,6 +4,7 @@
 
 #include <dlfcn.h>
 
+#include <atomic>
 #include <filesystem>
 
 namespace fascia::gpu {
@@ -27,8 +28,10 @@ fs::path own_folder() {
   return folder.parent_path().filename() == "glibc-hwcaps" ? folder.parent_path().parent_path() : folder;
 }
 
+fs::path module_file() { return own_folder() / "fascia-cuda.so"; }
+
 Loaded load() {
-  const fs::path module = own_folder() / "fascia-cuda.so";
+  const fs::path module = module_file();
   if (!fs::exists(module))
     return {nullptr, "this build has no CUDA backend: there is no " + module.string() +
                          " (of the package fascia-cuda; in a checkout ./run builds it where there is a CUDA toolkit)"};
@@ -41,7 +44,8 @@ Loaded load() {
   return {functions, ""};
 }
 
-const DeviceFunctions* linked = nullptr;  ///< see use_device_functions()
+const DeviceFunctions* linked = nullptr;              ///< see use_device_functions()
+std::atomic<const DeviceFunctions*> loaded{nullptr};  ///< once something asked for them
 
 /// @throws NoDevice
 const DeviceFunctions& needed() {
@@ -55,8 +59,16 @@ const DeviceFunctions& needed() {
 const DeviceFunctions* device_functions(std::string& reason) {
   if (linked != nullptr) return linked;
   static const Loaded found = load();
+  loaded = found.functions;
   if (found.functions == nullptr) reason = found.reason;
   return found.functions;
+}
+
+const DeviceFunctions* device_functions_in_use() { return linked != nullptr ? linked : loaded.load(); }
+
+bool device_module_exists() {
+  std::error_code ignored;
+  return linked != nullptr || fs::exists(module_file(), ignored);
 }
 
 void use_device_functions(const DeviceFunctions& functions) { linked = &functions; }

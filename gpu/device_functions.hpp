@@ -23,6 +23,12 @@ struct DeviceFunctions {
 /// @param reason  why: a sentence
 const DeviceFunctions* device_functions(std::string& reason);
 
+/// Those that something has asked for before; null where nothing has, or there are none. Loads nothing.
+const DeviceFunctions* device_functions_in_use();
+
+/// The module lies where it would be loaded from.
+bool device_module_exists();
+
 /// Takes these in place of a module: for programs that CUDA's part is linked into. Before the first use of a device.
 void use_device_functions(const DeviceFunctions& functions);
 

@@ -95,6 +95,7 @@ Series ProbeTable::series(const std::string& probe, SolverKind kind) const {
   for (std::size_t r = is_dynamic(kind) || modes ? 0 : rows_.size() - std::min<std::size_t>(1, rows_.size());
        r < rows_.size(); ++r) {
     std::vector<double> values;
+    values.reserve(own.size());
     for (const std::size_t c : own) values.push_back(rows_[r][c]);
     if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); })) continue;
     if (modes && !series.values.empty()) {

@@ -20,11 +20,6 @@ const ProbeChange* Part::largest_change() const {
   return largest;
 }
 
-Ratio ratio_of(const Spread& v, const Spread& b) {
-  if (!(b.low > 0)) return {};
-  return {v.median / b.median, v.low / b.high, v.high / b.low};
-}
-
 Ratio ratio_of_pairs(const std::vector<double>& v, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(v.size(), b.size()); ++i)

@@ -7,10 +7,7 @@
 
 namespace fascia::app {
 
-/// v / b, with the least and the largest that their spreads leave; 1 where b is 0.
-Ratio ratio_of(const Spread& v, const Spread& b);
-
-/// Of runs that were made in turns: the median of the ratios of neighbours, and the extremes.
+/// Of times of runs that were made in turns: the median of v / b of neighbours, and the extremes; 1 without any b > 0.
 Ratio ratio_of_pairs(const std::vector<double>& v, const std::vector<double>& b);
 
 /// The probes of a scene's runs, and how far others are from them.

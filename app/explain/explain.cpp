@@ -5,6 +5,7 @@
 #include "app/explain/profile.hpp"
 #include "app/explain/report.hpp"
 #include "app/explain/suggestions.hpp"
+#include "app/explain/turns.hpp"
 #include "app/interruption.hpp"
 #include "app/messages.hpp"
 #include "app/process_memory.hpp"
@@ -30,8 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs below this are preceded by one that is not counted [s].
-constexpr double kShort = 2;
 /// From here on two runs in turns do [s].
 constexpr double kLong = 20;
 constexpr const char* kFile = "explain.json";
@@ -59,7 +58,8 @@ class Workplace {
   }
   ~Workplace() {
     std::error_code none;
-    fs::remove_all(kept_ ? path_ / "variant" : path_, none);
+    if (!kept_) fs::remove_all(path_, none);
+    for (const char* passing : {"variant", "turn"}) fs::remove_all(path_ / passing, none);
   }
   Workplace(const Workplace&) = delete;
   Workplace& operator=(const Workplace&) = delete;
@@ -132,9 +132,6 @@ class Explainer {
     run.overrides = e_.overrides;
     run.overrides.insert(run.overrides.end(), changes.begin(), changes.end());
     run.output = work_->path() / directory;
-    // A run that is refused leaves what is there, which would be taken for its own.
-    std::error_code none;
-    fs::remove_all(run.output, none);
     return run;
   }
 
@@ -142,6 +139,8 @@ class Explainer {
     tell("the scene as it is");
     const auto stop = [this] { return stopped(); };
     const ChildRun run = child("base", {});
+    std::error_code none;
+    fs::remove_all(run.output, none);  // of an earlier explanation
     const std::optional<RunRecord> record =
         record_run(run, "base", !options_.quick, options_.repeat > 1 ? 1 : 0, options_.repeat, stop);
     if (!record) return;
@@ -197,16 +196,20 @@ class Explainer {
   }
 
   void run_part(Part& part) {
-    const ChildRun run = child("variant", part.variant.overrides);
-    const int warm_up = e_.base.wall < kShort && options_.repeat > 1 ? 1 : 0;
-    part.record = record_run(run, "variant", true, warm_up, options_.repeat, [this] { return stopped(); });
+    Turns turns = in_turns(part.variant.overrides);
+    part.record = std::move(turns.record);
     if (!part.measured()) return;
-    part.solve = ratio_of(part.record->solve, e_.base.solve);
-    part.setup = ratio_of(part.record->setup, e_.base.setup);
-    const double memory = e_.base.memory > 0 ? part.record->memory / e_.base.memory : 1;
-    part.memory = {memory, memory, memory};
-    part.changes = probes_->changes(*part.record, run.output);
-    others_ = std::max(others_, part.record->others);
+    part.solve = turns.solve;
+    part.setup = turns.setup;
+    part.memory = e_.base.memory > 0 ? part.record->memory / e_.base.memory : 1;
+    part.changes = probes_->changes(*part.record, work_->path() / "variant");
+  }
+
+  Turns in_turns(const std::vector<std::string>& changes) {
+    const int turns = e_.base.wall > kLong ? std::min(2, options_.repeat) : options_.repeat;
+    Turns result = run_in_turns(child("turn", {}), child("variant", changes), turns, [this] { return stopped(); });
+    if (result.record) others_ = std::max(others_, result.record->others);
+    return result;
   }
 
   /// Without runs: what a body's points take of the time, and what its deformation is of all displacements.
@@ -230,35 +233,19 @@ class Explainer {
     }
   }
 
-  /// Solves of the scene as it is and of a change, in turns: what the machine does meanwhile meets both.
-  /// @param record  of the last run with the change; none: stopped, or it did not converge
-  Ratio in_turns(const std::vector<std::string>& changes, std::optional<RunRecord>& record) {
-    std::vector<double> with, without;
-    const int turns = e_.base.wall > kLong ? std::min(2, options_.repeat) : options_.repeat;
-    for (int i = 0; i < turns; ++i) {
-      const auto stop = [this] { return stopped(); };
-      const std::optional<RunRecord> base = record_run(child("turn", {}), "turn", false, 0, 1, stop);
-      record = record_run(child("variant", changes), "variant", false, 0, 1, stop);
-      if (!base || !record || !base->converged() || !record->converged()) return record.reset(), Ratio{};
-      without.push_back(base->solve.median);
-      with.push_back(record->solve.median);
-    }
-    return ratio_of_pairs(with, without);
-  }
-
   void suggest() {
     std::vector<const Part*> chosen;
     for (const Part* part : worth_suggesting(e_)) {
       Ratio solve{1 - part->estimated_gain, 1 - part->estimated_gain, 1 - part->estimated_gain};
       if (!e_.quick) {
         if (stopped()) break;
-        tell("measured in turns: {}", label_of(part->variant));
-        std::optional<RunRecord> record;
-        solve = in_turns(part->variant.overrides, record);
-        if (!record) continue;
-        if (!solve.is_less()) {
-          e_.notes.push_back(fmt::format("{}: the gain was within the spread once it was measured in turns.",
-                                         label_of(part->variant)));
+        tell("once more: {}", label_of(part->variant));
+        const Turns again = in_turns(part->variant.overrides);
+        if (stopped()) break;
+        solve = again.solve;
+        if (!solve.is_less()) {  // of many changes some seem to gain by chance
+          e_.notes.push_back(
+              fmt::format("{}: its gain was within the spread once it was measured again.", label_of(part->variant)));
           continue;
         }
       }
@@ -287,9 +274,11 @@ class Explainer {
     Part all;
     Suggestion s;
     s.overrides = changes;
-    s.solve = in_turns(changes, all.record);
+    Turns turns = in_turns(changes);
     if (stopped()) return;
-    if (!all.record) {
+    all.record = std::move(turns.record);
+    s.solve = turns.solve;
+    if (!all.measured()) {
       e_.notes.emplace_back("All suggestions together do not converge.");
       return;
     }

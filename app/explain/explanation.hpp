@@ -50,7 +50,8 @@ struct ProbeChange {
 struct Part {
   Variant variant;
   std::optional<RunRecord> record;  ///< none: refused, or not run
-  Ratio solve, setup, memory;       ///< of a run that converged
+  Ratio solve, setup;               ///< of runs that converged, in turns with the scene as it is
+  double memory = 1;                ///< peak over that of the scene as it is
   std::vector<ProbeChange> changes;
   double estimated_gain = 0;               ///< with --quick: of the solve's time, a share
   std::optional<double> estimated_change;  ///< with --quick: about, of displacements

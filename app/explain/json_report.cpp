@@ -85,7 +85,7 @@ Json part_json(const Explanation& e, const Part& part) {
   if (!part.measured()) return j;
   j["solve"] = json_of(part.solve);
   j["setup"] = json_of(part.setup);
-  j["memory"] = part.memory.median;
+  j["memory"] = part.memory;
   j["changes"] = Json::object();
   for (const ProbeChange& c : part.changes) j["changes"][c.probe] = optional_json(c.relative);
   j["record"] = app::json_of(*part.record);

@@ -30,25 +30,17 @@ Stages stages_of(const nlohmann::ordered_json& summary, const RunRecord& record,
   Stages stages;
   stages.setup = record.setup.median;
   stages.solve = record.solve.median;
-  if (const auto seconds = summary.find("seconds"); seconds != summary.end())
+  if (const auto seconds = summary.find("seconds"); seconds != summary.end()) {
     stages.output = seconds->value("output", 0.0);
-  stages.start = std::max(0.0, record.wall - stages.setup - stages.solve - stages.output);
+    // Of the one run that the summary and the time from its start to its end are of.
+    const double told = seconds->value("setup", 0.0) + seconds->value("solve", 0.0) + stages.output;
+    stages.start = std::max(0.0, record.wall - told);
+  }
   stages.memory_start = std::min(program, record.memory);
   stages.memory_setup = std::clamp(built - program, 0.0, record.memory - stages.memory_start);
   stages.memory_run = record.memory - stages.memory_start - stages.memory_setup;
   return stages;
 }
-
-namespace {
-
-/// Without a body another number of iterations is needed, which says nothing about what the body takes in each.
-double seconds_of_iteration(const RunRecord& record) {
-  return record.newton > 0  ? record.solve.median / record.newton
-         : record.steps > 0 ? record.solve.median / record.steps
-                            : record.solve.median;
-}
-
-}  // namespace
 
 void share_out(Explanation& e) {
   double points = 0;
@@ -58,11 +50,12 @@ void share_out(Explanation& e) {
     for (const VariantKind kind : {VariantKind::rigid, VariantKind::left_out})  // the latter counts where both are
       for (const Part& part : e.parts) {
         if (part.variant.kind != kind || part.variant.body != b.name || !part.measured()) continue;
-        const double base = seconds_of_iteration(e.base);
-        if (!(base > 0)) continue;
-        b.time = {1 - seconds_of_iteration(*part.record) / base, false,
-                  kind == VariantKind::rigid ? "as rigid" : "left out"};
-        b.memory = 1 - part.memory.median;
+        b.memory = 1 - part.memory;
+        // Without a body another number of iterations is needed, which says nothing about what it takes in each.
+        const double iterations =
+            part.record->newton > 0 ? static_cast<double>(e.base.newton) / part.record->newton : 1;
+        if (part.solve.high * iterations < 1)
+          b.time = {1 - part.solve.median * iterations, false, kind == VariantKind::rigid ? "as rigid" : "left out"};
       }
   }
 }

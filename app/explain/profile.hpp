@@ -12,8 +12,8 @@ std::vector<BodyProfile> profile_of(const Simulation& simulation);
 /// @param program, built  peak memory of a process that has read the scene, and that has built it [bytes]
 Stages stages_of(const nlohmann::ordered_json& summary, const RunRecord& record, double program, double built);
 
-/// Gives each body its share of the time and memory: measured where it was left out or made rigid, otherwise its share
-/// of the points, as an estimate.
+/// Gives each body its share of the time and memory: measured where it was left out or made rigid; of the time its
+/// share of the points, as an estimate, where it was neither or the spread is larger than what it takes.
 void share_out(Explanation& explanation);
 
 }  // namespace fascia::app

@@ -10,6 +10,9 @@
 namespace fascia::app {
 namespace {
 
+/// Changes of probes below this are rounding.
+constexpr double kRounding = 1e-12;
+
 /// Width of a UTF-8 text on a terminal.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
@@ -94,7 +97,7 @@ std::string largest_text(const Part& part) {
   const auto gone =
       std::count_if(part.changes.begin(), part.changes.end(), [](const ProbeChange& c) { return !c.relative; });
   std::string text =
-      *largest->relative > 0 ? fmt::format("{} {}", largest->probe, error_text(*largest->relative)) : "none";
+      *largest->relative > kRounding ? fmt::format("{} {}", largest->probe, error_text(*largest->relative)) : "none";
   if (gone > 0) text += fmt::format(" ({} without value)", gone);
   return text;
 }
@@ -106,7 +109,7 @@ std::string part_table(const Explanation& e) {
     if (!part.measured()) continue;
     rows.push_back({label_of(part.variant), ratio_text(part.solve), std::to_string(part.record->newton),
                     fmt::format("{:+.0f} %", 100 * (part.setup.median - 1)),
-                    fmt::format("{:+.0f} %", 100 * (part.memory.median - 1)), largest_text(part)});
+                    fmt::format("{:+.0f} %", 100 * (part.memory - 1)), largest_text(part)});
   }
   return rows.size() > 1 ? table_of(rows, {true, false, false, false, false, true}) : "  none\n";
 }

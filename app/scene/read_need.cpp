@@ -18,6 +18,7 @@ std::optional<StatedNeed> read_one(const TableReader& table, const std::vector<P
   need.memory = table.number("memory");
   if (!need.probe) return need;
   std::vector<std::string> known;
+  known.reserve(probes.size());
   for (const Probe& probe : probes) known.push_back(probe.name);
   if (std::find(known.begin(), known.end(), *need.probe) == known.end())
     table.error("probe", known.empty() ? fmt::format("{} is no probe, as the scene has none; remove it, or add "

@@ -25,6 +25,7 @@ std::vector<Budget> budgets_of(const StudyResult& result, const Question& questi
   const std::vector<std::size_t> runs = runs_with_error(result, question);
   const auto error = [&](std::size_t r) { return *result.runs[r].measured[question.measure].error; };
   std::vector<double> amounts;
+  amounts.reserve(runs.size());
   for (const std::size_t r : runs) amounts.push_back(amount(result.runs[r]));
   if (limits.empty()) limits = decades(amounts);
   std::sort(limits.begin(), limits.end());

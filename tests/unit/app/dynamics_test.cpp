@@ -54,7 +54,8 @@ TEST(DynamicsErrors, EveryKindNeedsTime) {
               "[need], which then chooses it\n"
               "a.toml:10:1: solver.duration: is missing; must be a time in s above 0, or give steps");
   EXPECT_EQ(errors_of("explicit", "steps = 3\n"),
-            "a.toml:10:1: solver.time_step: is missing; must be a time in s above 0 or \"auto\"");
+            "a.toml:10:1: solver.time_step: is missing; must be a time in s above 0 or \"auto\"; or state what the "
+            "results must be worth in [need], which then chooses it");
   EXPECT_EQ(errors_of("modes", "time_step = 1\nsteps = 3\n"),
             "a.toml:12:13: solver.time_step: is not used by kind = \"modes\"; remove it\n"
             "a.toml:13:9: solver.steps: is not used by kind = \"modes\"; remove it");

@@ -145,12 +145,14 @@ TEST(ElementErrors, ThinMeshlessBodiesTakeOneLaw) {
 }
 
 TEST(ElementErrors, CellsAreNeeded) {
-  EXPECT_EQ(errors_of_box(""),
-            "a.toml:6:18: bodies.block.domain.box.cells: is missing for model = \"tetrahedra\"; must be a list of 3, "
-            "each a whole number from 1 to 10000");
+  EXPECT_EQ(
+      errors_of_box(""),
+      "a.toml:6:18: bodies.block.domain.box.cells: is missing for model = \"tetrahedra\"; must be a list of 3, "
+      "each a whole number from 1 to 10000; or state what the results must be worth in [need], which then chooses it");
   EXPECT_EQ(errors_of_domain("cylinder = { from = [0, 0, 0], to = [1, 0, 0], radius = 1 }", "hexahedra"),
             "a.toml:6:23: bodies.block.domain.cylinder.cells: is missing for model = \"hexahedra\"; must be a list of "
-            "2, each a whole number from 1 to 10000");
+            "2, each a whole number from 1 to 10000; or state what the results must be worth in [need], which then "
+            "chooses it");
   EXPECT_EQ(errors_of_box(", cells = [1, 1]"),
             "a.toml:6:62: bodies.block.domain.box.cells: a list of 2 is of the wrong length; must be a list of 3, each "
             "a whole number from 1 to 10000");
