@@ -105,11 +105,11 @@ TEST(Overrides, ErrorsOfTheFileComeFirst) {
   EXPECT_EQ(
       test::errors_of_beam("titel = 1\n", {"foo=1"}),
       "a.toml:10:1: bodies.beam.titel: is no known key; known here: model, domain, mass, density, material, "
-      "frames, points, weights, initial, transform, thickness, radius, inertia, fluid, formulation, order, "
+      "frames, points, weights, initial, transform, thickness, radius, inertia, fluid, need, formulation, order, "
       "incompressibility, locking\n"
       "--set:1:1: foo: is no known key; known here: title, silence, world, materials, bodies, constraints, loads, "
       "couplings, solver, "
-      "probes, output");
+      "probes, output, need");
 }
 
 }  // namespace
