@@ -13,7 +13,7 @@ struct Family {
   std::string name;                    ///< "quadratic hexahedra", "affine frames"
   std::vector<std::string> overrides;  ///< "key.path=value"
   int least = 1;                       ///< the coarsest resolution that is worth a try
-  std::vector<int> settled{};            ///< directions whose cells stay as many as at that one
+  std::vector<int> settled{};          ///< directions whose cells stay as many as at that one
   double order = 2;                    ///< of the error of displacements over the size of cells, where none is measured
 };
 

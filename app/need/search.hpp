@@ -22,6 +22,7 @@ struct Found {
   Choice choice;
   bool met = false;
   std::string why_not;               ///< a clause: what keeps it from being met
+  std::optional<Choice> judged{};    ///< whose discretisation was judged, where that is not the choice itself
   std::vector<double> time_error{};  ///< of the time steps, by quantity, relative; empty of statics
 };
 
