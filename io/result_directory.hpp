@@ -9,6 +9,9 @@
 
 namespace fascia::io {
 
+/// A scene with what was chosen for it, where it stated a need.
+inline constexpr const char* kChosenScene = "chosen.toml";
+
 /// A folder inside of the directory for what is computed beside the result; it goes with the next one at the latest.
 inline constexpr const char* kTwins = ".fascia.twins";
 

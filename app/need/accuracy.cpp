@@ -140,16 +140,14 @@ double Accuracy::doubt() const {
   return most;
 }
 
-int Accuracy::surest() const {
-  double most = -1;
-  int family = 0;
-  for (std::size_t w = 0; w < best_.size(); ++w) {
-    const std::optional<double>& allowed = trials_->wanted()[w].allowed;
-    if (!allowed || !best_[w].convergence || best_[w].uncertainty / *allowed <= most) continue;
-    most = best_[w].uncertainty / *allowed;
-    family = best_[w].family;
-  }
-  return family;
+double Accuracy::doubt(int family) const {
+  double most = 0;
+  for (std::size_t w = 0; w < best_.size(); ++w)
+    if (const std::optional<double>& allowed = trials_->wanted()[w].allowed) {
+      const std::optional<Convergence>& own = convergence(family, w);
+      most = std::max(most, own ? own->uncertainty / *allowed : INFINITY);
+    }
+  return most;
 }
 
 bool Accuracy::confirmed() const {

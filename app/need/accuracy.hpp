@@ -41,8 +41,8 @@ class Accuracy {
   std::optional<double> predicted(const Resolution& r) const;
   /// The uncertainty of the limits over the allowed errors, the largest.
   double doubt() const;
-  /// The surest family of the quantity that is in doubt most.
-  int surest() const;
+  /// The same of what one family alone converges to.
+  double doubt(int family) const;
   /// Limits rest on three levels, or on two families that agree within the allowed errors.
   bool confirmed() const;
   const std::optional<Convergence>& convergence(int family, std::size_t wanted) const {

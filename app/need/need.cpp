@@ -16,6 +16,7 @@
 #include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
 #include "io/files.hpp"
+#include "io/result_directory.hpp"
 
 #include <fmt/format.h>
 
@@ -90,7 +91,7 @@ int run_need(const RunOptions& options, const Scene& scene) {
   const int status = run_scene(run);
   if (status != kDone) return status;
   const fs::path directory = scene.output.directory;
-  io::replace_file(directory / "chosen.toml", chosen_scene(scene, overrides, report.sentences(), directory));
+  io::replace_file(directory / io::kChosenScene, chosen_scene(scene, overrides, report.sentences(), directory));
   if (report.met()) return kDone;
   say("{}: {}\n", scene.path.string(), report.not_met());
   return kNotConverged;

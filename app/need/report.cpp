@@ -60,7 +60,8 @@ std::string families_text(const OpenScene& open) {
 
 void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   const Trial& own = *trials.find(found.choice);
-  const Accuracy accuracy(trials, found.choice);
+  const Trial& judged = *trials.find(found.judged.value_or(found.choice));
+  const Accuracy accuracy(trials, judged.choice);
   seconds_ = seconds;
   why_not_ = found.met ? "" : found.why_not;
   const std::vector<const Trial*>& levels = accuracy.levels(found.choice.resolution.family);
@@ -69,7 +70,7 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   std::vector<std::string> told;
   for (std::size_t w = 0; w < trials.wanted().size(); ++w) {
     const Wanted& wanted = trials.wanted()[w];
-    const std::optional<double> space = accuracy.error(own, w);
+    const std::optional<double> space = accuracy.error(judged, w);
     const double time = w < found.time_error.size() ? found.time_error[w] : 0;
     Json e{{"discretisation", space ? Json(*space) : Json(nullptr)},
            {"time", time},
@@ -100,8 +101,9 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
     Json j{{"choice", trials.text(t.choice)}, {"status", t.status}, {"seconds", t.seconds}, {"unknowns", t.dofs}};
     if (!t.choice.more.empty()) j["twin"] = t.choice.more;
     if (t.choice.steps > 0 || scene_.solver.step_open) j["step_p99"] = t.step;
-    if (const auto ratio =
-            t.choice.steps == own.choice.steps && t.choice.more == own.choice.more ? accuracy.ratio(t) : std::nullopt)
+    if (const auto ratio = t.choice.steps == judged.choice.steps && t.choice.more == judged.choice.more
+                               ? accuracy.ratio(t)
+                               : std::nullopt)
       j["error_over_allowed"] = *ratio;
     good += t.good() ? 1 : 0;
     trials_.push_back(std::move(j));

@@ -13,6 +13,8 @@ namespace {
 constexpr int kMostLevel = 256;
 /// A limit whose uncertainty is above this part of what is allowed cannot tell good trials from bad ones.
 constexpr double kMostDoubt = 0.5;
+/// A third level makes a family surer by about this, beside that it is finer.
+constexpr double kMeasuring = 0.25;
 /// Part of what is allowed that cells along a thin direction may still change.
 constexpr double kSettled = 0.03;
 /// Memory of the program itself, which does not grow with the scene [bytes].
@@ -151,6 +153,28 @@ class Search {
     return std::nullopt;
   }
 
+  /// The finer level that will make the limits sure enough at the least cost; else the one that does most for its cost.
+  std::optional<Resolution> clearer() {
+    std::optional<Resolution> next;
+    double least = INFINITY;
+    for (int f = 0; f < trials_.open().families(); ++f) {
+      const std::optional<Resolution> r = finer(f);
+      if (!r) continue;
+      if (const std::string why = beyond(*r); !why.empty()) {
+        why_not_ = why;
+        continue;
+      }
+      const std::size_t levels = accuracy_.levels(f).size();
+      const int finest = accuracy_.levels(f).back()->choice.resolution.level;
+      const double measured = levels == 2 ? kMeasuring : 1;
+      const double left = measured * accuracy_.doubt(f) * std::pow(1.0 * finest / r->level, trials_.open().order(f));
+      const double price =
+          cost(*r).seconds * std::max(1.0, std::isfinite(left) ? left / (kMostDoubt * limits_.share) : 1e3);
+      if (price < least) next = r, least = price;
+    }
+    return next;
+  }
+
   std::optional<Resolution> next_of_error() {
     std::optional<Resolution> cheapest;
     why_not_.clear();
@@ -166,14 +190,8 @@ class Search {
     const bool sure = accuracy_.doubt() <= kMostDoubt * limits_.share && accuracy_.confirmed();
     if (sure && cheapest) return tried(*cheapest) ? std::nullopt : cheapest;
     if (sure) return std::nullopt;
-    // Finer ones of the surest family, which may be the cheapest one itself.
-    const std::optional<Resolution> next = finer(accuracy_.surest());
-    if (!next) return std::nullopt;
-    if (const std::string why = beyond(*next); !why.empty()) {
-      why_not_ = why;
-      return cheapest && !tried(*cheapest) ? cheapest : std::nullopt;
-    }
-    return next;
+    const std::optional<Resolution> next = clearer();
+    return next || !cheapest || tried(*cheapest) ? next : cheapest;
   }
 
   /// Without an allowed error: finer and finer, in the family that is most accurate within the limits.

@@ -21,8 +21,9 @@ struct SearchLimits {
 struct Found {
   NeedChoice choice;
   bool met = false;
-  std::string why_not;               ///< a clause: what keeps it from being met
-  std::vector<double> time_error{};  ///< of the time steps, by quantity, relative; empty of statics
+  std::string why_not;                 ///< a clause: what keeps it from being met
+  std::optional<NeedChoice> judged{};  ///< whose discretisation was judged, where that is not the choice itself
+  std::vector<double> time_error{};    ///< of the time steps, by quantity, relative; empty of statics
 };
 
 /// The cheapest resolution and family whose error is within those allowed, and whose step and memory are within the

@@ -72,7 +72,7 @@ class TimeSearch {
 
   Found failed(const NeedChoice& choice, const std::string& why, std::vector<double> error) {
     trials_.run(choice);
-    return {choice, false, why, std::move(error)};
+    return {choice, false, why, {}, std::move(error)};
   }
 
   /// Differences of two trials over the scale of the second, by quantity; empty where one gave nothing.
@@ -159,6 +159,7 @@ class TimeSearch {
     if (far.empty() || largest(far) > kShareOfTime || trial.seconds >= 0.8 * own->seconds) return;
     trials_.tell(fmt::format("need: {}: {} in the place of {}", trials_.text(choice), time_text(trial.seconds),
                              time_text(own->seconds)));
+    found.judged = found.choice;
     found.choice = choice;
     for (std::size_t w = 0; w < far.size(); ++w) found.time_error[w] += far[w];
   }
