@@ -56,8 +56,8 @@ bool is_state_of(const std::string& file, const std::string& body) {
 }
 
 bool belongs(const std::string& file, const ResultNames& names) {
-  if (file == kSummary || file == "probes.csv" || file == kDescriptionFile || file == kChosenScene || file == names.stem + ".pvd" ||
-      file == names.stem + ".png")
+  if (file == kSummary || file == "probes.csv" || file == kDescriptionFile || file == kChosenScene ||
+      file == names.stem + ".pvd" || file == names.stem + ".png")
     return true;
   return std::any_of(names.bodies.begin(), names.bodies.end(),
                      [&](const std::string& body) { return is_state_of(file, body); });
