@@ -54,7 +54,8 @@ TEST_F(NeedRuns, KeepTheBestWhereANeedCannotBeMet) {
 
 TEST_F(NeedRuns, ChooseTimeSteps) {
   const std::string dynamics = with(open_beam("[need]\nerror = \"10 %\"\n"), "kind = \"static\"", "duration = 0.2");
-  write("beam.toml", with(dynamics, "density  = 1000", "density = 1000\nframes = { grid = [3, 2, 2], kind = \"affine\" }"));
+  write("beam.toml",
+        with(dynamics, "density  = 1000", "density = 1000\nframes = { grid = [3, 2, 2], kind = \"affine\" }"));
   const ProgramResult result = fascia({"run", "beam.toml", "--output", "out", "--quiet"});
   EXPECT_NE(result.status, 2) << result.err;
   const nlohmann::json j = summary("out");
