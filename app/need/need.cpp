@@ -6,6 +6,7 @@
 #include "app/need/chosen.hpp"
 #include "app/need/report.hpp"
 #include "app/need/search.hpp"
+#include "app/need/simplify.hpp"
 #include "app/need/temporary_folder.hpp"
 #include "app/need/time_search.hpp"
 #include "app/process_memory.hpp"
@@ -71,6 +72,7 @@ int run_need(const RunOptions& options, const Scene& scene) {
       say("{}: interrupted while it looked for what the need asks for; nothing was written\n", scene.path.string());
       return 128 + stop.signal();
     }
+    simplify(trials, found);
     const Trial* trial = trials.find(found.choice);
     if (!trial || !trial->good()) {
       say("{}: {}\n", scene.place_of("need").key, found.why_not);
@@ -88,7 +90,10 @@ int run_need(const RunOptions& options, const Scene& scene) {
   run.complete = [&](nlohmann::ordered_json& summary) { report.write(summary); };
   if (!options.quiet && !options.json)
     for (const std::string& line : report.sentences()) fmt::print("{}\n", line);
-  const int status = run_scene(run);
+  constexpr int most = 3;  // steps are timed anew by the run itself
+  int status = kDone;
+  for (int time = 0; time < most && (time == 0 || report.steps_took_longer()) && status == kDone; ++time)
+    status = run_scene(run);
   if (status != kDone) return status;
   const fs::path directory = scene.output.directory;
   io::replace_file(directory / io::kChosenScene, chosen_scene(scene, overrides, report.sentences(), directory));

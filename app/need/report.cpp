@@ -72,20 +72,23 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
     const Wanted& wanted = trials.wanted()[w];
     const std::optional<double> space = accuracy.error(judged, w);
     const double time = w < found.time_error.size() ? found.time_error[w] : 0;
+    const double simpler = w < found.simpler_error.size() ? found.simpler_error[w] : 0;
+    const std::optional<double> total = space ? std::optional(*space + time + solver[w] + simpler) : std::nullopt;
     Json e{{"discretisation", space ? Json(*space) : Json(nullptr)},
            {"time", time},
            {"solver", solver[w]},
            {"precision", 0.0},
-           {"total", space ? Json(*space + time + solver[w]) : Json(nullptr)},
+           {"total", total ? Json(*total) : Json(nullptr)},
            {"scale", own.values[w].largest()},
            {"unit", unit_of(scene_, wanted)}};
+    if (simpler > 0) e["simplification"] = simpler;
     if (const auto& c = accuracy.convergence(found.choice.resolution.family, w))
       e["order"] = c->order, e["order_measured"] = c->measured;
     if (wanted.allowed)
-      told.push_back(fmt::format("{} {} of {} allowed", wanted.name,
-                                 space ? percent(*space + time + solver[w]) : "unknown", percent(*wanted.allowed)));
+      told.push_back(fmt::format("{} {} of {} allowed", wanted.name, total ? percent(*total) : "unknown",
+                                 percent(*wanted.allowed)));
     else if (trials.wanted().front().allowed == std::nullopt && w < 3)
-      told.push_back(fmt::format("{} {}", wanted.name, space ? percent(*space + time + solver[w]) : "unknown"));
+      told.push_back(fmt::format("{} {}", wanted.name, total ? percent(*total) : "unknown"));
     if (wanted.body.empty())
       errors_[wanted.probe] = std::move(e);
     else
@@ -97,11 +100,12 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   how_.emplace_back("solver: by a coarse trial with tight tolerances");
   trials_ = Json::array();
   std::size_t good = 0;
+  const bool has_error = trials.wanted().front().allowed.has_value();
   for (const Trial& t : trials.all()) {
     Json j{{"choice", trials.text(t.choice)}, {"status", t.status}, {"seconds", t.seconds}, {"unknowns", t.dofs}};
     if (!t.choice.more.empty()) j["twin"] = t.choice.more;
     if (t.choice.steps > 0 || scene_.solver.step_open) j["step_p99"] = t.step;
-    if (const auto ratio = t.choice.steps == judged.choice.steps && t.choice.more == judged.choice.more
+    if (const auto ratio = has_error && t.choice.steps == judged.choice.steps && t.choice.more == judged.choice.more
                                ? accuracy.ratio(t)
                                : std::nullopt)
       j["error_over_allowed"] = *ratio;
@@ -111,8 +115,12 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   sentences_ = {
       fmt::format("chosen: {}: {:.0f} unknowns, {}", trials.text(found.choice), own.dofs, time_text(own.seconds)),
       fmt::format("why: {} of {} trials in {}",
-                  found.met ? "the cheapest that meets the need" : "the nearest to the need", good, time_text(seconds)),
+                  !found.met  ? "the nearest to the need"
+                  : has_error ? "the cheapest that meets the need"
+                              : "the finest that meets the need",
+                  good, time_text(seconds)),
       reached_};
+  sentences_.insert(sentences_.end(), found.simpler.begin(), found.simpler.end());
   const Trial* coarser = nullptr;
   for (const Trial* t : levels)
     if (t->choice.resolution.level < own.choice.resolution.level) coarser = t;
@@ -122,22 +130,25 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
 }
 
 void NeedReport::write(Json& summary) {
+  std::vector<std::string> chosen = sentences_;
+  step_.clear();
   if (scene_.need && scene_.need->step) {
     const auto p99 = summary.at("seconds").at("step_p99").get<double>();
-    sentences_.push_back(
+    chosen.push_back(
         fmt::format("99 of 100 steps take at most {}, of {} allowed", time_text(p99), time_text(*scene_.need->step)));
-    if (p99 > *scene_.need->step && why_not_.empty()) why_not_ = "steps of the run took longer than those of its trial";
+    if (p99 > *scene_.need->step)
+      step_ = fmt::format("99 of 100 steps of the run take up to {}, more than those of its trial", time_text(p99));
   }
   Json need = scene_.need ? needed(*scene_.need) : Json::object();
   for (const Body& body : scene_.bodies)
     if (body.need) need["bodies"][body.name] = needed(*body.need);
   need["met"] = met();
-  if (!met()) need["why_not"] = why_not_;
+  if (!met()) need["why_not"] = why_not_.empty() ? step_ : why_not_;
   need["seconds"] = seconds_;
   need["trials"] = trials_;
   const Json provenance = summary.at("provenance");
   summary.erase("provenance");
-  summary["chosen"] = sentences_;
+  summary["chosen"] = chosen;
   summary["estimated_error"] = errors_;
   summary["estimate"] = {{"how", how_}, {"seconds", seconds_}};
   summary["need"] = std::move(need);
@@ -145,7 +156,7 @@ void NeedReport::write(Json& summary) {
 }
 
 std::string NeedReport::not_met() const {
-  return fmt::format("the need is not met: {}; reached: {}", why_not_, reached_);
+  return fmt::format("the need is not met: {}; reached: {}", why_not_.empty() ? step_ : why_not_, reached_);
 }
 
 }  // namespace fascia::app

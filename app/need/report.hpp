@@ -20,7 +20,9 @@ class NeedReport {
   void write(nlohmann::ordered_json& summary);
 
   const std::vector<std::string>& sentences() const { return sentences_; }
-  bool met() const { return why_not_.empty(); }
+  bool met() const { return why_not_.empty() && step_.empty(); }
+  /// Steps of the run were longer than its trial promised: another run may do better.
+  bool steps_took_longer() const { return why_not_.empty() && !step_.empty(); }
   /// What was needed, what keeps it from being met, and what was reached.
   std::string not_met() const;
 
@@ -28,7 +30,7 @@ class NeedReport {
   const Scene& scene_;
   std::vector<std::string> sentences_, how_;
   nlohmann::ordered_json errors_, trials_;
-  std::string why_not_, reached_;
+  std::string why_not_, step_, reached_;
   double seconds_ = 0;
 };
 

@@ -21,9 +21,11 @@ struct SearchLimits {
 struct Found {
   NeedChoice choice;
   bool met = false;
-  std::string why_not;                 ///< a clause: what keeps it from being met
-  std::optional<NeedChoice> judged{};  ///< whose discretisation was judged, where that is not the choice itself
-  std::vector<double> time_error{};    ///< of the time steps, by quantity, relative; empty of statics
+  std::string why_not;                  ///< a clause: what keeps it from being met
+  std::optional<NeedChoice> judged{};   ///< whose discretisation was judged, where that is not the choice itself
+  std::vector<std::string> simpler{};   ///< sentences: what was left out, and what that adds to the errors
+  std::vector<double> simpler_error{};  ///< what all of it adds, by quantity, relative
+  std::vector<double> time_error{};     ///< of the time steps, by quantity, relative; empty of statics
 };
 
 /// The cheapest resolution and family whose error is within those allowed, and whose step and memory are within the

@@ -72,7 +72,9 @@ class TimeSearch {
 
   Found failed(const NeedChoice& choice, const std::string& why, std::vector<double> error) {
     trials_.run(choice);
-    return {choice, false, why, {}, std::move(error)};
+    Found found{choice, false, why};
+    found.time_error = std::move(error);
+    return found;
   }
 
   /// Differences of two trials over the scale of the second, by quantity; empty where one gave nothing.

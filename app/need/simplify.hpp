@@ -1,0 +1,13 @@
+#pragma once
+
+#include "app/need/search.hpp"
+
+namespace fascia::app {
+
+/// Leaves out of a choice that meets its need what does not matter: finite elements that stay small become linear, a
+/// body that moves as a whole rigid, the geometric stiffness goes where Newton's method needs no more iterations
+/// without it. Each is tried on a coarse mesh first; all that change little are then tried together with the choice,
+/// and stay if they save time and what they add to the errors is still allowed. What the scene says itself stays.
+void simplify(Trials& trials, Found& found);
+
+}  // namespace fascia::app
