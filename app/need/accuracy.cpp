@@ -61,10 +61,12 @@ Accuracy::Accuracy(const Trials& trials, const NeedChoice& like) : trials_(&tria
     std::sort(levels.begin(), levels.end(),
               [](const Trial* a, const Trial* b) { return a->choice.resolution.level < b->choice.resolution.level; });
     std::vector<double> h;
+    h.reserve(levels.size());
     for (const Trial* t : levels) h.push_back(1.0 / t->choice.resolution.level);
     std::vector<std::optional<Convergence>>& of = of_.emplace_back();
     for (std::size_t w = 0; w < best_.size(); ++w) {
       std::vector<const Series*> values;
+      values.reserve(levels.size());
       for (const Trial* t : levels) values.push_back(&t->values[w]);
       of.push_back(convergence_of(h, values, trials.open().order(f)));
     }

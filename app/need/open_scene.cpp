@@ -208,6 +208,7 @@ std::vector<int> pattern_of(const std::vector<double>& lengths, double slender, 
   const auto [least, largest] = std::minmax_element(lengths.begin(), lengths.end());
   const double size = std::max(slender * *least, *largest / most);
   std::vector<int> pattern;
+  pattern.reserve(lengths.size());
   for (const double length : lengths) pattern.push_back(std::max(1, static_cast<int>(std::lround(length / size))));
   return pattern;
 }
