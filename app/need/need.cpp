@@ -28,12 +28,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What of a scene is wrong shows with any choice: it is told before trials are made.
-void check_first(const Scene& scene, const Trials& trials, const NeedChoice& first) {
+/// What of a scene is wrong shows with any choice: it is told before others are tried. @return the largest size [m]
+double check_first(const Scene& scene, const Trials& trials, const NeedChoice& first) {
   std::vector<std::string> overrides = scene.overrides;
   const std::vector<std::string> chosen = trials.overrides(first);
   overrides.insert(overrides.end(), chosen.begin(), chosen.end());
-  build_simulation(parse_scene_text(scene.text, scene.path, overrides));
+  double size = 0;
+  for (const SimulatedBody& b : build_simulation(parse_scene_text(scene.text, scene.path, overrides)).bodies)
+    size = std::max(size, b.body->size());
+  return size;
+}
+
+/// Errors are relative: nothing can be said of a quantity that is 0.
+/// @throws SceneError  the first trial gives rounding alone
+void check_scale(const Scene& scene, Trials& trials, const NeedChoice& first, double size) {
+  const Trial& trial = trials.run(first);
+  for (std::size_t w = 0; w < trial.values.size(); ++w) {
+    const Wanted& wanted = trials.wanted()[w];
+    if (wanted.allowed && trial.values[w].largest() <= rounding_of(wanted.quantity, size))
+      throw SceneError({{scene.place_of(scene.need ? "need" : "bodies"),
+                         fmt::format("{} is 0 but for rounding, and no error is relative to that; name another probe",
+                                     wanted.name)}});
+  }
 }
 
 double memory_of(const Scene& scene) {
@@ -65,7 +81,7 @@ int run_need(const RunOptions& options, const Scene& scene) {
     };
     Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), tell, [&] { return stop.requested(); });
     const NeedChoice first = first_choice(trials);
-    check_first(scene, trials, first);
+    check_scale(scene, trials, first, check_first(scene, trials, first));
     found = is_dynamic(scene.solver.kind) ? search_in_time(trials, first, limits_of(scene))
                                           : search_resolution(trials, first, limits_of(scene));
     if (stop.requested()) {

@@ -142,12 +142,12 @@ class Opening {
       cut();
   }
 
-  /// Twelve cells around are 3 x 3 in the core and one layer: all grow alike.
+  /// Eight cells around are 2 x 2 in the core and one layer.
   static std::vector<int> round_pattern(double length, double radius) {
-    constexpr int around = 12;
-    constexpr double across = 5;  // cells in a diameter
+    constexpr int around = 8;
+    constexpr double across = 4;  // cells in a diameter
     const double size = 2 * radius / across;
-    return {std::clamp(static_cast<int>(std::lround(length / (2 * size))), 1, 4 * kMostOfPattern), around};
+    return {std::clamp(static_cast<int>(std::lround(length / (kSlender * size))), 1, 4 * kMostOfPattern), around};
   }
 
   const char* ball_key() const { return says("domain.sphere") ? "sphere" : "ellipsoid"; }
@@ -184,15 +184,26 @@ const Family& family_of(const OpenBody& body, int family) {
   return body.families[std::min(static_cast<std::size_t>(family), body.families.size() - 1)];
 }
 
-/// Numbers of cells or frames of a body, along one direction twice the cells.
-std::vector<int> counts_of(const OpenBody& body, const Resolution& r, int doubled = -1) {
+bool has(const std::vector<int>& list, int item) { return std::find(list.begin(), list.end(), item) != list.end(); }
+
+std::vector<int> thin_directions_of(const OpenBody& body) {
+  std::vector<int> thin;
+  if (body.fixed || body.pattern.empty() || std::ranges::max(body.pattern) == 1) return thin;
+  for (std::size_t i = 0; i < body.pattern.size(); ++i)
+    if (body.pattern[i] == 1) thin.push_back(static_cast<int>(i));
+  return thin;
+}
+
+/// Numbers of cells or frames of a body, along some directions twice the cells.
+std::vector<int> counts_of(const OpenBody& body, const Resolution& r, const std::vector<int>& doubled = {}) {
   const Family& family = family_of(body, r.family);
+  const std::vector<int> thin = thin_directions_of(body);
   std::vector<int> counts = body.pattern;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    const bool settled =
-        std::find(family.settled.begin(), family.settled.end(), static_cast<int>(i)) != family.settled.end();
-    counts[i] *= settled ? std::min(r.level, family.least) : r.level;
-    if (static_cast<int>(i) == doubled) counts[i] *= 2;
+    const int direction = static_cast<int>(i);
+    counts[i] *= has(family.settled, direction) ? std::min(r.level, family.least) : r.level;
+    if (!has(thin, direction)) counts[i] *= family.stretch;
+    if (has(doubled, direction)) counts[i] *= 2;
     if (body.frames) ++counts[i];
   }
   return counts;
@@ -262,17 +273,15 @@ std::vector<std::string> OpenScene::overrides(const Resolution& r) const {
   return all;
 }
 
-std::vector<int> OpenScene::thin_directions(std::size_t body) const {
-  const OpenBody& b = bodies[body];
-  std::vector<int> thin;
-  if (b.fixed || b.pattern.empty() || std::ranges::max(b.pattern) == 1) return thin;
-  for (std::size_t i = 0; i < b.pattern.size(); ++i)
-    if (b.pattern[i] == 1) thin.push_back(static_cast<int>(i));
-  return thin;
+std::vector<int> OpenScene::thin_directions(std::size_t body) const { return thin_directions_of(bodies[body]); }
+
+std::string OpenScene::doubled(const Resolution& r, std::size_t body, const std::vector<int>& directions) const {
+  return numbers_key(bodies[body], counts_of(bodies[body], r, directions));
 }
 
-std::string OpenScene::doubled(const Resolution& r, std::size_t body, int direction) const {
-  return numbers_key(bodies[body], counts_of(bodies[body], r, direction));
+Family& OpenScene::family(std::size_t body, int number) {
+  std::vector<Family>& families = bodies[body].families;
+  return families[std::min(static_cast<std::size_t>(number), families.size() - 1)];
 }
 
 std::string OpenScene::text(const Resolution& r) const {

@@ -13,6 +13,7 @@ struct Family {
   std::string name;                    ///< "quadratic hexahedra", "affine frames"
   std::vector<std::string> overrides;  ///< "key.path=value"
   int least = 1;                       ///< the coarsest resolution that is worth a try
+  int stretch = 1;                     ///< times as many cells along the directions of a body that are not thin
   std::vector<int> settled{};          ///< directions whose cells stay as many as at that one
   double order = 2;                    ///< of the error of displacements over the size of cells, where none is measured
 };
@@ -50,8 +51,9 @@ struct OpenScene {
   std::vector<std::string> overrides(const Resolution& r) const;
   /// Directions in which a body is a single cell wide at resolution 1, unlike others.
   std::vector<int> thin_directions(std::size_t body) const;
-  /// The numbers of a body with twice the cells along one direction, as "key=value".
-  std::string doubled(const Resolution& r, std::size_t body, int direction) const;
+  /// The numbers of a body with twice the cells along some directions, as "key=value".
+  std::string doubled(const Resolution& r, std::size_t body, const std::vector<int>& directions) const;
+  Family& family(std::size_t body, int number);
   /// "beam: quadratic hexahedra, 8 x 1 x 1 cells"; of several bodies one behind the other.
   std::string text(const Resolution& r) const;
 };

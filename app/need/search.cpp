@@ -1,5 +1,6 @@
 #include "app/need/search.hpp"
 
+#include "app/need/shape_cells.hpp"
 #include "app/readable.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +16,6 @@ constexpr int kMostLevel = 256;
 constexpr double kMostDoubt = 0.5;
 /// A third level makes a family surer by about this, beside that it is finer.
 constexpr double kMeasuring = 0.25;
-/// Part of what is allowed that cells along a thin direction may still change.
-constexpr double kSettled = 0.03;
 /// Memory of the program itself, which does not grow with the scene [bytes].
 constexpr double kProgramMemory = 40e6;
 /// Trials below this time are mostly noise: no exponent is taken from them [s].
@@ -75,32 +74,11 @@ class Search {
     for (int f = 0; f < open.families() && !trials_.stopped(); ++f) {
       const int least = open.least(f);
       run({f, least});
-      settle({f, least});
+      if (has_error_ && tried({f, least})) shape_cells(trials_, tried({f, least})->choice);
+      run({f, least});
       if (const Resolution second{f, 2 * least}; !trials_.stopped() && open.takes(second) && beyond(second).empty())
         run(second);
     }
-  }
-
-  /// Thin bodies may need no more cells through them: those of flat and slender solids stay where twice as many change
-  /// next to nothing.
-  void settle(const Resolution& r) {
-    const Trial* own = tried(r);
-    if (!own || !has_error_) return;
-    for (std::size_t b = 0; b < trials_.open().bodies.size(); ++b)
-      for (const int direction : trials_.open().thin_directions(b)) {
-        NeedChoice choice = own->choice;
-        choice.more.push_back(trials_.open().doubled(r, b, direction));
-        const Trial& twice = trials_.run(choice);
-        if (!twice.good()) continue;
-        double most = 0;
-        for (std::size_t w = 0; w < own->values.size(); ++w)
-          if (const auto& allowed = trials_.wanted()[w].allowed)
-            most = std::max(most, relative_distance(own->values[w], twice.values[w]).value_or(INFINITY) / *allowed);
-        if (most > kSettled) continue;
-        trials_.settle(b, r.family, direction);
-        trials_.tell(fmt::format("need: {}: twice the cells through \"{}\" change {:.1g} of what is allowed; they stay",
-                                 trials_.text(own->choice), trials_.open().bodies[b].name, most));
-      }
   }
 
   bool failed(const Resolution& r) const { return std::find(failed_.begin(), failed_.end(), r) != failed_.end(); }

@@ -26,7 +26,8 @@ std::string displacement_probe(const Scene& scene, const std::string& body) {
 }
 
 Wanted displacement_of(const Scene& scene, const std::string& body, std::optional<double> allowed) {
-  return {fmt::format("the displacement of {}", in_quotes(body)), displacement_probe(scene, body), body, allowed};
+  return {fmt::format("the displacement of {}", in_quotes(body)), displacement_probe(scene, body), body,
+          Quantity::max_displacement, allowed};
 }
 
 /// The smaller of two allowed errors, of which one or both may be missing.
@@ -61,7 +62,7 @@ bool interrupted_steps(const Scene& scene, const ChildResult& result) {
 
 std::vector<Wanted> wanted_of(const Scene& scene) {
   std::vector<Wanted> wanted;
-  for (const Probe& p : scene.probes) wanted.push_back({in_quotes(p.name), p.name, "", std::nullopt});
+  for (const Probe& p : scene.probes) wanted.push_back({in_quotes(p.name), p.name, "", p.quantity, std::nullopt});
   for (const Body& body : scene.bodies)
     if (!is_carrier(body)) wanted.push_back(displacement_of(scene, body.name, std::nullopt));
   const auto need = [&](const StatedNeed& stated, const std::string& body) {
@@ -75,6 +76,22 @@ std::vector<Wanted> wanted_of(const Scene& scene) {
     if (body.need) need(*body.need, body.name);
   std::stable_partition(wanted.begin(), wanted.end(), [](const Wanted& w) { return w.allowed.has_value(); });
   return wanted;
+}
+
+double rounding_of(Quantity quantity, double size) {
+  constexpr double rounding = 1e-12;
+  switch (quantity) {
+    case Quantity::displacement:
+    case Quantity::position:
+    case Quantity::max_displacement:
+    case Quantity::mean_displacement:
+      return rounding * size;
+    case Quantity::rotation:
+    case Quantity::strain:
+      return rounding;
+    default:
+      return 0;
+  }
 }
 
 std::optional<double> relative_distance(const Series& a, const Series& b) {
@@ -118,8 +135,14 @@ std::string Trials::text(const NeedChoice& choice) const {
 }
 
 void Trials::settle(std::size_t body, int family, int direction) {
-  std::vector<Family>& families = open_.bodies[body].families;
-  families[std::min(static_cast<std::size_t>(family), families.size() - 1)].settled.push_back(direction);
+  open_.family(body, family).settled.push_back(direction);
+}
+
+void Trials::stretch(std::size_t body, int family) {
+  for (Trial& trial : trials_)
+    if (trial.choice.resolution.family == family && trial.choice.more.empty())
+      trial.choice.more = {open_.doubled(trial.choice.resolution, body, {})};
+  open_.family(body, family).stretch *= 2;
 }
 
 const Trial* Trials::find(const NeedChoice& choice) const {

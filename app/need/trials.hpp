@@ -17,9 +17,10 @@ namespace fascia::app {
 
 /// A quantity whose error counts, or is told.
 struct Wanted {
-  std::string name;               ///< in messages: `"tip"`, `the displacement of "beam"`
-  std::string probe;              ///< column of probes.csv
-  std::string body;               ///< whose largest displacement it is; empty: a probe of the scene
+  std::string name;   ///< in messages: `"tip"`, `the displacement of "beam"`
+  std::string probe;  ///< column of probes.csv
+  std::string body;   ///< whose largest displacement it is; empty: a probe of the scene
+  Quantity quantity = Quantity::max_displacement;
   std::optional<double> allowed;  ///< relative error; none: it is only told
 };
 
@@ -60,6 +61,9 @@ class Trials {
   const OpenScene& open() const { return open_; }
   /// Cells of a body along a direction stay as many as they are at the coarsest level of a family.
   void settle(std::size_t body, int family, int direction);
+  /// All levels of a family have twice as many cells along what is not thin of a body; trials that were made are no
+  /// levels any more.
+  void stretch(std::size_t body, int family);
   const Scene& scene() const { return scene_; }
   const std::vector<Wanted>& wanted() const { return wanted_; }
   bool stopped() const { return stop_(); }
@@ -79,6 +83,9 @@ class Trials {
   std::function<bool()> stop_;
   std::deque<Trial> trials_;  ///< references to them stay
 };
+
+/// Values of a quantity that are rounding alone. @param size  of the largest body [m]
+double rounding_of(Quantity quantity, double size);
 
 /// What a scene that states a need asks for, then its other probes.
 std::vector<Wanted> wanted_of(const Scene& scene);
