@@ -1,14 +1,13 @@
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
-#include "app/estimate/estimate.hpp"
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
-#include "app/need/need.hpp"
-#include "app/need/tune.hpp"
+#include "app/need/kept_costs.hpp"
 #include "app/readable.hpp"
 #include "app/result_size.hpp"
 #include "app/run_scene.hpp"
 #include "app/solver_settings.hpp"
+#include "app/tools.hpp"
 
 #include <fmt/format.h>
 
@@ -31,7 +30,7 @@ std::string describe(const SimulatedBody& b) {
 
 int check_scene(const RunOptions& options) {
   Scene scene = read_scene(options);
-  if (scene.states_need()) return check_need(options, scene);
+  if (scene.states_need()) return tools().check_need(options, scene);
   Simulation s = load_scene(std::move(scene));
   const Backend backend = choose_backend(s);
   warn_of_backend(s, backend);
@@ -73,7 +72,7 @@ int check_scene(const RunOptions& options) {
   if (const std::string time = time_line(s); !time.empty()) fmt::print("{}\n", time);
   fmt::print("results: {}\n", results.text());
   if (s.scene.output.estimate)
-    for (const std::string& line : plan_lines(plan_estimate(s))) fmt::print("{}\n", line);
+    for (const std::string& line : tools().estimate_plan(s)) fmt::print("{}\n", line);
   if (backend == Backend::cuda) fmt::print("computed on the GPU\n");
   fmt::print("{} is sound; {} warning{}\n", options.scene.string(), s.warnings.size(),
              s.warnings.size() == 1 ? "" : "s");

@@ -1,4 +1,4 @@
-#include "app/bench/benchmark.hpp"
+#include "app/bench/command.hpp"
 #include "app/compare/command.hpp"
 #include "app/completion.hpp"
 #include "app/explain/explain.hpp"
@@ -11,6 +11,7 @@
 #include "app/run_scene.hpp"
 #include "app/scene/errors.hpp"
 #include "app/study/study.hpp"
+#include "app/tools.hpp"
 #include "app/verify/verify.hpp"
 #include "app/version.hpp"
 #include "core/model/errors.hpp"
@@ -192,8 +193,7 @@ int print_completion(const CLI::App& app) {
       for (const std::string& name : option->get_lnames()) words.options.push_back("--" + name);
     if (words.name == "completion") words.arguments = {"bash"};
     if (words.name == "list") words.arguments = listed_things();
-    if (words.name == "bench")
-      for (const Benchmark& b : all_benchmarks()) words.arguments.push_back(b.name);
+    if (words.name == "bench") words.arguments.assign(kBenchmarkNames.begin(), kBenchmarkNames.end());
   }
   fmt::print("{}", bash_completion(commands));
   return kDone;
@@ -247,13 +247,13 @@ int dispatch(int argc, char** argv) {
   }
   if (completion->parsed()) return print_completion(app);
   if (list->parsed()) return list_things(what);
-  if (bench->parsed()) return run_bench(bench_options);
-  if (rerun->parsed()) return rerun_result(rerun_options);
-  if (compare->parsed()) return compare_command(compare_options);
-  if (study->parsed()) return run_study(study_options);
-  if (tune->parsed()) return run_tune(tune_options);
-  if (verify->parsed()) return verify_command(verify_options);
-  if (explain->parsed()) return explain_scene(explain_options);
+  if (bench->parsed()) return tools().bench(bench_options);
+  if (rerun->parsed()) return tools().rerun(rerun_options);
+  if (compare->parsed()) return tools().compare(compare_options);
+  if (study->parsed()) return tools().study(study_options);
+  if (tune->parsed()) return tools().tune(tune_options);
+  if (verify->parsed()) return tools().verify(verify_options);
+  if (explain->parsed()) return tools().explain(explain_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 

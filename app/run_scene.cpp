@@ -2,13 +2,12 @@
 
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
-#include "app/estimate/estimate.hpp"
+#include "app/estimate/error_estimate.hpp"
 #include "app/gpu_run.hpp"
 #include "app/interruption.hpp"
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
 #include "app/messages.hpp"
-#include "app/need/need.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
 #include "app/readable.hpp"
@@ -19,6 +18,7 @@
 #include "app/run_text.hpp"
 #include "app/simulation.hpp"
 #include "app/solver_settings.hpp"
+#include "app/tools.hpp"
 #include "core/math/rotation.hpp"
 #include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
@@ -82,7 +82,7 @@ struct Outcome {
 };
 
 Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
-                 Interruption& stop, Estimate* estimate) {
+                 Interruption& stop, ErrorEstimate* estimate) {
   Outcome out;
   out.warnings = Warnings(s.scene.silenced);
   out.backend = backend;
@@ -297,7 +297,7 @@ void finish(const Simulation& s, RunResult& files, const nlohmann::ordered_json&
 
 /// The run. What was saved before an error stays, with a summary that tells it.
 Outcome computed(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
-                 Interruption& stop, Estimate* estimate) {
+                 Interruption& stop, ErrorEstimate* estimate) {
   const auto fail = [&](RunStatus status, const std::exception& e) {
     files.end(status, e.what());
     if (files.shown()) say("{}: it ended early{}\n", options.scene.string(), kept(s, true));
@@ -315,7 +315,7 @@ Outcome computed(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
 }
 
 /// Runs the twins and tells the errors, in the summary too. @return  whether it was not interrupted
-bool add_estimate(const Simulation& s, const RunOptions& options, Estimate& estimate, RunResult& files,
+bool add_estimate(const Simulation& s, const RunOptions& options, ErrorEstimate& estimate, RunResult& files,
                   Interruption& stop, nlohmann::ordered_json& summary) {
   const auto tell = [&](const std::string& line) {
     if (!options.quiet && !options.json) fmt::print("{}\n", line), std::fflush(stdout);
@@ -333,7 +333,7 @@ bool add_estimate(const Simulation& s, const RunOptions& options, Estimate& esti
 int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   Scene scene = read_scene(options);
-  if (scene.states_need()) return run_need(options, scene);
+  if (scene.states_need()) return tools().run_need(options, scene);
   Interruption stop;
   Simulation s = load_scene(std::move(scene));
   const Backend backend = choose_backend(s);
@@ -342,8 +342,8 @@ int run_scene(const RunOptions& options) {
   if (may_be_large(s)) warn_of_size(s, forecast_result(s));
   if (!options.quiet && !options.json)
     for (const SimulatedBody& b : s.bodies) fmt::print("body {}: {}\n", b.name, body_text(*b.body));
-  std::optional<Estimate> estimate;
-  if (s.scene.output.estimate) estimate.emplace(s);
+  std::unique_ptr<ErrorEstimate> estimate;
+  if (s.scene.output.estimate) estimate = tools().make_estimate(s);
   RunResult files(s);
   const Abandonable while_it_lives(stop, [&] {
     const bool saved = files.abandon();
@@ -351,7 +351,7 @@ int run_scene(const RunOptions& options) {
   });
   ThreadPool pool(s.scene.solver.threads);
   const double setup = seconds_since(start);
-  Outcome out = computed(s, backend, pool, files, options, stop, estimate ? &*estimate : nullptr);
+  Outcome out = computed(s, backend, pool, files, options, stop, estimate.get());
   out.times.setup += setup;
   out.warnings.tell(options.scene);
   s.warnings.add(out.warnings);

@@ -1,6 +1,6 @@
 #include "app/run_text.hpp"
 
-#include "app/estimate/estimate.hpp"
+#include "app/estimate/lines.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

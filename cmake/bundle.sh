@@ -77,8 +77,10 @@ libc=$(libraries "$build/${programs[0]}" | sed -n 's/^libc.so.6 //p')
 for name in libdl.so.2 libpthread.so.0 librt.so.1 libm.so.6 libutil.so.1 libresolv.so.2 libtbbmalloc.so.2 libiomp5.so; do
   [ ! -e "$(dirname "$libc")/$name" ] || cp -L "$(dirname "$libc")/$name" "$out/lib/"
 done
-# The GPU part, which the library loads from its own folder.
-if [ -e "$out/lib/libfascia.so" ] && [ -e "$build/fascia-cuda.so" ]; then cp "$build/fascia-cuda.so" "$out/lib/"; fi
+# Modules, which the library loads from its own folder: the other commands, and the GPU part.
+for module in fascia-tools fascia-cuda; do
+  if [ -e "$out/lib/libfascia.so" ] && [ -e "$build/$module.so" ]; then cp "$build/$module.so" "$out/lib/"; fi
+done
 chmod u+w "$out"/lib/* "$out"/programs/*
 strip --strip-unneeded "$out"/programs/* 2>/dev/null || true
 find "$out/lib" -type f ! -name 'ld-linux*' -exec strip --strip-unneeded {} + 2>/dev/null || true

@@ -7,7 +7,8 @@ set(private ${CMAKE_INSTALL_LIBDIR}/fascia)
 file(RELATIVE_PATH to_private ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/fascia)
 set_target_properties(fascia PROPERTIES INSTALL_RPATH "$ORIGIN/${to_private}")
 install(TARGETS fascia RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fascia)
-install(TARGETS libfascia LIBRARY DESTINATION ${private} COMPONENT fascia)
+install(TARGETS libfascia fascia-tools LIBRARY DESTINATION ${private} COMPONENT fascia)
+set_target_properties(fascia-tools PROPERTIES INSTALL_RPATH "$ORIGIN")
 if(TARGET fascia-picture)
   install(TARGETS fascia-picture RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT picture)
 endif()
@@ -24,11 +25,13 @@ foreach(level IN LISTS FASCIA_LEVELS)
     CMAKE_ARGS -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
       -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DFASCIA_LEVEL=${level} -DFASCIA_TESTS=OFF -DFASCIA_CUDA=OFF -DFASCIA_PRECOMPILE=${FASCIA_PRECOMPILE}
       -DFASCIA_WITH_CHOLMOD=${FASCIA_WITH_CHOLMOD}
-    BUILD_COMMAND ${CMAKE_COMMAND} --build <BINARY_DIR> --target libfascia
-    INSTALL_COMMAND ${CMAKE_STRIP} --strip-unneeded -o <BINARY_DIR>/stripped.so <BINARY_DIR>/libfascia.so
+    BUILD_COMMAND ${CMAKE_COMMAND} --build <BINARY_DIR> --target libfascia fascia-tools
+    INSTALL_COMMAND ${CMAKE_COMMAND} -E make_directory <BINARY_DIR>/stripped
+    COMMAND ${CMAKE_STRIP} --strip-unneeded -o <BINARY_DIR>/stripped/libfascia.so <BINARY_DIR>/libfascia.so
+    COMMAND ${CMAKE_STRIP} --strip-unneeded -o <BINARY_DIR>/stripped/fascia-tools.so <BINARY_DIR>/fascia-tools.so
     BUILD_ALWAYS ON USES_TERMINAL_BUILD ON)  # one after the other
-  install(FILES ${CMAKE_BINARY_DIR}/${level}/stripped.so DESTINATION ${private}/glibc-hwcaps/${level}
-    RENAME libfascia.so COMPONENT fascia)
+  install(FILES ${CMAKE_BINARY_DIR}/${level}/stripped/libfascia.so ${CMAKE_BINARY_DIR}/${level}/stripped/fascia-tools.so
+    DESTINATION ${private}/glibc-hwcaps/${level} COMPONENT fascia)
 endforeach()
 
 set(shared ${CMAKE_INSTALL_DATADIR}/fascia)
@@ -65,7 +68,7 @@ add_custom_target(fascia_described ALL DEPENDS ${described})
 
 # For ./run: what it may build beside the program when a scene asks for it.
 set(optional_parts "")
-foreach(part fascia-cuda fascia-picture)
+foreach(part fascia-tools fascia-cuda fascia-picture)
   if(TARGET ${part})
     list(APPEND optional_parts ${part})
   endif()

@@ -98,7 +98,10 @@ configure() {
 
 # Optional parts that build/release has made: they must be of the same build as the program.
 made_parts() {
-  [ ! -e "$root/build/release/fascia-cuda.so" ] || echo fascia-cuda
+  local module
+  for module in fascia-tools fascia-cuda; do
+    [ ! -e "$root/build/release/$module.so" ] || echo "$module"
+  done
   [ ! -e "$root/build/release/fascia-picture" ] || echo fascia-picture
 }
 

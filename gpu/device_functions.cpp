@@ -1,8 +1,7 @@
 #include "gpu/device_functions.hpp"
 
 #include "gpu/interface_tag.hpp"
-
-#include <dlfcn.h>
+#include "gpu/loaded_module.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -18,29 +17,24 @@ struct Loaded {
   std::string reason;
 };
 
-/// The folder of the library or program that holds this function; of one that is chosen by the processor
-/// (glibc-hwcaps/LEVEL), the folder that all levels share.
-fs::path own_folder() {
-  Dl_info found{};
-  if (dladdr(reinterpret_cast<const void*>(&device_functions), &found) == 0 || found.dli_fname == nullptr) return ".";
-  std::error_code ignored;
-  const fs::path folder = fs::canonical(found.dli_fname, ignored).parent_path();
-  return folder.parent_path().filename() == "glibc-hwcaps" ? folder.parent_path().parent_path() : folder;
+/// Beside the library or program that holds this function; of one that is chosen by the processor
+/// (glibc-hwcaps/LEVEL), in the folder that all levels share.
+fs::path module_file() {
+  const fs::path folder = file_of(reinterpret_cast<const void*>(&device_functions)).parent_path();
+  const bool chosen = folder.parent_path().filename() == "glibc-hwcaps";
+  return (chosen ? folder.parent_path().parent_path() : folder) / "fascia-cuda.so";
 }
 
-fs::path module_file() { return own_folder() / "fascia-cuda.so"; }
-
 Loaded load() {
-  const fs::path module = module_file();
-  if (!fs::exists(module))
-    return {nullptr, "this build has no CUDA backend: there is no " + module.string() +
+  const fs::path file = module_file();
+  if (!fs::exists(file))
+    return {nullptr, "this build has no CUDA backend: there is no " + file.string() +
                          " (of the package fascia-cuda; in a checkout ./run builds it where there is a CUDA toolkit)"};
-  void* library = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) return {nullptr, std::string("the CUDA backend cannot be loaded: ") + dlerror()};
-  const auto entry = reinterpret_cast<ModuleEntry>(dlsym(library, kModuleEntry));
-  const DeviceFunctions* functions = entry == nullptr ? nullptr : entry();
+  const LoadedModule module = load_module(file, kModuleEntry);
+  if (module.entry == nullptr) return {nullptr, "the CUDA backend cannot be loaded: " + module.reason};
+  const DeviceFunctions* functions = reinterpret_cast<ModuleEntry>(module.entry)();
   if (functions == nullptr || std::string(functions->build) != FASCIA_INTERFACE_TAG)
-    return {nullptr, module.string() + " is of another build than this program: build the target fascia-cuda again"};
+    return {nullptr, file.string() + " is of another build than this program: build the target fascia-cuda again"};
   return {functions, ""};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/bench/command.hpp"
 #include "app/simulation.hpp"
 
 #include <filesystem>
@@ -93,19 +94,6 @@ struct BenchmarkResult {
   std::vector<SkippedCase> skipped;
 };
 
-struct BenchOptions {
-  std::optional<std::string> name;  ///< none: the list of benchmarks is printed
-  std::vector<double> sizes;        ///< empty: all up to the limit
-  std::optional<double> max_points;
-  std::string settings = "both";       ///< "paper", "default", "both"
-  int repeat = 0;                      ///< steps that are timed; 0: StepPlan's
-  int threads = 0;                     ///< 0: all
-  std::vector<int> gpus = {1};         ///< that share a run; each is a backend
-  std::optional<std::string> backend;  ///< none: all that there are
-  std::optional<std::filesystem::path> output;
-  bool json = false, quiet = false;
-};
-
 /// Those that the options choose. @throws BackendError  where there are none
 std::vector<Backend> chosen_backends(const BenchOptions& options);
 
@@ -119,9 +107,5 @@ std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchO
 BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& options,
                                const std::vector<Backend>& backends,
                                const std::function<void(const std::string&)>& say);
-
-/// The command. Returns the exit status.
-/// @throws InputError  an unknown benchmark or size; FileError
-int run_bench(const BenchOptions& options);
 
 }  // namespace fascia::app

@@ -8,7 +8,6 @@
 #include "core/solver/clock.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <exception>
@@ -108,19 +107,6 @@ void drop_exact_twin(EstimatePlan& plan, double residual) {
       note = fmt::format("solver: the residual of the steps, {:.1g}, as the stiffness was factorised", residual);
 }
 
-std::string percent(const Json& error) {
-  return error.is_number() ? fmt::format("{:.2g} %", 100 * error.get<double>()) : "unknown";
-}
-
-std::string line_of(const std::string& name, const Json& e) {
-  std::vector<std::string> parts;
-  for (const char* part : {"discretisation", "time", "solver", "precision"})
-    if (!e.at(part).is_number() || e.at(part).get<double>() > 0)
-      parts.push_back(fmt::format("{} {}", part, percent(e.at(part))));
-  return fmt::format("estimated error of {}: {}{}", name, percent(e.at("total")),
-                     parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, ", ")));
-}
-
 }  // namespace
 
 Estimate::Estimate(const Simulation& simulation) : simulation_(simulation), plan_(plan_estimate(simulation)) {
@@ -178,23 +164,6 @@ std::vector<std::string> plan_lines(const EstimatePlan& plan) {
   std::vector<std::string> lines{
       fmt::format("estimate: {} more runs, about {:.2g} times the time of the run", plan.twins.size(), plan.cost())};
   for (const std::string& note : plan.notes) lines.push_back("estimate: " + note);
-  return lines;
-}
-
-std::vector<std::string> estimate_lines(const Json& summary) {
-  std::vector<std::string> lines;
-  for (const auto& [name, error] : summary.at("estimated_error").items()) {
-    if (name != "bodies") {
-      lines.push_back(line_of(name, error));
-      continue;
-    }
-    for (const auto& [body, of_body] : error.items())
-      lines.push_back(line_of(fmt::format("the displacement of \"{}\"", body), of_body));
-  }
-  for (const auto& note : summary.at("estimate").at("how"))
-    if (const std::string text = note.get<std::string>();
-        text.find("no estimate") != std::string::npos || text.find("gives nothing") != std::string::npos)
-      lines.push_back("estimate: " + text);
   return lines;
 }
 

@@ -3,6 +3,7 @@
 #include "app/interruption.hpp"
 #include "app/machine.hpp"
 #include "app/messages.hpp"
+#include "app/need/kept_costs.hpp"
 #include "app/need/temporary_folder.hpp"
 #include "app/need/tune_scenes.hpp"
 #include "app/readable.hpp"
@@ -15,8 +16,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 
 namespace fascia::app {
 namespace {
@@ -26,10 +25,6 @@ using Json = nlohmann::ordered_json;
 
 /// No further run is begun after this [s].
 constexpr double kMostSeconds = 18;
-
-Json key_of(const Machine& machine) {
-  return {{"processor", machine.cpu}, {"threads", machine.threads}, {"version", machine.fascia}};
-}
 
 std::optional<CostSample> timed(const TuneCase& c, const fs::path& folder, const std::function<bool()>& stop) {
   const fs::path scene = folder / "tune.toml";
@@ -86,9 +81,12 @@ int run_tune(const TuneOptions& options) {
     return kNotConverged;
   }
   const Machine machine = this_machine();
-  Json j{
-      {"fascia", machine.fascia}, {"key", key_of(machine)}, {"date", machine.date}, {"seconds", seconds}, {"runs", run},
-      {"kinds", model.json()}};
+  Json j{{"fascia", machine.fascia},
+         {"key", machine_key(machine)},
+         {"date", machine.date},
+         {"seconds", seconds},
+         {"runs", run},
+         {"kinds", model.json()}};
   const fs::path file = tune_file();
   if (!file.empty()) {
     io::make_directories(file.parent_path());
@@ -106,40 +104,6 @@ int run_tune(const TuneOptions& options) {
   else
     fmt::print("kept in {}\n", file.string());
   return kDone;
-}
-
-fs::path tune_file() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "fascia/tune.json";
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/fascia/tune.json";
-  return {};
-}
-
-std::optional<CostModel> kept_costs(std::string& told) {
-  told.clear();
-  const fs::path file = tune_file();
-  std::error_code none;
-  if (file.empty() || !fs::exists(file, none)) return std::nullopt;
-  std::ifstream stream(file);
-  const Json j = Json::parse(stream, nullptr, false);
-  const auto ignored = [&](const std::string& why) {
-    told = fmt::format("{} {}, and is not used; fascia tune makes another", file.string(), why);
-    return std::nullopt;
-  };
-  if (!j.is_object() || !j.contains("key") || !j.contains("kinds")) return ignored("is not what fascia tune writes");
-  if (j["key"] != key_of(this_machine())) return ignored("is of another machine or version");
-  std::optional<CostModel> costs = CostModel::read(j["kinds"]);
-  return costs ? costs : ignored("is damaged");
-}
-
-std::string time_line(const Simulation& simulation) {
-  std::string told;
-  const std::optional<CostModel> costs = kept_costs(told);
-  if (!costs) return told.empty() ? "" : "time: " + told;
-  const std::optional<TimeForecast> forecast = forecast_time(simulation, *costs);
-  if (!forecast) return "";
-  const bool steps = simulation.scene.solver.kind == SolverKind::central_differences;
-  return fmt::format("time: about {} on this machine ({:.0f} {} assumed)", time_text(forecast->seconds),
-                     forecast->iterations, steps ? "steps" : "Newton iterations");
 }
 
 }  // namespace fascia::app

@@ -72,7 +72,7 @@ TableReader TableReader::table(std::string_view key) const {
 
 std::vector<TableReader> TableReader::tables(std::string_view key) const {
   std::vector<TableReader> readers;
-  const Value* found = given(key);
+  const Value* found = value(key);  // a list in the place of named tables was not looked into
   if (!found) return readers;
   if (const Array* items = found->as_array())
     for (std::size_t i = 0; i < items->size(); ++i)

@@ -75,7 +75,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 TEST(BenchCases, HaveNamesOfTheirOwnAndSoundScenesOfFixedWork) {
   std::set<std::string> names;
+  std::size_t number = 0;
   for (const Benchmark& b : all_benchmarks()) {
+    ASSERT_LT(number, kBenchmarkNames.size());
+    EXPECT_EQ(b.name, kBenchmarkNames[number++]) << "completed in the shell";
     EXPECT_TRUE(names.insert(b.name).second);
     for (const BenchmarkCase& c : b.cases) {
       EXPECT_TRUE(names.insert(c.name).second) << c.name;

@@ -96,6 +96,8 @@ TEST(SceneErrors, WrongTypes) {
   EXPECT_EQ(
       errors_of_beam("[world]\ngravity = 9.81\n"),
       "a.toml:11:11: world.gravity: 9.81 is of the wrong type; must be a list of 3, each an acceleration in m/s2");
+  EXPECT_EQ(errors_of_beam("[[probes]]\nbody = \"beam\"\nat = [1, 2, 3]\n"),
+            "a.toml:10:1: probes: a list of 1 is of the wrong type; must be tables with names");
   EXPECT_EQ(errors_of_beam("[world]\ngravity = [0, 1]\n"),
             "a.toml:11:11: world.gravity: a list of 2 is of the wrong length; must be a list of 3, each an "
             "acceleration in m/s2");
