@@ -43,12 +43,6 @@ if [ -e "$out" ] && [ ! -x "$out/bin/${programs[0]}" ]; then
   exit 2
 fi
 
-if [ -e "$build/fascia-cuda.so" ] && grep -qs '^FASCIA_CUDA_OPTIMIZE:BOOL=OFF' "$build/CMakeCache.txt"; then
-  echo "bundle.sh: the GPU part of $build is not optimised, as ./check leaves it; cmake $build -DFASCIA_CUDA_OPTIMIZE=ON" \
-    "and build it again" >&2
-  exit 2
-fi
-
 is_left_out() {
   local glob
   for glob in "${left_out[@]}"; do

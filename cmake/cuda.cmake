@@ -1,9 +1,8 @@
 # The CUDA backend: in the build where there is a toolkit of version 12 or later. Sets FASCIA_HAS_CUDA, which enables the
 # language, and FASCIA_CUDA_STATE, one line that says what was found.
-set(FASCIA_CUDA AUTO CACHE STRING "CUDA backend: AUTO (where there is a toolkit), ON or OFF")
-set_property(CACHE FASCIA_CUDA PROPERTY STRINGS AUTO ON OFF)
+set(FASCIA_CUDA AUTO CACHE STRING "CUDA backend: AUTO (where there is a toolkit), ON, OFF, or SYNTAX: its code is only looked at")
+set_property(CACHE FASCIA_CUDA PROPERTY STRINGS AUTO ON OFF SYNTAX)
 set(FASCIA_CUDA_ARCHITECTURES "" CACHE STRING "GPU architectures, as in CMAKE_CUDA_ARCHITECTURES; this machine's GPUs, or 80-virtual, where empty")
-option(FASCIA_CUDA_OPTIMIZE "Optimise the device's code; OFF, which takes a third of the compiler's time, to see that it compiles" ON)
 set(FASCIA_CUDA_OLDEST 12.0)
 set(FASCIA_HAS_CUDA OFF)
 
@@ -65,6 +64,9 @@ endfunction()
 
 if(FASCIA_CUDA STREQUAL "AUTO" AND FASCIA_SANITIZE)
   without_cuda("a build with sanitizers")
+elseif(FASCIA_CUDA STREQUAL "SYNTAX")
+  find_nvcc()
+  set(FASCIA_CUDA_STATE "no (its code is only looked at)")
 elseif(NOT FASCIA_CUDA)
   set(FASCIA_CUDA_STATE "no (FASCIA_CUDA=${FASCIA_CUDA})")
 else()
@@ -103,9 +105,21 @@ if(FASCIA_HAS_CUDA)
 
   string(REPLACE ";" ", " FASCIA_CUDA_STATE "${CMAKE_CUDA_ARCHITECTURES}")
   set(FASCIA_CUDA_STATE "toolkit ${FASCIA_NVCC_VERSION}, for ${FASCIA_CUDA_STATE}")
-  if(NOT FASCIA_CUDA_OPTIMIZE)
-    target_compile_options(fascia_plain_flags INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-Xcicc=-O0>)
-    string(APPEND FASCIA_CUDA_STATE ", not optimised")
-  endif()
 endif()
 message(STATUS "CUDA backend: ${FASCIA_CUDA_STATE}")
+
+# device_syntax(sources...): compiles CUDA sources for their errors alone, which takes a quarter of the compiler's time.
+function(device_syntax)
+  set(stamps "")
+  foreach(source IN LISTS ARGN)
+    string(REPLACE "/" "_" name ${source})
+    set(stamp ${CMAKE_BINARY_DIR}/device/${name}.ptx)
+    add_custom_command(OUTPUT ${stamp} DEPFILE ${stamp}.d VERBATIM
+      COMMAND ${FASCIA_NVCC} -M -I. -I${CMAKE_BINARY_DIR}/generated -isystem ${EIGEN3_INCLUDE_DIR} -std=c++20 ${source} -MT ${stamp} -o ${stamp}.d
+      COMMAND bash cmake/device_code.sh ${source} ${stamp} ${FASCIA_NVCC} -I. -I${CMAKE_BINARY_DIR}/generated
+              -isystem ${EIGEN3_INCLUDE_DIR} -std=c++20 -arch=compute_80 -Xcicc=-O0 --expt-relaxed-constexpr --extended-lambda "-DFASCIA_CUDA=\"\""
+      DEPENDS ${CMAKE_SOURCE_DIR}/${source} fascia_interface_tag WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    list(APPEND stamps ${stamp})
+  endforeach()
+  add_custom_target(fascia_device_code ALL DEPENDS ${stamps})
+endfunction()

@@ -96,13 +96,12 @@ configure() {
   (cd "$root" && cmake --preset "$preset" -B "$dir" "${generator[@]}" "${@:3}")
 }
 
-# Optional parts that build/release has made: they must be of the same build as the program.
+# Optional parts that build/release has made, and makes: they must be of the same build as the program.
 made_parts() {
-  local module
-  for module in fascia-tools fascia-cuda; do
-    [ ! -e "$root/build/release/$module.so" ] || echo "$module"
+  local part
+  for part in $(sed -n 's/^FASCIA_OPTIONAL_PARTS:[A-Z]*=//p' "$root/build/release/CMakeCache.txt" 2>/dev/null | tr ';' ' '); do
+    if [ -e "$root/build/release/$part.so" ] || [ -e "$root/build/release/$part" ]; then echo "$part"; fi
   done
-  [ ! -e "$root/build/release/fascia-picture" ] || echo fascia-picture
 }
 
 # True where there is an NVIDIA GPU (the second way is that of virtual machines that hide the driver's files).

@@ -127,7 +127,7 @@ std::string failures(const Explanation& e) {
 }
 
 /// As a shell takes it.
-std::string quoted(const std::string& word) {
+std::string for_shell(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
@@ -135,7 +135,7 @@ std::string quoted(const std::string& word) {
 
 std::string suggestion_text(const Suggestion& s) {
   std::string text = "  " + s.text + "\n   ";
-  for (const std::string& change : s.overrides) text += " --set " + quoted(change);
+  for (const std::string& change : s.overrides) text += " --set " + for_shell(change);
   return text + "\n";
 }
 

@@ -8,7 +8,7 @@
 namespace fascia::app {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string toml_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -31,11 +31,11 @@ std::string number_text(double number) {
 }
 
 struct Writer {
-  std::string operator()(const Date&) const { return quoted("a date"); }
+  std::string operator()(const Date&) const { return toml_string("a date"); }
   std::string operator()(bool b) const { return b ? "true" : "false"; }
   std::string operator()(std::int64_t whole) const { return fmt::format("{}", whole); }
   std::string operator()(double number) const { return number_text(number); }
-  std::string operator()(const std::string& text) const { return quoted(text); }
+  std::string operator()(const std::string& text) const { return toml_string(text); }
   std::string operator()(const Array& items) const {
     std::string out;
     for (const Value& item : items) out += (out.empty() ? "" : ", ") + toml_text(item);
@@ -57,7 +57,7 @@ std::string toml_key(std::string_view key) {
   const auto bare = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
-  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? std::string(key) : quoted(key);
+  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? std::string(key) : toml_string(key);
 }
 
 }  // namespace fascia::app
