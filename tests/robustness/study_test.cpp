@@ -189,6 +189,21 @@ reference = "finest"
       << json["measures"][2]["reference"];
 }
 
+/// As a bundle starts the program: /proc/self/exe is then the loader, and runs of the study must be started by it too.
+TEST_F(StudyProgram, StartsItsRunsThroughTheLoaderItWasStartedBy) {
+  const char* const loader = "/lib64/ld-linux-x86-64.so.2";
+  if (!std::filesystem::exists(loader)) GTEST_SKIP() << "no " << loader;
+  write("[[5,2,2]]");
+  ProgramOptions options;
+  options.directory = folder_.path;
+  const ProgramResult run =
+      run_program({loader, "--argv0", "fascia", "--library-path", fascia::test::build_dir().string(),
+                   fascia::test::program(), "study", "s.toml", "--output", "out"},
+                  options);
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(csv(out() / "study.csv")[1][2], "converged") << run.out << run.err;
+}
+
 TEST_F(StudyProgram, RefusesWhatItCannotDo) {
   std::filesystem::create_directory(out());
   std::ofstream(out() / "letter.txt") << "mine";
