@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <fstream>
 #include <iterator>
 
 namespace fascia::app {
@@ -17,11 +18,23 @@ namespace {
 
 struct Start {
   std::string command, time;
+  std::vector<std::string> first_words;
 };
 
 Start& start() {
   static Start start;
   return start;
+}
+
+/// The loader takes its own words from the front of those that the process was started with; the system keeps them all.
+/// @param count  of the words that are left: the program and its arguments
+std::vector<std::string> words_up_to_program(std::size_t count) {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  if (words.size() <= count || count == 0) return {"fascia"};
+  words.resize(words.size() - count + 1);
+  return words;
 }
 
 std::string whole_path(const std::filesystem::path& path) {
@@ -45,9 +58,15 @@ void remember_command(int argc, char** argv) {
   std::transform(argv, argv + argc, std::back_inserter(words), quoted_for_shell);
   start().time = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   start().command = fmt::format("{}", fmt::join(words, " "));
+  start().first_words = words_up_to_program(words.size());
 }
 
 std::string remembered_command() { return start().command; }
+
+std::vector<std::string> first_words_of_command() {
+  const std::vector<std::string>& words = start().first_words;
+  return words.empty() ? std::vector<std::string>{"fascia"} : words;
+}
 
 std::vector<std::filesystem::path> input_files(const Scene& scene) {
   std::vector<std::filesystem::path> files;

@@ -12,6 +12,9 @@ namespace fascia::app {
 /// The command that the process was started with, words quoted for a shell where they must be.
 void remember_command(int argc, char** argv);
 std::string remembered_command();
+/// The words that begin a command of this program, for execv of /proc/self/exe, before its arguments: its name, or what
+/// a loader that was started by name (as a bundle does it) was told up to the program.
+std::vector<std::string> first_words_of_command();
 
 /// A word as a shell takes it: in quotes where it must be.
 std::string quoted_for_shell(const std::string& word);

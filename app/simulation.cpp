@@ -13,6 +13,7 @@
 #include "core/model/dependent_inertia.hpp"
 #include "core/model/errors.hpp"
 #include "core/physics/inertia.hpp"
+#include "core/solver/boundary_motion.hpp"
 #include "core/solver/dependents.hpp"
 #include "meshless/neighbours.hpp"
 
@@ -255,6 +256,7 @@ Simulation build_simulation(Scene scene) {
   give_inertia_to_hosts(s);
   s.initial = State::at_rest(s.model);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
+  stop_held(s.model, s.initial);
   start_dependents(s);
   s.initial.turned.resize(s.model.constraints.size());
   if (s.model.constrained_dof_count() == s.model.dof_count() && s.scene.solver.kind == SolverKind::modes)

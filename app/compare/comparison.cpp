@@ -101,7 +101,20 @@ void keep_only(Comparison& c, const std::vector<std::string>& only) {
   c.notes.push_back(fmt::format("for the tolerance counts only: {}", fmt::join(only, ", ")));
 }
 
+InputError damaged(const fs::path& a, const fs::path& b, const Json::exception& e) {
+  return InputError(fmt::format("{} or {}: summary.json is damaged: {}", a.string(), b.string(), e.what()));
+}
+
 }  // namespace
+
+FieldComparison compare_fields(const fs::path& a, const fs::path& b, const FieldChoice& choice) try {
+  const Json x = read_summary(a), y = read_summary(b);
+  FieldSource source_a{SavedStates(a, x), kind_of(scene_settings(x, "A"), x), volumes_of(x)};
+  FieldSource source_b{SavedStates(b, y), kind_of(scene_settings(y, "B"), y), volumes_of(y)};
+  return compare_fields(source_a, source_b, choice);
+} catch (const Json::exception& e) {
+  throw damaged(a, b, e);
+}
 
 Comparison compare(const fs::path& a, const fs::path& b, const std::vector<std::string>& only) try {
   const Json x = read_summary(a), y = read_summary(b);
@@ -131,8 +144,8 @@ Comparison compare(const fs::path& a, const fs::path& b, const std::vector<std::
   c.files = file_differences(x, y);
   c.program = program_differences(x, y);
   return c;
-} catch (const nlohmann::json::exception& e) {
-  throw InputError(fmt::format("{} or {}: summary.json is damaged: {}", a.string(), b.string(), e.what()));
+} catch (const Json::exception& e) {
+  throw damaged(a, b, e);
 }
 
 }  // namespace fascia::app

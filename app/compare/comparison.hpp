@@ -38,4 +38,8 @@ struct Comparison {
 Comparison compare(const std::filesystem::path& a, const std::filesystem::path& b,
                    const std::vector<std::string>& only = {});
 
+/// The fields of two results alone. @throws FileError, InputError  as compare()
+FieldComparison compare_fields(const std::filesystem::path& a, const std::filesystem::path& b,
+                               const FieldChoice& choice);
+
 }  // namespace fascia::app

@@ -102,13 +102,14 @@ void add_state(FieldDifference& d, const BodyPair& pair, const Field& a, const F
 
 class Fields {
  public:
-  Fields(FieldSource& a, FieldSource& b) : a_(a), b_(b) {}
+  Fields(FieldSource& a, FieldSource& b, const FieldChoice& choice) : a_(a), b_(b), choice_(choice) {}
 
   FieldComparison compare() {
     find_bodies();
     TimePairs times = pair_times(a_.states.times(), a_.kind, b_.states.times(), b_.kind, "states");
     result_.structure.insert(result_.structure.end(), times.structure.begin(), times.structure.end());
     result_.notes.insert(result_.notes.end(), times.notes.begin(), times.notes.end());
+    if (choice_.last && !times.pairs.empty()) times.pairs = {times.pairs.back()};
     for (const TimePair& time : times.pairs) add(time);
     tell_pairs();
     const bool same_times = a_.states.times() == b_.states.times() && times.structure.empty();
@@ -120,14 +121,23 @@ class Fields {
   }
 
  private:
+  bool is_chosen(const std::string& body) const { return choice_.body.empty() || choice_.body == body; }
+
+  bool is_chosen(const Field& field, bool modes) const {
+    return is_compared(field.name) && (!modes || field.name == "displacement") &&
+           (choice_.field.empty() || choice_.field == field.name);
+  }
+
   void find_bodies() {
     for (const std::string& name : a_.states.bodies())
-      if (b_.states.has(name))
-        result_.bodies.push_back({name, {}, 0});
+      if (!is_chosen(name))
+        continue;
+      else if (b_.states.has(name))
+        result_.bodies.push_back({name, {}, 0, b_.volumes[name]});
       else if (!b_.states.times().empty())
         result_.structure.push_back(fmt::format("body \"{}\" is in A alone", name));
     for (const std::string& name : b_.states.bodies())
-      if (!a_.states.has(name) && !a_.states.times().empty())
+      if (is_chosen(name) && !a_.states.has(name) && !a_.states.times().empty())
         result_.structure.push_back(fmt::format("body \"{}\" is in B alone", name));
   }
 
@@ -144,7 +154,7 @@ class Fields {
       const auto& [x, y] = meshes[k];
       for (const Field& field : x->point_fields) {
         const Field* other = find(*y, field.name);
-        if (!is_compared(field.name) || (modes && field.name != "displacement")) continue;
+        if (!is_chosen(field, modes)) continue;
         if (other == nullptr || other->components != field.components) {
           only_in_one_.insert(fmt::format("{}: {}", result_.bodies[k].name, field.name));
           continue;
@@ -156,7 +166,7 @@ class Fields {
         add_state(difference(result_.bodies[k].name, field), result_.bodies[k].pair, field, *other, scale, time.time);
       }
       for (const Field& field : y->point_fields)
-        if (is_compared(field.name) && !modes && find(*x, field.name) == nullptr)
+        if (!modes && is_chosen(field, modes) && find(*x, field.name) == nullptr)
           only_in_one_.insert(fmt::format("{}: {}", result_.bodies[k].name, field.name));
     }
   }
@@ -253,6 +263,7 @@ class Fields {
   }
 
   FieldSource &a_, &b_;
+  const FieldChoice& choice_;
   FieldComparison result_;
   std::set<std::string> only_in_one_;
   bool paired_ = false;
@@ -260,6 +271,8 @@ class Fields {
 
 }  // namespace
 
-FieldComparison compare_fields(FieldSource& a, FieldSource& b) { return Fields(a, b).compare(); }
+FieldComparison compare_fields(FieldSource& a, FieldSource& b, const FieldChoice& choice) {
+  return Fields(a, b, choice).compare();
+}
 
 }  // namespace fascia::app

@@ -31,6 +31,7 @@ struct ComparedBody {
   std::string name;
   BodyPair pair;
   std::size_t places = 0;
+  double volume = 0;  ///< of its matter, as B has it [m³]
 };
 
 struct FieldComparison {
@@ -47,9 +48,16 @@ struct FieldSource {
   std::map<std::string, double> volumes;  ///< of the bodies [m³]
 };
 
-/// Compares all point fields that the bodies of two results have in common, as functions of the rest position.
+/// A part of what two results have in common.
+struct FieldChoice {
+  std::string field;  ///< empty: all
+  std::string body;   ///< empty: all
+  bool last = false;  ///< at the last time that both reach; otherwise at all
+};
+
+/// Compares the point fields that the bodies of two results have in common, as functions of the rest position.
 /// Modes are compared by their displacement alone, scaled to one another: their size and sign mean nothing.
 /// @throws FileError, InputError  see SavedStates
-FieldComparison compare_fields(FieldSource& a, FieldSource& b);
+FieldComparison compare_fields(FieldSource& a, FieldSource& b, const FieldChoice& choice = {});
 
 }  // namespace fascia::app

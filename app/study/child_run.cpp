@@ -1,5 +1,6 @@
 #include "app/study/child_run.hpp"
 
+#include "app/provenance.hpp"
 #include "core/solver/clock.hpp"
 
 #include <fcntl.h>
@@ -51,7 +52,8 @@ class Words {
 };
 
 std::vector<std::string> arguments_of(const ChildRun& run) {
-  std::vector<std::string> words{"fascia", "run", run.scene.string(), "--quiet", "--output", run.output.string()};
+  std::vector<std::string> words = first_words_of_command();
+  words.insert(words.end(), {"run", run.scene.string(), "--quiet", "--output", run.output.string()});
   for (const std::string& change : run.overrides) {
     words.emplace_back("--set");
     words.push_back(change);

@@ -11,6 +11,8 @@
 namespace fascia::app {
 namespace {
 
+namespace fs = std::filesystem;
+
 Spread sum_of(const Spread& a, const Spread& b) { return {a.median + b.median, a.low + b.low, a.high + b.high}; }
 
 Spread cost_of(const RunRecord& record, StudyCost cost) {
@@ -24,7 +26,12 @@ Spread cost_of(const RunRecord& record, StudyCost cost) {
   }
 }
 
-void find_reference(StudyResult& result, Question& question, const std::filesystem::path& directory,
+RunMeasure measure_field(const FieldDistance& distance) {
+  if (!distance.trouble.empty()) return {{}, {}, {}, distance.trouble};
+  return {{distance.root_mean}, {}, distance.error, ""};
+}
+
+void find_reference(StudyResult& result, Question& question, const fs::path& directory,
                     const std::optional<StudyRun>& run) {
   const StudyMeasure& wanted = result.study.measures[question.measure];
   ReferenceValue& reference = question.reference;
@@ -34,21 +41,33 @@ void find_reference(StudyResult& result, Question& question, const std::filesyst
       reference.trouble = "the study names none";
       break;
     case StudyReference::Kind::value:
-      reference = {{wanted.reference.value, {}, {}}, wanted.reference.uncertainty, wanted.reference.source, ""};
+      reference.at.value = wanted.reference.value;
+      reference.uncertainty = wanted.reference.uncertainty;
+      reference.source = wanted.reference.source;
       break;
     case StudyReference::Kind::finest:
-      reference = finest_value(result, question);
+      reference = wanted.field.empty() ? finest_value(result, question) : finest_field(result, question, directory);
       break;
     case StudyReference::Kind::scene:
       if (!run || !run->converged()) {
         reference.trouble = "its scene did not converge: " + (run && run->record ? run->record->reason : "not run");
         break;
       }
-      reference.at = measure_run(wanted, *run->record, directory / run->plan.directory);
       reference.source = wanted.reference.scene.empty() ? "the base scene" : wanted.reference.scene.string();
       for (const std::string& change : wanted.reference.overrides) reference.source += ", " + change;
+      if (!wanted.field.empty()) {
+        reference.directory = run->plan.directory;
+        break;
+      }
+      reference.at = measure_run(wanted, *run->record, directory / run->plan.directory);
       if (reference.at.value.empty()) reference.trouble = fmt::format("its scene has no probe \"{}\"", wanted.probe);
       break;
+  }
+  if (reference.trouble.empty() && !wanted.field.empty()) {
+    const fs::path there = directory / reference.directory;
+    const FieldDistance& itself = result.fields.at(wanted, there, there);
+    reference.trouble = itself.trouble;
+    reference.at.value = {itself.root_mean};
   }
   if (reference.trouble.empty() && !(norm_of(reference.at.value) > 0))
     reference.trouble = "it is 0, of which no error is a part";
@@ -129,7 +148,7 @@ std::vector<std::size_t> front_of(const StudyResult& result, const Question& que
   return front;
 }
 
-void evaluate(StudyResult& result, const std::filesystem::path& directory,
+void evaluate(StudyResult& result, const fs::path& directory,
               const std::vector<std::optional<StudyRun>>& reference_runs) {
   const std::size_t measures = result.study.measures.size();
   for (StudyRun& run : result.runs) {
@@ -145,9 +164,16 @@ void evaluate(StudyResult& result, const std::filesystem::path& directory,
     Question& question = result.questions[q];
     find_reference(result, question, directory, reference_runs[q]);
     if (!question.reference.trouble.empty()) continue;
-    for (StudyRun& run : result.runs)
-      if (RunMeasure& m = run.measured[question.measure]; belongs(result, question, run))
+    for (StudyRun& run : result.runs) {
+      if (!run.converged() || !belongs(result, question, run)) continue;
+      RunMeasure& m = run.measured[question.measure];
+      const StudyMeasure& wanted = result.study.measures[question.measure];
+      if (wanted.field.empty())
         m.error = relative_error(m, question.reference.at);
+      else
+        m = measure_field(
+            result.fields.at(wanted, directory / run.plan.directory, directory / question.reference.directory));
+    }
     for (const std::size_t r : front_of(result, question)) result.runs[r].on_front[question.measure] = 1;
   }
   find_series(result);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/study/field_measure.hpp"
 #include "app/study/plan.hpp"
 #include "app/study/record.hpp"
 
@@ -9,11 +10,12 @@
 
 namespace fascia::app {
 
-/// A measure of one run.
+/// A measure of one run. The value of a field is its root mean square over the body.
 struct RunMeasure {
   std::vector<double> value;    ///< empty: the run has none
   std::vector<double> times;    ///< of a curve [s]: as many blocks of `value`
   std::optional<double> error;  ///< |value − reference| / |reference|; none without either
+  std::string trouble;          ///< why a field has no error
 };
 
 /// A run with its outcome.
@@ -30,9 +32,10 @@ struct StudyRun {
 /// The value that errors of a measure are distances from.
 struct ReferenceValue {
   RunMeasure at;
-  double uncertainty = 0;  ///< relative; 0 where nothing is known of it
-  std::string source;      ///< in words
-  std::string trouble;     ///< why there is none; empty where there is one
+  double uncertainty = 0;           ///< relative; 0 where nothing is known of it
+  std::string source;               ///< in words
+  std::string trouble;              ///< why there is none; empty where there is one
+  std::filesystem::path directory;  ///< of the run whose field it is, within the study's; of fields alone
 };
 
 /// A measure with the runs that share a reference: all, or those of one value of StudyMeasure::per.
@@ -59,9 +62,10 @@ struct StudyResult {
   int dimension = 3;
   StudyCost cost = StudyCost::solve;
   bool interrupted = false;
+  FieldDistances fields;  ///< that were computed
 };
 
-/// Reads what a measure asks for from a result. @param directory  of the run
+/// Reads what a measure of a probe asks for from a result. @param directory  of the run
 RunMeasure measure_run(const StudyMeasure& measure, const RunRecord& record, const std::filesystem::path& directory);
 
 /// Distance of two values relative to the second, both at their times: the curve of the reference is interpolated.

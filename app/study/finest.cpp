@@ -11,10 +11,18 @@
 namespace fascia::app {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Size of what an axis varies in a run: its own number where unknowns stay, else by unknowns.
 double size_of(const StudyResult& result, std::size_t axis, const StudyRun& run, bool by_unknowns) {
   if (by_unknowns) return std::pow(run.record->dofs, -1.0 / result.dimension);
   return result.study.axes[axis].values[run.plan.at[axis]].number.value_or(0);
+}
+
+/// A run could be the reference of a question: it has what is measured.
+bool is_measured(const StudyResult& result, const Question& question, const StudyRun& run) {
+  const bool field = !result.study.measures[question.measure].field.empty();
+  return run.converged() && belongs(result, question, run) && (field || !run.measured[question.measure].value.empty());
 }
 
 /// The run with the most unknowns, then the most steps.
@@ -24,8 +32,7 @@ std::optional<std::size_t> finest_run(const StudyResult& result, const Question&
     return a.dofs != b.dofs ? a.dofs > b.dofs : a.steps > b.steps;
   };
   for (std::size_t r = 0; r < result.runs.size(); ++r)
-    if (belongs(result, question, result.runs[r]) && result.runs[r].converged() &&
-        !result.runs[r].measured[question.measure].value.empty() &&
+    if (is_measured(result, question, result.runs[r]) &&
         (!finest || finer(*result.runs[r].record, *result.runs[*finest].record)))
       finest = r;
   return finest;
@@ -84,6 +91,43 @@ bool is_finest_of_its_kind(const StudyResult& result, std::size_t r) {
   return true;
 }
 
+/// A run's field. Along each axis that varies a size, the distances of coarser runs from it are c (h^p − h₀^p): their
+/// limit is what it lacks itself.
+Extrapolated as_it_is(StudyResult& result, const Question& question, const StudyRun& run, const fs::path& directory) {
+  Extrapolated found;
+  ReferenceValue& reference = found.reference;
+  reference.directory = run.plan.directory;
+  reference.source = fmt::format("finest run ({}), as it is: a field is not extrapolated", label_of(result, run));
+  bool ordered = true, known = false;
+  for (std::size_t axis = 0; axis < result.study.axes.size(); ++axis) {
+    const std::optional<SizeSeries> series = series_of(result, axis, run.plan.at);
+    if (!series) continue;
+    std::vector<Level> levels;
+    for (std::size_t i = 0; i < series->runs.size(); ++i) {
+      const FieldDistance& apart =
+          result.fields.at(result.study.measures[question.measure],
+                           directory / result.runs[series->runs[i]].plan.directory, directory / run.plan.directory);
+      if (apart.trouble.empty()) levels.push_back({series->h[i], {apart.error}});
+    }
+    const std::optional<Limit> limit = limit_of(levels);
+    if (!limit) continue;
+    known = true;
+    ordered = ordered && limit->order.has_value();
+    reference.uncertainty += limit->uncertainty;
+    reference.source +=
+        limit->order
+            ? fmt::format("; its distances over {} show the order {:.2f}", result.study.axes[axis].name, *limit->order)
+            : fmt::format("; its distances over {} show no order", result.study.axes[axis].name);
+  }
+  found.has_order = known && ordered;
+  return found;
+}
+
+/// A reference that is better known: by an order where the other shows none, by less uncertainty where both do.
+bool is_better(const Extrapolated& other, const Extrapolated& best) {
+  return other.has_order && (!best.has_order || other.reference.uncertainty < best.reference.uncertainty);
+}
+
 }  // namespace
 
 std::optional<SizeSeries> series_of(const StudyResult& result, std::size_t axis, const std::vector<std::size_t>& like) {
@@ -117,17 +161,26 @@ std::optional<SizeSeries> series_of(const StudyResult& result, std::size_t axis,
 ReferenceValue finest_value(const StudyResult& result, const Question& question) {
   const std::size_t measure = question.measure;
   const std::optional<std::size_t> finest = finest_run(result, question);
-  if (!finest) return {{}, 0, "", "no run converged with a value"};
+  if (!finest) return {{}, 0, "", "no run converged with a value", {}};
   Extrapolated best = extrapolated(result, measure, result.runs[*finest]);
   if (!best.reference.at.times.empty()) return best.reference;
   for (std::size_t r = 0; r < result.runs.size(); ++r) {
     const StudyRun& run = result.runs[r];
-    if (r == *finest || !run.converged() || run.measured[measure].value.empty() || !belongs(result, question, run) ||
-        !is_finest_of_its_kind(result, r))
-      continue;
+    if (r == *finest || !is_measured(result, question, run) || !is_finest_of_its_kind(result, r)) continue;
     Extrapolated other = extrapolated(result, measure, run);
-    if (other.has_order && (!best.has_order || other.reference.uncertainty < best.reference.uncertainty))
-      best = std::move(other);
+    if (is_better(other, best)) best = std::move(other);
+  }
+  return best.reference;
+}
+
+ReferenceValue finest_field(StudyResult& result, const Question& question, const fs::path& directory) {
+  const std::optional<std::size_t> finest = finest_run(result, question);
+  if (!finest) return {{}, 0, "", "no run converged", {}};
+  Extrapolated best = as_it_is(result, question, result.runs[*finest], directory);
+  for (std::size_t r = 0; r < result.runs.size(); ++r) {
+    if (r == *finest || !is_measured(result, question, result.runs[r]) || !is_finest_of_its_kind(result, r)) continue;
+    Extrapolated other = as_it_is(result, question, result.runs[r], directory);
+    if (is_better(other, best)) best = std::move(other);
   }
   return best.reference;
 }

@@ -86,6 +86,7 @@ std::vector<double> at_time(const RunMeasure& curve, double time) {
 RunMeasure measure_run(const StudyMeasure& measure, const RunRecord& record,
                        const std::filesystem::path& directory) try {
   RunMeasure measured;
+  if (!measure.field.empty()) return measured;
   const auto probe = record.probes.find(measure.probe);
   if (probe == record.probes.end() || !probe->contains("value")) return measured;
   const Json& value = probe->at("value");
@@ -105,7 +106,7 @@ RunMeasure measure_run(const StudyMeasure& measure, const RunRecord& record,
     std::vector<double> row(begin, begin + static_cast<std::ptrdiff_t>(width));
     if (largest.empty() || norm_of(row) > norm_of(largest)) largest = std::move(row);
   }
-  return {std::move(largest), {}, {}};
+  return {std::move(largest), {}, {}, ""};
 } catch (const FileError&) {
   return {};  // its table is gone
 } catch (const InputError&) {

@@ -69,6 +69,7 @@ void add_question(HtmlPage& page, const StudyResult& result, const Question& que
                                           : "Chosen, where more accuracy begins to cost more than it gains",
                         choices->chosen)});
   }
+  if (const std::vector<std::string> troubles = troubles_of(result, question); !troubles.empty()) page.list(troubles);
   add_budgets(page, result, question.measure, cost_name(result.cost), by_cost(result, question), true);
   add_budgets(page, result, question.measure, "unknowns", by_unknowns(result, question), false);
 }

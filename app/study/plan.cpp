@@ -83,11 +83,33 @@ std::string resolve(StudyReference& reference, Quantity quantity) {
   return "";
 }
 
-void check_probes(Study& study, const Scene& base) {
+/// What the base scene lacks for a field to be measured.
+void check_field(const StudyMeasure& measure, const Scene& base, std::vector<Diagnostic>& wrong) {
+  const auto add = [&](const char* key, std::string message) {
+    Place place = measure.place;
+    place.key += key;
+    wrong.push_back({std::move(place), std::move(message)});
+  };
+  std::vector<std::string> bodies;
+  for (const Body& body : base.bodies) bodies.push_back(body.name);
+  if (!measure.body.empty() && std::find(bodies.begin(), bodies.end(), measure.body) == bodies.end())
+    add(".body", unknown_name("body of " + base.path.string(), measure.body, bodies));
+  const std::vector<std::string>& fields = base.output.fields;
+  if (base.says("output.fields") && std::find(fields.begin(), fields.end(), measure.field) == fields.end())
+    add(".field", fmt::format("{} is not among `output.fields` of {}, and not saved; add it there, or take the key "
+                              "away with remove = [\"output.fields\"]",
+                              in_quotes(measure.field), base.path.string()));
+}
+
+void check_measures(Study& study, const Scene& base) {
   std::vector<std::string> known;
   for (const Probe& probe : base.probes) known.push_back(probe.name);
   std::vector<Diagnostic> wrong;
   for (StudyMeasure& measure : study.measures) {
+    if (!measure.field.empty()) {
+      check_field(measure, base, wrong);
+      continue;
+    }
     const auto found = std::find(known.begin(), known.end(), measure.probe);
     Place place = measure.place;
     if (found == known.end()) {
@@ -108,7 +130,7 @@ void check_probes(Study& study, const Scene& base) {
 }  // namespace
 
 std::vector<PlannedRun> plan_study(Study& study) {
-  check_probes(study, parse_scene_file(study.base, study.overrides));
+  check_measures(study, parse_scene_file(study.base, study.overrides));
   std::size_t count = 1;
   const bool paired = study.mode == StudyMode::paired;
   for (const StudyAxis& axis : study.axes) {

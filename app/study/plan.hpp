@@ -19,7 +19,8 @@ struct PlannedRun {
 /// All combinations of a study, in the order of the axes (the last one changes fastest), or its pairs. Reference values
 /// with units become SI.
 /// @throws SceneError, FileError  the base scene is wrong
-/// @throws InputError  none of the combinations is a valid scene; a probe that the scene has not, with near ones
+/// @throws InputError  none of the combinations is a valid scene; a probe, body or field that the scene has not, with
+/// near ones
 std::vector<PlannedRun> plan_study(Study& study);
 
 /// A run of the base or another scene that gives a measure's reference. @param group  index of the value of

@@ -181,12 +181,26 @@ StudyReference read_reference(const TableReader& owner) {
   return reference;
 }
 
+void check_field(const TableReader& table, const StudyMeasure& measure) {
+  table.refuse({"component", "moment"}, "belongs to a probe; a field is compared as a whole, at the end");
+  if (measure.reference.kind == StudyReference::Kind::none)
+    table.error(
+        "reference",
+        "is missing; a field needs one, which may be \"finest\", { scene = \"FILE\" } or { set = { KEY = VALUE } }");
+  if (measure.reference.kind == StudyReference::Kind::value)
+    table.error("reference",
+                "is a value, and a field needs another field; use \"finest\", { scene = \"FILE\" } or { set = { KEY = "
+                "VALUE } }, or measure a probe");
+}
+
 StudyMeasure read_measure(const TableReader& table, const Study& study) {
   const fs::path folder = study.path.parent_path();
   StudyMeasure measure;
   measure.place = table.place();
   measure.probe = table.text("probe").value_or("");
-  measure.name = table.text("name").value_or(measure.probe);
+  measure.field = table.text("field").value_or("");
+  measure.body = table.text("body").value_or("");
+  measure.name = table.text("name").value_or(measure.probe + measure.field);
   if (const Value* component = table.value("component")) {
     if (const std::string* letter = component->as_string())
       measure.entry = {static_cast<std::size_t>((*letter)[0] - 'x')};
@@ -210,6 +224,10 @@ StudyMeasure read_measure(const TableReader& table, const Study& study) {
   if (!measure.reference.scene.empty()) measure.reference.scene = folder / measure.reference.scene;
   if (measure.moment == Moment::curve && measure.reference.kind == StudyReference::Kind::value)
     table.error("reference", "is one value, and `moment` asks for a curve; use a scene or \"finest\"");
+  if (measure.field.empty())
+    table.refuse({"body"}, "belongs to a field, and this measure is of a probe, which has its body");
+  else
+    check_field(table, measure);
   return measure;
 }
 

@@ -43,9 +43,13 @@ struct StudyReference {
 /// Times of a run at which a measure is looked at.
 enum class Moment { end, largest, curve };
 
+/// A probe, or a field that is compared with that of a reference.
 struct StudyMeasure {
   Place place;
-  std::string name, probe;
+  std::string name;
+  std::string probe;               ///< empty: a field
+  std::string field;               ///< of the saved states; empty: a probe
+  std::string body;                ///< of the field; empty: all bodies that have it
   std::vector<std::size_t> entry;  ///< of the probe's value: indices into lists; empty: the whole value
   Moment moment = Moment::end;
   std::optional<std::size_t> per;  ///< axis of which each value is a problem with a reference of its own

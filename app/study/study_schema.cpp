@@ -46,10 +46,20 @@ Shape reference_shape() {
               key("set", changes(), "Keys that are changed in that scene; without `scene` in the base.")})});
 }
 
+/// Fields that a result tells of motion; the others are the same in all runs of a body.
+std::vector<Choice> measured_fields() {
+  std::vector<Choice> fields = field_choices();
+  for (const Choice& field : shell_field_choices())
+    if (field.value != "director" && field.value != "thickness") fields.push_back(field);
+  return fields;
+}
+
 Shape measure() {
   return table(
-      {key("name", text("a name"), "Of columns: error_NAME, value_NAME.").defaults("the probe's"),
-       key("probe", text("the name of a probe"), "Of the base scene.").needed(),
+      {key("name", text("a name"), "Of columns: error_NAME, value_NAME.").defaults("the probe's or the field's"),
+       key("probe", text("the name of a probe"), "Of the base scene."),
+       key("field", choice(measured_fields()), "A field of the saved states, compared with that of the reference."),
+       key("body", text("the name of a body"), "Of the field.").defaults("all bodies"),
        key("component",
            one_of({choice({{"x", ""}, {"y", ""}, {"z", ""}}), integer(at_least(0)), array(integer(at_least(0)), 1, 3)}),
            "An entry of the probe's value: a component, an index of a list from 0, or indices.")
@@ -61,7 +71,8 @@ Shape measure() {
            "When it is looked at.")
            .defaults("\"end\""),
        key("per", text("the name of an axis"), "An axis of which each value is a problem with a reference of its own."),
-       key("reference", reference_shape(), "What errors are distances from; without it values are told alone.")});
+       key("reference", reference_shape(), "What errors are distances from; without it values are told alone.")},
+      {{{"probe", "field"}, true}});
 }
 
 }  // namespace

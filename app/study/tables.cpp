@@ -64,6 +64,7 @@ Json run_json(const StudyResult& result, const StudyRun& run) {
     measure["value"] = run.measured[m].value;
     if (!run.measured[m].times.empty()) measure["times"] = run.measured[m].times;
     if (run.measured[m].error) measure["error"] = *run.measured[m].error;
+    if (!run.measured[m].trouble.empty()) measure["trouble"] = run.measured[m].trouble;
     measure["front"] = run.on_front[m] != 0;
   }
   j["record"] = json_of(r);
@@ -86,10 +87,16 @@ Json budgets_json(const StudyResult& result, std::size_t measure, const std::vec
 Json question_json(const StudyResult& result, const Question& question) {
   const ReferenceValue& reference = question.reference;
   const StudyMeasure& measure = result.study.measures[question.measure];
-  Json j{{"name", question.name}, {"measure", measure.name}, {"probe", measure.probe}};
+  Json j{{"name", question.name}, {"measure", measure.name}};
+  if (measure.field.empty())
+    j["probe"] = measure.probe;
+  else
+    j["field"] = measure.field;
+  if (!measure.body.empty()) j["body"] = measure.body;
   if (reference.trouble.empty()) {
     j["reference"] = {
         {"value", reference.at.value}, {"uncertainty", reference.uncertainty}, {"source", reference.source}};
+    if (!reference.directory.empty()) j["reference"]["directory"] = reference.directory.string();
     if (!reference.at.times.empty()) j["reference"]["times"] = reference.at.times;
   } else {
     j["reference"] = {{"missing", reference.trouble}};
@@ -173,6 +180,14 @@ Json json_of(const StudyResult& result) {
   return j;
 }
 
+std::vector<std::string> troubles_of(const StudyResult& result, const Question& question) {
+  std::vector<std::string> sentences;
+  for (const StudyRun& run : result.runs)
+    if (const std::string& why = run.measured[question.measure].trouble; !why.empty() && belongs(result, question, run))
+      sentences.push_back(fmt::format("no error of {}: {}", label_of(result, run), why));
+  return sentences;
+}
+
 std::string text_of(const StudyResult& result) {
   std::string text;
   std::size_t done = 0, failed = 0, refused = 0, busy = 0;
@@ -196,6 +211,7 @@ std::string text_of(const StudyResult& result) {
                         cost_name(result.cost), result.study.timed ? "" : ", not timed with care", reference.source,
                         uncertainty_text(result, question));
     text += front_text(result, question);
+    for (const std::string& sentence : troubles_of(result, question)) text += "  " + sentence + "\n";
   }
   return text;
 }

@@ -15,6 +15,9 @@ nlohmann::ordered_json json_of(const StudyResult& result);
 /// For the terminal: of each measure its reference, its front, and the smallest errors at round costs and sizes.
 std::string text_of(const StudyResult& result);
 
+/// Runs whose field has no error, each with the reason.
+std::vector<std::string> troubles_of(const StudyResult& result, const Question& question);
+
 /// The values of a run's axes: "grid [9, 3, 3], threads 1".
 std::string label_of(const StudyResult& result, const StudyRun& run);
 

@@ -73,6 +73,9 @@ double prescribed_rotation(const Model& model, std::span<const std::array<double
 /// @param global  in world axes
 void move_state(const Model& model, std::span<const double> global, State& state);
 
+/// Takes from the velocities of a state what constraints hold still. What motions move keeps its own.
+void stop_held(const Model& model, State& state);
+
 /// Where a tether pulls to, relative to its place at rest.
 FASCIA_HD inline Vec3d tether_target(const Tether& t, const PrescribedMotion* motions, const double* factors) {
   if (t.motion < 0) return {};

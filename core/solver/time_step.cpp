@@ -156,6 +156,9 @@ void MechanicalSystem::finish_middle(State& end, std::vector<PoseMotion>& motion
 void MechanicalSystem::start_acceleration(const State& start, double dt, StepMemory& memory) {
   memory.acceleration.assign(start.u.size(), {});
   begin_step(start, dt, TimeScheme::newmark, memory);
+  // Nothing has moved yet: (E − Ê) / h is dE/dt with the Ê of a step that comes from where velocities lead back to.
+  if (model_.points.damped)
+    for (std::size_t k = 0; k < history_.E.size(); ++k) history_.E[k] = 2 * start_strain_[k] - history_.E[k];
   executor_.gradient(state_, history_, gradient_);
   add_loads();
   std::vector<double>& force = work_;

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -122,6 +123,85 @@ TEST_F(StudyProgram, TakesASceneWithValuesOnTheCommandLine) {
   const auto json = nlohmann::json::parse(run.out);
   EXPECT_EQ(json["measures"][0]["name"], "tip.y");
   EXPECT_EQ(json["runs"][1]["status"], "converged");
+}
+
+/// A bar of two models is pulled to u = c X: fields of other c differ by a part that is known, whatever the meshes.
+TEST_F(StudyProgram, MeasuresFieldsOfOtherMeshes) {
+  std::ofstream(folder_.path / "bar.toml") << R"([bodies.bar]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [2, 1, 1], cells = [3, 1, 1] } }
+density = 1000
+material = { young = "10 kPa", poisson = 0 }
+[[constraints]]
+body = "bar"
+where = "all"
+fix = ["y", "z"]
+[[constraints]]
+body = "bar"
+where = { box = { min = [-0.01, -9, -9], max = [0.01, 9, 9] } }
+fix = ["x"]
+[[constraints]]
+body = "bar"
+where = { box = { min = [1.99, -9, -9], max = [2.01, 9, 9] } }
+move = { translate = [0.5, 0, 0], axes = ["x"] }
+[solver]
+kind = "static"
+newton = { tolerance = 1e-12 }
+)";
+  std::ofstream(folder_.path / "s.toml") << R"(base = "bar.toml"
+timed = false
+[[axes]]
+name = "pull"
+key = "constraints[2].move.translate"
+values = [[0.5, 0, 0], [0.4, 0, 0], [0.6, 0, 0]]
+[[axes]]
+key = "bodies.bar.model"
+values = ["hexahedra", "tetrahedra"]
+[[measures]]
+field = "displacement"
+reference = { set = { bodies.bar.domain.box.cells = [2, 2, 2] } }
+[[measures]]
+name = "stretch"
+field = "strain"
+body = "bar"
+reference = "finest"
+[[measures]]
+name = "turn"
+field = "rotation"
+reference = "finest"
+)";
+  const ProgramResult run = study({"--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  const double strain[] = {0.25, 0.2, 0.3};  // Green-Lagrange: c + c²/2; all are as fine, and the first is taken
+  for (std::size_t r = 0; r < 6; ++r) {
+    const auto& shape = json["runs"][r]["measures"]["displacement"];
+    const double part[] = {0, 0.2, 0.2};
+    EXPECT_NEAR(shape["error"].get<double>(), part[r / 2], 1e-9) << r;
+    const auto& stretch = json["runs"][r]["measures"]["stretch"];
+    const double e = strain[r / 2] + strain[r / 2] * strain[r / 2] / 2, first = 0.25 + 0.25 * 0.25 / 2;
+    EXPECT_NEAR(stretch["error"].get<double>(), std::abs(e - first) / first, 1e-9) << r;
+    EXPECT_NEAR(stretch["value"][0].get<double>(), e, 1e-9) << r;
+  }
+  EXPECT_NEAR(json["runs"][0]["measures"]["displacement"]["value"][0].get<double>(), 0.5 / std::sqrt(3), 1e-9);
+  EXPECT_NE(json["measures"][2]["reference"]["missing"].get<std::string>().find("field \"rotation\""),
+            std::string::npos)
+      << json["measures"][2]["reference"];
+}
+
+/// As a bundle starts the program: /proc/self/exe is then the loader, and runs of the study must be started by it too.
+TEST_F(StudyProgram, StartsItsRunsThroughTheLoaderItWasStartedBy) {
+  const char* const loader = "/lib64/ld-linux-x86-64.so.2";
+  if (!std::filesystem::exists(loader)) GTEST_SKIP() << "no " << loader;
+  write("[[5,2,2]]");
+  ProgramOptions options;
+  options.directory = folder_.path;
+  const ProgramResult run =
+      run_program({loader, "--argv0", "fascia", "--library-path", fascia::test::build_dir().string(),
+                   fascia::test::program(), "study", "s.toml", "--output", "out"},
+                  options);
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(csv(out() / "study.csv")[1][2], "converged") << run.out << run.err;
 }
 
 TEST_F(StudyProgram, RefusesWhatItCannotDo) {

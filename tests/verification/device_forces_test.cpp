@@ -24,7 +24,7 @@ using app::Simulation;
 enum class Where { host, device };
 
 /// Hexahedra, tissue that shares their vertices, tetrahedra that follow the tissue, a shell on these, and scattered
-/// frames whose ends are held by tethers; pulled and turned, with both kinds of damping.
+/// frames whose ends are held by tethers; pulled and turned, with both kinds of damping, from a motion that stretches them at once.
 constexpr const char* kScene = R"(
 [materials]
 soft = { young = 1e4, poisson = 0.3, damping = { stiffness = "20 ms", mass = "5 Hz" } }
@@ -33,6 +33,7 @@ model = "hexahedra"
 domain = { box = { min = [0, 0, 0], max = [0.5, 0.5, 0.5], cells = [2, 2, 2] } }
 density = 100
 material = "soft"
+initial = { velocity = [0.3, 0, 0.1] }
 [bodies.tissue]
 model = "meshless"
 domain = { box = { min = [0.5, 0, 0], max = [1, 0.5, 0.5] } }

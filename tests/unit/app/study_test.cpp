@@ -161,7 +161,25 @@ TEST(StudyFiles, SayWhatIsWrongWithThem) {
   expect(axis + measure + "per = \"nothing\"\nreference = \"finest\"\n", "no known axis");
   expect(axis + axis + measure, "stands twice");
   expect(axis + measure + "reference = \"finer\"\n", "finest");
+  const std::string finest = "reference = \"finest\"\n", shape = "[[measures]]\nfield = \"displacement\"\n";
+  expect(axis + "[[measures]]\nfield = \"displacment\"\n" + finest, "did you mean \"displacement\"?");
+  expect(axis + "[[measures]]\n" + finest, "is missing; give exactly one");
+  expect(axis + shape, "study.toml:5:1: measures[0].reference: is missing; a field needs one");
+  expect(axis + shape + "reference = { value = 1, source = \"me\", uncertainty = 0 }\n", "a field needs another field");
+  expect(axis + shape + "moment = \"curve\"\n" + finest, "at the end; remove it");
+  expect(axis + shape + "body = \"beem\"\n" + finest, "measures[0].body: \"beem\" is no known body of");
+  expect(axis + measure + "body = \"beam\"\n" + finest, "measures[0].body: belongs to a field");
+  expect("set = { output.fields = [\"strain\"] }\n" + axis + shape + finest, "is not among `output.fields`");
   expect("mode = \"paired\"\n" + axis + "[[axes]]\nkey = \"solver.threads\"\nvalues = [1]\n" + measure, "paired");
+}
+
+TEST(FieldDistances, SayWhatIsMissing) {
+  const StudyFile file(std::string(kAxis) + "[[measures]]\nfield = \"displacement\"\nreference = \"finest\"\n");
+  const Study study = read_study(file.path);
+  EXPECT_EQ(study.measures[0].name, "displacement");
+  const std::filesystem::path nowhere = file.path.parent_path() / "runs" / "nothing";
+  const FieldDistance distance = FieldDistances().at(study.measures[0], nowhere, nowhere);
+  EXPECT_NE(distance.trouble.find(nowhere.string()), std::string::npos) << distance.trouble;
 }
 
 /// A study of one measure, whose runs have these costs and errors.

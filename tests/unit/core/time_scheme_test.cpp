@@ -1,4 +1,5 @@
 #include "core/physics/inertia.hpp"
+#include "core/solver/boundary_motion.hpp"
 #include "core/solver/drivers.hpp"
 #include "core/solver/modes.hpp"
 #include "tests/support/models.hpp"
@@ -68,6 +69,7 @@ Case make_case(const std::string& name) {
   Case c{name, name.starts_with("vertices") ? vertex_block(o) : block(o).model, {}};
   if (name == "sliding on a plane") hold_face(c.model, 1, 2);
   if (name == "pinned") hold_face(c.model, 3, 0);
+  if (name.starts_with("held")) hold_face(c.model);
   if (name == "turned boundary") {
     hold_face(c.model);
     PrescribedMotion motion;
@@ -87,10 +89,12 @@ Case make_case(const std::string& name) {
   if (!c.model.constraints.empty()) {
     c.start = name == "pinned" ? State::at_rest(c.model) : spinning_state(c.model, {{2, 0, 0}}, {});
     for (std::size_t i = 0; i < c.start.v.size(); ++i) c.start.v[i][0] += 0.5 * c.model.rest_position[i][0];
+    stop_held(c.model, c.start);
     return c;
   }
   c.start = spinning_state(c.model, {{1, -2, 3}}, {{0.3, 0.2, 0}});
-  for (std::size_t i = 0; i < c.start.v.size() && o.stiffness_damping == 0; ++i)
+  for (std::size_t i = 0;
+       i < c.start.v.size() && (o.stiffness_damping == 0 || name.find("stretching") != std::string::npos); ++i)
     c.start.v[i][0] += 0.5 * c.model.rest_position[i][0];
   return c;
 }
@@ -98,8 +102,10 @@ Case make_case(const std::string& name) {
 /// Errors under step halving fall by 2 (implicit Euler) or 4.
 TEST(TimeScheme, OrderInTime) {
   std::printf("%-28s %-15s %10s %10s %7s\n", "body", "scheme", "dt", "dt/2", "ratio");
-  for (const char* name : {"rigid frames", "affine frames", "vertices", "mass damping", "stiffness damping",
-                           "vertices, stiffness damping", "sliding on a plane", "pinned", "turned boundary"}) {
+  for (const char* name :
+       {"rigid frames", "affine frames", "vertices", "mass damping", "stiffness damping", "vertices, stiffness damping",
+        "stretching, stiffness damping", "vertices, stretching, stiffness damping", "held, stiffness damping",
+        "sliding on a plane", "pinned", "turned boundary"}) {
     const Case c = make_case(name);
     for (const TimeScheme scheme : kSchemes) {
       State ends[3];
