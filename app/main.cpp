@@ -167,8 +167,11 @@ CLI::App* add_explain(CLI::App& app, ExplainOptions& options) {
   explain->add_option("--change", options.change, "relative change of probes that a suggestion may make")
       ->check(number_from(0, true, false))
       ->capture_default_str();
-  explain->add_option("--repeat", options.repeat, "times that each run is timed")
+  explain->add_option("--repeat", options.repeat, "turns in which what is suggested is timed")
       ->check(number_from(1, false, true))
+      ->capture_default_str();
+  explain->add_option("--time-limit", options.time_limit, "seconds after which no change is begun; 0: none")
+      ->check(number_from(0, false, false))
       ->capture_default_str();
   explain->add_flag("--quick", options.quick, "from one run, with estimates");
   explain->add_flag("--json", options.json, "print explain.json, and nothing else, on standard output");

@@ -66,6 +66,7 @@ class ResultFiles {
 
 struct RunTimes {
   double setup = 0, solve = 0, output = 0;
+  double processor = 0;  ///< of the solve, of all threads
   StepSeconds steps;
 };
 

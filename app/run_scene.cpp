@@ -97,12 +97,13 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   SaveRule rule(s.scene.output, statics);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   const bool path = s.scene.solver.control != StaticControl::load;
-  double output_seconds = 0, saved_time = -1, time_step = s.scene.solver.time_step;
+  double output_seconds = 0, output_processor = 0, saved_time = -1, time_step = s.scene.solver.time_step;
   int saved_step = 0;
   SnapWatch snaps(s);
   std::string not_shown;  // why the last state is in no result
   const auto save = [&](double time, int step, const State& at, bool fields) {
     const Clock::time_point start = Clock::now();
+    const double processor = processor_seconds();
     try {
       if (fields) files.add_state(path ? step : time, at);
       files.add_probes(time, {&at, &system, 0, time_step});
@@ -113,6 +114,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
       not_shown = e.what();
     }
     output_seconds += seconds_since(start);
+    output_processor += processor_seconds() - processor;
   };
   // What is watched in all steps, and what is saved of some: `show` makes `system` stand there.
   const auto watch = [&](const StepInfo& step, const InternalEnergy& energy,
@@ -149,6 +151,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
     return true;
   };
   const Clock::time_point start = Clock::now();
+  const double processor = processor_seconds();
   if (path) {
     out.run = run_path(system, state, factors, settings, path_of(s), observe);
   } else if (statics) {
@@ -186,6 +189,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   }
   progress.finish();
   out.times.solve = seconds_since(start) - output_seconds;
+  out.times.processor = processor_seconds() - processor - output_processor;
   if (!not_shown.empty()) {
     out.run.status = RunStatus::diverged;
     out.run.message = fmt::format("{} {:.6g}: {}; the results end before it",
@@ -221,8 +225,10 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
   Outcome out;
   out.warnings = Warnings(s.scene.silenced);
   const Clock::time_point start = Clock::now();
+  const double processor = processor_seconds();
   const Modes modes = natural_modes(s.model, pool, s.scene.solver.modes);
   out.times.solve = seconds_since(start);
+  out.times.processor = processor_seconds() - processor;
   out.frequencies = modes.frequency;
   out.run.steps = static_cast<int>(modes.frequency.size());
   out.run.linear_iterations = modes.iterations;

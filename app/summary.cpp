@@ -97,6 +97,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, c
   j["seconds"] = {{"setup", times.setup},
                   {"solve", times.solve},
                   {"output", times.output},
+                  {"solve_processor", times.processor},
                   {"step_median", times.steps.percentile(0.5)},
                   {"step_p99", times.steps.percentile(0.99)},
                   {"step_max", times.steps.percentile(1.0)}};

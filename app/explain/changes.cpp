@@ -29,6 +29,11 @@ Ratio ratio_of_pairs(const std::vector<double>& v, const std::vector<double>& b)
   return {spread.median, spread.low, spread.high};
 }
 
+Ratio widened(const Ratio& ratio, const Spread& runs) {
+  if (!(runs.low > 0)) return ratio;
+  return {ratio.median, ratio.low * runs.low / runs.median, ratio.high * runs.high / runs.median};
+}
+
 VariantProbes::VariantProbes(const Scene& scene, const RunRecord& base, const std::filesystem::path& directory) {
   std::map<Quantity, double> largest;
   for (const Probe& probe : scene.probes) {

@@ -3,6 +3,7 @@
 #include "app/compare/arrays.hpp"
 #include "app/explain/changes.hpp"
 #include "app/explain/profile.hpp"
+#include "app/explain/promise.hpp"
 #include "app/explain/report.hpp"
 #include "app/explain/suggestions.hpp"
 #include "app/explain/turns.hpp"
@@ -20,6 +21,7 @@
 #include "io/files.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -32,7 +34,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// From here on two runs in turns do [s].
-constexpr double kLong = 20;
+constexpr double kLong = 10;
+/// Of the time limit, for one run of each change; the rest measures what is worth it in turns.
+constexpr double kFirstPart = 0.6;
 constexpr const char* kFile = "explain.json";
 
 /// A directory for the runs: the user's, which is new, empty or of an explanation, or one that goes at the end.
@@ -98,13 +102,10 @@ class Explainer {
                  e_.base.reason),
              e_.base.exit_status;
     for (Variant& v : variants_of(e_.scene, facts())) e_.parts.emplace_back().variant = std::move(v);
-    if (e_.quick) {
-      estimate();
-    } else {
-      run_parts();
-    }
-    share_out(e_);
+    estimate(e_);
+    if (!e_.quick) run_parts();
     suggest();
+    share_out(e_);
     finish();
     return e_.interrupted ? 128 + stop_.signal() : kDone;
   }
@@ -145,11 +146,11 @@ class Explainer {
         record_run(run, "base", !options_.quick, options_.repeat > 1 ? 1 : 0, options_.repeat, stop);
     if (!record) return;
     e_.base = *record;
-    others_ = record->others;
     if (!record->converged()) return;
     e_.stages = stages_of(read_summary(run.output), e_.base, memory_program_, memory_built_);
     look_at_bodies(run.output);
     probes_ = std::make_unique<VariantProbes>(e_.scene, e_.base, run.output);
+    turns_ = std::make_unique<Turns>(child("turn", {}), child("variant", {}), e_.base, stop);
   }
 
   /// How the bodies move, from a run that saves what tells it.
@@ -178,80 +179,75 @@ class Explainer {
     return facts;
   }
 
+  double seconds() const { return seconds_since(started_); }
+  /// Whether what takes these seconds ends in time.
+  bool in_time(double more) const { return !(options_.time_limit > 0) || seconds() + more < options_.time_limit; }
+
+  /// Each change once; the most promising first, as there may be no time for all.
   void run_parts() {
-    const auto all = static_cast<std::size_t>(
-        std::count_if(e_.parts.begin(), e_.parts.end(), [](const Part& p) { return p.variant.refused.empty(); }));
-    const Clock::time_point start = Clock::now();
-    std::size_t done = 0;
-    for (Part& part : e_.parts) {
-      if (stopped()) return;
-      if (!part.variant.refused.empty()) continue;
-      const double each = done > 0 ? seconds_since(start) / static_cast<double>(done) : 0;
-      tell("{} of {}{}: {}", done + 1, all,
-           done > 0 ? fmt::format(", about {} left", seconds_text(each * static_cast<double>(all - done))) : "",
-           label_of(part.variant));
-      run_part(part);
-      ++done;
+    const std::vector<Part*> parts = by_promise(e_);
+    const double start = seconds(), limit = kFirstPart * options_.time_limit;
+    std::vector<std::string> late;
+    for (std::size_t i = 0; i < parts.size() && !stopped(); ++i) {
+      if (limit > 0 && seconds() > limit) {
+        late.push_back(label_of(parts[i]->variant));
+        continue;
+      }
+      double left = i > 0 ? (seconds() - start) / static_cast<double>(i) * static_cast<double>(parts.size() - i) : 0;
+      if (limit > 0) left = std::min(left, limit - seconds());
+      tell("{} of {}{}: {}", i + 1, parts.size(), i > 0 ? fmt::format(", about {} left", seconds_text(left)) : "",
+           label_of(parts[i]->variant));
+      keep(*parts[i], turns_->once(parts[i]->variant.overrides));
     }
+    e_.base.repeats = turns_->count();
+    e_.base.solve = turns_->solve();
+    e_.base.setup = turns_->setup();
+    for (Part& part : e_.parts)
+      if (part.measured()) part.solve = widened(part.solve, turns_->time());
+    if (!late.empty())
+      e_.notes.push_back(fmt::format("No time was left within {:g} s (--time-limit) for what promised least: {}.",
+                                     options_.time_limit, fmt::join(late, "; ")));
   }
 
-  void run_part(Part& part) {
-    Turns turns = in_turns(part.variant.overrides);
-    part.record = std::move(turns.record);
+  void keep(Part& part, Timed timed) {
+    part.record = std::move(timed.record);
     if (!part.measured()) return;
-    part.solve = turns.solve;
-    part.setup = turns.setup;
+    part.solve = timed.solve;
+    part.setup = timed.setup;
     part.memory = e_.base.memory > 0 ? part.record->memory / e_.base.memory : 1;
     part.changes = probes_->changes(*part.record, work_->path() / "variant");
   }
 
-  Turns in_turns(const std::vector<std::string>& changes) {
-    const int turns = e_.base.wall > kLong ? std::min(2, options_.repeat) : options_.repeat;
-    Turns result = run_in_turns(child("turn", {}), child("variant", changes), turns, [this] { return stopped(); });
-    if (result.record) others_ = std::max(others_, result.record->others);
-    return result;
-  }
+  int turns() const { return e_.base.wall > kLong ? std::min(2, options_.repeat) : options_.repeat; }
 
-  /// Without runs: what a body's points take of the time, and what its deformation is of all displacements.
-  void estimate() {
-    double points = 0, displacement = 0;
-    for (const BodyProfile& b : e_.bodies) {
-      points += static_cast<double>(b.points);
-      if (b.motion) displacement = std::max(displacement, b.motion->displacement);
-    }
-    for (Part& part : e_.parts) {
-      const auto body = std::find_if(e_.bodies.begin(), e_.bodies.end(),
-                                     [&](const BodyProfile& b) { return b.name == part.variant.body; });
-      if (body == e_.bodies.end() || !(points > 0)) continue;
-      const double share = static_cast<double>(body->points) / points;
-      const VariantKind kind = part.variant.kind;
-      if (kind == VariantKind::left_out) part.estimated_gain = share;
-      if (kind == VariantKind::coarser) part.estimated_gain = share * (1 - part.variant.growth);
-      if (kind != VariantKind::rigid) continue;
-      part.estimated_gain = share;
-      if (body->motion && displacement > 0) part.estimated_change = body->motion->deformation / displacement;
-    }
-  }
-
+  /// What seems to gain is measured in turns with the scene as it is: of many changes some seem to gain by chance.
   void suggest() {
     std::vector<const Part*> chosen;
-    for (const Part* part : worth_suggesting(e_)) {
+    std::vector<std::string> late;
+    for (Part* part : worth_suggesting(e_)) {
       Ratio solve{1 - part->estimated_gain, 1 - part->estimated_gain, 1 - part->estimated_gain};
       if (!e_.quick) {
         if (stopped()) break;
-        tell("once more: {}", label_of(part->variant));
-        const Turns again = in_turns(part->variant.overrides);
+        if (!in_time(2 * e_.base.wall * turns())) {
+          late.push_back(label_of(part->variant));
+          continue;
+        }
+        tell("in turns: {}", label_of(part->variant));
+        Timed again = turns_->several(part->variant.overrides, turns());
         if (stopped()) break;
-        solve = again.solve;
-        if (!solve.is_less()) {  // of many changes some seem to gain by chance
-          e_.notes.push_back(
-              fmt::format("{}: its gain was within the spread once it was measured again.", label_of(part->variant)));
+        keep(*part, std::move(again));
+        solve = part->solve;
+        if (!is_worth(e_, *part)) {
+          e_.notes.push_back(fmt::format("{}: gains nothing beyond the spread.", label_of(part->variant)));
           continue;
         }
       }
       e_.suggestions.push_back(suggestion_of(e_, *part, solve));
       chosen.push_back(part);
     }
+    if (!late.empty())
+      e_.notes.push_back(
+          fmt::format("May gain, but no time was left to measure it in turns: {}.", fmt::join(late, "; ")));
     std::vector<std::size_t> order(chosen.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -272,17 +268,15 @@ class Explainer {
     if (changes.empty()) return;
     tell("all suggestions together");
     Part all;
-    Suggestion s;
-    s.overrides = changes;
-    Turns turns = in_turns(changes);
+    keep(all, turns_->several(changes, turns()));
     if (stopped()) return;
-    all.record = std::move(turns.record);
-    s.solve = turns.solve;
     if (!all.measured()) {
       e_.notes.emplace_back("All suggestions together do not converge.");
       return;
     }
-    all.changes = probes_->changes(*all.record, work_->path() / "variant");
+    Suggestion s;
+    s.overrides = changes;
+    s.solve = all.solve;
     s.text = "Together " + gain_text(e_, all, s.solve, false);
     if (const ProbeChange* largest = all.largest_change()) {
       s.change = *largest;
@@ -294,10 +288,13 @@ class Explainer {
 
   void finish() {
     e_.interrupted = stopped();
-    if (others_ > kBusy)
+    e_.seconds = seconds();
+    e_.turns = turns();
+    const double others = turns_->others();
+    if (others > kBusy)
       e_.notes.push_back(fmt::format(
           "The machine was busy: others took up to {:.0f} % of its processors' time, and times are worth less.",
-          100 * others_));
+          100 * others));
     const std::string json = json_text(json_of(e_)) + "\n";
     if (work_->kept()) io::replace_file(work_->path() / kFile, json);
     fmt::print("{}", options_.json ? json : text_of(e_));
@@ -312,9 +309,10 @@ class Explainer {
   const ExplainOptions& options_;
   Explanation e_;
   double memory_program_ = 0, memory_built_ = 0;  ///< peaks [bytes]
-  double others_ = 0;
+  Clock::time_point started_ = Clock::now();
   std::unique_ptr<Workplace> work_;
   std::unique_ptr<VariantProbes> probes_;
+  std::unique_ptr<Turns> turns_;
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ struct ExplainOptions {
   std::vector<std::string> overrides;           ///< "key.path=value"
   std::optional<std::filesystem::path> output;  ///< of explain.json and the runs; none: they are not kept
   double change = 1e-2;                         ///< of probes, relative, that a suggestion may make
-  int repeat = 3;                               ///< times that each run is timed
+  int repeat = 3;                               ///< turns in which what is suggested is timed
+  double time_limit = 600;                      ///< after which no change is begun [s]; 0: none
   bool quick = false;                           ///< one run of the scene and estimates, no run of variants
   bool json = false, quiet = false;
 };

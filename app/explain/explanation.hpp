@@ -50,11 +50,11 @@ struct ProbeChange {
 struct Part {
   Variant variant;
   std::optional<RunRecord> record;  ///< none: refused, or not run
-  Ratio solve, setup;               ///< of runs that converged, in turns with the scene as it is
+  Ratio solve, setup;               ///< of runs that converged, beside the scene as it is
   double memory = 1;                ///< peak over that of the scene as it is
   std::vector<ProbeChange> changes;
-  double estimated_gain = 0;               ///< with --quick: of the solve's time, a share
-  std::optional<double> estimated_change;  ///< with --quick: about, of displacements
+  double estimated_gain = 0;               ///< without runs: of the solve's time, a share
+  std::optional<double> estimated_change;  ///< without runs: about, of displacements
 
   bool measured() const { return record && record->converged(); }
   /// The largest of the probes' changes; none where no probe can be compared.
@@ -74,6 +74,8 @@ struct Explanation {
   Scene scene;
   std::vector<std::string> overrides;  ///< of the base run
   bool quick = false, interrupted = false;
+  int turns = 1;        ///< of each suggestion with the scene as it is
+  double seconds = 0;   ///< that all of it took
   double limit = 1e-2;  ///< of the changes of probes that a suggestion may make
   RunRecord base;
   Stages stages;

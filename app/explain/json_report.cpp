@@ -109,6 +109,7 @@ Json json_of(const Explanation& e) {
          {"quick", e.quick},
          {"interrupted", e.interrupted},
          {"limit", e.limit},
+         {"seconds", e.seconds},
          {"machine",
           {{"date", m.date}, {"cpu", m.cpu}, {"threads", m.threads}, {"fascia", m.fascia}, {"commit", m.commit}}},
          {"base", json_of(e.base)},

@@ -63,10 +63,11 @@ bool keeps_every_probe(const Explanation& e, const Part& part) {
   });
 }
 
-bool is_worth(const Explanation& e, const Part& part) {
+/// What is left open is whether the gain is more than chance.
+bool may_be_worth(const Explanation& e, const Part& part) {
   if (part.variant.closer || !part.variant.refused.empty()) return false;
   if (e.quick) return part.estimated_gain > kLeastGain && part.estimated_change && *part.estimated_change < e.limit;
-  return part.measured() && part.solve.is_less() && part.solve.median < 1 - kLeastGain && keeps_every_probe(e, part);
+  return part.measured() && part.solve.median < 1 - kLeastGain && keeps_every_probe(e, part);
 }
 
 double gain_of(const Explanation& e, const Part& part) { return e.quick ? part.estimated_gain : 1 - part.solve.median; }
@@ -75,10 +76,14 @@ std::string percent(double share) { return fmt::format("{:.2g}", 100 * share); }
 
 }  // namespace
 
-std::vector<const Part*> worth_suggesting(const Explanation& e) {
-  std::vector<const Part*> parts;
-  for (const Part& part : e.parts)
-    if (is_worth(e, part)) parts.push_back(&part);
+bool is_worth(const Explanation& e, const Part& part) {
+  return may_be_worth(e, part) && (e.quick || part.solve.is_less());
+}
+
+std::vector<Part*> worth_suggesting(Explanation& e) {
+  std::vector<Part*> parts;
+  for (Part& part : e.parts)
+    if (may_be_worth(e, part)) parts.push_back(&part);
   std::stable_sort(parts.begin(), parts.end(),
                    [&](const Part* a, const Part* b) { return gain_of(e, *a) > gain_of(e, *b); });
   return parts;

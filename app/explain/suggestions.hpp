@@ -4,9 +4,11 @@
 
 namespace fascia::app {
 
-/// Parts whose change makes the solve shorter, beyond the spread of the times, and changes every probe by less than
-/// the limit; by what they gain, largest first. Of --quick: those of which an estimate says so.
-std::vector<const Part*> worth_suggesting(const Explanation& explanation);
+/// Parts whose change makes the solve shorter, by however little chance may explain, and changes every probe by less
+/// than the limit; by what they gain, largest first. Of --quick: those of which an estimate says so.
+std::vector<Part*> worth_suggesting(Explanation& explanation);
+/// Whether a part is among them and gains beyond the spread of its times.
+bool is_worth(const Explanation& explanation, const Part& part);
 
 /// In the scene's own words. @param solve  measured in turns with the scene as it is; of --quick the estimate
 Suggestion suggestion_of(const Explanation& explanation, const Part& part, const Ratio& solve);

@@ -1,4 +1,5 @@
 #include "app/explain/report.hpp"
+#include "app/explain/turns.hpp"
 #include "app/study/tables.hpp"
 
 #include <fmt/format.h>
@@ -40,6 +41,8 @@ std::string table_of(const std::vector<std::vector<std::string>>& rows, const st
 std::string share_text(double part, double whole) {
   return whole > 0 ? fmt::format("{:.0f} %", 100 * part / whole) : "";
 }
+
+std::string runs_text(int n) { return n == 1 ? "one run" : fmt::format("{} runs", n); }
 
 std::string megabytes(double bytes) { return fmt::format("{:.3g} MB", bytes / 1e6); }
 
@@ -155,10 +158,15 @@ std::string text_of(const Explanation& e) {
   text += stage_table(e) + "\n" + body_table(e);
   if (std::any_of(e.bodies.begin(), e.bodies.end(), [](const BodyProfile& b) { return b.time.estimated; }))
     text += "  ~ estimate: the body's share of the points\n";
-  if (!e.quick) text += "\nthe scene with each part and without it\n" + part_table(e);
+  if (!e.quick)
+    text +=
+        fmt::format("\nthe scene with each part and without it: one run of each, among {} of the scene as it is{}\n",
+                    e.base.repeats, is_serial(e.base) ? ", by processor time" : "") +
+        part_table(e);
   if (const std::string failed = failures(e); !failed.empty() && !e.quick) text += "\nwhat could not be run\n" + failed;
-  text += fmt::format("\nsuggestions that change no probe by more than {}{}\n", error_text(e.limit),
-                      e.quick ? ", by estimates" : "");
+  text += fmt::format(
+      "\nsuggestions that change no probe by more than {}{}\n", error_text(e.limit),
+      e.quick ? ", by estimates" : fmt::format("; times: {} in turns with the scene as it is", runs_text(e.turns)));
   for (const Suggestion& s : e.suggestions) text += suggestion_text(s);
   if (e.suggestions.empty()) text += "  none\n";
   if (e.together) text += suggestion_text(*e.together);

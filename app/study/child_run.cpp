@@ -15,6 +15,7 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <mutex>
@@ -74,6 +75,12 @@ std::vector<std::string> arguments_of(const ChildRun& run) {
     const rlimit limit{bytes, bytes};
     setrlimit(RLIMIT_AS, &limit);
   }
+  if (run.processor_limit > 0) {
+    const auto seconds = static_cast<rlim_t>(std::ceil(run.processor_limit));
+    const rlimit limit{seconds, seconds + 5}, no_core{0, 0};
+    setrlimit(RLIMIT_CPU, &limit);
+    setrlimit(RLIMIT_CORE, &no_core);
+  }
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
   dup2(messages, STDERR_FILENO);
@@ -132,13 +139,17 @@ ChildResult run_child(const ChildRun& run, const std::function<bool()>& stop) {
   result.processor_seconds = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
   result.exit_status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
   result.summary = summary_in(run.output);
-  if (result.timed_out)
+  const bool spent = WIFSIGNALED(state) && WTERMSIG(state) == SIGXCPU;
+  if (spent)
+    result.message = fmt::format("took more than {:.0f} s of processor time", std::ceil(run.processor_limit));
+  else if (result.timed_out)
     result.message = fmt::format("did not end within {:g} s", run.time_limit);
   else if (result.exit_status != 0) {
     if (result.summary.is_object()) result.message = result.summary.value("message", "");
     if (result.message.empty()) result.message = messages.last_lines();
     if (result.message.empty()) result.message = fmt::format("ended with status {}", result.exit_status);
   }
+  result.timed_out = result.timed_out || spent;
   return result;
 }
 

@@ -24,6 +24,7 @@ void take_over(const ChildResult& result, RunRecord& record) {
   record.reason = result.message;
   record.exit_status = result.exit_status;
   record.wall = result.seconds;
+  record.processor_seconds = result.processor_seconds;
   const Json& summary = result.summary;
   if (!summary.is_object()) return;
   record.memory = std::max(record.memory, summary.value("peak_memory_bytes", 0.0));
@@ -57,7 +58,7 @@ std::optional<RunRecord> record_run(const ChildRun& run, const std::string& key,
                                     const std::function<bool()>& stop) {
   RunRecord record;
   record.key = key;
-  std::vector<double> setup, solve, step;
+  std::vector<double> setup, solve, step, processor;
   int warm = timed ? warm_up : 0;
   const std::size_t most = timed ? static_cast<std::size_t>(repeat) : 1;
   while (setup.size() < most) {
@@ -74,6 +75,7 @@ std::optional<RunRecord> record_run(const ChildRun& run, const std::string& key,
     setup.push_back(number_at(result.summary, "seconds", "setup"));
     solve.push_back(number_at(result.summary, "seconds", "solve"));
     step.push_back(number_at(result.summary, "seconds", "step_median"));
+    processor.push_back(number_at(result.summary, "seconds", "solve_processor"));
     record.others = std::max(record.others, load.others(result.processor_seconds));
     if (failed || (is_long && setup.size() == 2)) break;
   }
@@ -81,6 +83,7 @@ std::optional<RunRecord> record_run(const ChildRun& run, const std::string& key,
   record.setup = spread_of(setup);
   record.solve = spread_of(solve);
   record.step = spread_of(step);
+  record.processor = spread_of(processor);
   return record;
 }
 
@@ -92,8 +95,10 @@ Json json_of(const RunRecord& r) {
           {"setup", json_of(r.setup)},
           {"solve", json_of(r.solve)},
           {"step", json_of(r.step)},
+          {"processor", json_of(r.processor)},
           {"step_max", r.step_max},
           {"wall", r.wall},
+          {"processor_seconds", r.processor_seconds},
           {"memory", r.memory},
           {"dofs", r.dofs},
           {"steps", r.steps},
@@ -120,8 +125,10 @@ std::optional<RunRecord> read_record(const std::filesystem::path& directory, con
   r.setup = spread_at(j, "setup");
   r.solve = spread_at(j, "solve");
   r.step = spread_at(j, "step");
+  r.processor = spread_at(j, "processor");
   r.step_max = j.at("step_max");
   r.wall = j.at("wall");
+  r.processor_seconds = j.at("processor_seconds");
   r.memory = j.at("memory");
   r.dofs = j.at("dofs");
   r.steps = j.at("steps");

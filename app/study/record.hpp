@@ -18,7 +18,9 @@ struct RunRecord {                  // NOLINT(bugprone-exception-escape): moving
   std::string key, status, reason;  ///< reason: why it is not "converged"
   int exit_status = 0;
   Spread setup, solve, step;      ///< step: medians of the runs
+  Spread processor;               ///< processor time of the solve, of all threads
   double step_max = 0, wall = 0;  ///< [s]; wall: of one process from start to end
+  double processor_seconds = 0;   ///< of one process from start to end, of all threads
   double memory = 0;              ///< peak [bytes]
   int dofs = 0, steps = 0, newton = 0, linear = 0, threads = 0, repeats = 0;
   double others = 0;  ///< processor time that others took meanwhile, as a share of the machine

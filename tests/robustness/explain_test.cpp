@@ -110,6 +110,14 @@ TEST_F(Explain, QuicklyRunsTheSceneOnceAndSaysWhatIsEstimated) {
   EXPECT_EQ(snapshot().size(), 1u);  // nothing is kept without --output
 }
 
+TEST_F(Explain, SaysWhatThereWasNoTimeFor) {
+  write("scene.toml", kScene);
+  const ProgramResult result = fascia({"explain", "scene.toml", "--repeat", "1", "--time-limit", "1e-3"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* words : {"No time was left within 0.001 s", "bodies.stone as model = \"rigid\"", "suggestions"})
+    EXPECT_NE(result.out.find(words), std::string::npos) << words << "\n" << result.out;
+}
+
 TEST_F(Explain, WithoutProbesComparesMeanDisplacements) {
   write("scene.toml", kScene.substr(0, kScene.find("[probes.top]")));
   const ProgramResult result = fascia({"explain", "scene.toml", "--quick", "--json", "--quiet"});
@@ -125,7 +133,7 @@ TEST_F(Explain, KeepsWhatItKnowsWhereItIsInterrupted) {
   options.signal = SIGINT;
   options.signal_after = std::chrono::milliseconds(1500);
   const ProgramResult result =
-      fascia({"explain", "scene.toml", "--repeat", "9", "--json", "--quiet", "--output", "why"}, options);
+      fascia({"explain", "scene.toml", "--repeat", "999", "--json", "--quiet", "--output", "why"}, options);
   EXPECT_EQ(result.status, 130) << result.err;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "why/variant"));
   EXPECT_TRUE(nlohmann::json::parse(read_text(folder_ / "why/explain.json"))["interrupted"]);

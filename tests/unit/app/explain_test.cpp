@@ -1,6 +1,7 @@
 #include "app/explain/body_motion.hpp"
 #include "app/explain/changes.hpp"
 #include "app/explain/profile.hpp"
+#include "app/explain/promise.hpp"
 #include "app/explain/report.hpp"
 #include "app/explain/suggestions.hpp"
 #include "app/scene/parse.hpp"
@@ -177,6 +178,14 @@ TEST(Ratios, AreThoseOfNeighbours) {
   EXPECT_EQ(ratio_of_pairs({1, 2}, {0, 0}).median, 1);  // a time of 0 says nothing
 }
 
+TEST(Ratios, OfOneRunAreAsUncertainAsTheSceneAsItIs) {
+  const Ratio wide = widened({0.5, 0.5, 0.5}, {2, 1, 3});
+  EXPECT_EQ(wide.median, 0.5);
+  EXPECT_EQ(wide.low, 0.25);
+  EXPECT_EQ(wide.high, 0.75);
+  EXPECT_EQ(widened({0.5, 0.5, 0.5}, {0, 0, 0}).high, 0.5);  // no times, no spread
+}
+
 /// A part that was run, with a ratio of times and the change of one probe.
 Part ran(Variant variant, double ratio, std::optional<double> change) {
   Part part;
@@ -224,7 +233,7 @@ Variant tolerance(bool closer) {
 
 TEST(Suggestions, AreInTheScenesWordsAndSortedByGain) {
   Explanation e = explanation_of({ran(tolerance(false), 0.9, 1e-7), ran(rigid_stone(), 0.69, 2e-4)});
-  const std::vector<const Part*> parts = worth_suggesting(e);
+  const std::vector<Part*> parts = worth_suggesting(e);
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[0]->variant.kind, VariantKind::rigid);
   EXPECT_EQ(suggestion_of(e, *parts[0], {0.69, 0.67, 0.72}).text,
@@ -235,13 +244,34 @@ TEST(Suggestions, AreInTheScenesWordsAndSortedByGain) {
             "most, by 1.0e-07.");
 }
 
+TEST(Promise, PutsWhatMayGainWithoutHarmFirst) {
+  Explanation e = explanation_of(
+      {ran(tolerance(true), 1, 0), ran(rigid_stone(), 1, 0), ran(tolerance(false), 1, 0), ran(rigid_stone(), 1, 0)});
+  e.bodies[0].points = 10;
+  e.bodies[0].motion->displacement = 1;
+  e.bodies[0].motion->deformation = 0.5;
+  e.parts[3].variant.refused = "no valid scene";
+  estimate(e);
+  EXPECT_EQ(e.parts[1].estimated_gain, 1);
+  EXPECT_EQ(*e.parts[1].estimated_change, 0.5);
+  const std::vector<Part*> order = by_promise(e);
+  EXPECT_EQ(order, (std::vector<Part*>{&e.parts[2], &e.parts[1], &e.parts[0]}));
+}
+
 TEST(Suggestions, LeaveOutWhatChangesProbesOrGainsNothing) {
-  const auto none = [](Part part) { return worth_suggesting(explanation_of({std::move(part)})).empty(); };
+  const auto none = [](Part part) {
+    Explanation e = explanation_of({std::move(part)});
+    return worth_suggesting(e).empty();
+  };
   EXPECT_FALSE(none(ran(rigid_stone(), 0.8, 0.009)));
   EXPECT_TRUE(none(ran(rigid_stone(), 0.8, 0.011)));
   EXPECT_TRUE(none(ran(rigid_stone(), 0.8, std::nullopt)));  // the probe is gone
-  EXPECT_TRUE(none(ran(rigid_stone(), 0.985, 0)));           // within the spread
-  EXPECT_TRUE(none(ran(tolerance(true), 0.8, 0)));           // answers closer: it is no simplification
+  EXPECT_TRUE(none(ran(rigid_stone(), 0.995, 0)));           // not worth a line in a scene
+  EXPECT_FALSE(none(ran(rigid_stone(), 0.985, 0)));          // to be measured in turns: it may be
+  const Explanation e = explanation_of({});
+  EXPECT_FALSE(is_worth(e, ran(rigid_stone(), 0.985, 0)));  // chance
+  EXPECT_TRUE(is_worth(e, ran(rigid_stone(), 0.9, 0)));
+  EXPECT_TRUE(none(ran(tolerance(true), 0.8, 0)));  // answers closer: it is no simplification
   Part failed = ran(rigid_stone(), 0.5, 0);
   failed.record->status = "diverged";
   EXPECT_TRUE(none(std::move(failed)));
