@@ -20,8 +20,6 @@ constexpr double kMeasuring = 0.25;
 constexpr double kProgramMemory = 40e6;
 /// Trials below this time are mostly noise: no exponent is taken from them [s].
 constexpr double kClearTime = 0.05;
-/// Steps are timed anew by the run itself: it may be this much slower.
-constexpr double kStepSpread = 1.15;
 
 class Search {
  public:
