@@ -104,7 +104,7 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   for (const Trial& t : trials.all()) {
     Json j{{"choice", trials.text(t.choice)}, {"status", t.status}, {"seconds", t.seconds}, {"unknowns", t.dofs}};
     if (!t.choice.more.empty()) j["twin"] = t.choice.more;
-    if (t.choice.steps > 0 || scene_.solver.step_open) j["step_p99"] = t.step;
+    if (is_dynamic(scene_.solver.kind)) j["step_p99"] = t.step;
     if (const auto ratio = has_error && t.choice.steps == judged.choice.steps && t.choice.more == judged.choice.more
                                ? accuracy.ratio(t)
                                : std::nullopt)

@@ -20,8 +20,6 @@ constexpr double kMeasuring = 0.25;
 constexpr double kProgramMemory = 40e6;
 /// Trials below this time are mostly noise: no exponent is taken from them [s].
 constexpr double kClearTime = 0.05;
-/// Steps are timed anew by the run itself: it may be this much slower.
-constexpr double kStepSpread = 1.15;
 
 class Search {
  public:
@@ -35,7 +33,7 @@ class Search {
     while (!trials_.stopped()) {
       if (levels() == 0) return {like_, false, "no trial gave a result: " + failure_};
       const std::optional<Resolution> next = has_error_ ? next_of_error() : next_of_limits();
-      if (!next || made_ >= limits_.trials) break;
+      if (!next || made_ >= (has_error_ ? 1 : 2) * limits_.trials) break;
       run(*next);
     }
     return best();
@@ -76,7 +74,8 @@ class Search {
       run({f, least});
       if (has_error_ && tried({f, least})) shape_cells(trials_, tried({f, least})->choice);
       run({f, least});
-      if (const Resolution second{f, 2 * least}; !trials_.stopped() && open.takes(second) && beyond(second).empty())
+      if (const Resolution second{f, 2 * least};
+          has_error_ && !trials_.stopped() && open.takes(second) && beyond(second).empty())
         run(second);
     }
   }
@@ -172,19 +171,39 @@ class Search {
     return next || !cheapest || tried(*cheapest) ? next : cheapest;
   }
 
-  /// Without an allowed error: finer and finer, in the family that is most accurate within the limits.
+  /// Without an allowed error: finer and finer until a level is beyond the limits, then between the last two.
   std::optional<Resolution> next_of_limits() const {
     std::optional<Resolution> next;
     double least = INFINITY;
     for (int f = 0; f < trials_.open().families(); ++f) {
-      std::optional<Resolution> finest;
-      for (int level = 1; level <= kMostLevel; ++level)
-        if (const Resolution r{f, level}; trials_.open().offers(r) && !failed(r) && beyond(r).empty()) finest = r;
-      if (!finest || tried(*finest)) continue;
-      const double dofs = cost(*finest).seconds;
-      if (dofs < least) next = finest, least = dofs;
+      const std::optional<Resolution> r = finer_within(f);
+      if (!r || cost(*r).seconds >= least) continue;
+      next = r;
+      least = cost(*r).seconds;
     }
     return next;
+  }
+
+  std::optional<Resolution> finer_within(int family) const {
+    int within = 0, above = kMostLevel + 1;
+    for (const Trial* t : accuracy_.levels(family)) {
+      const int level = t->choice.resolution.level;
+      if (beyond(t->choice.resolution).empty())
+        within = std::max(within, level);
+      else
+        above = std::min(above, level);
+    }
+    for (const Resolution& r : failed_)
+      if (r.family == family) above = std::min(above, r.level);
+    if (within == 0) return std::nullopt;
+    const int wanted = above > kMostLevel ? within + std::max(1, within / 2) : (within + above) / 2;
+    for (int level = wanted; level > within && level < above; ++level) {
+      const Resolution r{family, level};
+      if (!trials_.open().offers(r)) continue;
+      const Prediction p = cost(r);
+      return p.memory <= limits_.memory && p.seconds <= limits_.seconds ? std::optional(r) : std::nullopt;
+    }
+    return std::nullopt;
   }
 
   double error_told(const Trial& t) const {

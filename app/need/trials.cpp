@@ -55,7 +55,7 @@ double step_p99(const ChildResult& result) { return result.summary.at("seconds")
 bool interrupted_steps(const Scene& scene, const ChildResult& result) {
   if (!scene.need || !scene.need->step || result.exit_status != 0 || !result.summary.is_object()) return false;
   const double median = result.summary.at("seconds").at("step_median").get<double>();
-  return step_p99(result) > *scene.need->step && 1.5 * median < *scene.need->step;
+  return kStepSpread * step_p99(result) > *scene.need->step && 1.5 * median < *scene.need->step;
 }
 
 }  // namespace

@@ -84,6 +84,9 @@ class Trials {
   std::deque<Trial> trials_;  ///< references to them stay
 };
 
+/// Steps are timed anew by the run itself: it may be this much slower.
+inline constexpr double kStepSpread = 1.15;
+
 /// Values of a quantity that are rounding alone. @param size  of the largest body [m]
 double rounding_of(Quantity quantity, double size);
 
