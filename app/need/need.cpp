@@ -99,8 +99,8 @@ std::optional<int> choose(const RunOptions& options, const Scene& scene, double 
 }  // namespace
 
 int run_need(const RunOptions& options, const Scene& scene) {
-  // The run times its steps anew. Where they are longer than those of its trial twice, trials must be faster.
-  constexpr int runs = 2, searches = 3;
+  // The run times its steps anew. Where they are longer than those of its trial again, trials must be faster.
+  constexpr int runs = 6, searches = 3;
   constexpr double faster = 0.6;
   NeedReport report(scene);
   std::vector<std::string> overrides;
@@ -116,7 +116,7 @@ int run_need(const RunOptions& options, const Scene& scene) {
     run.complete = [&](nlohmann::ordered_json& summary) { report.write(summary); };
     if (!options.quiet && !options.json)
       for (const std::string& line : report.sentences()) fmt::print("{}\n", line);
-    for (int time = 0; time < runs && (time == 0 || report.steps_took_longer()); ++time)
+    for (int time = 0; time < runs && (time == 0 || report.steps_were_interrupted()); ++time)
       if (const int status = run_scene(run); status != kDone) return status;
   }
   const fs::path directory = scene.output.directory;

@@ -36,6 +36,7 @@ class Search {
       if (!next || made_ >= (has_error_ ? 1 : 2) * limits_.trials) break;
       run(*next);
     }
+    tell_errors();
     return best();
   }
 
@@ -72,12 +73,20 @@ class Search {
     for (int f = 0; f < open.families() && !trials_.stopped(); ++f) {
       const int least = open.least(f);
       run({f, least});
-      if (has_error_ && tried({f, least})) shape_cells(trials_, tried({f, least})->choice);
+      if (tried({f, least})) shape_cells(trials_, tried({f, least})->choice);
       run({f, least});
       if (const Resolution second{f, 2 * least};
           has_error_ && !trials_.stopped() && open.takes(second) && beyond(second).empty())
         run(second);
     }
+  }
+
+  /// One level alone says nothing of its error: where no other was within the limits, one beyond them tells it.
+  void tell_errors() {
+    const OpenScene& open = trials_.open();
+    for (int f = 0; f < open.families() && !has_error_ && !trials_.stopped(); ++f)
+      if (const Resolution second{f, 2 * open.least(f)}; accuracy_.levels(f).size() == 1 && open.takes(second))
+        run(second);
   }
 
   bool failed(const Resolution& r) const { return std::find(failed_.begin(), failed_.end(), r) != failed_.end(); }
@@ -208,7 +217,8 @@ class Search {
 
   double error_told(const Trial& t) const {
     double most = 0;
-    for (std::size_t w = 0; w < trials_.wanted().size(); ++w) most = std::max(most, accuracy_.error(t, w).value_or(0));
+    for (std::size_t w = 0; w < trials_.wanted().size(); ++w)
+      if (trials_.judges(w)) most = std::max(most, accuracy_.error(t, w).value_or(0));
     return most;
   }
 

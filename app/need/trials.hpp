@@ -66,6 +66,8 @@ class Trials {
   void stretch(std::size_t body, int family);
   const Scene& scene() const { return scene_; }
   const std::vector<Wanted>& wanted() const { return wanted_; }
+  /// Its error tells which resolution is better: it is stated, or none is, and it is the displacement of a body.
+  bool judges(std::size_t wanted) const;
   bool stopped() const { return stop_(); }
   void tell(const std::string& line) const { tell_(line); }
 
@@ -86,6 +88,10 @@ class Trials {
 
 /// Steps are timed anew by the run itself: it may be this much slower.
 inline constexpr double kStepSpread = 1.15;
+
+/// The longest steps of a run, times `spread`, are above what the scene needs, and the others well below: the machine
+/// did something else meanwhile, and another run may not meet it.
+bool interrupted_steps(const Scene& scene, const nlohmann::ordered_json& summary, double spread);
 
 /// Values of a quantity that are rounding alone. @param size  of the largest body [m]
 double rounding_of(Quantity quantity, double size);
