@@ -79,8 +79,10 @@ std::optional<int> choose(const RunOptions& options, const Scene& scene, double 
   Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), tell, [&] { return stop.requested(); });
   const NeedChoice first = first_choice(trials);
   check_scale(scene, trials, first, check_first(scene, trials, first));
-  Found found = is_dynamic(scene.solver.kind) ? search_in_time(trials, first, limits_of(scene, part))
-                                              : search_resolution(trials, first, limits_of(scene, part));
+  SearchLimits limits = limits_of(scene, part);
+  limits.share = 1 - room_for_simpler(trials, first);
+  Found found =
+      is_dynamic(scene.solver.kind) ? search_in_time(trials, first, limits) : search_resolution(trials, first, limits);
   if (!stop.requested()) simplify(trials, found);
   if (stop.requested()) {
     say("{}: interrupted while it looked for what the need asks for\n", scene.path.string());

@@ -67,15 +67,20 @@ class Search {
     return count;
   }
 
-  /// The two coarsest levels of each family; coarser ones than are worth a try tell the order too.
+  /// The two coarsest levels of each family; coarser ones than are worth a try tell the order too. Where a coarse mesh
+  /// is refused (a probe lies outside its facets), finer ones are not.
   void begin() {
     const OpenScene& open = trials_.open();
+    constexpr int most = 4;  // times as fine
     for (int f = 0; f < open.families() && !trials_.stopped(); ++f) {
       const int least = open.least(f);
-      run({f, least});
-      if (tried({f, least})) shape_cells(trials_, tried({f, least})->choice);
-      run({f, least});
-      if (const Resolution second{f, 2 * least};
+      int level = least;
+      run({f, level});
+      while (failed({f, level}) && 2 * level <= most * least && open.offers({f, 2 * level})) run({f, level *= 2});
+      if (const Trial* t = tried({f, level}); t && (has_error_ || beyond({f, level}).empty()))
+        shape_cells(trials_, t->choice);
+      run({f, level});
+      if (const Resolution second{f, 2 * level};
           has_error_ && !trials_.stopped() && open.takes(second) && beyond(second).empty())
         run(second);
     }
@@ -203,7 +208,7 @@ class Search {
         above = std::min(above, level);
     }
     for (const Resolution& r : failed_)
-      if (r.family == family) above = std::min(above, r.level);
+      if (r.family == family && r.level > within) above = std::min(above, r.level);
     if (within == 0) return std::nullopt;
     const int wanted = above > kMostLevel ? within + std::max(1, within / 2) : (within + above) / 2;
     for (int level = wanted; level > within && level < above; ++level) {

@@ -42,6 +42,7 @@ struct Trial {
   double step = 0;              ///< 99th percentile of its steps [s]
   double memory = 0;            ///< [bytes]
   double dofs = 0, steps = 0, newton = 0;
+  std::map<std::string, double> body_mass;  ///< [kg]
   std::vector<Series> values;  ///< by Wanted; empty where it gave nothing
 
   bool good() const { return !values.empty(); }
