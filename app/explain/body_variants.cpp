@@ -117,12 +117,10 @@ class BodyVariants {
     }
   }
 
-  /// A density is that of the matter; of a rigid body it would be that of all that its surface encloses.
+  /// A density is that of the matter; of a rigid body it would be that of all that the facets of its surface enclose.
   void keep_mass(Variant& v) const {
     const auto mass = facts_.body_mass.find(body_.name);
     if (!body_.density || mass == facts_.body_mass.end()) return;
-    const bool thin = is_shell(body_) || !body_.thickness.empty() || body_.radius;
-    if (!thin) return;
     v.overrides.push_back(path_ + ".density=");
     v.overrides.push_back(fmt::format("{}.mass={}", path_, mass->second));
   }

@@ -58,59 +58,69 @@ double memory_of(const Scene& scene) {
   return memory;
 }
 
-SearchLimits limits_of(const Scene& scene) {
+/// @param part  of the step that is needed, which trials may take
+SearchLimits limits_of(const Scene& scene, double part) {
   SearchLimits limits;
   limits.memory = memory_of(scene);
-  if (scene.need && scene.need->step) limits.step = *scene.need->step;
+  if (scene.need && scene.need->step) limits.step = part * *scene.need->step;
   return limits;
+}
+
+/// Looks for a choice, and what makes the scene of it. @return an exit status where there is none
+std::optional<int> choose(const RunOptions& options, const Scene& scene, double part, NeedReport& report,
+                          std::vector<std::string>& overrides) {
+  const Clock::time_point start = Clock::now();
+  Interruption stop;
+  const TemporaryFolder folder("fascia-need");
+  const bool silent = options.quiet || options.json;
+  const auto tell = [&](const std::string& line) {
+    if (!silent) fmt::print("{}\n", line), std::fflush(stdout);
+  };
+  Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), tell, [&] { return stop.requested(); });
+  const NeedChoice first = first_choice(trials);
+  check_scale(scene, trials, first, check_first(scene, trials, first));
+  SearchLimits limits = limits_of(scene, part);
+  limits.share = 1 - room_for_simpler(trials, first);
+  Found found =
+      is_dynamic(scene.solver.kind) ? search_in_time(trials, first, limits) : search_resolution(trials, first, limits);
+  if (!stop.requested()) simplify(trials, found);
+  if (stop.requested()) {
+    say("{}: interrupted while it looked for what the need asks for\n", scene.path.string());
+    return 128 + stop.signal();
+  }
+  const Trial* trial = trials.find(found.choice);
+  if (!trial || !trial->good()) {
+    say("{}: the need is not met: {}\n", scene.path.string(), found.why_not);
+    return kNotConverged;
+  }
+  report.add(trials, found, seconds_since(start));
+  overrides = trials.overrides(found.choice);
+  return std::nullopt;
 }
 
 }  // namespace
 
 int run_need(const RunOptions& options, const Scene& scene) {
-  const Clock::time_point start = Clock::now();
+  // The run times its steps anew. Where they are longer than those of its trial again, trials must be faster.
+  constexpr int runs = 6, searches = 3;
+  constexpr double faster = 0.6;
   NeedReport report(scene);
   std::vector<std::string> overrides;
-  Found found;
-  {
-    Interruption stop;
-    const TemporaryFolder folder("fascia-need");
-    const bool silent = options.quiet || options.json;
-    const auto tell = [&](const std::string& line) {
-      if (!silent) fmt::print("{}\n", line), std::fflush(stdout);
-    };
-    Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), tell, [&] { return stop.requested(); });
-    const NeedChoice first = first_choice(trials);
-    check_scale(scene, trials, first, check_first(scene, trials, first));
-    found = is_dynamic(scene.solver.kind) ? search_in_time(trials, first, limits_of(scene))
-                                          : search_resolution(trials, first, limits_of(scene));
-    if (stop.requested()) {
-      say("{}: interrupted while it looked for what the need asks for; nothing was written\n", scene.path.string());
-      return 128 + stop.signal();
-    }
-    simplify(trials, found);
-    const Trial* trial = trials.find(found.choice);
-    if (!trial || !trial->good()) {
-      say("{}: {}\n", scene.place_of("need").key, found.why_not);
-      return kNotConverged;
-    }
-    report.add(trials, found, seconds_since(start));
-    overrides = trials.overrides(found.choice);
+  double part = 1;
+  for (int search = 0; search < searches && (search == 0 || report.steps_took_longer()); ++search, part *= faster) {
+    if (const std::optional<int> failed = choose(options, scene, part, report, overrides)) return *failed;
+    RunOptions run = options;
+    run.overrides = scene.overrides;
+    run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
+    run.text = scene.text;
+    run.backend.reset(), run.threads.reset(), run.gpus.reset();  // they are among the scene's overrides
+    run.estimate = false, run.no_estimate = true;                // it is the trials'
+    run.complete = [&](nlohmann::ordered_json& summary) { report.write(summary); };
+    if (!options.quiet && !options.json)
+      for (const std::string& line : report.sentences()) fmt::print("{}\n", line);
+    for (int time = 0; time < runs && (time == 0 || report.steps_were_interrupted()); ++time)
+      if (const int status = run_scene(run); status != kDone) return status;
   }
-  RunOptions run = options;
-  run.overrides = scene.overrides;
-  run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
-  run.text = scene.text;
-  run.backend.reset(), run.threads.reset(), run.gpus.reset();  // they are among the scene's overrides
-  run.estimate = false, run.no_estimate = true;                // it is the trials'
-  run.complete = [&](nlohmann::ordered_json& summary) { report.write(summary); };
-  if (!options.quiet && !options.json)
-    for (const std::string& line : report.sentences()) fmt::print("{}\n", line);
-  constexpr int most = 3;  // steps are timed anew by the run itself
-  int status = kDone;
-  for (int time = 0; time < most && (time == 0 || report.steps_took_longer()) && status == kDone; ++time)
-    status = run_scene(run);
-  if (status != kDone) return status;
   const fs::path directory = scene.output.directory;
   io::replace_file(directory / io::kChosenScene, chosen_scene(scene, overrides, report.sentences(), directory));
   if (report.met()) return kDone;

@@ -18,6 +18,8 @@ namespace {
 /// would be a dear beginning for thin ones.
 constexpr double kSlender = 4;
 constexpr int kMostOfPattern = 4;
+/// A part of a cell beyond which there is another one.
+constexpr double kAnother = 0.2;
 
 std::vector<double> edges_of(const BlockDomain& block) {
   const auto edge = [&](std::size_t a, std::size_t b) { return norm(block.corners[b] - block.corners[a]); };
@@ -220,7 +222,8 @@ std::vector<int> pattern_of(const std::vector<double>& lengths, double slender, 
   const double size = std::max(slender * *least, *largest / most);
   std::vector<int> pattern;
   pattern.reserve(lengths.size());
-  for (const double length : lengths) pattern.push_back(std::max(1, static_cast<int>(std::lround(length / size))));
+  for (const double length : lengths)
+    pattern.push_back(std::max(1, static_cast<int>(std::ceil(length / size - kAnother))));
   return pattern;
 }
 

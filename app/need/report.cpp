@@ -37,6 +37,20 @@ std::vector<double> solver_error(Trials& trials, const Trial& coarsest) {
   return error;
 }
 
+/// Why the next finer level that was tried was not taken, a clause behind others.
+std::string finer(const Trials& trials, const NeedChoice& choice, const Scene& scene) {
+  const Trial* next = nullptr;
+  for (const Trial& t : trials.all()) {
+    NeedChoice like = t.choice;
+    like.resolution.level = choice.resolution.level;
+    if (like == choice && t.choice > choice && (!next || t.choice < next->choice)) next = &t;
+  }
+  if (!next) return "";
+  const std::string text = "; " + trials.open().text(next->choice.resolution);
+  if (!next->good()) return text + ": " + next->message;
+  return scene.need && scene.need->step ? fmt::format("{}: steps of up to {}", text, time_text(next->step)) : "";
+}
+
 Json needed(const StatedNeed& need) {
   Json j = Json::object();
   if (need.error) j["error"] = *need.error;
@@ -104,7 +118,7 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   for (const Trial& t : trials.all()) {
     Json j{{"choice", trials.text(t.choice)}, {"status", t.status}, {"seconds", t.seconds}, {"unknowns", t.dofs}};
     if (!t.choice.more.empty()) j["twin"] = t.choice.more;
-    if (t.choice.steps > 0 || scene_.solver.step_open) j["step_p99"] = t.step;
+    if (is_dynamic(scene_.solver.kind)) j["step_p99"] = t.step;
     if (const auto ratio = has_error && t.choice.steps == judged.choice.steps && t.choice.more == judged.choice.more
                                ? accuracy.ratio(t)
                                : std::nullopt)
@@ -120,6 +134,7 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
                               : "the finest that meets the need",
                   good, time_text(seconds)),
       reached_};
+  if (!has_error && found.met) sentences_[1] += finer(trials, own.choice, scene_);
   sentences_.insert(sentences_.end(), found.simpler.begin(), found.simpler.end());
   const Trial* coarser = nullptr;
   for (const Trial* t : levels)
@@ -136,6 +151,7 @@ void NeedReport::write(Json& summary) {
     const auto p99 = summary.at("seconds").at("step_p99").get<double>();
     chosen.push_back(
         fmt::format("99 of 100 steps take at most {}, of {} allowed", time_text(p99), time_text(*scene_.need->step)));
+    interrupted_ = interrupted_steps(scene_, summary, 1);
     if (p99 > *scene_.need->step)
       step_ = fmt::format("99 of 100 steps of the run take up to {}, more than those of its trial", time_text(p99));
   }

@@ -23,6 +23,8 @@ class NeedReport {
   bool met() const { return why_not_.empty() && step_.empty(); }
   /// Steps of the run were longer than its trial promised: another run may do better.
   bool steps_took_longer() const { return why_not_.empty() && !step_.empty(); }
+  /// So they were, but only some of them: the same choice may do.
+  bool steps_were_interrupted() const { return steps_took_longer() && interrupted_; }
   /// What was needed, what keeps it from being met, and what was reached.
   std::string not_met() const;
 
@@ -32,6 +34,7 @@ class NeedReport {
   nlohmann::ordered_json errors_, trials_;
   std::string why_not_, step_, reached_;
   double seconds_ = 0;
+  bool interrupted_ = false;  ///< the longest steps are far above the others
 };
 
 /// "linear or quadratic hexahedra": the kinds that are tried.

@@ -20,8 +20,6 @@ constexpr double kMeasuring = 0.25;
 constexpr double kProgramMemory = 40e6;
 /// Trials below this time are mostly noise: no exponent is taken from them [s].
 constexpr double kClearTime = 0.05;
-/// Steps are timed anew by the run itself: it may be this much slower.
-constexpr double kStepSpread = 1.15;
 
 class Search {
  public:
@@ -35,9 +33,10 @@ class Search {
     while (!trials_.stopped()) {
       if (levels() == 0) return {like_, false, "no trial gave a result: " + failure_};
       const std::optional<Resolution> next = has_error_ ? next_of_error() : next_of_limits();
-      if (!next || made_ >= limits_.trials) break;
+      if (!next || made_ >= (has_error_ ? 1 : 2) * limits_.trials) break;
       run(*next);
     }
+    tell_errors();
     return best();
   }
 
@@ -68,17 +67,31 @@ class Search {
     return count;
   }
 
-  /// The two coarsest levels of each family; coarser ones than are worth a try tell the order too.
+  /// The two coarsest levels of each family; coarser ones than are worth a try tell the order too. Where a coarse mesh
+  /// is refused (a probe lies outside its facets), finer ones are not.
   void begin() {
     const OpenScene& open = trials_.open();
+    constexpr int most = 4;  // times as fine
     for (int f = 0; f < open.families() && !trials_.stopped(); ++f) {
       const int least = open.least(f);
-      run({f, least});
-      if (has_error_ && tried({f, least})) shape_cells(trials_, tried({f, least})->choice);
-      run({f, least});
-      if (const Resolution second{f, 2 * least}; !trials_.stopped() && open.takes(second) && beyond(second).empty())
+      int level = least;
+      run({f, level});
+      while (failed({f, level}) && 2 * level <= most * least && open.offers({f, 2 * level})) run({f, level *= 2});
+      if (const Trial* t = tried({f, level}); t && (has_error_ || beyond({f, level}).empty()))
+        shape_cells(trials_, t->choice);
+      run({f, level});
+      if (const Resolution second{f, 2 * level};
+          has_error_ && !trials_.stopped() && open.takes(second) && beyond(second).empty())
         run(second);
     }
+  }
+
+  /// One level alone says nothing of its error: where no other was within the limits, one beyond them tells it.
+  void tell_errors() {
+    const OpenScene& open = trials_.open();
+    for (int f = 0; f < open.families() && !has_error_ && !trials_.stopped(); ++f)
+      if (const Resolution second{f, 2 * open.least(f)}; accuracy_.levels(f).size() == 1 && open.takes(second))
+        run(second);
   }
 
   bool failed(const Resolution& r) const { return std::find(failed_.begin(), failed_.end(), r) != failed_.end(); }
@@ -172,24 +185,45 @@ class Search {
     return next || !cheapest || tried(*cheapest) ? next : cheapest;
   }
 
-  /// Without an allowed error: finer and finer, in the family that is most accurate within the limits.
+  /// Without an allowed error: finer and finer until a level is beyond the limits, then between the last two.
   std::optional<Resolution> next_of_limits() const {
     std::optional<Resolution> next;
     double least = INFINITY;
     for (int f = 0; f < trials_.open().families(); ++f) {
-      std::optional<Resolution> finest;
-      for (int level = 1; level <= kMostLevel; ++level)
-        if (const Resolution r{f, level}; trials_.open().offers(r) && !failed(r) && beyond(r).empty()) finest = r;
-      if (!finest || tried(*finest)) continue;
-      const double dofs = cost(*finest).seconds;
-      if (dofs < least) next = finest, least = dofs;
+      const std::optional<Resolution> r = finer_within(f);
+      if (!r || cost(*r).seconds >= least) continue;
+      next = r;
+      least = cost(*r).seconds;
     }
     return next;
   }
 
+  std::optional<Resolution> finer_within(int family) const {
+    int within = 0, above = kMostLevel + 1;
+    for (const Trial* t : accuracy_.levels(family)) {
+      const int level = t->choice.resolution.level;
+      if (beyond(t->choice.resolution).empty())
+        within = std::max(within, level);
+      else
+        above = std::min(above, level);
+    }
+    for (const Resolution& r : failed_)
+      if (r.family == family && r.level > within) above = std::min(above, r.level);
+    if (within == 0) return std::nullopt;
+    const int wanted = above > kMostLevel ? within + std::max(1, within / 2) : (within + above) / 2;
+    for (int level = wanted; level > within && level < above; ++level) {
+      const Resolution r{family, level};
+      if (!trials_.open().offers(r)) continue;
+      const Prediction p = cost(r);
+      return p.memory <= limits_.memory && p.seconds <= limits_.seconds ? std::optional(r) : std::nullopt;
+    }
+    return std::nullopt;
+  }
+
   double error_told(const Trial& t) const {
     double most = 0;
-    for (std::size_t w = 0; w < trials_.wanted().size(); ++w) most = std::max(most, accuracy_.error(t, w).value_or(0));
+    for (std::size_t w = 0; w < trials_.wanted().size(); ++w)
+      if (trials_.judges(w)) most = std::max(most, accuracy_.error(t, w).value_or(0));
     return most;
   }
 

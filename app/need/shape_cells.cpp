@@ -13,6 +13,8 @@ constexpr double kSettled = 0.03;
 /// Directions that change this many times as much as the thin ones get more cells, up to this many times.
 constexpr double kMostOfError = 4;
 constexpr int kMostStretch = 4;
+/// Where no error is stated, cells are shaped for this one.
+constexpr double kUnstated = 0.01;
 
 class Shape {
  public:
@@ -48,8 +50,9 @@ class Shape {
     if (!own.good() || !twice.good()) return INFINITY;
     double most = 0;
     for (std::size_t w = 0; w < own.values.size(); ++w)
-      if (const auto& allowed = trials_.wanted()[w].allowed)
-        most = std::max(most, relative_distance(own.values[w], twice.values[w]).value_or(INFINITY) / *allowed);
+      if (trials_.judges(w))
+        most = std::max(most, relative_distance(own.values[w], twice.values[w]).value_or(INFINITY) /
+                                  trials_.wanted()[w].allowed.value_or(kUnstated));
     return most;
   }
 

@@ -1,7 +1,9 @@
 #include "app/need/simplify.hpp"
 
+#include "app/explain/variants.hpp"
 #include "app/readable.hpp"
 #include "app/scene/diagnostics.hpp"
+#include "app/scene/parse.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +18,14 @@ namespace {
 constexpr double kPart = 0.5;
 /// Less saving than this is lost in what times spread.
 constexpr double kSaving = 0.9;
+/// Times of two runs differ by this where the machine does something else.
+constexpr double kTimesSpread = 1.3;
+
+/// So much of the allowed errors is kept for what may be left out: finer meshes that use less cost more than that
+/// saves.
+constexpr double kMostRoom = 0.25;
+/// On finer meshes it may add this many times as much.
+constexpr double kSpread = 1.5;
 
 struct Simplification {
   std::string what;  ///< a clause
@@ -23,49 +33,71 @@ struct Simplification {
   bool same_result = false;  ///< it may change how the result is found, but not the result
 };
 
-/// Keys of a body that a rigid one does not take.
-std::vector<std::string> made_rigid(const Scene& scene, const Body& body, const OpenBody* open) {
-  const std::string path = "bodies." + toml_key(body.name);
-  std::vector<std::string> changes{path + ".model=\"rigid\""};
-  const auto chosen = [&](const std::string& key) {  // by the overrides of an open body
-    if (!open) return false;
-    const bool frames = open->key.starts_with(path + "." + key);
-    const bool family = std::any_of(open->families.begin(), open->families.end(), [&](const Family& f) {
-      return std::any_of(f.overrides.begin(), f.overrides.end(),
-                         [&](const std::string& o) { return o.starts_with(path + "." + key); });
-    });
-    return frames || family;
-  };
-  for (const char* key :
-       {"material", "frames", "points", "weights", "formulation", "order", "incompressibility", "locking"})
-    if (scene.says(path + "." + key) || chosen(key)) changes.push_back(path + "." + key + "=");
-  return changes;
+/// What may be left out of a body, as `fascia explain` leaves it out: what the scene says stays.
+void of_body(const Scene& scene, const Body& body, const RunFacts& facts, std::vector<Simplification>& all) {
+  const std::string formulation = "bodies." + toml_key(body.name) + ".formulation";
+  const bool small = is_mesh_model(body) && !scene.says(formulation) &&
+                     std::all_of(body.materials.begin(), body.materials.end(), [](const MaterialUse& m) {
+                       return m.material.law == MaterialLaw::st_venant_kirchhoff;
+                     });
+  const bool solid = body.model == BodyModel::meshless ? body.thickness.empty() && !body.radius : is_mesh_model(body);
+  const bool held = scene.bodies.size() > 1 || !scene.couplings.empty();
+  const bool whole = solid && held && !body.fluid && !std::holds_alternative<BetweenDomain>(body.domain);
+  const std::string linear = formulation + "=\"linear\"";
+  for (Variant& v : body_variants(scene, body, facts)) {
+    if (!v.refused.empty()) continue;
+    if (small && v.kind == VariantKind::formulation && v.overrides.back() == linear)
+      all.push_back({in_quotes(body.name) + " is linear, as its displacements are small", std::move(v.overrides)});
+    else if (whole && v.kind == VariantKind::rigid)
+      all.push_back({in_quotes(body.name) + " is rigid, as it moves as a whole", std::move(v.overrides)});
+  }
 }
 
-std::vector<Simplification> candidates(const Scene& scene, const OpenScene& open) {
+/// Of the scene that a trial ran, in an order that is the same for all of them.
+std::vector<Simplification> candidates(const Trials& trials, const Trial& trial) {
+  std::vector<std::string> overrides = trials.scene().overrides;
+  const std::vector<std::string> chosen = trials.overrides(trial.choice);
+  overrides.insert(overrides.end(), chosen.begin(), chosen.end());
+  const Scene scene = parse_scene_text(trials.scene().text, trials.scene().path, overrides);
+  RunFacts facts;
+  facts.body_mass = trial.body_mass;
   std::vector<Simplification> all;
-  const auto deformable =
-      std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return !is_carrier(b); });
-  for (const Body& body : scene.bodies) {
-    const std::string path = "bodies." + toml_key(body.name);
-    if (is_mesh_model(body) && !scene.says(path + ".formulation") &&
-        std::all_of(body.materials.begin(), body.materials.end(),
-                    [](const MaterialUse& m) { return m.material.law == MaterialLaw::st_venant_kirchhoff; }))
-      all.push_back(
-          {in_quotes(body.name) + " is linear, as its displacements are small", {path + ".formulation=\"linear\""}});
-    const bool takes_rigid =
-        body.model == BodyModel::meshless ? body.thickness.empty() && !body.radius : is_mesh_model(body);
-    if (deformable < 2 || !takes_rigid || body.fluid || std::holds_alternative<BetweenDomain>(body.domain)) continue;
-    const auto part =
-        std::find_if(open.bodies.begin(), open.bodies.end(), [&](const OpenBody& b) { return b.name == body.name; });
-    all.push_back({in_quotes(body.name) + " is rigid, as it moves as a whole",
-                   made_rigid(scene, body, part == open.bodies.end() ? nullptr : &*part)});
-  }
+  for (const Body& body : scene.bodies)
+    if (!is_carrier(body)) of_body(scene, body, facts, all);
   if (scene.solver.kind != SolverKind::central_differences && !scene.says("solver.tangent"))
     all.push_back({"the geometric stiffness is left out, as no more iterations are needed without it",
                    {"solver.tangent=\"material\""},
                    true});
   return all;
+}
+
+/// What a simpler trial changes, relative, by quantity.
+std::vector<double> added(const Trial& plain, const Trial& simpler) {
+  std::vector<double> more;
+  for (std::size_t w = 0; w < plain.values.size(); ++w)
+    more.push_back(relative_distance(simpler.values[w], plain.values[w]).value_or(0));
+  return more;
+}
+
+/// The largest of these errors over those allowed.
+double over_allowed(const Trials& trials, const std::vector<double>& errors) {
+  double most = 0;
+  for (std::size_t w = 0; w < errors.size(); ++w)
+    if (const auto& allowed = trials.wanted()[w].allowed) most = std::max(most, errors[w] / *allowed);
+  return most;
+}
+
+NeedChoice with(NeedChoice choice, const Simplification& s) {
+  choice.more.insert(choice.more.end(), s.overrides.begin(), s.overrides.end());
+  return choice;
+}
+
+/// Newton iterations times unknowns: unlike times, they are the same whatever else the machine does.
+double work(const Trial& trial) { return std::max(1.0, trial.newton) * trial.dofs; }
+
+/// It saves iterations or unknowns.
+bool saves(const Simplification& s, const Trial& plain, const Trial& simpler) {
+  return s.same_result ? simpler.newton <= plain.newton : simpler.newton < plain.newton || simpler.dofs < plain.dofs;
 }
 
 class Simplifier {
@@ -77,73 +109,60 @@ class Simplifier {
     if (!own || !own->good() || found_.choice.scheme == "explicit") return;
     const std::optional<double> used = Accuracy(trials_, found_.choice).ratio(*own);
     if (!used) return;
-    left_ = 1 - *used - time_used();
+    left_ = 1 - *used - over_allowed(trials_, found_.time_error);
     NeedChoice coarse = found_.choice;
     coarse.resolution.level = trials_.open().least(coarse.resolution.family);
     if (coarse.resolution.level > found_.choice.resolution.level) coarse = found_.choice;
     const Trial& plain = trials_.run(coarse);
     if (!plain.good() || !(left_ > 0)) return;
-    std::vector<Simplification> kept;
-    for (const Simplification& s : candidates(trials_.scene(), trials_.open()))
-      if (!trials_.stopped() && promises(s, plain)) kept.push_back(s);
-    if (!kept.empty() && !trials_.stopped()) adopt(kept, *own);
+    std::vector<bool> promising;
+    for (const Simplification& s : candidates(trials_, plain))
+      promising.push_back(!trials_.stopped() && promises(s, plain));
+    if (std::any_of(promising.begin(), promising.end(), [](bool p) { return p; })) adopt(promising, *own);
   }
 
  private:
-  double time_used() const {
-    double most = 0;
-    for (std::size_t w = 0; w < found_.time_error.size(); ++w)
-      if (const auto& allowed = trials_.wanted()[w].allowed) most = std::max(most, found_.time_error[w] / *allowed);
-    return most;
-  }
-
-  std::vector<double> added(const Trial& plain, const Trial& simpler) const {
-    std::vector<double> more;
-    for (std::size_t w = 0; w < plain.values.size(); ++w)
-      more.push_back(relative_distance(simpler.values[w], plain.values[w]).value_or(0));
-    return more;
-  }
-  double over_allowed(const std::vector<double>& more) const {
-    double most = 0;
-    for (std::size_t w = 0; w < more.size(); ++w)
-      if (const auto& allowed = trials_.wanted()[w].allowed) most = std::max(most, more[w] / *allowed);
-    return most;
-  }
-
-  static NeedChoice with(NeedChoice choice, const Simplification& s) {
-    choice.more.insert(choice.more.end(), s.overrides.begin(), s.overrides.end());
-    return choice;
-  }
-
-  /// On a coarse mesh it changes little, and saves iterations or unknowns.
+  /// On a coarse mesh it changes little, and saves iterations or unknowns. What is refused there, as facets leave out
+  /// what another body holds on to, may do on a finer one.
   bool promises(const Simplification& s, const Trial& plain) {
     const Trial& trial = trials_.run(with(plain.choice, s));
-    if (!trial.good() || over_allowed(added(plain, trial)) > kPart * left_) return false;
-    return s.same_result ? trial.newton <= plain.newton : trial.newton < plain.newton || trial.dofs < plain.dofs;
+    if (trial.status == "refused") return true;
+    if (!trial.good() || over_allowed(trials_, added(plain, trial)) > kPart * left_) return false;
+    return saves(s, plain, trial);
   }
 
-  void adopt(const std::vector<Simplification>& kept, const Trial& own) {
-    NeedChoice choice = own.choice;
-    for (const Simplification& s : kept) choice = with(choice, s);
-    const Trial& trial = trials_.run(choice);
-    if (!trial.good()) return;
-    const std::vector<double> more = added(own, trial);
-    if (over_allowed(more) > left_ || trial.seconds > kSaving * own.seconds) return;
-    for (const Simplification& s : kept) {
-      const Trial* alone = trials_.find(with(own.choice, s));
-      if (!alone) alone = &trials_.run(with(own.choice, s));
-      const std::vector<double> single = alone->good() ? added(own, *alone) : more;
-      std::size_t most = 0;
-      for (std::size_t w = 0; w < single.size() && trials_.wanted()[w].allowed; ++w)
-        if (single[w] > single[most]) most = w;
-      found_.simpler.push_back(
-          fmt::format("{}: adds {:.2g} % to the error of {}", s.what, 100 * single[most], trials_.wanted()[most].name));
+  /// One after the other, each where it saves time and what all of them add is still allowed.
+  void adopt(const std::vector<bool>& promising, const Trial& own) {
+    const Trial* simplest = &own;
+    const std::vector<Simplification> all = candidates(trials_, own);
+    for (std::size_t i = 0; i < promising.size() && !trials_.stopped(); ++i) {
+      if (!promising[i]) continue;
+      // A body that became rigid has no formulation: that is refused.
+      const Trial& trial = trials_.run(with(simplest->choice, all[i]));
+      if (!trial.good() || over_allowed(trials_, added(own, trial)) > left_ || !faster(trial, *simplest)) continue;
+      tell(all[i], added(*simplest, trial));
+      simplest = &trial;
     }
-    found_.simpler.push_back(
-        fmt::format("that saves {} of {}", time_text(own.seconds - trial.seconds), time_text(own.seconds)));
-    found_.simpler_error = more;
+    if (simplest == &own) return;
+    found_.simpler.push_back(fmt::format(
+        "without that: {:.0f} unknowns, {:.0f} Newton iterations, {}; with it: {:.0f}, {:.0f}, {}", own.dofs,
+        own.newton, time_text(own.seconds), simplest->dofs, simplest->newton, time_text(simplest->seconds)));
+    found_.simpler_error = added(own, *simplest);
     found_.judged = found_.choice;
-    found_.choice = choice;
+    found_.choice = simplest->choice;
+  }
+
+  static bool faster(const Trial& trial, const Trial& than) {
+    if (work(trial) <= kSaving * work(than)) return trial.seconds <= kTimesSpread * than.seconds;
+    return trial.seconds <= kSaving * than.seconds;
+  }
+
+  void tell(const Simplification& s, const std::vector<double>& more) {
+    std::size_t most = 0;
+    for (std::size_t w = 0; w < more.size() && trials_.wanted()[w].allowed; ++w)
+      if (more[w] > more[most]) most = w;
+    found_.simpler.push_back(
+        fmt::format("{}: adds {:.2g} % to the error of {}", s.what, 100 * more[most], trials_.wanted()[most].name));
   }
 
   Trials& trials_;
@@ -152,6 +171,22 @@ class Simplifier {
 };
 
 }  // namespace
+
+double room_for_simpler(Trials& trials, const NeedChoice& coarse) {
+  if (!trials.wanted().front().allowed) return 0;
+  const Trial& plain = trials.run(coarse);
+  double room = 0;
+  if (!plain.good()) return 0;
+  for (const Simplification& s : candidates(trials, plain)) {
+    if (trials.stopped()) break;
+    if (s.same_result) continue;
+    const Trial& simpler = trials.run(with(coarse, s));
+    if (!simpler.good() || !saves(s, plain, simpler)) continue;
+    const double part = kSpread * over_allowed(trials, added(plain, simpler));
+    if (room + part <= kMostRoom) room += part;
+  }
+  return room;
+}
 
 void simplify(Trials& trials, Found& found) {
   if (found.met && trials.wanted().front().allowed && !trials.stopped()) Simplifier(trials, found).run();

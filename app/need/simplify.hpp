@@ -10,4 +10,8 @@ namespace fascia::app {
 /// and stay if they save time and what they add to the errors is still allowed. What the scene says itself stays.
 void simplify(Trials& trials, Found& found);
 
+/// The part of the allowed errors that a search leaves to what may be left out: by a coarse trial with each of it, those
+/// that save unknowns or iterations.
+double room_for_simpler(Trials& trials, const NeedChoice& coarse);
+
 }  // namespace fascia::app

@@ -38,7 +38,7 @@ class TimeSearch {
     const double used = largest(error);
     SearchLimits space = limits_;
     if (has_error()) {
-      space.share = 1 - used;
+      space.share = limits_.share - used;
       if (!(space.share > 0.1))
         return failed(like, fmt::format("the error of its time steps alone is {:.2g} times what is allowed", used),
                       error);
@@ -48,7 +48,7 @@ class TimeSearch {
     const Trial* trial = trials_.find(found.choice);
     if (!trial || !trial->good()) return found;
     found.time_error = time_error(found.choice);
-    if (found.met && has_error() && largest(found.time_error) > 1 - space.share + 0.1) {
+    if (found.met && has_error() && largest(found.time_error) > limits_.share - space.share + 0.1) {
       found.met = false;
       found.why_not = "finer cells made the error of the time steps larger than was foreseen";
     }

@@ -42,6 +42,7 @@ struct Trial {
   double step = 0;              ///< 99th percentile of its steps [s]
   double memory = 0;            ///< [bytes]
   double dofs = 0, steps = 0, newton = 0;
+  std::map<std::string, double> body_mass;  ///< [kg]
   std::vector<Series> values;  ///< by Wanted; empty where it gave nothing
 
   bool good() const { return !values.empty(); }
@@ -66,6 +67,8 @@ class Trials {
   void stretch(std::size_t body, int family);
   const Scene& scene() const { return scene_; }
   const std::vector<Wanted>& wanted() const { return wanted_; }
+  /// Its error tells which resolution is better: it is stated, or none is, and it is the displacement of a body.
+  bool judges(std::size_t wanted) const;
   bool stopped() const { return stop_(); }
   void tell(const std::string& line) const { tell_(line); }
 
@@ -83,6 +86,13 @@ class Trials {
   std::function<bool()> stop_;
   std::deque<Trial> trials_;  ///< references to them stay
 };
+
+/// Steps are timed anew by the run itself: it may be this much slower.
+inline constexpr double kStepSpread = 1.15;
+
+/// The longest steps of a run, times `spread`, are above what the scene needs, and the others well below: the machine
+/// did something else meanwhile, and another run may not meet it.
+bool interrupted_steps(const Scene& scene, const nlohmann::ordered_json& summary, double spread);
 
 /// Values of a quantity that are rounding alone. @param size  of the largest body [m]
 double rounding_of(Quantity quantity, double size);
