@@ -20,7 +20,7 @@ bool System<Space>::host_is_faster(int iterations) {
   constexpr double kIteration = 2e-5, kUnknown = 3e-6, kOperation = 2e-10;  // seconds each
   if (too_slow_ || !host_may_solve()) return false;
   const double iterating = kIteration * iterations, assembling = kUnknown * model_.free_dof_count();
-  if (iterating < 2 * assembling) return false;
+  if (iterating <= 2 * assembling) return false;  // nor where all is prescribed, and there is nothing to solve
   return iterating > 2 * (assembling + kOperation * host().tangent().factor().factor_flops());
 }
 
