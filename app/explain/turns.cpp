@@ -27,7 +27,9 @@ std::vector<double> known(const Spread& s, int repeats) {
 
 }  // namespace
 
-bool is_serial(const RunRecord& record) { return record.threads == 1 && record.backend == "cpu"; }
+bool is_serial(const RunRecord& record) {
+  return record.threads == 1 && record.backend == "cpu" && record.processor.median > 0;
+}
 
 Turns::Turns(ChildRun as_it_is, ChildRun changed, const RunRecord& base, std::function<bool()> stop)
     : as_it_is_(std::move(as_it_is)),
