@@ -28,8 +28,7 @@ std::vector<double> known(const Spread& s, int repeats) {
 }  // namespace
 
 bool is_serial(const RunRecord& record) {
-  constexpr double resolved = 0.1;  // some systems count a process's time in hundredths of a second
-  return record.threads == 1 && record.backend == "cpu" && record.processor.median >= resolved;
+  return record.threads == 1 && record.backend == "cpu" && record.processor.median > 0;
 }
 
 Turns::Turns(ChildRun as_it_is, ChildRun changed, const RunRecord& base, std::function<bool()> stop)

@@ -68,7 +68,7 @@ TEST_F(CommandLine, RunsAScene) {
   EXPECT_LT(summary.at("probes").at("tip").at("value").at(1).get<double>(), -0.01);
   EXPECT_NEAR(summary.at("probes").at("weight").at("value").get<double>(), 40.0, 1e-9);
   EXPECT_GT(summary.at("peak_memory_bytes").get<double>(), 1e6);
-  for (const char* key : {"setup", "solve", "output", "step_median", "step_p99", "step_max"}) {
+  for (const char* key : {"setup", "solve", "output", "solve_processor", "step_median", "step_p99", "step_max"}) {
     EXPECT_TRUE(summary.at("seconds").contains(key)) << key;
   }
 }
