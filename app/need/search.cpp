@@ -279,10 +279,21 @@ std::optional<Prediction> predicted_cost(const Trials& trials, const Accuracy& a
       other = t;
   if (!nearest) return std::nullopt;
   const int dimension = trials.open().dimension();
-  const double more = std::pow(1.0 * r.level / nearest->choice.resolution.level, dimension);
+  // Bodies whose cells are said have as many unknowns at each level.
+  const auto size = [&](const Resolution& of) { return std::pow(of.level, dimension); };
+  const double own = size(nearest->choice.resolution);
+  double fixed = 0;
+  if (other) {
+    const double level = (nearest->dofs - other->dofs) / (own - size(other->choice.resolution));
+    fixed = std::clamp(nearest->dofs - level * own, 0.0, nearest->dofs);
+  }
+  const double more = (fixed + (nearest->dofs - fixed) * size(r) / own) / nearest->dofs;
+  constexpr double apart = 1.5;  // unknowns, for an exponent
   const auto exponent = [&](double a, double b, double otherwise) {
-    if (!other || std::min(a, b) < kClearTime || nearest->dofs == other->dofs) return otherwise;
-    return std::clamp(std::log(a / b) / std::log(nearest->dofs / other->dofs), 1.0, 2.3);
+    if (!other || std::min(a, b) < kClearTime) return otherwise;
+    const double ratio = nearest->dofs / other->dofs;
+    if (std::max(ratio, 1 / ratio) < apart) return otherwise;
+    return std::clamp(std::log(a / b) / std::log(ratio), 1.0, 2.3);
   };
   const double usual = dimension == 3 ? 1.5 : dimension == 2 ? 1.2 : 1;
   const double time = other ? exponent(nearest->seconds, other->seconds, usual) : usual;

@@ -15,11 +15,13 @@ namespace fascia::app {
 namespace {
 
 /// The part of the errors that are left which one simplification may take.
-constexpr double kPart = 0.5;
+constexpr double kPart = 0.8;
 /// Less saving than this is lost in what times spread.
 constexpr double kSaving = 0.9;
 /// Times of two runs differ by this where the machine does something else.
 constexpr double kTimesSpread = 1.3;
+/// Times below this are those of the start [s].
+constexpr double kClearTime = 0.05;
 
 /// So much of the allowed errors is kept for what may be left out: finer meshes that use less cost more than that
 /// saves.
@@ -153,7 +155,7 @@ class Simplifier {
   }
 
   static bool faster(const Trial& trial, const Trial& than) {
-    if (work(trial) <= kSaving * work(than)) return trial.seconds <= kTimesSpread * than.seconds;
+    if (work(trial) <= kSaving * work(than)) return trial.seconds <= kTimesSpread * std::max(kClearTime, than.seconds);
     return trial.seconds <= kSaving * than.seconds;
   }
 
