@@ -134,17 +134,27 @@ std::vector<Share> frame_shares(const Simulation& s, int body, const Region& reg
   return shares;
 }
 
+/// What a total load is shared by.
+struct Spread {
+  std::vector<Share> shares;
+  bool along_edges = false;  ///< of nodes that turn
+};
+
 /// By frames where the region picks single ones; by volume where it holds material points, unless it asks for the
 /// boundary; else by area of the faces, by length of the edges, by frames: the first that it holds. Parts add to 1.
-std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
+Spread spread_of(const Simulation& s, int index, const Load& load) {
   const SimulatedBody& body = s.bodies[at(index)];
-  std::vector<Share> shares;
+  Spread spread;
+  std::vector<Share>& shares = spread.shares;
   if (names_frames(*load.where))
     shares = frame_shares(s, index, *load.where);
   else if (!names_boundary(*load.where))
     shares = volume_shares(body, *load.where);
   if (shares.empty()) shares = surface_shares(body, *load.where);
-  if (shares.empty()) shares = edge_shares(body, *load.where);
+  if (shares.empty()) {
+    shares = edge_shares(body, *load.where);
+    spread.along_edges = !shares.empty() && !body.vertices;
+  }
   if (shares.empty() && !find_nodes(s, index, *load.where).empty()) shares = frame_shares(s, index, *load.where);
   if (shares.empty())
     throw SceneError({{load.where->place,
@@ -152,12 +162,16 @@ std::vector<Share> shares_of(const Simulation& s, int index, const Load& load) {
   double total = 0;
   for (const Share& share : shares) total += share.part;
   for (Share& share : shares) share.part /= total;
-  return shares;
+  return spread;
 }
 
 /// Forces without resultant that make up a torque: part (a × r) about the centre c, with a from the shares' inertia.
-/// Where the shares lie on a line or a point, forces cannot: each takes its part of the torque itself.
-void spread_torque(std::vector<Share>& shares, const Vec3d& torque) {
+/// Where the shares lie on a line or a point, forces cannot: each takes its part of the torque itself. So do edges
+/// whose nodes turn, unless they run around something: their rise over the chord is no lever to bend a wall by.
+void spread_torque(Spread& spread, const Vec3d& torque) {
+  // det I over (tr I)³ of an arc, which is 0 of a line: 0.005 of 90°, 0.017 of 180°, 0.031 of a whole circle.
+  constexpr double kLine = 1e-9, kArc = 0.01;
+  std::vector<Share>& shares = spread.shares;
   Vec3d center;
   for (const Share& s : shares) center += s.X * s.part;
   Mat3d inertia;
@@ -165,7 +179,7 @@ void spread_torque(std::vector<Share>& shares, const Vec3d& torque) {
     const Vec3d r = s.X - center;
     inertia += (Mat3d::diagonal(squared_norm(r)) - outer(r, r)) * s.part;
   }
-  if (determinant(inertia) <= 1e-9 * std::pow(trace(inertia), 3)) {
+  if (determinant(inertia) <= (spread.along_edges ? kArc : kLine) * std::pow(trace(inertia), 3)) {
     for (Share& s : shares) s.torque += torque * s.part;
     return;
   }
@@ -229,11 +243,11 @@ void add_loads(Simulation& s) {
     const int body = body_index(s, load.body), schedule = new_schedule(s, load.schedule, load.place);
     const SimulatedBody& b = s.bodies[at(body)];
     if (load.total_force || load.total_torque) {
-      std::vector<Share> shares = shares_of(s, body, load);
+      Spread spread = spread_of(s, body, load);
       if (load.total_force)
-        for (Share& share : shares) share.force = *load.total_force * share.part;
-      if (load.total_torque) spread_torque(shares, *load.total_torque);
-      add_shares(s, shares, b.vertices, load.follower, schedule);
+        for (Share& share : spread.shares) share.force = *load.total_force * share.part;
+      if (load.total_torque) spread_torque(spread, *load.total_torque);
+      add_shares(s, spread.shares, b.vertices, load.follower, schedule);
     }
     if (load.traction) {
       std::vector<Share> shares = surface_shares(b, *load.where);

@@ -107,7 +107,9 @@ int nearest_point(const NearestRegion& n, std::span<const Vec3d> points, const F
 /// Marks what a group of the mesh has: its nodes, or the points in its cells.
 void select_group(const Region& region, const std::string& name, const Selectable& from, std::vector<bool>& chosen) {
   if (from.groups == nullptr)
-    fail(region, "a meshless body has no mesh groups; select by box, sphere, cylinder or halfspace");
+    fail(region,
+         "only bodies of elements and shells keep the groups of a mesh, and this body is none of them; select by box, "
+         "sphere, cylinder or halfspace");
   std::vector<std::string> names;
   std::vector<const BodyGroup*> found;  // by name; else by number
   for (const BodyGroup& g : *from.groups) {

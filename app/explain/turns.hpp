@@ -13,8 +13,8 @@ struct Timed {
   Ratio solve, setup;               ///< where it converged
 };
 
-/// A run on one thread is measured by its processor time, to which other programs hardly add, where the system tells
-/// it.
+/// A run on one thread is measured by its processor time, to which other programs hardly add, where it is longer
+/// than the ticks of the system's clock.
 bool is_serial(const RunRecord& record);
 
 /// Runs of a scene as it is and with changes, in turns: what the machine does meanwhile meets both, and their ratios

@@ -228,6 +228,19 @@ const auto kSolutions = ::testing::Values(
     "tumbling_box", "midpoint_spin", "free_fall", "rigid_turn", "bone_plate", "riding_surface", "ligament_springs",
     "soft_cantilever_tetrahedra", "shell_spin", "struck_beam", "roll_up", "line_swing", "hanging_column", "shell_roof");
 
+using DeviceChoice = Device;
+
+/// Where all is prescribed there is nothing to iterate on, nor to factorise.
+TEST_P(DeviceChoice, OfALinearSolverIsTheProgramsOwn) {
+  const std::optional<Simulation> simulation = loaded();
+  if (!simulation) GTEST_SKIP() << why_not;
+  expect_solution_of_processor(*simulation, where(), app::settings_of(simulation->scene.solver));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, DeviceChoice,
+                         ::testing::Combine(::testing::Values(Where::host, Where::device),
+                                            ::testing::Values("rigid_turn", "bone_plate")),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
                          ::testing::Combine(::testing::Values(Where::host, Where::device), kSolutions), name_of);
 
