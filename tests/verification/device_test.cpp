@@ -239,7 +239,7 @@ TEST_P(DeviceChoice, OfALinearSolverIsTheProgramsOwn) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceChoice,
                          ::testing::Combine(::testing::Values(Where::host, Where::device),
-                                            ::testing::Values("rigid_turn", "bone_plate")),
+                                            ::testing::Values("rigid_turn")),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
                          ::testing::Combine(::testing::Values(Where::host, Where::device), kSolutions), name_of);
