@@ -27,6 +27,13 @@ bool Model::has_frames() const {
   return std::any_of(frame_kind.begin(), frame_kind.end(), [](FrameKind kind) { return kind != FrameKind::vertex; });
 }
 
+bool Model::is_linear() const {
+  return points.point_count == 0 && points.shells.empty() && points.dependents.empty() && followers.empty() &&
+         surfaces.empty() && std::all_of(points.blocks.begin(), points.blocks.end(), [](const ElementBlock& block) {
+           return block.law == ElementLaw::linear;
+         });
+}
+
 bool Model::loads_are_conservative() const {
   const auto has_torque = [](const DeadLoad& load) {
     return std::any_of(load.nodes.begin(), load.nodes.end(),

@@ -53,6 +53,12 @@ inline NewtonReport worse(const NewtonReport& first, NewtonReport second) {
   return second;
 }
 
+/// The last tangent is that of the end too, but for the last correction: not after a step that reached it from afar.
+inline bool has_tangent_of_end(const NewtonReport& newton, const Model& model) {
+  constexpr double near = 1e-3;
+  return newton.iterations > 0 && (newton.last_tangent <= near || model.is_linear());
+}
+
 inline RunStatus failure_status(const NewtonReport& newton) {
   return newton.status == NewtonStatus::not_finite ? RunStatus::diverged : RunStatus::not_converged;
 }
@@ -114,7 +120,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     definite = !report.indefinite;
     reached = target;
     increment = std::min(longest, 2 * increment);
-    if (reached >= 1) run.stability = end_stability(system, state, run, report.iterations > 0);
+    if (reached >= 1) run.stability = end_stability(system, state, run, has_tangent_of_end(report, system.model()));
     if (observe && !observe({run.steps, reached, reached, report, seconds_since(start)}, state, system)) {
       if (reached < 1) run.status = RunStatus::interrupted;
       return run;

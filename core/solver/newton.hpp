@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace fascia {
@@ -34,6 +35,7 @@ struct NewtonReport {
   std::string trouble;         ///< of the last direction, empty where there was none
   bool indefinite = false;     ///< a tangent on the way was not positive definite
   double linear_residual = 0;  ///< of the last direction
+  double last_tangent = 0;     ///< relative residual where the last tangent was taken; infinite where a boundary moved
   double cg_seconds = 0;       ///< of all directions
 };
 
@@ -120,6 +122,8 @@ class Newton {
   DirectionReport direction() {
     if (settings_.iterating)
       settings_.iterating({step_.number, step_.time, report_.iterations + 1, current_.relative, settings_.tolerance});
+    report_.last_tangent =
+        system_.has_prescribed_increment() ? std::numeric_limits<double>::infinity() : current_.relative;
     DirectionReport d = system_.direction();
     ++report_.iterations;
     report_.linear_iterations += d.linear_iterations;
