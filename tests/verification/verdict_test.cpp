@@ -2,11 +2,14 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/scene_run.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <tuple>
+#include <utility>
 
 namespace fascia::test::verdict_test {
 namespace {
@@ -113,6 +116,40 @@ TEST(Stability, NearALimitPointIsToldAlikeByEverySolver) {
       const Ended run(roof, {"solver.control='load'", force, "solver.linear.kind='" + kind + "'",
                              "solver.linear.max_iterations=20000", "bodies.roof.domain.cylinder.cells=[8, 8]"});
       EXPECT_EQ(verdict(run), expected) << part << " " << kind << " " << run.message();
+    }
+  }
+}
+
+/// A direct solver reaches this state in one iteration from rest: its only tangent was that of rest, which is stable.
+/// St Venant-Kirchhoff material with its sides held loses its ellipticity above 0.7 of its length.
+TEST(Stability, OfAStateThatOneIterationReachedIsItsOwn) {
+  const std::string walls = R"(
+[solver]
+kind = "static"
+[bodies.block]
+model = "meshless"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1] } }
+frames = { grid = [3, 3, 3], kind = "affine" }
+density = 1000
+material = { young = "1 kPa", poisson = 0.3 }
+)";
+  std::string sides;
+  for (const auto& [axis, least, most] :
+       {std::tuple("x", "[-0.01, -1, -1]", "[0.01, 9, 9]"), std::tuple("y", "[-1, -0.01, -1]", "[9, 0.01, 9]"),
+        std::tuple("y", "[-1, 0.99, -1]", "[9, 1.01, 9]"), std::tuple("z", "[-1, -1, -0.01]", "[9, 9, 0.01]"),
+        std::tuple("z", "[-1, -1, 0.99]", "[9, 9, 1.01]")})
+    sides += fmt::format(
+        "[[constraints]]\nbody = \"block\"\nwhere = {{ box = {{ min = {}, max = {} }} }}\nfix = [\"{}\", \"rx\", "
+        "\"ry\", \"rz\"]\n",
+        least, most, axis);
+  for (const auto& [shorter, expected] : {std::pair(0.1, "converged"), std::pair(0.3, "unstable")}) {
+    const std::string moved = fmt::format(
+        "[[constraints]]\nbody = \"block\"\nwhere = {{ box = {{ min = [0.99, -1, -1], max = [1.01, 9, 9] }} }}\n"
+        "move = {{ translate = [{}, 0, 0], axes = [\"x\", \"rx\", \"ry\", \"rz\"] }}\n",
+        -shorter);
+    for (const std::string kind : {"cholesky", "cg"}) {
+      const Ended run(walls + sides + moved, {"solver.linear.kind='" + kind + "'"});
+      EXPECT_EQ(run.said(), expected) << shorter << " " << kind << " " << run.message();
     }
   }
 }
