@@ -5,6 +5,7 @@
 #include "app/messages.hpp"
 #include "app/need/chosen.hpp"
 #include "app/need/report.hpp"
+#include "app/need/said_cells.hpp"
 #include "app/need/search.hpp"
 #include "app/need/simplify.hpp"
 #include "app/need/temporary_folder.hpp"
@@ -29,13 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What of a scene is wrong shows with any choice: it is told before others are tried. @return the largest size [m]
-double check_first(const Scene& scene, const Trials& trials, const NeedChoice& first) {
-  std::vector<std::string> overrides = scene.overrides;
-  const std::vector<std::string> chosen = trials.overrides(first);
-  overrides.insert(overrides.end(), chosen.begin(), chosen.end());
+double check_first(const Trials& trials, const NeedChoice& first) {
   double size = 0;
-  for (const SimulatedBody& b : build_simulation(parse_scene_text(scene.text, scene.path, overrides)).bodies)
-    size = std::max(size, b.body->size());
+  for (const SimulatedBody& b : build_simulation(trials.scene_of(first)).bodies) size = std::max(size, b.body->size());
   return size;
 }
 
@@ -51,6 +48,9 @@ void check_scale(const Scene& scene, Trials& trials, const NeedChoice& first, do
                                      wanted.name)}});
   }
 }
+
+/// Cells that the scene says itself may have this part of the allowed error; what is open needs the rest.
+constexpr double kMostSaid = 0.8;
 
 double memory_of(const Scene& scene) {
   double memory = 0.9 * free_memory().bytes;
@@ -78,11 +78,22 @@ std::optional<int> choose(const RunOptions& options, const Scene& scene, double 
   };
   Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), tell, [&] { return stop.requested(); });
   const NeedChoice first = first_choice(trials);
-  check_scale(scene, trials, first, check_first(scene, trials, first));
+  check_scale(scene, trials, first, check_first(trials, first));
   SearchLimits limits = limits_of(scene, part);
-  limits.share = 1 - room_for_simpler(trials, first);
+  const SaidCells said = error_of_said_cells(trials, first);
+  const double of_said = said.ratio(trials);
+  if (of_said < kMostSaid) limits.share -= of_said;
+  limits.share -= room_for_simpler(trials, first);
   Found found =
       is_dynamic(scene.solver.kind) ? search_in_time(trials, first, limits) : search_resolution(trials, first, limits);
+  found.said_error = said.error;
+  if (found.met && of_said >= kMostSaid) {
+    found.met = false;
+    found.why_not = fmt::format(
+        "the cells of {}, which the scene says, have {:.2g} times the error that is allowed; "
+        "leave them out, or say finer ones",
+        said.bodies, of_said);
+  }
   if (!stop.requested()) simplify(trials, found);
   if (stop.requested()) {
     say("{}: interrupted while it looked for what the need asks for\n", scene.path.string());
@@ -93,7 +104,7 @@ std::optional<int> choose(const RunOptions& options, const Scene& scene, double 
     say("{}: the need is not met: {}\n", scene.path.string(), found.why_not);
     return kNotConverged;
   }
-  report.add(trials, found, seconds_since(start));
+  report.add(trials, found, said, seconds_since(start));
   overrides = trials.overrides(found.choice);
   return std::nullopt;
 }

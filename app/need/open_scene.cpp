@@ -267,11 +267,10 @@ int OpenScene::dimension() const {
 
 std::vector<std::string> OpenScene::overrides(const Resolution& r) const {
   std::vector<std::string> all;
-  for (const OpenBody& body : bodies) {
-    const Family& family = family_of(body, r.family);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Family& family = family_of(bodies[b], r.family);
     all.insert(all.end(), family.overrides.begin(), family.overrides.end());
-    if (body.cut) all.push_back(fmt::format("{}={}", body.key, std::bit_width(static_cast<unsigned>(r.level)) - 1));
-    if (!body.pattern.empty()) all.push_back(numbers_key(body, counts_of(body, r)));
+    if (const std::optional<std::string> chosen = numbers(r, b)) all.push_back(*chosen);
   }
   return all;
 }
@@ -280,6 +279,13 @@ std::vector<int> OpenScene::thin_directions(std::size_t body) const { return thi
 
 std::string OpenScene::doubled(const Resolution& r, std::size_t body, const std::vector<int>& directions) const {
   return numbers_key(bodies[body], counts_of(bodies[body], r, directions));
+}
+
+std::optional<std::string> OpenScene::numbers(const Resolution& r, std::size_t body) const {
+  const OpenBody& b = bodies[body];
+  if (b.cut && std::has_single_bit(static_cast<unsigned>(r.level)))
+    return fmt::format("{}={}", b.key, std::bit_width(static_cast<unsigned>(r.level)) - 1);
+  return b.cut || b.pattern.empty() ? std::nullopt : std::optional(numbers_key(b, counts_of(b, r)));
 }
 
 Family& OpenScene::family(std::size_t body, int number) {

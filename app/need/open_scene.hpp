@@ -2,6 +2,7 @@
 
 #include "app/scene/scene.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,8 @@ struct OpenScene {
   std::vector<int> thin_directions(std::size_t body) const;
   /// The numbers of a body with twice the cells along some directions, as "key=value".
   std::string doubled(const Resolution& r, std::size_t body, const std::vector<int>& directions) const;
+  /// The numbers of a body as "key=value"; none where it has none to choose, or not at that level.
+  std::optional<std::string> numbers(const Resolution& r, std::size_t body) const;
   Family& family(std::size_t body, int number);
   /// "beam: quadratic hexahedra, 8 x 1 x 1 cells"; of several bodies one behind the other.
   std::string text(const Resolution& r) const;

@@ -72,7 +72,7 @@ std::string families_text(const OpenScene& open) {
   return parts.empty() ? "time steps" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-void NeedReport::add(Trials& trials, const Found& found, double seconds) {
+void NeedReport::add(Trials& trials, const Found& found, const SaidCells& said, double seconds) {
   const Trial& own = *trials.find(found.choice);
   const Trial& judged = *trials.find(found.judged.value_or(found.choice));
   const Accuracy accuracy(trials, judged.choice);
@@ -84,7 +84,8 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   std::vector<std::string> told;
   for (std::size_t w = 0; w < trials.wanted().size(); ++w) {
     const Wanted& wanted = trials.wanted()[w];
-    const std::optional<double> space = accuracy.error(judged, w);
+    std::optional<double> space = accuracy.error(judged, w);
+    if (space && !said.error.empty()) *space += said.error[w];
     const double time = w < found.time_error.size() ? found.time_error[w] : 0;
     const double simpler = w < found.simpler_error.size() ? found.simpler_error[w] : 0;
     const std::optional<double> total = space ? std::optional(*space + time + solver[w] + simpler) : std::nullopt;
@@ -110,6 +111,11 @@ void NeedReport::add(Trials& trials, const Found& found, double seconds) {
   }
   reached_ = fmt::format("estimated error of {}", fmt::join(told, ", "));
   how_ = {fmt::format("discretisation: by what trials of {} levels converge to, with its uncertainty", levels.size())};
+  if (!said.error.empty())
+    how_.push_back(fmt::format("discretisation of {}, whose cells the scene says: by a coarse trial with twice as many",
+                               said.bodies));
+  if (!said.unknown.empty())
+    how_.push_back(fmt::format("discretisation of {}: not known, as {}", said.bodies, said.unknown));
   if (is_dynamic(scene_.solver.kind)) how_.emplace_back("time: by a trial of half the step");
   how_.emplace_back("solver: by a coarse trial with tight tolerances");
   trials_ = Json::array();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/need/said_cells.hpp"
 #include "app/need/search.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,7 +16,7 @@ class NeedReport {
   explicit NeedReport(const Scene& scene) : scene_(scene) {}
 
   /// Its result. Runs the trial that tells the error of the solver. @param seconds  that it took
-  void add(Trials& trials, const Found& found, double seconds);
+  void add(Trials& trials, const Found& found, const SaidCells& said, double seconds);
   /// Puts `chosen`, `estimated_error` and `need` into the summary of the run itself, whose steps and memory count too.
   void write(nlohmann::ordered_json& summary);
 

@@ -25,6 +25,7 @@ struct Found {
   std::optional<NeedChoice> judged{};   ///< whose discretisation was judged, where that is not the choice itself
   std::vector<std::string> simpler{};   ///< sentences: what was left out, and what that adds to the errors
   std::vector<double> simpler_error{};  ///< what all of it adds, by quantity, relative
+  std::vector<double> said_error{};     ///< of cells that the scene says, by quantity, relative; empty where none are
   std::vector<double> time_error{};     ///< of the time steps, by quantity, relative; empty of statics
 };
 

@@ -3,7 +3,6 @@
 #include "app/explain/variants.hpp"
 #include "app/readable.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/parse.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>
@@ -57,10 +56,7 @@ void of_body(const Scene& scene, const Body& body, const RunFacts& facts, std::v
 
 /// Of the scene that a trial ran, in an order that is the same for all of them.
 std::vector<Simplification> candidates(const Trials& trials, const Trial& trial) {
-  std::vector<std::string> overrides = trials.scene().overrides;
-  const std::vector<std::string> chosen = trials.overrides(trial.choice);
-  overrides.insert(overrides.end(), chosen.begin(), chosen.end());
-  const Scene scene = parse_scene_text(trials.scene().text, trials.scene().path, overrides);
+  const Scene scene = trials.scene_of(trial.choice);
   RunFacts facts;
   facts.body_mass = trial.body_mass;
   std::vector<Simplification> all;
@@ -81,12 +77,22 @@ std::vector<double> added(const Trial& plain, const Trial& simpler) {
   return more;
 }
 
-/// The largest of these errors over those allowed.
-double over_allowed(const Trials& trials, const std::vector<double>& errors) {
-  double most = 0;
+/// What errors may grow by, relative, by quantity. Of what the need does not name: by the largest error that it allows,
+/// so that nothing which the scene asks for loses its meaning.
+std::vector<double> allowances(const Trials& trials) {
+  double largest = 0;
+  for (const Wanted& w : trials.wanted()) largest = std::max(largest, w.allowed.value_or(0));
+  std::vector<double> all;
+  for (const Wanted& w : trials.wanted()) all.push_back(w.allowed.value_or(largest));
+  return all;
+}
+
+/// The largest of errors over what they may be.
+double over(const std::vector<double>& errors, const std::vector<double>& most) {
+  double ratio = 0;
   for (std::size_t w = 0; w < errors.size(); ++w)
-    if (const auto& allowed = trials.wanted()[w].allowed) most = std::max(most, errors[w] / *allowed);
-  return most;
+    if (errors[w] > 0) ratio = std::max(ratio, errors[w] / std::max(0.0, most[w]));
+  return ratio;
 }
 
 NeedChoice with(NeedChoice choice, const Simplification& s) {
@@ -109,18 +115,23 @@ class Simplifier {
   void run() {
     const Trial* own = trials_.find(found_.choice);
     if (!own || !own->good() || found_.choice.scheme == "explicit") return;
-    const std::optional<double> used = Accuracy(trials_, found_.choice).ratio(*own);
-    if (!used) return;
-    left_ = 1 - *used - over_allowed(trials_, found_.time_error);
+    const Accuracy accuracy(trials_, found_.choice);
+    left_ = allowances(trials_);
+    for (std::size_t w = 0; w < left_.size(); ++w) {
+      if (!trials_.wanted()[w].allowed) continue;
+      left_[w] -= accuracy.error(*own, w).value_or(INFINITY);
+      if (!found_.time_error.empty()) left_[w] -= found_.time_error[w];
+      if (!found_.said_error.empty()) left_[w] -= found_.said_error[w];
+    }
     NeedChoice coarse = found_.choice;
     coarse.resolution.level = trials_.open().least(coarse.resolution.family);
     if (coarse.resolution.level > found_.choice.resolution.level) coarse = found_.choice;
     const Trial& plain = trials_.run(coarse);
-    if (!plain.good() || !(left_ > 0)) return;
+    if (!plain.good()) return;
     std::vector<bool> promising;
     for (const Simplification& s : candidates(trials_, plain))
       promising.push_back(!trials_.stopped() && promises(s, plain));
-    if (std::any_of(promising.begin(), promising.end(), [](bool p) { return p; })) adopt(promising, *own);
+    adopt(promising, *own);
   }
 
  private:
@@ -129,7 +140,7 @@ class Simplifier {
   bool promises(const Simplification& s, const Trial& plain) {
     const Trial& trial = trials_.run(with(plain.choice, s));
     if (trial.status == "refused") return true;
-    if (!trial.good() || over_allowed(trials_, added(plain, trial)) > kPart * left_) return false;
+    if (!trial.good() || over(added(plain, trial), left_) > kPart) return false;
     return saves(s, plain, trial);
   }
 
@@ -141,10 +152,11 @@ class Simplifier {
       if (!promising[i]) continue;
       // A body that became rigid has no formulation: that is refused.
       const Trial& trial = trials_.run(with(simplest->choice, all[i]));
-      if (!trial.good() || over_allowed(trials_, added(own, trial)) > left_ || !faster(trial, *simplest)) continue;
-      tell(all[i], added(*simplest, trial));
+      if (!trial.good() || over(added(own, trial), left_) > 1 || !faster(trial, *simplest)) continue;
+      tell(all[i].what, added(*simplest, trial));
       simplest = &trial;
     }
+    coarsen(own, simplest);
     if (simplest == &own) return;
     found_.simpler.push_back(fmt::format(
         "without that: {:.0f} unknowns, {:.0f} Newton iterations, {}; with it: {:.0f}, {:.0f}, {}", own.dofs,
@@ -154,22 +166,42 @@ class Simplifier {
     found_.choice = simplest->choice;
   }
 
+  /// All bodies have one level, which one of them needs: others get fewer cells, as far as their errors leave room.
+  void coarsen(const Trial& own, const Trial*& simplest) {
+    const OpenScene& open = trials_.open();
+    const Resolution& r = own.choice.resolution;
+    for (std::size_t b = 0; b < open.bodies.size() && open.bodies.size() > 1; ++b)
+      for (const double part : {0.25, 0.5, 0.75}) {
+        const int level = static_cast<int>(part * r.level);
+        const std::optional<std::string> fewer = level > 0 ? open.numbers({r.family, level}, b) : std::nullopt;
+        if (!fewer || trials_.stopped()) continue;
+        NeedChoice choice = simplest->choice;
+        choice.more.push_back(*fewer);
+        const Trial& trial = trials_.run(choice);
+        if (!trial.good() || over(added(own, trial), left_) > 1 || work(trial) > kSaving * work(*simplest)) continue;
+        tell(fmt::format("`{}`, as the error of {} leaves room", *fewer, in_quotes(open.bodies[b].name)),
+             added(*simplest, trial));
+        simplest = &trial;
+        break;
+      }
+  }
+
   static bool faster(const Trial& trial, const Trial& than) {
     if (work(trial) <= kSaving * work(than)) return trial.seconds <= kTimesSpread * std::max(kClearTime, than.seconds);
     return trial.seconds <= kSaving * than.seconds;
   }
 
-  void tell(const Simplification& s, const std::vector<double>& more) {
+  void tell(const std::string& what, const std::vector<double>& more) {
     std::size_t most = 0;
     for (std::size_t w = 0; w < more.size() && trials_.wanted()[w].allowed; ++w)
       if (more[w] > more[most]) most = w;
     found_.simpler.push_back(
-        fmt::format("{}: adds {:.2g} % to the error of {}", s.what, 100 * more[most], trials_.wanted()[most].name));
+        fmt::format("{}: adds {:.2g} % to the error of {}", what, 100 * more[most], trials_.wanted()[most].name));
   }
 
   Trials& trials_;
   Found& found_;
-  double left_ = 0;  ///< of what is allowed
+  std::vector<double> left_;  ///< what errors may still grow by, by quantity
 };
 
 }  // namespace
@@ -184,7 +216,7 @@ double room_for_simpler(Trials& trials, const NeedChoice& coarse) {
     if (s.same_result) continue;
     const Trial& simpler = trials.run(with(coarse, s));
     if (!simpler.good() || !saves(s, plain, simpler)) continue;
-    const double part = kSpread * over_allowed(trials, added(plain, simpler));
+    const double part = kSpread * over(added(plain, simpler), allowances(trials));
     if (room + part <= kMostRoom) room += part;
   }
   return room;

@@ -48,7 +48,8 @@ class TimeSearch {
     const Trial* trial = trials_.find(found.choice);
     if (!trial || !trial->good()) return found;
     found.time_error = time_error(found.choice);
-    if (found.met && has_error() && largest(found.time_error) > limits_.share - space.share + 0.1) {
+    const double of_cells = Accuracy(trials_, found.choice).ratio(*trial).value_or(0);
+    if (found.met && has_error() && of_cells + largest(found.time_error) > 1) {
       found.met = false;
       found.why_not = "finer cells made the error of the time steps larger than was foreseen";
     }

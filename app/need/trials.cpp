@@ -2,6 +2,7 @@
 
 #include "app/readable.hpp"
 #include "app/scene/diagnostics.hpp"
+#include "app/scene/parse.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>
@@ -125,6 +126,20 @@ std::vector<std::string> Trials::overrides(const NeedChoice& choice) const {
     all.push_back(fmt::format("solver.time_step={}", *scene_.solver.duration / choice.steps));
   all.insert(all.end(), choice.more.begin(), choice.more.end());
   return all;
+}
+
+Scene Trials::scene_of(const NeedChoice& choice) const {
+  std::vector<std::string> changes = scene_.overrides;
+  const std::vector<std::string> chosen = overrides(choice);
+  changes.insert(changes.end(), chosen.begin(), chosen.end());
+  return parse_scene_text(scene_.text, scene_.path, changes);
+}
+
+double Trials::over_allowed(const std::vector<double>& errors) const {
+  double most = 0;
+  for (std::size_t w = 0; w < errors.size(); ++w)
+    if (const auto& allowed = wanted_[w].allowed) most = std::max(most, errors[w] / *allowed);
+  return most;
 }
 
 std::string Trials::text(const NeedChoice& choice) const {

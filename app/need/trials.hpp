@@ -43,7 +43,7 @@ struct Trial {
   double memory = 0;            ///< [bytes]
   double dofs = 0, steps = 0, newton = 0;
   std::map<std::string, double> body_mass;  ///< [kg]
-  std::vector<Series> values;  ///< by Wanted; empty where it gave nothing
+  std::vector<Series> values;               ///< by Wanted; empty where it gave nothing
 
   bool good() const { return !values.empty(); }
 };
@@ -74,6 +74,10 @@ class Trials {
 
   /// What makes a scene without a need of a choice, behind the scene's own overrides.
   std::vector<std::string> overrides(const NeedChoice& choice) const;
+  /// The scene that a choice makes.
+  Scene scene_of(const NeedChoice& choice) const;
+  /// The largest of errors of the quantities over those allowed.
+  double over_allowed(const std::vector<double>& errors) const;
   /// The choice in words: "beam: quadratic hexahedra, 8 x 1 x 1 cells; newmark, 64 steps of 16 ms".
   std::string text(const NeedChoice& choice) const;
 

@@ -32,7 +32,7 @@ std::optional<StatedNeed> read_one(const TableReader& table, const std::vector<P
 /// What a need asks for that its scene cannot have.
 void check_kind(const TableReader& table, const TableReader& need, const Scene& scene) {
   const Solver& solver = scene.solver;
-  if (need.has("step") && !is_dynamic(solver.kind))
+  if (scene.need && need.has("step") && !is_dynamic(solver.kind))
     need.error("step", fmt::format("is a time of steps, and solver.kind = \"{}\" takes none; remove it, or ask for "
                                    "dynamics",
                                    table.table("solver").text("kind").value_or("static")));

@@ -77,6 +77,139 @@ TEST_F(NeedRuns, AreCheckedWithWhatIsTriedFirst) {
                  {"probes.tip.at: "});
 }
 
+/// An organ, much stiffer than the stalk that it hangs on, which is clamped.
+constexpr const char* kStalked = R"([world]
+gravity = [0, -9.81, 0]
+[bodies.stalk]
+model = "hexahedra"
+domain = { box = { min = [0, -0.01, -0.01], max = [0.04, 0.01, 0.01] } }
+order = 2
+density = 1000
+material = { young = "100 kPa", poisson = 0.3 }
+[bodies.organ]
+model = "hexahedra"
+domain = { box = { min = [0.03, -0.02, -0.02], max = [0.07, 0.02, 0.02], cells = [6, 6, 6] } }
+order = 1
+density = 1000
+material = { young = "10 MPa", poisson = 0.3 }
+[[constraints]]
+body = "stalk"
+where = { box = { min = [-1, -1, -1], max = [1e-6, 1, 1] } }
+fix = "all"
+[couplings.root]
+kind = "embed"
+body = "stalk"
+where = { box = { min = [0.0399, -1, -1], max = [1, 1, 1] } }
+to = "organ"
+[solver]
+kind = "static"
+[need]
+error = "5 %"
+)";
+
+TEST_F(NeedRuns, MakeABodyRigidThatMovesAsAWhole) {
+  write("stalked.toml", kStalked);
+  const ProgramResult result = fascia({"run", "stalked.toml", "--output", "out"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("\"organ\" is rigid, as it moves as a whole: adds "), std::string::npos) << result.out;
+  const nlohmann::json j = summary("out"), &error = j.at("estimated_error").at("bodies").at("organ");
+  EXPECT_GT(error.at("simplification"), 0);
+  EXPECT_LE(error.at("total"), 0.05);
+  // What it adds to the error is what it changes.
+  const ProgramResult whole =
+      fascia({"run", "out/chosen.toml", "--output", "whole", "--set", "bodies.organ.model=\"hexahedra\"", "--set",
+              "bodies.organ.order=1", "--set", "bodies.organ.mass=", "--set", "bodies.organ.density=1000", "--set",
+              "bodies.organ.material={ young = 1e7, poisson = 0.3 }", "--set",
+              "probes.far={ body = \"organ\", quantity = \"max_displacement\" }"});
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  const ProgramResult rigid = fascia({"run", "out/chosen.toml", "--output", "rigid", "--set",
+                                      "probes.far={ body = \"organ\", quantity = \"max_displacement\" }"});
+  ASSERT_EQ(rigid.status, 0) << rigid.err;
+  const double far = summary("whole").at("probes").at("far").at("value"),
+               moved = summary("rigid").at("probes").at("far").at("value");
+  EXPECT_NEAR(std::abs(moved - far) / far, error.at("simplification"), 1e-6);
+}
+
+TEST_F(NeedRuns, KeepABodyThatIsNotAskedForAsItIs) {
+  // Clamped, the organ does not move where it is rigid, and the need names the stalk alone.
+  std::string scene = with(kStalked,
+                           "[couplings.root]\nkind = \"embed\"\nbody = \"stalk\"\nwhere = { box = { min = [0.0399, -1, "
+                           "-1], max = [1, 1, 1] } }\nto = \"organ\"\n",
+                           "[[constraints]]\nbody = \"organ\"\nwhere = { box = { min = [0, -1, -1], max = [0.0301, 1, "
+                           "1] } }\nfix = \"all\"\n");
+  scene = with(with(scene, "[need]\nerror = \"5 %\"\n", ""), "order = 2", "order = 2\nneed = { error = \"5 %\" }");
+  write("two.toml", scene);
+  const ProgramResult result = fascia({"run", "two.toml", "--output", "out"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_EQ(result.out.find("\"organ\" is rigid"), std::string::npos) << result.out;
+}
+
+TEST_F(NeedRuns, MakeElementsLinearThatStaySmall) {
+  const std::string bone = R"([bodies.bone]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [0.03, 0.03, 0.03] } }
+density = 1000
+material = { young = "500 MPa", poisson = 0.3 }
+[[constraints]]
+body = "bone"
+where = { box = { min = [-1, -1, -1], max = [1, 1, 1e-6] } }
+fix = "all"
+[[loads]]
+body = "bone"
+where = { box = { min = [-1, -1, 0.0299], max = [1, 1, 1] } }
+total_force = [0, 0, "-250 N"]
+[need]
+error = "3 %"
+)";
+  write("bone.toml", bone);
+  const ProgramResult result = fascia({"run", "bone.toml", "--output", "out"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("\"bone\" is linear, as its displacements are small: adds "), std::string::npos)
+      << result.out;
+  EXPECT_EQ(summary("out").at("newton_iterations"), 1);
+  // The formulation that a scene says stays.
+  write("said.toml", with(bone, "density = 1000", "density = 1000\nformulation = \"st-venant-kirchhoff\""));
+  const ProgramResult said = fascia({"run", "said.toml", "--output", "said"});
+  EXPECT_EQ(said.out.find("is linear"), std::string::npos) << said.out;
+}
+
+TEST_F(NeedRuns, CountErrorsOfCellsThatTheSceneSays) {
+  const std::string beside =
+      with(with(kCantilever, "frames   = { grid = [3, 2, 2] }\n", ""), "[[constraints]]",
+           "[bodies.block]\nmodel = \"hexahedra\"\norder = 1\ndensity = 1000\nmaterial = \"soft\"\n"
+           "domain = { box = { min = [0, 0, 1], max = [1, 0.2, 1.2], cells = [2, 1, 1] } }\n"
+           "[[constraints]]\nbody = \"block\"\nwhere = { box = { min = [-0.01, -1, -1], max = [0.01, 1, 2] } }\nfix = "
+           "\"all\"\n"
+           "[[constraints]]");
+  write("two.toml", beside + "[need]\nerror = \"10 %\"\n");
+  const ProgramResult result = fascia({"run", "two.toml", "--output", "out", "--quiet"});
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_NE(result.err.find("the cells of \"block\", which the scene says, have "), std::string::npos) << result.err;
+  EXPECT_GT(summary("out").at("estimated_error").at("bodies").at("block").at("total"), 0.1);
+}
+
+TEST_F(NeedRuns, GiveEachBodyTheCellsThatItsOwnNeedTakes) {
+  const std::string box =
+      "model = \"hexahedra\"\norder = 1\ndensity = 1000\nmaterial = { young = \"1 MPa\", poisson = 0.3 }\n"
+      "domain = { box = { min = [0, 0, ";
+  write(
+      "two.toml",
+      "[world]\ngravity = [0, -9.81, 0]\n[bodies.a]\nneed = { error = \"60 %\" }\n" + box +
+          "0], max = [0.2, 0.1, 0.1] } }\n"
+          "[bodies.b]\nneed = { error = \"5 %\" }\n" +
+          box +
+          "1], max = [0.2, 0.1, 1.1] } }\n"
+          "[[constraints]]\nbody = \"a\"\nwhere = { box = { min = [-1, -1, -1], max = [1e-6, 1, 2] } }\nfix = \"all\"\n"
+          "[[constraints]]\nbody = \"b\"\nwhere = { box = { min = [-1, -1, -1], max = [1e-6, 1, 2] } }\nfix = "
+          "\"all\"\n");
+  const ProgramResult result = fascia({"run", "two.toml", "--output", "out"});
+  ASSERT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("as the error of \"a\" leaves room: adds "), std::string::npos) << result.out;
+  const nlohmann::json errors = summary("out").at("estimated_error").at("bodies");
+  EXPECT_LE(errors.at("a").at("total"), 0.6);
+  EXPECT_LE(errors.at("b").at("total"), 0.05);
+}
+
 TEST(Tune, IgnoresFilesOfOthers) {
   std::string name = (fs::temp_directory_path() / "fascia tune XXXXXX").string();
   ASSERT_NE(mkdtemp(name.data()), nullptr);
