@@ -19,6 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kRounding = 1e-12;
+constexpr const char *kByFiner = "finer", *kByCoarser = "coarser";  ///< as of output.estimate
 
 bool is_solid(const Body& body) {
   return is_mesh_model(body) || (body.model == BodyModel::meshless && body.thickness.empty() && !body.radius);
@@ -72,6 +73,7 @@ Json json_of(const EstimatedError& e, const std::string& unit, bool of_component
   if (!e.components.empty() && of_components) j["components"] = e.components;
   if (e.order > 0) j["order"] = e.order;
   if (e.order > 0) j["order_measured"] = e.order_measured;
+  if (e.order > 0) j["method"] = e.by_finer ? kByFiner : kByCoarser;
   return j;
 }
 
@@ -183,14 +185,22 @@ std::vector<std::string> plan_lines(const EstimatePlan& plan) {
 
 std::vector<std::string> estimate_lines(const Json& summary) {
   std::vector<std::string> lines;
+  bool coarser = false;
+  const auto add = [&](const std::string& name, const Json& error) {
+    lines.push_back(line_of(name, error));
+    coarser = coarser || error.value("method", "") == kByCoarser;
+  };
   for (const auto& [name, error] : summary.at("estimated_error").items()) {
     if (name != "bodies") {
-      lines.push_back(line_of(name, error));
+      add(name, error);
       continue;
     }
-    for (const auto& [body, of_body] : error.items())
-      lines.push_back(line_of(fmt::format("the displacement of \"{}\"", body), of_body));
+    for (const auto& [body, of_body] : error.items()) add(fmt::format("the displacement of \"{}\"", body), of_body);
   }
+  if (coarser)
+    lines.emplace_back(
+        "estimate: by coarser twins alone, which may be wrong by a factor of three where these are too coarse to show "
+        "an order; output.estimate = \"finer\" is surer and takes longer");
   for (const auto& note : summary.at("estimate").at("how"))
     if (const std::string text = note.get<std::string>();
         text.find("no estimate") != std::string::npos || text.find("gives nothing") != std::string::npos)
