@@ -134,7 +134,7 @@ std::vector<Share> frame_shares(const Simulation& s, int body, const Region& reg
   return shares;
 }
 
-/// What a total load is shared by.
+/// Shares of a total load.
 struct Spread {
   std::vector<Share> shares;
   bool along_edges = false;  ///< of nodes that turn

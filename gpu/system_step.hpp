@@ -157,9 +157,8 @@ void System<Space>::start_acceleration(const Pose& start, double dt, Memory& mem
   memory.acceleration.resize(u_.size());
   memory.acceleration.set_zero();
   begin_step(start, dt, TimeScheme::newmark, memory);
-  // As MechanicalSystem does it: E + h dE/dt becomes E − h dE/dt.
-  if (damped_)
-    Space::for_each(static_cast<int>(E_.size()), kernels::Extrapolate{E_.data(), start_E_.data(), -2});
+  // Nothing has moved yet, see MechanicalSystem: E + h dE/dt becomes E − h dE/dt.
+  if (damped_) Space::for_each(static_cast<int>(E_.size()), kernels::Extrapolate{E_.data(), start_E_.data(), -2});
   step_.h = 0;  // forces without inertia
   evaluate_forces();
   Space::for_each(model_.node_count(), kernels::ForceOfAcceleration{step_view(), force_view(), world_y_.data()});

@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kRounding = 1e-12;
+constexpr const char *kByFiner = "finer", *kByCoarser = "coarser";  ///< as of output.estimate, and for lines.cpp
 
 bool is_solid(const Body& body) {
   return is_mesh_model(body) || (body.model == BodyModel::meshless && body.thickness.empty() && !body.radius);
@@ -71,6 +72,7 @@ Json json_of(const EstimatedError& e, const std::string& unit, bool of_component
   if (!e.components.empty() && of_components) j["components"] = e.components;
   if (e.order > 0) j["order"] = e.order;
   if (e.order > 0) j["order_measured"] = e.order_measured;
+  if (e.order > 0) j["method"] = e.by_finer ? kByFiner : kByCoarser;
   return j;
 }
 

@@ -26,14 +26,22 @@ std::string line_of(const std::string& name, const Json& e) {
 
 std::vector<std::string> estimate_lines(const Json& summary) {
   std::vector<std::string> lines;
+  bool coarser = false;
+  const auto add = [&](const std::string& name, const Json& error) {
+    lines.push_back(line_of(name, error));
+    coarser = coarser || error.value("method", "") == "coarser";
+  };
   for (const auto& [name, error] : summary.at("estimated_error").items()) {
     if (name != "bodies") {
-      lines.push_back(line_of(name, error));
+      add(name, error);
       continue;
     }
-    for (const auto& [body, of_body] : error.items())
-      lines.push_back(line_of(fmt::format("the displacement of \"{}\"", body), of_body));
+    for (const auto& [body, of_body] : error.items()) add(fmt::format("the displacement of \"{}\"", body), of_body);
   }
+  if (coarser)
+    lines.emplace_back(
+        "estimate: by coarser twins alone, which may be wrong by a factor of three where these are too coarse to show "
+        "an order; output.estimate = \"finer\" is surer and takes longer");
   for (const auto& note : summary.at("estimate").at("how"))
     if (const std::string text = note.get<std::string>();
         text.find("no estimate") != std::string::npos || text.find("gives nothing") != std::string::npos)

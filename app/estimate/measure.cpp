@@ -21,6 +21,7 @@ class Measurement {
     if (space) {
       e.order = space->order;
       e.order_measured = space->measured;
+      e.by_finer = space->by_finer;
       if (!relative && nearest_)
         e.scale = std::max(e.scale, mixed(*against_, *nearest_, space->factor * (space->by_finer ? 1 : -1)).largest());
     }

@@ -16,7 +16,8 @@ struct EstimatedError {
   std::optional<double> discretisation, time, solver, precision;  ///< none: no estimate
   double order = 0;                                               ///< of the discretisation; 0: not known
   bool order_measured = false;
-  double scale = 0;  ///< what they are relative to, in the quantity's unit; 1 of frequencies
+  bool by_finer = false;  ///< else by coarser twins alone, which is less certain
+  double scale = 0;       ///< what they are relative to, in the quantity's unit; 1 of frequencies
 
   /// Of each component at the end, in the quantity's unit: the sum of what is known of it.
   std::vector<double> components;

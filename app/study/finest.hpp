@@ -13,8 +13,8 @@ std::optional<SizeSeries> series_of(const StudyResult& result, std::size_t axis,
 /// order, the run with the most unknowns and steps. A curve is taken as it is.
 ReferenceValue finest_value(const StudyResult& result, const Question& question);
 
-/// The same for a field, which is not extrapolated: how far it is from the limit is, by the distances of coarser runs
-/// from it, its uncertainty. @param directory  of the study
+/// The best field that a study has of its own, likewise. It is not extrapolated: how far it is from the limit is, by
+/// the distances of coarser runs from it, its uncertainty. @param directory  of the study
 ReferenceValue finest_field(StudyResult& result, const Question& question, const std::filesystem::path& directory);
 
 }  // namespace fascia::app

@@ -83,7 +83,7 @@ std::string resolve(StudyReference& reference, Quantity quantity) {
   return "";
 }
 
-/// What the base scene lacks for a field to be measured.
+/// Says what the base scene lacks for a field to be measured.
 void check_field(const StudyMeasure& measure, const Scene& base, std::vector<Diagnostic>& wrong) {
   const auto add = [&](const char* key, std::string message) {
     Place place = measure.place;

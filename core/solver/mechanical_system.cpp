@@ -244,6 +244,7 @@ std::vector<PartForces> MechanicalSystem::part_forces() const {
         .momentum = inertia_cancelled_[p],
         .rounding = 4 * leverage * std::hypot(executor_.rounding(part), inertia_rounding, surfaces_.rounding(part))};
     PartForces& f = parts[p];
+    if (!kept_loads_.empty()) f.load = std::max(f.load, kept_loads_[p]);
     const double still = kAtRest * masses_[p] * executor_.motion(part) / (form_.h * form_.h);
     f.adrift = form_.h > 0 && f.load == 0 && f.reaction == 0 && f.tether == 0 && f.momentum > still * still;
   }

@@ -86,6 +86,8 @@ class MechanicalSystem {
   PathDirections path_directions(std::span<const double> ahead, std::span<const double> behind, double width);
   /// Makes weight d_r + rate d_f the direction that apply() takes; returns its largest rotation [rad].
   double steer(const PathDirections& directions, double weight, double rate);
+  /// From now on residuals are judged by the loads of the last evaluation too: on a path they pass through zero.
+  void keep_loads();
   /// Displacements since the start of the step [m].
   std::span<const Vec3d> step_displacement() const { return increment_.du; }
 
@@ -211,6 +213,7 @@ class MechanicalSystem {
   struct PartSquares {
     std::vector<double> load, held_load, inertia, residual, reaction, unused;
   } part_squares_;
+  std::vector<double> kept_loads_;  ///< by part, see keep_loads(); empty: none [N²]
   /// Displacements at the end of the last step, and the internal energy there; of implicit Euler on vertices [J].
   std::optional<std::pair<std::vector<Vec3d>, double>> reached_;
   std::optional<Evaluation> known_;  ///< of the present state, where evaluate() would repeat itself

@@ -204,6 +204,8 @@ class PathFollower {
       }
       PathDirections end = directions();
       const double rate = end.usable ? rate_at(end) : 0.0;
+      const bool last = ends_by_displacement() && length >= left * (1 - 1e-9);
+      if (last && !end.usable && ends_at_limit_point()) return accept(report, end, 0, true);
       if (!follows(end, rate)) continue;
       const double p = moved();
       const LoadCurve curve{state_.time, rate_ * p, lambda_, rate * p};
@@ -217,7 +219,7 @@ class PathFollower {
           continue;
         }
       }
-      if (s > 1) return accept(report, end, rate, ends_by_displacement() && length >= left * (1 - 1e-9));
+      if (s > 1) return accept(report, end, rate, last);
       const bool short_of_it = lambda_ < 1;
       if (s < 1 - 1e-3) report = attempt(s * p);
       if (report.status == NewtonStatus::converged) report = attempt_end();
@@ -286,11 +288,18 @@ class PathFollower {
     return std::sqrt(squared) <= kMostBent * Translations::norm(du);
   }
 
+  /// The tangent is singular there, and the load factor comes to it as to its extremum: half as far as it set out to.
+  bool ends_at_limit_point() const {
+    const double set_out = rate_ * moved(), came = lambda_ - state_.time;
+    return !has_corner() && std::abs(came - 0.5 * set_out) <= kMostBent * std::max(std::abs(came), std::abs(set_out));
+  }
+
   NewtonReport accept(NewtonReport report, PathDirections& end, double rate, bool done) {
     const double p = moved();
     if (run_.steps == 0) first_ = std::min(first_, p);
     const bool corner = has_corner();
     const LoadCurve curve{state_.time, rate_ * p, lambda_, rate * p};
+    system_.keep_loads();
     state_ = system_.finish_step(lambda_);
     ++run_.steps;
     run_.time = lambda_;

@@ -104,6 +104,12 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   return out;
 }
 
+void MechanicalSystem::keep_loads() {
+  kept_loads_.resize(part_squares_.load.size(), 0.0);
+  for (std::size_t p = 0; p < kept_loads_.size(); ++p)
+    kept_loads_[p] = std::max(kept_loads_[p], part_squares_.load[p] + part_squares_.held_load[p]);
+}
+
 double MechanicalSystem::steer(const PathDirections& directions, double weight, double rate) {
   for (std::size_t i = 0; i < direction_.size(); ++i)
     direction_[i] = weight * directions.d_r[i] + rate * directions.d_f[i];

@@ -37,6 +37,8 @@ TEST_F(EstimateRuns, SayWhatTheyFoundAndChangeNothing) {
   EXPECT_LT(error.at("total"), 0.2);
   EXPECT_EQ(error.at("time"), 0);
   EXPECT_TRUE(error.at("order_measured").get<bool>());
+  EXPECT_EQ(error.at("method"), "finer");
+  EXPECT_EQ(result.out.find("by coarser twins alone"), std::string::npos);
   EXPECT_EQ(j.at("estimated_error").at("weight").at("total"), 0) << "a mass is exact";
   EXPECT_GT(j.at("estimated_error").at("bodies").at("beam").at("discretisation"), 0.01);
   EXPECT_GE(j.at("estimate").at("runs").size(), 2u);
@@ -46,6 +48,13 @@ TEST_F(EstimateRuns, SayWhatTheyFoundAndChangeNothing) {
   EXPECT_NE(check.out.find("estimate: 3 more runs, about "), std::string::npos) << check.out;
   EXPECT_NE(check.out.find("by a finer twin: \"beam\" has 17 x 5 x 5 frames in the place of 9 x 3 x 3"),
             std::string::npos);
+}
+
+TEST_F(EstimateRuns, SayThatCoarserTwinsAreLessCertain) {
+  const ProgramResult result = fascia({"run", "beam.toml", "--output", "out", "--set", "output.estimate=\"coarser\""});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(summary("out").at("estimated_error").at("tip").at("method"), "coarser");
+  EXPECT_NE(result.out.find("estimate: by coarser twins alone"), std::string::npos) << result.out;
 }
 
 TEST_F(EstimateRuns, SplitErrorsOfDynamicsIntoTheirParts) {

@@ -189,7 +189,7 @@ reference = "finest"
       << json["measures"][2]["reference"];
 }
 
-/// As a bundle starts the program: /proc/self/exe is then the loader, and runs of the study must be started by it too.
+/// A bundle starts the program so: /proc/self/exe is then the loader, and runs of the study must be started by it too.
 TEST_F(StudyProgram, StartsItsRunsThroughTheLoaderItWasStartedBy) {
   const char* const loader = "/lib64/ld-linux-x86-64.so.2";
   if (!std::filesystem::exists(loader)) GTEST_SKIP() << "no " << loader;

@@ -24,7 +24,8 @@ using app::Simulation;
 enum class Where { host, device };
 
 /// Hexahedra, tissue that shares their vertices, tetrahedra that follow the tissue, a shell on these, and scattered
-/// frames whose ends are held by tethers; pulled and turned, with both kinds of damping, from a motion that stretches them at once.
+/// frames whose ends are held by tethers; pulled and turned, with both kinds of damping, from a motion that stretches
+/// them at once.
 constexpr const char* kScene = R"(
 [materials]
 soft = { young = 1e4, poisson = 0.3, damping = { stiffness = "20 ms", mass = "5 Hz" } }

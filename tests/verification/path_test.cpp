@@ -103,6 +103,24 @@ TEST(Path, AControlledPointEndsTheRunWhereItShould) {
   EXPECT_LT(off_the_curve(run, {}, 100), kOnTheCurve);
 }
 
+/// At limit points the tangent is singular, and where the load is 0 nothing is relative to it: the guide's heights
+/// h/√3 and −h/√3, 0 and −h.
+TEST(Path, AControlledPointMayEndWhereTheLoadIsExtremeOrZero) {
+  for (const double height : {0.1 / std::sqrt(3.0), 0.0, -0.1 / std::sqrt(3.0), -0.1})
+    for (const char* steps : {"7", "10", "20"}) {
+      char to[40];
+      std::snprintf(to, sizeof to, "%.17g", 0.1 - height);
+      const SceneRun run("snap_through",
+                         {"solver.control='displacement'", std::string("solver.load_steps=") + steps,
+                          std::string("solver.controlled={body='bar',at=[1,0.1,0],direction=[0,-1,0],to=") + to + "}"});
+      ASSERT_TRUE(run.ok()) << height << " " << steps;
+      EXPECT_NEAR(run.history().back()[2], height - 0.1, 1e-12) << steps;
+      EXPECT_NEAR(100 * run.history().back()[0], Bar{}.load(0.1 - height), kOnTheCurve * Bar{}.limit()) << steps;
+      EXPECT_LT(run.history().size(), 20U) << "steps";
+      EXPECT_LT(off_the_curve(run, {}, 100), kOnTheCurve);
+    }
+}
+
 /// A load that is there from the start, and one that grows.
 TEST(Path, StartsFromTheEquilibriumOfConstantLoads) {
   const SceneRun run("snap_through",
