@@ -36,7 +36,7 @@ struct Resolution {
   int family = 0;
   int level = 1;  ///< times as many cells along each direction as the pattern
 
-  auto operator<=>(const Resolution&) const = default;
+  auto operator<=>(const Resolution&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 sees a 0 in it
 };
 
 struct OpenScene {

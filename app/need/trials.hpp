@@ -31,7 +31,7 @@ struct NeedChoice {
   std::string scheme;             ///< kind of the solver; empty: the scene's own
   std::vector<std::string> more;  ///< changes beside, for twins
 
-  auto operator<=>(const NeedChoice&) const = default;
+  auto operator<=>(const NeedChoice&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 sees a 0 in it
 };
 
 /// What came of it.
