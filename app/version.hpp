@@ -23,8 +23,8 @@ const char* commit();
 /// The backends that there are: "cpu, cuda (toolkit 13.0, for 90-real)".
 std::string backend_list();
 
-/// The same without loading what computes on a GPU, which a run on the processor has no use for: "cpu, cuda" where it
-/// has not been asked for.
+/// Names the backends without loading what computes on a GPU, which a run on the processor has no use for: "cpu, cuda"
+/// where it has not been asked for.
 std::string backends_so_far();
 
 }  // namespace fascia::app

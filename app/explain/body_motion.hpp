@@ -15,7 +15,7 @@ struct BodyMotion {
   double displacement = 0;       ///< the largest [m]
 };
 
-/// Of the bodies of a result, from the files that its .pvd lists.
+/// The motions of the bodies of a result, from the files that its .pvd lists.
 /// @throws FileError, InputError
 std::map<std::string, BodyMotion> body_motions(const std::filesystem::path& pvd);
 

@@ -20,7 +20,8 @@ const char* domain_key(const Scene& scene, const std::string& path) {
   return "";
 }
 
-/// What needs the body to be there; empty where nothing does. What acts on it or measures it goes with it.
+/// Names that which needs the body to be there; empty where nothing does. All that acts on it or measures it goes with
+/// it.
 std::string needed_by(const Scene& scene, const Body& body) {
   for (const Body& other : scene.bodies) {
     if (const auto* between = std::get_if<BetweenDomain>(&other.domain))
@@ -125,7 +126,8 @@ class BodyVariants {
     v.overrides.push_back(fmt::format("{}.mass={}", path_, mass->second));
   }
 
-  /// What a law of large strain becomes where a formulation takes none; empty where that cannot be said in one line.
+  /// The law that one of large strain becomes where a formulation takes none; empty where that cannot be said in one
+  /// line.
   std::vector<std::string> linear_law() const {
     const auto large = [](const MaterialUse& use) { return use.material.law == MaterialLaw::neo_hookean; };
     if (std::none_of(body_.materials.begin(), body_.materials.end(), large) || body_.materials.size() != 1) return {};

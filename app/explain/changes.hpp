@@ -7,7 +7,8 @@
 
 namespace fascia::app {
 
-/// Of times of runs that were made in turns: the median of v / b of neighbours, and the extremes; 1 without any b > 0.
+/// Compares times of runs that were made in turns: the median of v / b of neighbours, and the extremes; 1 without any b
+/// > 0.
 Ratio ratio_of_pairs(const std::vector<double>& v, const std::vector<double>& b);
 
 /// A ratio to one run of several that took so long: what it might have been beside the quickest and the slowest.

@@ -15,6 +15,7 @@
 #include "app/scene/parse.hpp"
 #include "app/study/machine_load.hpp"
 #include "app/study/tables.hpp"
+#include "app/temporary_folder.hpp"
 #include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
 #include "io/directory_lock.hpp"
@@ -24,7 +25,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <thread>
 
@@ -35,19 +35,17 @@ namespace fs = std::filesystem;
 
 /// From here on two runs in turns do [s].
 constexpr double kLong = 10;
-/// Of the time limit, for one run of each change; the rest measures what is worth it in turns.
+/// This part of the time limit is for one run of each change; the rest measures what is worth it in turns.
 constexpr double kFirstPart = 0.6;
 constexpr const char* kFile = "explain.json";
 
 /// A directory for the runs: the user's, which is new, empty or of an explanation, or one that goes at the end.
 class Workplace {
  public:
-  explicit Workplace(const std::optional<fs::path>& chosen) : kept_(chosen.has_value()) {
+  explicit Workplace(const std::optional<fs::path>& chosen) {
     std::error_code none;
-    if (!kept_) {
-      std::string name = (fs::temp_directory_path() / "fascia-explain-XXXXXX").string();
-      if (mkdtemp(name.data()) == nullptr) throw FileError(fmt::format("{}: cannot be made", name));
-      path_ = name;
+    if (!chosen) {
+      path_ = passing_.emplace("fascia-explain").path();
       return;
     }
     path_ = *chosen;
@@ -62,17 +60,16 @@ class Workplace {
   }
   ~Workplace() {
     std::error_code none;
-    if (!kept_) fs::remove_all(path_, none);
-    for (const char* passing : {"variant", "turn"}) fs::remove_all(path_ / passing, none);
+    for (const char* run : {"variant", "turn"}) fs::remove_all(path_ / run, none);
   }
   Workplace(const Workplace&) = delete;
   Workplace& operator=(const Workplace&) = delete;
 
   const fs::path& path() const { return path_; }
-  bool kept() const { return kept_; }
+  bool kept() const { return !passing_; }
 
  private:
-  bool kept_;
+  std::optional<TemporaryFolder> passing_;
   fs::path path_;
   std::unique_ptr<io::DirectoryLock> lock_;
 };
@@ -180,7 +177,7 @@ class Explainer {
   }
 
   double seconds() const { return seconds_since(started_); }
-  /// Whether what takes these seconds ends in time.
+  /// Something that takes these seconds ends in time.
   bool in_time(double more) const { return !(options_.time_limit > 0) || seconds() + more < options_.time_limit; }
 
   /// Each change once; the most promising first, as there may be no time for all.
@@ -220,7 +217,8 @@ class Explainer {
 
   int turns() const { return e_.base.wall > kLong ? std::min(2, options_.repeat) : options_.repeat; }
 
-  /// What seems to gain is measured in turns with the scene as it is: of many changes some seem to gain by chance.
+  /// Each change that seems to gain is measured in turns with the scene as it is: of many changes some seem to gain by
+  /// chance.
   void suggest() {
     std::vector<const Part*> chosen;
     std::vector<std::string> late;

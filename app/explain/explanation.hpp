@@ -40,7 +40,7 @@ struct Ratio {
   bool is_less() const { return high < 1; }
 };
 
-/// What a change does to a probe.
+/// The difference that a change makes to a probe.
 struct ProbeChange {
   std::string probe;
   std::optional<double> relative;  ///< |new − old| / |old|, of dynamics over the curve; none: it is not there

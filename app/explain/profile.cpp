@@ -32,7 +32,7 @@ Stages stages_of(const nlohmann::ordered_json& summary, const RunRecord& record,
   stages.solve = record.solve.median;
   if (const auto seconds = summary.find("seconds"); seconds != summary.end()) {
     stages.output = seconds->value("output", 0.0);
-    // Of the one run that the summary and the time from its start to its end are of.
+    // The summary and the time from start to end are those of one run.
     const double told = seconds->value("setup", 0.0) + seconds->value("solve", 0.0) + stages.output;
     stages.start = std::max(0.0, record.wall - told);
   }

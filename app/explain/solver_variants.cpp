@@ -49,26 +49,16 @@ std::vector<SaidMaterial> materials_of(const Scene& scene) {
 
 std::vector<Variant> material_variants(const Scene& scene) {
   std::vector<Variant> found;
+  const auto add = [&](VariantKind kind, const std::string& key, const std::string& label, const std::string& change) {
+    found.push_back({kind, key, label, "", {change}, "", false, 1});
+  };
   for (const auto& [path, material] : materials_of(scene)) {
+    const std::string damping = path + ".damping", law = path + ".law=\"st-venant-kirchhoff\"";
     const bool damped = material->mass_damping > 0 || material->stiffness_damping > 0;
     if (is_dynamic(scene.solver.kind) && damped)
-      found.push_back({VariantKind::damping,
-                       path + ".damping",
-                       fmt::format("without `{}.damping`", path),
-                       "",
-                       {path + ".damping="},
-                       "",
-                       false,
-                       1});
+      add(VariantKind::damping, damping, fmt::format("without `{}`", damping), damping + "=");
     if (material->law == MaterialLaw::neo_hookean)
-      found.push_back({VariantKind::law,
-                       path + ".law",
-                       fmt::format("with `{}.law = \"st-venant-kirchhoff\"`", path),
-                       "",
-                       {path + ".law=\"st-venant-kirchhoff\""},
-                       "",
-                       false,
-                       1});
+      add(VariantKind::law, path + ".law", fmt::format("with `{}.law = \"st-venant-kirchhoff\"`", path), law);
   }
   return found;
 }

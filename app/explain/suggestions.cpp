@@ -63,7 +63,7 @@ bool keeps_every_probe(const Explanation& e, const Part& part) {
   });
 }
 
-/// What is left open is whether the gain is more than chance.
+/// It is left open whether the gain is more than chance.
 bool may_be_worth(const Explanation& e, const Part& part) {
   if (part.variant.closer || !part.variant.refused.empty()) return false;
   if (e.quick) return part.estimated_gain > kLeastGain && part.estimated_change && *part.estimated_change < e.limit;
@@ -132,7 +132,7 @@ std::vector<std::string> combined(Explanation& e, const std::vector<const Part*>
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Variant& v = parts[i]->variant;
     Suggestion& s = e.suggestions[i];
-    // What is taken out of a list moves the places that another one names.
+    // An entry that is taken out of a list moves the places that another one names.
     s.carried_out = !places.contains(place_of_change(v)) && !(from_list && removes_from_a_list(v));
     if (!s.carried_out) continue;
     std::vector<std::string> with = e.scene.overrides;

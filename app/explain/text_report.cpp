@@ -1,5 +1,6 @@
 #include "app/explain/report.hpp"
 #include "app/explain/turns.hpp"
+#include "app/provenance.hpp"
 #include "app/study/tables.hpp"
 
 #include <fmt/format.h>
@@ -129,16 +130,9 @@ std::string failures(const Explanation& e) {
   return text;
 }
 
-/// As a shell takes it.
-std::string for_shell(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 std::string suggestion_text(const Suggestion& s) {
   std::string text = "  " + s.text + "\n   ";
-  for (const std::string& change : s.overrides) text += " --set " + for_shell(change);
+  for (const std::string& change : s.overrides) text += " --set " + quoted_for_shell(change);
   return text + "\n";
 }
 

@@ -14,13 +14,13 @@ namespace {
 /// A change that takes this many times as long as the scene as it is, and these seconds at least, tells no more.
 constexpr double kTooLong = 5, kLeastLimit = 5;
 
-/// What is compared of two runs: times on one thread by the processor's clock.
+/// The two times that are compared; of runs on one thread they are those of the processor's clock.
 std::pair<double, double> times_of(const RunRecord& changed, const RunRecord& before) {
   if (is_serial(changed) && is_serial(before)) return {changed.processor.median, before.processor.median};
   return {changed.solve.median, before.solve.median};
 }
 
-/// Of several equal runs the median and the extremes are known.
+/// The median and the extremes of several equal runs are known.
 std::vector<double> known(const Spread& s, int repeats) {
   return repeats > 1 ? std::vector<double>{s.low, s.median, s.high} : std::vector<double>{s.median};
 }

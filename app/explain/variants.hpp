@@ -41,7 +41,7 @@ struct Variant {
   double growth = 1;    ///< of the body's nodes
 };
 
-/// What only a run of the scene tells.
+/// Facts that only a run of the scene tells.
 struct RunFacts {
   bool iterative = false;  ///< conjugate gradients solved
   std::string backend = "cpu";

@@ -12,14 +12,14 @@ namespace fascia::app {
 
 struct Machine;
 
-/// What costs hold for: this processor, as many threads, this version.
+/// Costs hold for this alone: the processor, as many threads, this version.
 nlohmann::ordered_json machine_key(const Machine& machine);
 
 /// $XDG_CACHE_HOME/fascia/tune.json, or ~/.cache/fascia/tune.json; empty where there is neither.
 std::filesystem::path tune_file();
 
-/// What was kept for this machine and version; none where there is nothing. @param told  why a file that is there is
-/// not used, a sentence; else empty
+/// The costs that were kept for this machine and version; none where there is nothing. @param told  why a file that is
+/// there is not used, a sentence; else empty
 std::optional<CostModel> kept_costs(std::string& told);
 
 /// "time: about 0.4 s on this machine (5 Newton iterations assumed)", or why it cannot be said, or that `fascia tune`

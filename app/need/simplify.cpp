@@ -34,7 +34,7 @@ struct Simplification {
   bool same_result = false;  ///< it may change how the result is found, but not the result
 };
 
-/// What may be left out of a body, as `fascia explain` leaves it out: what the scene says stays.
+/// Adds all that may be left out of a body, as `fascia explain` leaves it out: what the scene says stays.
 void of_body(const Scene& scene, const Body& body, const RunFacts& facts, std::vector<Simplification>& all) {
   const std::string formulation = "bodies." + toml_key(body.name) + ".formulation";
   const bool small = is_mesh_model(body) && !scene.says(formulation) &&
@@ -54,7 +54,7 @@ void of_body(const Scene& scene, const Body& body, const RunFacts& facts, std::v
   }
 }
 
-/// Of the scene that a trial ran, in an order that is the same for all of them.
+/// All candidates in the scene that a trial ran, in an order that is the same for all of them.
 std::vector<Simplification> candidates(const Trials& trials, const Trial& trial) {
   const Scene scene = trials.scene_of(trial.choice);
   RunFacts facts;
@@ -69,7 +69,7 @@ std::vector<Simplification> candidates(const Trials& trials, const Trial& trial)
   return all;
 }
 
-/// What a simpler trial changes, relative, by quantity.
+/// Relative changes that a simpler trial makes, by quantity.
 std::vector<double> added(const Trial& plain, const Trial& simpler) {
   std::vector<double> more;
   for (std::size_t w = 0; w < plain.values.size(); ++w)
@@ -77,8 +77,8 @@ std::vector<double> added(const Trial& plain, const Trial& simpler) {
   return more;
 }
 
-/// What errors may grow by, relative, by quantity. Of what the need does not name: by the largest error that it allows,
-/// so that nothing which the scene asks for loses its meaning.
+/// Errors may grow by this, relative, by quantity. A quantity that the need does not name: by the largest error that it
+/// allows, so that nothing which the scene asks for loses its meaning.
 std::vector<double> allowances(const Trials& trials) {
   double largest = 0;
   for (const Wanted& w : trials.wanted()) largest = std::max(largest, w.allowed.value_or(0));

@@ -187,7 +187,7 @@ const Trial& Trials::run(const NeedChoice& choice) {
       child.overrides.push_back(
           fmt::format("probes.{}={{body=\"{}\", quantity=\"max_displacement\"}}", w.probe, w.body));
   ChildResult result = run_child(child, stop_);
-  // What else the machine does lengthens single steps: where most are fast enough, the time is taken again
+  // Other work of the machine lengthens single steps: where most are fast enough, the time is taken again
   // (of what may be chosen; twins only tell errors).
   double spent = 0;
   for (int again = 0; again < kTimedAgain && choice.more.empty() && spent < kMostAgain && result.exit_status == 0 &&

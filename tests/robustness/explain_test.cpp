@@ -83,7 +83,7 @@ TEST_F(Explain, MeasuresWhatItsChangesDo) {
     if (part["kind"] != "rigid" || part["part"] != "bodies.stone") continue;
     ++rigid;
     EXPECT_TRUE(part["changes"]["shear"].is_null());  // a rigid body has no stress
-    // The same by hand.
+    // The change comes out alike when it is made by hand.
     std::vector<std::string> run{"run", "scene.toml", "--quiet", "--output", "rigid"};
     for (const nlohmann::json& change : part["set"]) run.insert(run.end(), {"--set", change});
     ASSERT_EQ(fascia(run).status, 0);

@@ -1,6 +1,6 @@
-// What a scene does not name is not entered: the program runs under callgrind, which tells every function that was
-// called and its instructions. Of a feature that the scene has no use for there may be those alone that ask whether
-// there is something to do.
+// A feature that a scene does not name is not entered: the program runs under callgrind, which tells every function
+// that was called and its instructions. Of a feature that the scene has no use for there may be those alone that ask
+// whether there is something to do.
 #include "tests/robustness/scene_runs.hpp"
 
 #include <cctype>

@@ -115,7 +115,7 @@ TEST_F(NeedRuns, MakeABodyRigidThatMovesAsAWhole) {
   const nlohmann::json j = summary("out"), &error = j.at("estimated_error").at("bodies").at("organ");
   EXPECT_GT(error.at("simplification"), 0);
   EXPECT_LE(error.at("total"), 0.05);
-  // What it adds to the error is what it changes.
+  // It adds to the error as much as it changes.
   const ProgramResult whole =
       fascia({"run", "out/chosen.toml", "--output", "whole", "--set", "bodies.organ.model=\"hexahedra\"", "--set",
               "bodies.organ.order=1", "--set", "bodies.organ.mass=", "--set", "bodies.organ.density=1000", "--set",

@@ -114,7 +114,7 @@ TEST(Effectivity, OfAFewCases) {
   EXPECT_EQ(measure(quick), static_cast<int>(quick.size()));
 }
 
-// Of 40 cases 36 are to be within a factor of two.
+// 36 of 40 cases are to be within a factor of two.
 TEST(Effectivity, OfAllCases) {
   const std::vector<Case> cases = all();
   EXPECT_GE(cases.size(), 40u);
