@@ -28,7 +28,7 @@ bool Model::has_frames() const {
 }
 
 bool Model::is_linear() const {
-  return points.point_count == 0 && points.shells.empty() && points.dependents.empty() && followers.empty() &&
+  return !has_frames() && points.point_count == 0 && points.dependents.empty() && followers.empty() &&
          surfaces.empty() && std::all_of(points.blocks.begin(), points.blocks.end(), [](const ElementBlock& block) {
            return block.law == ElementLaw::linear;
          });

@@ -188,5 +188,20 @@ TEST(ElementBody, ATensorFieldIsWhatTensorsAreAtEachPlace) {
   }
 }
 
+/// A tangent that nothing changes stands for that of any state; a frame that turns changes it.
+TEST(LinearModels, AreThoseOfTheLinearLawAlone) {
+  ElementOptions o;
+  for (const auto formulation :
+       {ElementFormulation::linear, ElementFormulation::corotational, ElementFormulation::large_strain}) {
+    o.formulation = formulation;
+    EXPECT_EQ(element_model(o).model.is_linear(), formulation == ElementFormulation::linear);
+  }
+  o.formulation = ElementFormulation::linear;
+  Model with_frame = element_model(o).model;
+  with_frame.frame_kind.back() = FrameKind::rigid;
+  EXPECT_FALSE(with_frame.is_linear());
+  EXPECT_FALSE(block().model.is_linear()) << "a meshless body";
+}
+
 }  // namespace
 }  // namespace fascia::element_body_test
