@@ -69,15 +69,13 @@ std::vector<Share> volume_shares(const SimulatedBody& owner, const Region& regio
 
 using Edges = std::set<std::pair<int, int>>;
 
-/// Edges of the surface's triangles, and segments of lines, whose ends are selected; two Gauss points each, whose parts
-/// are lengths.
+/// Edges of the surface's triangles, and segments of lines, whose ends are selected.
 /// @param among  edges of the surface that count; null for all
-std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region, const Edges* among = nullptr) {
+Edges edges_in(const SimulatedBody& owner, const Region& region, const Edges* among = nullptr) {
   const ModelBody& body = *owner.body;
-  const std::vector<Vec3d>& points = body.surface().points;
-  if (points.empty()) return {};
-  const std::vector<bool> chosen = select(region, owner.selectable_surface());
   Edges edges;
+  if (body.surface().points.empty()) return edges;
+  const std::vector<bool> chosen = select(region, owner.selectable_surface());
   const auto add = [&](int a, int b) {
     if (chosen[at(a)] && chosen[at(b)]) edges.insert(std::minmax(a, b));
   };
@@ -85,6 +83,13 @@ std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region,
     for (std::size_t k = 0; k < 3; ++k)
       if (among == nullptr || among->contains(std::minmax(t[k], t[(k + 1) % 3]))) add(t[k], t[(k + 1) % 3]);
   for (const auto& s : body.segments()) add(s[0], s[1]);
+  return edges;
+}
+
+/// Two Gauss points of each edge, whose parts are lengths.
+std::vector<Share> edge_shares(const SimulatedBody& owner, const Edges& edges) {
+  const ModelBody& body = *owner.body;
+  const std::vector<Vec3d>& points = body.surface().points;
   std::vector<Share> shares;
   for (const auto& [i, j] : edges) {
     const Vec3d &a = points[at(i)], &b = points[at(j)];
@@ -100,7 +105,7 @@ std::vector<Share> edge_shares(const SimulatedBody& owner, const Region& region,
 std::vector<Share> line_shares(const SimulatedBody& owner, const Region& region) {
   Edges free;
   for (const auto& [a, b] : free_edges(owner.body->faces())) free.insert({a, b});
-  std::vector<Share> shares = edge_shares(owner, region, free.empty() ? nullptr : &free);
+  std::vector<Share> shares = edge_shares(owner, edges_in(owner, region, free.empty() ? nullptr : &free));
   const auto fail = [&](const char* what) {
     throw SceneError({{region.place, fmt::format(fmt::runtime(what), owner.name)}});
   };
@@ -134,10 +139,17 @@ std::vector<Share> frame_shares(const Simulation& s, int body, const Region& reg
   return shares;
 }
 
+/// They do not run around something: a vertex has an odd number of them.
+bool has_ends(const Edges& edges) {
+  std::map<int, int> count;
+  for (const auto& [a, b] : edges) ++count[a], ++count[b];
+  return std::any_of(count.begin(), count.end(), [](const auto& c) { return c.second % 2 != 0; });
+}
+
 /// Shares of a total load.
 struct Spread {
   std::vector<Share> shares;
-  bool along_edges = false;  ///< of nodes that turn
+  bool open_chain = false;  ///< along edges that end somewhere, of nodes that turn
 };
 
 /// By frames where the region picks single ones; by volume where it holds material points, unless it asks for the
@@ -152,8 +164,9 @@ Spread spread_of(const Simulation& s, int index, const Load& load) {
     shares = volume_shares(body, *load.where);
   if (shares.empty()) shares = surface_shares(body, *load.where);
   if (shares.empty()) {
-    shares = edge_shares(body, *load.where);
-    spread.along_edges = !shares.empty() && !body.vertices;
+    const Edges edges = edges_in(body, *load.where);
+    shares = edge_shares(body, edges);
+    spread.open_chain = has_ends(edges) && !body.vertices;
   }
   if (shares.empty() && !find_nodes(s, index, *load.where).empty()) shares = frame_shares(s, index, *load.where);
   if (shares.empty())
@@ -167,9 +180,10 @@ Spread spread_of(const Simulation& s, int index, const Load& load) {
 
 /// Forces without resultant that make up a torque: part (a × r) about the centre c, with a from the shares' inertia.
 /// Where the shares lie on a line or a point, forces cannot: each takes its part of the torque itself. So do edges
-/// whose nodes turn, unless they run around something: their rise over the chord is no lever to bend a wall by.
+/// that end somewhere and whose nodes turn: their rise over the chord is no lever to bend a wall by. Long arcs have
+/// one.
 void spread_torque(Spread& spread, const Vec3d& torque) {
-  // det I over (tr I)³ of an arc, which is 0 of a line: 0.005 of 90°, 0.017 of 180°, 0.031 of a whole circle.
+  // det I over (tr I)³ of an arc, which is 0 of a line: 0.005 of 90°, 0.017 of 180°.
   constexpr double kLine = 1e-9, kArc = 0.01;
   std::vector<Share>& shares = spread.shares;
   Vec3d center;
@@ -179,7 +193,7 @@ void spread_torque(Spread& spread, const Vec3d& torque) {
     const Vec3d r = s.X - center;
     inertia += (Mat3d::diagonal(squared_norm(r)) - outer(r, r)) * s.part;
   }
-  if (determinant(inertia) <= (spread.along_edges ? kArc : kLine) * std::pow(trace(inertia), 3)) {
+  if (determinant(inertia) <= (spread.open_chain ? kArc : kLine) * std::pow(trace(inertia), 3)) {
     for (Share& s : shares) s.torque += torque * s.part;
     return;
   }

@@ -156,19 +156,27 @@ class Fields {
         const Field* other = find(*y, field.name);
         if (!is_chosen(field, modes)) continue;
         if (other == nullptr || other->components != field.components) {
-          only_in_one_.insert(fmt::format("{}: {}", result_.bodies[k].name, field.name));
+          leave_out(fmt::format("{}: {}", result_.bodies[k].name, field.name));
           continue;
         }
         if (field.name == "rotation" && (turns_too_far(field) || turns_too_far(*other))) {
           note_turn();
+          if (!choice_.field.empty())
+            result_.structure.push_back(fmt::format("body \"{}\" turns by more than 3 rad", result_.bodies[k].name));
           continue;
         }
         add_state(difference(result_.bodies[k].name, field), result_.bodies[k].pair, field, *other, scale, time.time);
       }
       for (const Field& field : y->point_fields)
         if (!modes && is_chosen(field, modes) && find(*x, field.name) == nullptr)
-          only_in_one_.insert(fmt::format("{}: {}", result_.bodies[k].name, field.name));
+          leave_out(fmt::format("{}: {}", result_.bodies[k].name, field.name));
     }
+  }
+
+  /// A field of a body that one result alone has: a note, unless it is what was asked for.
+  void leave_out(const std::string& what) {
+    only_in_one_.insert(what);
+    if (!choice_.field.empty()) result_.structure.push_back(fmt::format("{} is in one of them alone", what));
   }
 
   void pair(ComparedBody& body, const io::VisualMesh& x, const io::VisualMesh& y) {

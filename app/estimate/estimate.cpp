@@ -38,8 +38,6 @@ OrderGuard guard_of(const Scene& scene, const std::optional<std::string>& body, 
   return {derivative && !quadratic ? 1 : solid ? singular : 2, 1, quadratic ? 4.0 : 2.0};
 }
 
-bool is_derivative(Quantity q) { return q == Quantity::strain || q == Quantity::stress; }
-
 /// Differences of a quantity that rounding makes.
 double rounding_of(const Simulation& s, Quantity quantity) {
   double size = 0;

@@ -35,6 +35,9 @@ struct Measured {
   bool halved_finer = false;  ///< the finer twin takes half the step too, so that it is compared with that twin
 };
 
+/// Strains and stresses, which converge by an order less.
+inline bool is_derivative(Quantity q) { return q == Quantity::strain || q == Quantity::stress; }
+
 /// @param kind  of the solver: gives the order of its time steps
 EstimatedError measured(const Measured& quantity, SolverKind kind, bool has_precision);
 

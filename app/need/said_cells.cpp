@@ -1,5 +1,6 @@
 #include "app/need/said_cells.hpp"
 
+#include "app/estimate/measure.hpp"
 #include "app/estimate/resolution.hpp"
 #include "app/scene/parse.hpp"
 
@@ -7,11 +8,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fascia::app {
 namespace {
 
-constexpr double kOrder = 2;
+/// Orders that linear elements and frames have at least where nothing is singular.
+constexpr double kOrder = 2, kOrderOfDerivatives = 1;
 
 bool is_open(const OpenScene& open, const std::string& body) {
   return std::any_of(open.bodies.begin(), open.bodies.end(),
@@ -47,9 +50,11 @@ SaidCells error_of_said_cells(Trials& trials, const NeedChoice& coarse) {
     said.unknown = fine.message;
     return said;
   }
-  const double factor = std::exp2(kOrder) / (std::exp2(kOrder) - 1);
-  for (std::size_t w = 0; w < own.values.size(); ++w)
-    said.error.push_back(factor * relative_distance(own.values[w], fine.values[w]).value_or(0));
+  for (std::size_t w = 0; w < own.values.size(); ++w) {
+    const double finer_than = std::exp2(is_derivative(trials.wanted()[w].quantity) ? kOrderOfDerivatives : kOrder);
+    const std::optional<double> apart = relative_distance(own.values[w], fine.values[w]);
+    said.error.push_back(finer_than / (finer_than - 1) * apart.value_or(INFINITY));
+  }
   return said;
 }
 

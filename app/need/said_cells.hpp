@@ -18,7 +18,7 @@ struct SaidCells {
 };
 
 /// By a coarse trial in which these bodies alone have twice as many cells along each direction: e = d 2^p / (2^p - 1),
-/// p = 2. @param coarse  what the bodies that are open have meanwhile
+/// p = 2, of strains and stresses 1. @param coarse  what the bodies that are open have meanwhile
 SaidCells error_of_said_cells(Trials& trials, const NeedChoice& coarse);
 
 }  // namespace fascia::app

@@ -73,7 +73,7 @@ std::vector<Simplification> candidates(const Trials& trials, const Trial& trial)
 std::vector<double> added(const Trial& plain, const Trial& simpler) {
   std::vector<double> more;
   for (std::size_t w = 0; w < plain.values.size(); ++w)
-    more.push_back(relative_distance(simpler.values[w], plain.values[w]).value_or(0));
+    more.push_back(relative_distance(simpler.values[w], plain.values[w]).value_or(INFINITY));
   return more;
 }
 

@@ -99,6 +99,7 @@ double rounding_of(Quantity quantity, double size) {
 
 std::optional<double> relative_distance(const Series& a, const Series& b) {
   const std::optional<double> far = distance(a, b, SeriesNorm::euclidean);
+  if (far && *far == 0) return 0.0;
   const double scale = b.largest();
   return far && scale > 0 ? std::optional(*far / scale) : std::nullopt;
 }

@@ -116,7 +116,8 @@ struct Model {
   int free_dof_count() const { return dof_count() - constrained_dof_count() - dependent_dof_count(); }
   FrameKind kind(int node) const { return frame_kind[at(node)]; }
   bool has_frames() const;  ///< nodes that turn
-  /// Elements of the linear law alone, and nothing that turns: the tangent stiffness is the same everywhere.
+  /// Elements of the linear law alone, no spring, which turns, and nothing else that does: the tangent stiffness is the
+  /// same everywhere.
   bool is_linear() const;
   /// Loads have a potential: no torque that keeps its direction in space, no follower, no pressure on a surface whose
   /// free edges move.

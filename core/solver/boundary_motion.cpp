@@ -106,14 +106,14 @@ void stop_held(const Model& model, State& state) {
       const Vec3d axis = c.translation_axes.row(a);
       if (c.translation_motion[at(a)] < 0) state.v[i] -= axis * dot(axis, state.v[i]);
     }
-    if (c.turning_motion() >= 0 || c.rotations == 0) continue;
     const Mat3d& R = c.rotation_axes;
     if (model.kind(c.node) == FrameKind::rigid) {
       const Mat3d Q = Mat3d::identity() + state.D[i];
       Vec3d spin = spin_of(state.Q_dot[i], Q);
-      for (int a = 0; a < c.rotations; ++a) spin -= R.row(a) * dot(R.row(a), spin);
+      for (int a = 0; a < c.rotations; ++a)
+        if (c.rotation_motion[at(a)] < 0) spin -= R.row(a) * dot(R.row(a), spin);
       state.Q_dot[i] = skew(spin) * Q;
-    } else if (model.kind(c.node) == FrameKind::affine) {
+    } else if (model.kind(c.node) == FrameKind::affine && c.turning_motion() < 0) {
       Mat3d rate = times_transpose(R * state.Q_dot[i], R);
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b)

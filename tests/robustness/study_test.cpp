@@ -2,6 +2,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/scene_run.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -187,6 +188,33 @@ reference = "finest"
   EXPECT_NE(json["measures"][2]["reference"]["missing"].get<std::string>().find("field \"rotation\""),
             std::string::npos)
       << json["measures"][2]["reference"];
+}
+
+/// Rotations beyond half a turn cannot be compared: their body is no error of 0, however the other one fares.
+TEST_F(StudyProgram, LeavesNoBodyOutOfAField) {
+  std::string scene = "[solver]\nkind = \"static\"\nthreads = 1\n[output]\nfields = [\"rotation\"]\n";
+  for (const auto& [name, y, angle] : {std::tuple("p", 0, 10), std::tuple("q", 3, 190)})
+    scene += fmt::format(
+        "[bodies.{0}]\nmodel = \"meshless\"\nframes = {{ grid = [2, 2, 2] }}\ndensity = 1\n"
+        "domain = {{ box = {{ min = [0, {1}, 0], max = [1, {3}, 1] }} }}\n"
+        "material = {{ young = \"1 MPa\", poisson = 0.3 }}\n"
+        "[[constraints]]\nbody = \"{0}\"\nwhere = \"all\"\n"
+        "move = {{ rotate = {{ axis = [0, 0, 1], angle = \"{2} degree\", center = [0, {1}, 0] }} }}\n",
+        name, y, angle, y + 1);
+  std::ofstream(folder_.path / "turns.toml") << scene;
+  std::ofstream(folder_.path / "s.toml") << R"(base = "turns.toml"
+timed = false
+[[axes]]
+key = "constraints[1].move.rotate.angle"
+values = ["175 degree", "90 degree"]
+[[measures]]
+field = "rotation"
+reference = { set = { solver.threads = 1 } }
+)";
+  const ProgramResult run = study({"--json"});
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_NE(run.out.find("body \\\"q\\\" turns by more than 3 rad"), std::string::npos) << run.out;
+  for (const auto& of_run : json["runs"]) EXPECT_FALSE(of_run["measures"]["rotation"]["error"].is_number()) << of_run;
 }
 
 /// A bundle starts the program so: /proc/self/exe is then the loader, and runs of the study must be started by it too.

@@ -60,6 +60,30 @@ TEST(TorqueLoads, PushAndPullOnAnEdgeThatRunsAround) {
   }
 }
 
+/// A closed edge has a lever however flat it is: det I over (tr I)³ of this one is that of an arc of 120°.
+TEST(TorqueLoads, PushAndPullOnAFlatEdgeThatIsClosed) {
+  const auto stem = std::filesystem::temp_directory_path() / ("flat_tube_" + std::to_string(getpid()));
+  const std::filesystem::path mesh = stem.string() + ".obj", path = stem.string() + ".toml";
+  std::ofstream file(mesh);
+  for (const char* z : {"0", "0.5"})
+    for (const char* xy : {"-0.1 -0.02", "0.1 -0.02", "0.1 0.02", "-0.1 0.02"}) file << "v " << xy << " " << z << "\n";
+  for (int k = 1; k <= 4; ++k) {
+    const int next = k % 4 + 1;
+    file << "f " << k << " " << next << " " << next + 4 << "\nf " << k << " " << next + 4 << " " << k + 4 << "\n";
+  }
+  file.close();
+  std::ofstream(path) << "[bodies.tube]\nmodel = \"shell\"\ndomain = { file = \"" << mesh.filename().string()
+                      << "\" }\nthickness = 0.001\nmass = 1\nmaterial = { young = 1e6, poisson = 0.3 }\n"
+                      << "[[loads]]\nbody = \"tube\"\n"
+                      << "where = { box = { min = [-1, -1, -0.01], max = [1, 1, 0.01] } }\ntotal_torque = [0, 0, 3]\n"
+                      << "[solver]\nkind = \"implicit-euler\"\ntime_step = 0.01\nduration = 0.1\n";
+  const Acting a = acting(build_simulation(parse_scene_file(path, {})));
+  std::filesystem::remove(path);
+  std::filesystem::remove(mesh);
+  EXPECT_EQ(norm(a.torque), 0);
+  EXPECT_NEAR(norm(a.moment - Vec3d{{0, 0, 3}}), 0, 1e-12);
+}
+
 TEST(TorqueLoads, SayThatARigidBodyHasNoGroups) {
   try {
     tube("rigid", "", "{ group = \"from\" }", "total_force");

@@ -200,6 +200,9 @@ TEST(LinearModels, AreThoseOfTheLinearLawAlone) {
   Model with_frame = element_model(o).model;
   with_frame.frame_kind.back() = FrameKind::rigid;
   EXPECT_FALSE(with_frame.is_linear());
+  Model with_spring = element_model(o).model;
+  with_spring.points.springs.emplace_back();
+  EXPECT_FALSE(with_spring.is_linear());
   EXPECT_FALSE(block().model.is_linear()) << "a meshless body";
 }
 
