@@ -2,6 +2,7 @@
 #include "app/compare/command.hpp"
 #include "app/completion.hpp"
 #include "app/explain/explain.hpp"
+#include "app/extremes/extremes.hpp"
 #include "app/list.hpp"
 #include "app/messages.hpp"
 #include "app/need/tune.hpp"
@@ -88,8 +89,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   return bench;
 }
 
-constexpr std::array kCommands{"run",    "check", "rerun", "compare", "explain",   "study",
-                               "verify", "tune",  "bench", "list",    "completion"};
+constexpr std::array kCommands{"run",   "check",  "rerun", "compare", "explain", "extremes",
+                               "study", "verify", "tune",  "bench",   "list",    "completion"};
 
 CLI::App* add_rerun(CLI::App& app, RerunOptions& options) {
   CLI::App* rerun = app.add_subcommand("rerun", "repeat a run from what its result says, and compare the two");
@@ -179,6 +180,36 @@ CLI::App* add_explain(CLI::App& app, ExplainOptions& options) {
   return explain;
 }
 
+CLI::App* add_extremes(CLI::App& app, ExtremesOptions& options) {
+  CLI::App* extremes = app.add_subcommand(
+      "extremes", "map where runs are right, refused or stopped: materials, sizes, steps and loads over decades");
+  extremes->add_option("scene", options.scene, "scene whose numbers are swept; otherwise the program's own map");
+  extremes->add_option("--set", options.overrides, "set a key of the scene: --set key.path=value (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  extremes->add_option("--output", options.output, "directory of the map")->capture_default_str();
+  extremes->add_option("--compare", options.compare, "extremes.csv of an older map: exit 3 where a cell is worse");
+  extremes->add_option("--only", options.only, "cells whose names hold all these words: --only shell,static")
+      ->delimiter(',');
+  extremes->add_flag("--reduced", options.reduced, "the two ends of every axis alone, one kind of run each");
+  extremes->add_option("--pairs", options.pairs, "cells with two extreme numbers, drawn at random, always the same")
+      ->check(number_from(0, false, true))
+      ->capture_default_str();
+  extremes->add_flag("--list", options.list, "list the cells, and run nothing");
+  extremes->add_option("--jobs", options.jobs, "runs at once, each on one thread; otherwise as many as processors")
+      ->check(number_from(1, false, true));
+  extremes->add_option("--backend", options.backend, "cpu or cuda; the twins run on the processor")
+      ->check(CLI::IsMember({"cpu", "cuda"}));
+  extremes->add_option("--time-limit", options.time_limit, "of each run, in seconds; 0: none")
+      ->check(number_from(0, false, false))
+      ->capture_default_str();
+  extremes->add_option("--memory-limit", options.memory_limit, "of each run, in bytes; 0: none")
+      ->check(number_from(0, false, false))
+      ->capture_default_str();
+  extremes->add_flag("--quiet", options.quiet, "no progress");
+  return extremes;
+}
+
 CLI::App* add_tune(CLI::App& app, TuneOptions& options) {
   CLI::App* tune = app.add_subcommand("tune", "time small scenes on this machine, so that times can be foretold");
   tune->add_flag("--quick", options.quick, "only what is needed to fit anything");
@@ -234,6 +265,8 @@ int dispatch(int argc, char** argv) {
   const CLI::App* verify = add_verify(app, verify_options);
   ExplainOptions explain_options;
   const CLI::App* explain = add_explain(app, explain_options);
+  ExtremesOptions extremes_options;
+  const CLI::App* extremes = add_extremes(app, extremes_options);
   BenchOptions bench_options;
   const CLI::App* bench = add_bench(app, bench_options);
   CLI::App* list = app.add_subcommand("list", "list scenes that come with the program, quantities of probes, or units");
@@ -257,6 +290,7 @@ int dispatch(int argc, char** argv) {
   if (tune->parsed()) return tools().tune(tune_options);
   if (verify->parsed()) return tools().verify(verify_options);
   if (explain->parsed()) return tools().explain(explain_options);
+  if (extremes->parsed()) return tools().extremes(extremes_options);
   return run->parsed() ? run_scene(options) : check_scene(options);
 }
 

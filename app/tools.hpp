@@ -14,6 +14,7 @@ class ErrorEstimate;
 struct BenchOptions;
 struct CompareOptions;
 struct ExplainOptions;
+struct ExtremesOptions;
 struct RerunOptions;
 struct Scene;
 struct Simulation;
@@ -26,6 +27,7 @@ struct Tools {
   int (*bench)(const BenchOptions&);
   int (*compare)(const CompareOptions&);
   int (*explain)(const ExplainOptions&);
+  int (*extremes)(const ExtremesOptions&);
   int (*rerun)(const RerunOptions&);
   int (*study)(const StudyOptions&);
   int (*tune)(const TuneOptions&);

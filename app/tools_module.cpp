@@ -2,6 +2,7 @@
 #include "app/compare/command.hpp"
 #include "app/estimate/estimate.hpp"
 #include "app/explain/explain.hpp"
+#include "app/extremes/extremes.hpp"
 #include "app/need/need.hpp"
 #include "app/need/tune.hpp"
 #include "app/rerun.hpp"
@@ -19,8 +20,9 @@ std::unique_ptr<ErrorEstimate> make_estimate(const Simulation& simulation) {
 
 std::vector<std::string> estimate_plan(const Simulation& simulation) { return plan_lines(plan_estimate(simulation)); }
 
-constexpr Tools kTools{FASCIA_TOOLS_TAG, run_bench,      compare_command, explain_scene, rerun_result,  run_study,
-                       run_tune,         verify_command, run_need,        check_need,    make_estimate, estimate_plan};
+constexpr Tools kTools{FASCIA_TOOLS_TAG, run_bench,     compare_command, explain_scene,  run_extremes,
+                       rerun_result,     run_study,     run_tune,        verify_command, run_need,
+                       check_need,       make_estimate, estimate_plan};
 
 }  // namespace
 }  // namespace fascia::app

@@ -1,6 +1,7 @@
 #include "app/study/tables.hpp"
 
 #include "app/machine.hpp"
+#include "app/report/csv.hpp"
 #include "app/study/machine_load.hpp"
 
 #include <fmt/format.h>
@@ -11,14 +12,6 @@ namespace fascia::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A cell of a table: in quotes where it holds a comma, a quote or an end of line.
-std::string cell(std::string text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string value_text(const RunMeasure& measured) {
   if (measured.value.empty() || !measured.times.empty()) return "";
@@ -128,19 +121,19 @@ std::string front_text(const StudyResult& result, const Question& question) {
 
 std::string csv_of(const StudyResult& result) {
   std::string text;
-  for (const StudyAxis& axis : result.study.axes) text += cell(axis.name) + ",";
+  for (const StudyAxis& axis : result.study.axes) text += csv_cell(axis.name) + ",";
   text += "status";
   for (const StudyMeasure& m : result.study.measures)
-    text += "," + cell("error_" + m.name) + "," + cell("value_" + m.name);
+    text += "," + csv_cell("error_" + m.name) + "," + csv_cell("value_" + m.name);
   text +=
       ",step_median,step_max,setup,solve,memory,dofs,newton,linear,steps,threads,backend,repeats,solve_low,solve_high,"
       "busy,reason\n";
   for (const StudyRun& run : result.runs) {
     for (std::size_t a = 0; a < run.plan.at.size(); ++a)
-      text += cell(result.study.axes[a].values[run.plan.at[a]].label) + ",";
-    text += cell(status_of(run));
+      text += csv_cell(result.study.axes[a].values[run.plan.at[a]].label) + ",";
+    text += csv_cell(status_of(run));
     for (const RunMeasure& m : run.measured)
-      text += "," + (m.error ? fmt::format("{}", *m.error) : "") + "," + cell(value_text(m));
+      text += "," + (m.error ? fmt::format("{}", *m.error) : "") + "," + csv_cell(value_text(m));
     if (run.record) {
       const RunRecord& r = *run.record;
       text += fmt::format(",{},{},{},{},{:.0f},{},{},{},{},{},{},{},{},{},{},", r.step.median, r.step_max,
@@ -149,7 +142,7 @@ std::string csv_of(const StudyResult& result) {
     } else {
       text += std::string(16, ',');
     }
-    text += cell(reason_of(run)) + "\n";
+    text += csv_cell(reason_of(run)) + "\n";
   }
   return text;
 }

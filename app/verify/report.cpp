@@ -1,5 +1,7 @@
 #include "app/verify/report.hpp"
 
+#include "app/report/csv.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -46,14 +48,6 @@ Json json_of(const VerificationRun& run, const RunOutcome& outcome) {
   j["cases"] = Json::array();
   for (std::size_t c = 0; c < run.cases.size(); ++c) j["cases"].push_back(json_of(run.cases[c], outcome.cases[c]));
   return j;
-}
-
-/// As a field of a CSV file.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string line_of(const VerificationCase& c, const CaseOutcome& outcome) {
@@ -120,10 +114,10 @@ std::string csv_of(const Verification& v) {
       const VerificationCase& c = v.runs[r].cases[i];
       const CaseOutcome& outcome = v.outcomes[r].cases[i];
       text +=
-          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}\n", v.runs[r].name, c.name, field(c.title),
-                      field(c.unit), outcome.value ? fmt::format("{}", *outcome.value) : "", c.value, c.uncertainty,
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}\n", v.runs[r].name, c.name, csv_cell(c.title),
+                      csv_cell(c.unit), outcome.value ? fmt::format("{}", *outcome.value) : "", c.value, c.uncertainty,
                       outcome.value ? fmt::format("{:.6g}", outcome.error) : "", c.allowed.error, c.allowed.relative,
-                      name_of(outcome.verdict), field(outcome.reason), field(c.source), v.outcomes[r].seconds);
+                      name_of(outcome.verdict), csv_cell(outcome.reason), csv_cell(c.source), v.outcomes[r].seconds);
     }
   return text;
 }

@@ -1,4 +1,4 @@
-#include "app/verify/directory.hpp"
+#include "app/report/report_directory.hpp"
 
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
@@ -13,35 +13,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Empty, or filled by an older verification.
-bool is_free(const fs::path& path) {
+/// Empty, or filled by the same command.
+bool is_free(const fs::path& path, const std::string& proof) {
   std::error_code none;
   if (!fs::exists(path, none)) return true;
   if (!fs::is_directory(path, none)) return false;
-  std::ifstream file(path / "verify.json");
+  std::ifstream file(path / proof);
   if (!file) {
     for (const fs::directory_entry& entry : fs::directory_iterator(path, none))
       if (entry.path().filename() != io::DirectoryLock::kName) return false;
     return !none;
   }
   const auto older = nlohmann::json::parse(file, nullptr, false);
-  return older.is_object() && older.contains("fascia") && older.contains("certificate");
+  return older.is_object() && older.contains("fascia");
 }
 
 }  // namespace
 
-VerifyDirectory::VerifyDirectory(fs::path path) : path_(std::move(path)) {
-  if (!is_free(path_))
+ReportDirectory::ReportDirectory(fs::path path, const std::string& command, const std::vector<std::string>& parts)
+    : path_(std::move(path)) {
+  if (!is_free(path_, command + ".json"))
     throw FileError(
-        fmt::format("{}: exists and is no result of fascia verify (it has no verify.json of one); remove it "
+        fmt::format("{0}: exists and is no result of fascia {1} (it has no {1}.json of one); remove it "
                     "or choose another --output",
-                    path_.string()));
+                    path_.string(), command));
   io::make_directories(path_);
   lock_.emplace(path_);
-  for (const char* part : {"runs", "scenes", "verify.html", "verify.csv"}) fs::remove_all(path_ / part);
+  for (const std::string& part : parts) fs::remove_all(path_ / part);
 }
 
-void VerifyDirectory::write(const std::string& name, const std::string& text) const {
+void ReportDirectory::write(const std::string& name, const std::string& text) const {
   io::replace_file(path_ / name, text);
 }
 

@@ -1,0 +1,138 @@
+#include "app/extremes/judge.hpp"
+
+#include "app/extremes/twin.hpp"
+#include "app/run_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace fascia::app {
+namespace {
+
+constexpr std::array kVerdicts{"right", "sensitive", "refused", "stopped", "unconfirmed", "limit", "wrong", "crashed"};
+
+/// All numbers of a value, in their order; what is null is no number.
+void flatten(const nlohmann::ordered_json& value, std::vector<double>& numbers) {
+  if (value.is_array())
+    for (const auto& item : value) flatten(item, numbers);
+  else if (value.is_number())
+    numbers.push_back(value.get<double>());
+  else
+    numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+}
+
+struct ProbeNumbers {
+  std::string unit;
+  std::vector<double> values;
+};
+
+std::map<std::string, ProbeNumbers> probes_of(const nlohmann::ordered_json& summary) {
+  std::map<std::string, ProbeNumbers> probes;
+  if (!summary.is_object() || !summary.contains("probes")) return probes;
+  for (const auto& [name, probe] : summary["probes"].items()) {
+    ProbeNumbers& p = probes[name];
+    p.unit = probe.value("unit", "1");
+    flatten(probe.value("value", nlohmann::ordered_json(nullptr)), p.values);
+  }
+  return probes;
+}
+
+bool all_finite(const std::map<std::string, ProbeNumbers>& probes) {
+  return std::all_of(probes.begin(), probes.end(), [](const auto& p) {
+    return std::all_of(p.second.values.begin(), p.second.values.end(), [](double v) { return std::isfinite(v); });
+  });
+}
+
+struct Deviation {
+  double size = 0;
+  std::string probe;
+};
+
+/// The largest difference, each relative to the largest number of its unit.
+Deviation deviation(const std::map<std::string, ProbeNumbers>& run, const std::map<std::string, ProbeNumbers>& twin,
+                    const UnitFactors& units) {
+  std::map<std::string, double> scales;
+  for (const auto& [name, p] : run)
+    for (const double v : p.values) scales[p.unit] = std::max(scales[p.unit], std::abs(v));
+  Deviation largest;
+  for (const auto& [name, p] : run) {
+    const auto found = twin.find(name);
+    if (found == twin.end() || found->second.values.size() != p.values.size())
+      return {std::numeric_limits<double>::infinity(), name};
+    const double factor = units.of(p.unit), scale = scales[p.unit];
+    for (std::size_t i = 0; i < p.values.size(); ++i) {
+      const double apart = std::abs(p.values[i] - found->second.values[i] / factor);
+      const double relative = apart == 0 ? 0 : apart / scale;
+      if (!(relative <= largest.size)) largest = {relative, name};
+    }
+  }
+  return largest;
+}
+
+std::optional<double> theory_error(const ExtremeCell& cell, const std::map<std::string, ProbeNumbers>& probes) {
+  const auto tip = probes.find("tip");
+  if (!cell.theory || tip == probes.end()) return std::nullopt;
+  double squares = 0;
+  for (const double v : tip->second.values) squares += v * v;
+  return std::sqrt(squares) / *cell.theory - 1;
+}
+
+CellVerdict of_failure(const ChildResult& run) {
+  if (run.timed_out) return CellVerdict::limit;
+  if (run.message.find("out of memory") != std::string::npos) return CellVerdict::limit;
+  if (run.message.empty()) return CellVerdict::crashed;
+  if (run.exit_status == kWrongInput) return CellVerdict::refused;
+  return run.exit_status == kNotConverged ? CellVerdict::stopped : CellVerdict::crashed;
+}
+
+}  // namespace
+
+std::string name_of(CellVerdict verdict) { return kVerdicts[static_cast<std::size_t>(verdict)]; }
+
+std::optional<CellVerdict> verdict_of(std::string_view name) {
+  const auto* found = std::find(kVerdicts.begin(), kVerdicts.end(), name);
+  if (found == kVerdicts.end()) return std::nullopt;
+  return static_cast<CellVerdict>(found - kVerdicts.begin());
+}
+
+CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
+  const ChildResult &run = *runs.run, &twin = *runs.twin, &disturbed = *runs.disturbed;
+  CellOutcome outcome;
+  outcome.status = run.status();
+  outcome.reason = run.message;
+  outcome.seconds = run.seconds;
+  if (run.exit_status != kDone) {
+    outcome.verdict = of_failure(run);
+    return outcome;
+  }
+  const auto numbers = probes_of(run.summary);
+  if (numbers.empty() || !all_finite(numbers)) {
+    outcome.reason = "a probe is no number";
+    return outcome;
+  }
+  outcome.theory_error = theory_error(cell, numbers);
+  if (twin.exit_status != kDone) {
+    outcome.verdict = CellVerdict::unconfirmed;
+    outcome.reason = "the twin ended so: " + twin.message;
+    return outcome;
+  }
+  const auto twins = probes_of(twin.summary);
+  const Deviation found = deviation(numbers, twins, runs.units);
+  outcome.difference = found.size;
+  outcome.verdict = found.size <= kAllowedDifference ? CellVerdict::right : CellVerdict::wrong;
+  if (outcome.verdict == CellVerdict::right) return outcome;
+  outcome.reason = fmt::format("probe {} differs from that of the twin by {:.1e}", found.probe, found.size);
+  if (disturbed.exit_status != kDone) return outcome;
+  const double answer = deviation(twins, probes_of(disturbed.summary), {}).size;
+  // In another direction the residual may weigh a few times as much.
+  if (answer >= 0.1 * found.size) outcome.verdict = CellVerdict::sensitive;
+  outcome.reason += fmt::format("; forces of {:.0e} of the largest change the twin by {:.1e}", kDisturbance, answer);
+  return outcome;
+}
+
+}  // namespace fascia::app

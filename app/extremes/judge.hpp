@@ -1,0 +1,51 @@
+#pragma once
+
+#include "app/extremes/cells.hpp"
+#include "app/extremes/other_units.hpp"
+#include "app/study/child_run.hpp"
+
+#include <optional>
+#include <string>
+
+namespace fascia::app {
+
+/// How a cell ended, from the best to the worst. Up to `stopped` nobody is led astray.
+enum class CellVerdict {
+  right,        ///< converged, and the twin agrees
+  sensitive,    ///< converged and differs from the twin, as it does when forces change by the residual allowed
+  refused,      ///< exit 2, before anything was computed, with a reason
+  stopped,      ///< exit 3, with a reason
+  unconfirmed,  ///< converged, but the twin did not
+  limit,        ///< took longer or more memory than a cell may
+  wrong,        ///< converged, and the twin differs
+  crashed       ///< any other end, no reason, or a number that is none
+};
+std::string name_of(CellVerdict verdict);
+/// @return none  no such name
+std::optional<CellVerdict> verdict_of(std::string_view name);
+
+/// Whether a map with such a cell is sound.
+inline bool leads_astray(CellVerdict v) { return v > CellVerdict::stopped; }
+
+struct CellOutcome {
+  CellVerdict verdict = CellVerdict::crashed;
+  std::string status;                  ///< of the run: "converged", "unstable", "refused"
+  std::string reason;                  ///< its message, or what is wrong
+  std::optional<double> difference;    ///< largest of the probes, relative, to the twin
+  std::optional<double> theory_error;  ///< relative, of the tip, to the theory of beams
+  double seconds = 0;                  ///< that the run took
+};
+
+/// Two converged runs must not differ by more.
+inline constexpr double kAllowedDifference = 1e-6;
+
+/// A cell's run and those that it is judged by; the twin is the same scene in other units, see twin.hpp.
+struct CellRuns {
+  const ChildResult* run;
+  const ChildResult* twin;       ///< exit status -1: not run
+  const ChildResult* disturbed;  ///< likewise
+  UnitFactors units;             ///< of the twins
+};
+CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs);
+
+}  // namespace fascia::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "app/extremes/judge.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fascia::app {
+
+struct MapSettings {
+  int jobs = 1;                        ///< runs at once, each on one thread
+  double time_limit = 60;              ///< of each run [s]
+  double memory_limit = 4e9;           ///< of its address space [bytes]
+  std::optional<std::string> backend;  ///< of the runs; the twins are the processor's
+};
+
+/// Cells and what came of them, in the same order.
+struct ExtremesMap {
+  std::string title;  ///< of what: "the map of extremes", "scenes/liver.toml"
+  MapSettings settings;
+  std::vector<ExtremeCell> cells;
+  std::vector<CellOutcome> outcomes;
+  std::vector<std::string> files;        ///< of their scenes, "cells/…toml"
+  std::vector<std::string> regressions;  ///< sentences: cells that are worse than in a stored map
+  std::vector<std::string> gains;        ///< sentences: cells that are better
+  double seconds = 0;
+};
+
+/// Cells of each verdict.
+std::vector<std::size_t> count(const ExtremesMap& map);
+
+/// Runs every cell, and a twin of each one that converges, in processes of their own.
+/// @param directory  their scenes are written to cells/ of it
+/// @param tell  is told of each run that ended: how many of how many
+void run_map(ExtremesMap& map, const std::filesystem::path& directory,
+             const std::function<void(std::size_t, std::size_t)>& tell, const std::function<bool()>& stop);
+
+/// extremes.csv: a row for each cell.
+std::string csv_of(const ExtremesMap& map);
+
+/// Compares with a stored extremes.csv: a cell that got worse is a regression.
+/// @throws InputError  no such table, or one that is not as a map is written: its line, and what is wrong
+void compare_with_stored(ExtremesMap& map, const std::filesystem::path& stored);
+
+/// extremes.html @param scenes  the folder that holds cells/, as one names it in a shell
+std::string html_of(const ExtremesMap& map, const std::filesystem::path& scenes);
+
+/// Cells of each verdict, those that lead astray, and what changed, for a terminal.
+std::string text_of(const ExtremesMap& map);
+
+}  // namespace fascia::app

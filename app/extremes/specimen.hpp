@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+/// The scenes of the map of extremes: one beam in every model, whose numbers the map changes.
+namespace fascia::app {
+
+enum class Model {
+  grid,
+  scattered,
+  affine,
+  sheet,
+  line,
+  linear_tetrahedra,
+  corotational_tetrahedra,
+  tetrahedra,
+  quadratic_tetrahedra,
+  hexahedra,
+  shell,
+  coupled
+};
+inline constexpr std::array kModelNames{"grid",
+                                        "scattered",
+                                        "affine",
+                                        "sheet",
+                                        "line",
+                                        "linear tetrahedra",
+                                        "corotational tetrahedra",
+                                        "tetrahedra",
+                                        "quadratic tetrahedra",
+                                        "hexahedra",
+                                        "shell",
+                                        "coupled"};
+std::string name_of(Model model);
+bool is_element(Model model);  ///< of tetrahedra or hexahedra alone
+bool is_thin(Model model);     ///< of a surface or a line
+
+/// What acts on the beam, which is held at x = 0.
+enum class Action {
+  bend,      ///< force F = amount 3 E I / L^2 at the far end: moves it by amount L in linear theory
+  weight,    ///< gravity across, such that it moves by about amount L
+  pull,      ///< force F = amount E A along the beam
+  stretch,   ///< the far end is moved to amount times the length
+  twist,     ///< the far end is turned about the beam by amount [rad]
+  compress,  ///< dead force of amount Euler loads along the beam, and a thousandth of it across
+  push       ///< pressure of amount Euler loads on the far end, which turns with it, and the same across
+};
+
+/// A beam along x of rectangular section, bent about y. The base cell is what stands here.
+struct Specimen {
+  Model model = Model::grid;
+  bool dynamic = false;  ///< ten steps of implicit Euler from rest; else statics
+  bool cg = false;       ///< conjugate gradients; else Cholesky
+  double young = 1e4;    ///< [Pa]
+  double poisson = 0.3;
+  double density = 1000;          ///< [kg/m3]
+  double length = 0.1;            ///< [m]
+  double slenderness = 0;         ///< length / thickness; 0: 4 of solids and lines, 40 of surfaces
+  double time_step = 0.01;        ///< [s]
+  double stiffness_contrast = 1;  ///< Young's modulus of the far half / of the near one
+  double density_contrast = 1;    ///< likewise; of the coupled model
+  double taper = 1;               ///< thickness at the near end / at the far one, of elements; of surfaces what the
+                                  ///< width is divided by: cells become slivers
+  Action action = Action::bend;
+  double amount = 0.01;
+  bool held = true;
+
+  double thickness() const;
+  double width() const;
+  double section() const;        ///< A [m2]
+  double second_moment() const;  ///< I [m4]
+
+  /// The scene, a TOML text in SI.
+  std::string text() const;
+
+  /// Size of the far end's displacement in the theory of slender beams [m], where it holds: small strain, one material.
+  std::optional<double> theory() const;
+};
+
+}  // namespace fascia::app
