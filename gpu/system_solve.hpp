@@ -244,6 +244,7 @@ DirectionReport System<Space>::direction() {
   report.cg_seconds = seconds_since(start);
   report.linear_residual = cg.relative_norm;
   report.linear_iterations = cg.iterations;
+  report.unsolved = cg.status == CgStatus::limit;
   if (cg.status == CgStatus::negative_curvature) report.trouble = "CG met negative curvature";
   if (cg.status == CgStatus::not_finite) {
     report.usable = false;

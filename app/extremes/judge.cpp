@@ -14,7 +14,7 @@
 namespace fascia::app {
 namespace {
 
-constexpr std::array kVerdicts{"right", "sensitive", "refused", "stopped", "unconfirmed", "limit", "wrong", "crashed"};
+constexpr std::array kVerdicts{"right", "sensitive", "branch", "refused", "stopped", "unconfirmed", "limit", "wrong", "crashed"};
 
 /// All numbers of a value, in their order; what is null is no number.
 void flatten(const nlohmann::ordered_json& value, std::vector<double>& numbers) {
@@ -127,11 +127,17 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
   outcome.verdict = found.size <= kAllowedDifference ? CellVerdict::right : CellVerdict::wrong;
   if (outcome.verdict == CellVerdict::right) return outcome;
   outcome.reason = fmt::format("probe {} differs from that of the twin by {:.1e}", found.probe, found.size);
-  if (disturbed.exit_status != kDone) return outcome;
-  const double answer = deviation(twins, probes_of(disturbed.summary), {}).size;
-  // In another direction the residual may weigh a few times as much.
-  if (answer >= 0.1 * found.size) outcome.verdict = CellVerdict::sensitive;
-  outcome.reason += fmt::format("; forces of {:.0e} of the largest change the twin by {:.1e}", kDisturbance, answer);
+  if (disturbed.exit_status == kDone) {
+    const double answer = deviation(twins, probes_of(disturbed.summary), {}).size;
+    // In another direction the residual may weigh a few times as much.
+    if (answer >= 0.1 * found.size) outcome.verdict = CellVerdict::sensitive;
+    outcome.reason += fmt::format("; forces of {:.0e} of the largest change the twin by {:.1e}", kDisturbance, answer);
+  }
+  if (outcome.verdict == CellVerdict::wrong && runs.sharper->exit_status == kDone) {
+    const double change = deviation(numbers, probes_of(runs.sharper->summary), {}).size;
+    if (change <= kAllowedDifference) outcome.verdict = CellVerdict::branch;
+    outcome.reason += fmt::format("; a hundredth of the tolerance changes it by {:.1e}", change);
+  }
   return outcome;
 }
 

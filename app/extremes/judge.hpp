@@ -13,6 +13,7 @@ namespace fascia::app {
 enum class CellVerdict {
   right,        ///< converged, and the twin agrees
   sensitive,    ///< converged and differs from the twin, as it does when forces change by the residual allowed
+  branch,       ///< converged to another solution than the twin: it stays where it is when the tolerance is smaller
   refused,      ///< exit 2, before anything was computed, with a reason
   stopped,      ///< exit 3, with a reason
   unconfirmed,  ///< converged, but the twin did not
@@ -44,6 +45,7 @@ struct CellRuns {
   const ChildResult* run;
   const ChildResult* twin;       ///< exit status -1: not run
   const ChildResult* disturbed;  ///< likewise
+  const ChildResult* sharper;    ///< likewise: the cell's own scene to a hundredth of the tolerance
   UnitFactors units;             ///< of the twins
 };
 CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs);

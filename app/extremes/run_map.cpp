@@ -51,7 +51,7 @@ void run_map(ExtremesMap& map, const fs::path& directory, const std::function<vo
   const TemporaryFolder results("fascia-extremes");
   const std::size_t n = map.cells.size();
   std::size_t ended = 0;
-  std::vector<ChildResult> runs(n), twins(n), disturbed(n);
+  std::vector<ChildResult> runs(n), twins(n), disturbed(n), sharper(n);
   std::vector<UnitFactors> units(n);
   std::vector<ChildRun> children;
   std::vector<std::size_t> cells;  // of the children
@@ -106,16 +106,23 @@ void run_map(ExtremesMap& map, const fs::path& directory, const std::function<vo
   run_all(twins);
 
   const auto verdict = [&](std::size_t i) {
-    return judge(map.cells[i], {&runs[i], &twins[i], &disturbed[i], units[i]});
+    return judge(map.cells[i], {&runs[i], &twins[i], &disturbed[i], &sharper[i], units[i]});
   };
   map.outcomes.resize(n);
+  std::vector<std::size_t> doubted;
   for (std::size_t i = 0; i < n; ++i) {
     map.outcomes[i] = verdict(i);
-    if (map.outcomes[i].verdict != CellVerdict::wrong) continue;
-    if (const std::optional<Twin> twin = disturbed_twin(map.cells[i], runs[i].summary)) add_twin(i, *twin);
+    if (map.outcomes[i].verdict == CellVerdict::wrong) doubted.push_back(i);
   }
-  const std::vector<std::size_t> doubted = cells;
+  for (const std::size_t i : doubted)
+    if (const std::optional<Twin> twin = disturbed_twin(map.cells[i], runs[i].summary)) add_twin(i, *twin);
   run_all(disturbed);
+  for (const std::size_t i : doubted) {
+    add(i, directory / map.files[i]);
+    children.back().backend = map.settings.backend;
+    children.back().overrides = sharper_solver();
+  }
+  run_all(sharper);
   for (const std::size_t i : doubted) map.outcomes[i] = verdict(i);
 }
 

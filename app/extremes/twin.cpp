@@ -82,4 +82,9 @@ const std::vector<std::string>& twin_solver() {
   return overrides;
 }
 
+const std::vector<std::string>& sharper_solver() {
+  static const std::vector<std::string> overrides{"solver.newton.tolerance=1e-10", "solver.linear.tolerance=1e-8"};
+  return overrides;
+}
+
 }  // namespace fascia::app

@@ -22,6 +22,9 @@ Twin twin_of(const ExtremeCell& cell);
 /// Overrides by which a twin is solved: by a factorisation on the processor, to a hundredth of the usual tolerance.
 const std::vector<std::string>& twin_solver();
 
+/// Overrides by which a cell itself is solved again.
+const std::vector<std::string>& sharper_solver();
+
 /// The twin under gravity across all axes that pulls with `kDisturbance` of the largest force of the run. A scene that
 /// answers it as much as two runs differ does not determine its answer further than residuals are told.
 /// @param summary  of the cell's run, whose probes tell forces

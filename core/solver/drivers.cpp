@@ -65,6 +65,12 @@ std::string failure_sentence(const NewtonReport& r, const SolverSettings& settin
         out << "the prescribed motion could not be carried out: elements or points would turn inside out";
       }
       break;
+    case NewtonStatus::unsolved:
+      out << "conjugate gradients end at their " << settings.cg.max_iterations
+          << " iterations, and Newton's method gets no further with what they give";
+      describe_residual(r.last, settings, out);
+      out << "; use linear = { kind = \"cholesky\" }, or more linear.max_iterations";
+      break;
     case NewtonStatus::not_finite:
       out << "the forces are not finite";
       break;

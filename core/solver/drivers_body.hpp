@@ -32,7 +32,8 @@ inline void note_indefinite(RunReport& run, int solves_before, double end) {
 
 inline bool acceptable(const NewtonReport& newton, const SolverSettings& settings) {
   if (newton.status == NewtonStatus::converged) return true;
-  const bool usable = newton.status == NewtonStatus::limit || newton.status == NewtonStatus::stalled;
+  const bool usable = newton.status == NewtonStatus::limit || newton.status == NewtonStatus::stalled ||
+                      newton.status == NewtonStatus::unsolved;
   return settings.proceed_on_limit && usable && newton.last.finite();
 }
 

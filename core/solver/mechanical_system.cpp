@@ -271,6 +271,7 @@ DirectionReport MechanicalSystem::direction() {
   report.usable = solved.usable;
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
+  report.unsolved = solved.unsolved;
   report.linear_residual = solved.residual;
   report.cg_seconds = solved.cg_seconds;
   filter_.to_global(direction_);

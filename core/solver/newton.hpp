@@ -17,14 +17,16 @@ struct DirectionReport {
   double largest_rotation = 0;  ///< [rad]
   int linear_iterations = 0;
   std::string trouble;         ///< a sentence, where there was any
+  bool unsolved = false;       ///< conjugate gradients ended at their limit of iterations
   double linear_residual = 0;  ///< |r| / |b| that conjugate gradients left; 0 of a direct solve
   double cg_seconds = 0;       ///< in conjugate gradients
 };
 
-enum class NewtonStatus { converged, limit, stalled, not_finite, linear_failure };
+enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linear_failure };
 
 /// Why a solve counts as converged: its residual is below the tolerance; or it is what rounding leaves; or it is a
-/// small share of the loads and falls no further, and the last correction was small.
+/// small share of the loads and falls no further, and the last correction was small. The correction of a system that
+/// conjugate gradients did not solve says nothing: soft directions are found last, and leave next to no residual.
 enum class Convergence { none, tolerance, rounding, stagnation };
 
 struct NewtonReport {
@@ -74,6 +76,7 @@ class Newton {
       if (moving) first_residual_ = std::max(first_residual_, current_.residual);
       if (!moving) count_standing(before);
       if (!moving && !current_.converged() && stagnates(d)) return finish_at_best(Convergence::stagnation);
+      if (!moving && d.unsolved && !settled() && standing_ >= kUnsolvedStands) return give_up(NewtonStatus::unsolved);
       if (current_.finite() && (moving || better_than_mark())) {
         mark();
       } else if (!current_.finite() || (++detour_ > kDetour && current_.residual > kFalls * before)) {
@@ -92,6 +95,7 @@ class Newton {
   static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
+  static constexpr int kUnsolvedStands = 5;        ///< the same, where conjugate gradients do not get to their end
   static constexpr double kReduced = kLargestShare;
 
   double capped(const DirectionReport& d) {
@@ -102,10 +106,12 @@ class Newton {
     return step;
   }
 
-  /// Rounding excuses a residual only where Newton's method has reduced it, or has tried to and cannot.
+  /// Rounding excuses a residual only where Newton's method has reduced it, or has tried to and cannot; and only with
+  /// directions that were solved for.
   bool settled() const {
     if (!current_.converged()) return false;
-    return !current_.by_rounding || current_.residual <= kReduced * first_residual_ || standing_ >= kStands;
+    if (!current_.by_rounding) return true;
+    return !unsolved_ && (current_.residual <= kReduced * first_residual_ || standing_ >= kStands);
   }
 
   /// Counts full steps in a row that did not reduce the residual.
@@ -115,7 +121,7 @@ class Newton {
 
   /// What is left is a small share of the loads, the last corrections were small, and it falls no further.
   bool stagnates(const DirectionReport& d) const {
-    return standing_ >= kStands && std::abs(d.slope) <= kSmallDecrement * current_.energy_scale &&
+    return !d.unsolved && standing_ >= kStands && std::abs(d.slope) <= kSmallDecrement * current_.energy_scale &&
            marked_.left_of_load <= kLargestShare;
   }
 
@@ -128,6 +134,7 @@ class Newton {
     ++report_.iterations;
     report_.linear_iterations += d.linear_iterations;
     report_.trouble = d.trouble;
+    unsolved_ = d.unsolved;
     report_.indefinite = report_.indefinite || !d.trouble.empty();
     report_.linear_residual = d.linear_residual;
     report_.cg_seconds += d.cg_seconds;
@@ -192,6 +199,7 @@ class Newton {
   /// an equilibrium, however well its forces balance.
   NewtonReport give_up(NewtonStatus status) {
     if (system_.has_prescribed_increment()) return finish(status);
+    if (status == NewtonStatus::stalled && unsolved_) status = NewtonStatus::unsolved;
     if (status == NewtonStatus::stalled && marked_.converged()) return finish_at_best(Convergence::rounding);
     const bool small = last_decrement_ <= kSmallDecrement * marked_.energy_scale;
     if (status == NewtonStatus::stalled && small && marked_.left_of_load <= kLargestShare)
@@ -212,6 +220,7 @@ class Newton {
   NewtonReport report_;
   Evaluation current_, marked_;
   int detour_ = 0, standing_ = 0;
+  bool unsolved_ = false;             ///< the last direction is what conjugate gradients had at their limit
   double leap_ = 0;                   ///< rotation of the indefinite step that left the mark; 0 of a definite one
   double leap_cap_ = kIndefiniteCap;  ///< what such a step may be now
   double first_residual_ = 0;

@@ -307,6 +307,7 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
   if (cg.status == CgStatus::negative_curvature) report.trouble = "CG met negative curvature";
   if (cg.status == CgStatus::not_finite) report.trouble = "CG met a number that is not finite";
   report.usable = cg.status != CgStatus::not_finite;
+  report.unsolved = cg.status == CgStatus::limit;
   report.residual = cg.relative_norm;
   report.cg_seconds = seconds_since(start);
   return report;

@@ -19,6 +19,7 @@ struct TangentReport {
   bool usable = true;
   int iterations = 0;
   std::string trouble;
+  bool unsolved = false;  ///< CG ended at its limit of iterations
   double residual = 0;    ///< |r| / |b| that CG left; 0 of a direct solve
   double cg_seconds = 0;  ///< in conjugate gradients
 };
