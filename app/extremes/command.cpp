@@ -95,6 +95,11 @@ int run_extremes(const ExtremesOptions& options) {
   ExtremesMap map;
   map.title = options.scene ? "extremes of " + options.scene->filename().string() : "stability at the extremes";
   map.cells = chosen(cells_of(options), options.only);
+  if (options.quicker_than > 0) {
+    if (!options.compare) throw InputError("extremes: --quicker-than needs the times of an older map; add --compare");
+    keep_quick(map.cells, *options.compare, options.quicker_than);
+    if (map.cells.empty()) throw InputError("extremes: no cell is as quick as --quicker-than says");
+  }
   map.settings = {options.jobs > 0 ? options.jobs : available_processors(), options.time_limit, options.memory_limit,
                   options.backend};
   if (options.list) {

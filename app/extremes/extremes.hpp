@@ -18,6 +18,7 @@ struct ExtremesOptions {
   double time_limit = 60;     ///< of each run [s]
   double memory_limit = 4e9;  ///< of each run [bytes]
   int pairs = 300;            ///< cells in which two numbers are extreme
+  double quicker_than = 0;    ///< leaves out cells that took longer in `compare` [s]; 0: none
   bool reduced = false, list = false, quiet = false;
 };
 

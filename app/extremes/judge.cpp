@@ -14,7 +14,8 @@
 namespace fascia::app {
 namespace {
 
-constexpr std::array kVerdicts{"right", "sensitive", "branch", "refused", "stopped", "unconfirmed", "limit", "wrong", "crashed"};
+constexpr std::array kVerdicts{"right",       "sensitive", "branch", "refused", "stopped",
+                               "unconfirmed", "limit",     "wrong",  "crashed"};
 
 /// All numbers of a value, in their order; what is null is no number.
 void flatten(const nlohmann::ordered_json& value, std::vector<double>& numbers) {

@@ -40,6 +40,10 @@ void run_map(ExtremesMap& map, const std::filesystem::path& directory,
 /// extremes.csv: a row for each cell.
 std::string csv_of(const ExtremesMap& map);
 
+/// Leaves out cells that took longer in a stored map, and those that it has not.
+/// @throws InputError  as compare_with_stored()
+void keep_quick(std::vector<ExtremeCell>& cells, const std::filesystem::path& stored, double seconds);
+
 /// Compares with a stored extremes.csv: a cell that got worse is a regression.
 /// @throws InputError  no such table, or one that is not as a map is written: its line, and what is wrong
 void compare_with_stored(ExtremesMap& map, const std::filesystem::path& stored);

@@ -145,7 +145,8 @@ std::string html_of(const ExtremesMap& map, const std::filesystem::path& scenes)
       "mass, length and time, by Cholesky, to a hundredth of the tolerance. ✓ right, ✓* right but more than 10 % from "
       "the "
       "theory of slender beams (coarse or locking), ✓~ differs from the twin no more than the scene answers a "
-      "disturbance of 1e-8 of its forces, ✓2 another solution of the same equations than that of the twin, R refused before the run with a reason, S stopped by the program "
+      "disturbance of 1e-8 of its forces, ✓2 another solution of the same equations than that of the twin, R refused "
+      "before the run with a reason, S stopped by the program "
       "with a reason, ? converged but the twin did not, T took too long or too much memory, ✗ differs from the twin, "
       "! crashed. Click a cell for its numbers, its reason and the command that repeats it.");
   page.table(row_table(map));

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 namespace fascia::app {
@@ -25,7 +26,12 @@ std::string rounded(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.1e}", *value) : "";
 }
 
-std::map<std::string, CellVerdict> read_stored(const std::filesystem::path& path) {
+struct StoredCell {
+  CellVerdict verdict;
+  double seconds;
+};
+
+std::map<std::string, StoredCell> read_stored(const std::filesystem::path& path) {
   const auto fail = [&](std::size_t line, const std::string& what) {
     throw InputError(
         fmt::format("{}:{}: {}; must be an extremes.csv as fascia extremes writes it: make the map again "
@@ -40,14 +46,15 @@ std::map<std::string, CellVerdict> read_stored(const std::filesystem::path& path
   }
   if (rows.empty() || rows.front() != kColumns)
     fail(1, fmt::format("the columns are not {}", fmt::join(kColumns, ",")));
-  std::map<std::string, CellVerdict> stored;
+  std::map<std::string, StoredCell> stored;
   for (std::size_t r = 1; r < rows.size(); ++r) {
     const std::vector<std::string>& row = rows[r];
     if (row.size() != kColumns.size())
       fail(r + 1, fmt::format("{} cells in the place of {}", row.size(), kColumns.size()));
     const std::optional<CellVerdict> verdict = verdict_of(row[3]);
     if (!verdict) fail(r + 1, fmt::format("\"{}\" is no verdict", row[3]));
-    if (!stored.emplace(key_of(row[0], row[1], row[2]), *verdict).second)
+    const double seconds = std::strtod(row[7].c_str(), nullptr);
+    if (!stored.emplace(key_of(row[0], row[1], row[2]), StoredCell{*verdict, seconds}).second)
       fail(r + 1, fmt::format("\"{}\" stands there twice", key_of(row[0], row[1], row[2])));
   }
   return stored;
@@ -71,8 +78,16 @@ std::string csv_of(const ExtremesMap& map) {
   return text;
 }
 
+void keep_quick(std::vector<ExtremeCell>& cells, const std::filesystem::path& path, double seconds) {
+  const std::map<std::string, StoredCell> stored = read_stored(path);
+  std::erase_if(cells, [&](const ExtremeCell& c) {
+    const auto found = stored.find(key_of(c.row, c.axis, c.value));
+    return found == stored.end() || found->second.seconds > seconds;
+  });
+}
+
 void compare_with_stored(ExtremesMap& map, const std::filesystem::path& path) {
-  const std::map<std::string, CellVerdict> stored = read_stored(path);
+  const std::map<std::string, StoredCell> stored = read_stored(path);
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
     const ExtremeCell& c = map.cells[i];
@@ -82,10 +97,11 @@ void compare_with_stored(ExtremesMap& map, const std::filesystem::path& path) {
       continue;
     }
     const CellOutcome& now = map.outcomes[i];
-    if (rank(now.verdict) == rank(found->second)) continue;
-    const bool worse = rank(now.verdict) > rank(found->second);
+    const CellVerdict before = found->second.verdict;
+    if (rank(now.verdict) == rank(before)) continue;
+    const bool worse = rank(now.verdict) > rank(before);
     (worse ? map.regressions : map.gains)
-        .push_back(fmt::format("{}: was {}, is {}{}{}", c.name(), name_of(found->second), name_of(now.verdict),
+        .push_back(fmt::format("{}: was {}, is {}{}{}", c.name(), name_of(before), name_of(now.verdict),
                                now.reason.empty() ? "" : ": ", now.reason));
   }
   if (unknown == map.cells.size())

@@ -1,4 +1,5 @@
 #include "tests/robustness/scene_runs.hpp"
+#include "tests/support/cases.hpp"
 
 #include <fmt/format.h>
 

@@ -116,8 +116,10 @@ struct OneSpring {
     d = -force(x) / tangent(x);
     DirectionReport report;
     report.slope = force(x) * d;
+    report.unsolved = unsolved;
     return report;
   }
+  bool unsolved = false;  ///< conjugate gradients end at their limit
   void apply(double step) { x += step * d; }
   void save() { saved = x; }
   void restore() { x = saved; }
@@ -191,6 +193,21 @@ TEST(NewtonVerdict, RoundingExcusesOnlyWhatNewtonTriedToReduce) {
   EXPECT_EQ(r.status, NewtonStatus::converged);
   EXPECT_GE(r.iterations, 1);
   EXPECT_NEAR(system.x, 1e-5, 1e-18);
+}
+
+/// A small correction, or a residual within the rounding floor, says nothing where the linear system was not solved.
+TEST(NewtonVerdict, DirectionsThatWereNotSolvedForExcuseNothing) {
+  OneSpring standing{[](double x) { return std::abs(x - 1) < 1e-3 ? 1e-6 : x - 1; }, [](double) { return 1.0; }};
+  standing.unsolved = true;
+  const NewtonReport r = solve(standing, 50);
+  EXPECT_EQ(r.status, NewtonStatus::unsolved);
+  EXPECT_LT(r.iterations, 12);
+  OneSpring rounded{[](double) { return 1e-5; }, [](double) { return 1.0; }, 1e-4};
+  rounded.unsolved = true;
+  EXPECT_EQ(solve(rounded, 50).status, NewtonStatus::unsolved);
+  OneSpring exact{[](double x) { return x - 1; }, [](double) { return 1.0; }};
+  exact.unsolved = true;
+  EXPECT_EQ(solve(exact, 50).status, NewtonStatus::converged);  // its residual says so itself
 }
 
 }  // namespace

@@ -1,0 +1,87 @@
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace fascia::extremes_program_test {
+namespace {
+
+using namespace fascia::test;
+
+class ExtremesProgram : public testing::Test {
+ protected:
+  ProgramResult extremes(std::vector<std::string> words) const {
+    words.insert(words.begin(), {program(), "extremes", "--quiet", "--output", "out"});
+    ProgramOptions options;
+    options.directory = folder_.path;
+    return run_program(words, options);
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_.path / name) << text; }
+  std::string file(const std::string& name) const {
+    std::ifstream in(folder_.path / "out" / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  TemporaryFolder folder_;
+};
+
+/// What was right stays right, and what was refused or stopped is not called converged: the quick cells of the stored
+/// map at the ends of its axes.
+TEST_F(ExtremesProgram, TheReducedMapIsNoWorseThanTheStoredOne) {
+  const ProgramResult r =
+      extremes({"--reduced", "--compare", (source_dir() / "docs/extremes.csv").string(), "--quicker-than", "0.12"});
+  EXPECT_EQ(r.status, 0) << r.out << r.err;
+  EXPECT_EQ(r.out.find("worse: "), std::string::npos) << r.out;
+}
+
+TEST_F(ExtremesProgram, WritesATableAndAPageThatSayHowToRepeatACell) {
+  const ProgramResult r = extremes({"--only", "line, static,pull"});
+  ASSERT_EQ(r.status, 0) << r.out << r.err;
+  EXPECT_NE(file("extremes.csv").find("\"line, static, cg\",pull,1e-09 E A,right,converged"), std::string::npos)
+      << file("extremes.csv");
+  const std::string page = file("extremes.html");
+  EXPECT_NE(page.find("fascia run out/cells/line-static-cg-pull-1e-09-e-a.toml"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path / "out/cells/line-static-cg-pull-1e-09-e-a.toml"));
+}
+
+TEST_F(ExtremesProgram, SweepsAScene) {
+  write("s.toml",
+        "materials.m = { young = \"10 kPa\", poisson = 0.3 }\n"
+        "bodies.b = { model = \"hexahedra\", density = 1000, material = \"m\", domain = { box = { min = [0, 0, "
+        "0], max = [\"10 cm\", 0.02, 0.02], cells = [3, 1, 1] } } }\n"
+        "constraints = [{ body = \"b\", where = { box = { min = [-1, -1, -1], max = [0.001, 1, 1] } }, fix = "
+        "\"all\" }]\n"
+        "loads = [{ body = \"b\", where = { box = { min = [0.099, -1, -1], max = [1, 1, 1] } }, total_force = "
+        "[0, 0, \"-1 mN\"] }]\n"
+        "probes.tip = { body = \"b\", at = [0.1, 0.01, 0.01], quantity = \"displacement\" }\n");
+  const ProgramResult r = extremes({"s.toml", "--set", "bodies.b.density=900"});
+  EXPECT_EQ(r.status, 0) << r.out << r.err;
+  for (const char* cell : {"s,base,1,right", "s,stiffness,x 1e-06,", "s,Poisson's ratio,0.4999,",
+                           "s,size,x 10000,right", "s,loads,x 1e-09,right"})
+    EXPECT_NE(file("extremes.csv").find(cell), std::string::npos) << cell << "\n" << file("extremes.csv");
+}
+
+TEST_F(ExtremesProgram, RefusesWhatItCannotDo) {
+  const auto refusal = [&](const std::vector<std::string>& words, const std::string& why) {
+    const ProgramResult r = extremes(words);
+    EXPECT_EQ(r.status, 2) << why;
+    EXPECT_NE(r.err.find(why), std::string::npos) << r.err;
+  };
+  refusal({"--only", "nonsense"}, "no cell's name holds all words");
+  refusal({"--set", "a=1"}, "--set changes a scene");
+  refusal({"--quicker-than", "1"}, "add --compare");
+  write("none.toml", "bodies.b = { model = \"line\" }\n");
+  refusal({"none.toml"}, "none.toml:1");
+  write("mute.toml",
+        "bodies.b = { model = \"rigid\", density = 1, domain = { box = { min = [0, 0, 0], max = [1, 1, 1] } } }\n");
+  refusal({"mute.toml"}, "has no probe");
+  refusal({"mute.toml", "--reduced"}, "leave it out, or the scene");
+  std::filesystem::create_directory(folder_.path / "out");
+  write("out/mine.txt", "x");
+  EXPECT_EQ(extremes({"--only", "line, static,pull"}).status, 4);
+}
+
+}  // namespace
+}  // namespace fascia::extremes_program_test
