@@ -175,9 +175,9 @@ class LoadDrawing {
   }
 
  private:
+  /// Within a face of a cell: between cells a torque acts on one of them.
   Json place(const RowBody& b) {
-    const double y = b.thin ? 0.5 : draws_.pick<double>({0, 0.5, 1}) * (b.solid ? 1 : 0.5), z = b.thin ? 0.5 : 0.25;
-    return Json{b.to, y * s_.width, z * s_.width};
+    return Json{b.to, (b.thin ? 0.5 : 0.44) * s_.width, (b.thin ? 0.5 : 0.29) * s_.width};
   }
 
   Draws& draws_;

@@ -29,7 +29,7 @@ class BodyDrawing {
     if (body.contains("mass")) body["mass"] = s_.density * length * s_.width * s_.width;
     if (!row.carried && !row.stiff) body["material"] = material(body, row);
     const bool dynamic = scene_["solver"].contains("time_step");
-    if (dynamic && !row.carried && draws_.chance(0.4)) body["initial"] = initial(row);
+    if (dynamic && !row.carried && draws_.chance(0.5)) body["initial"] = initial(row);
     scene_["bodies"][row.name] = std::move(body);
     return row;
   }

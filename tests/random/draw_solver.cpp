@@ -12,6 +12,8 @@ void add_equations(Draws& draws, Json& solver) {
   if (solver["linear"]["kind"] == "cg") {
     solver["linear"]["max_iterations"] = 20000;
     if (draws.chance(0.3)) solver["linear"]["preconditioner"] = draws.word("solver.linear.preconditioner");
+    if (solver["linear"].value("preconditioner", "") == "none")
+      solver["linear"]["max_iterations"] = 1000;  // minutes else
   }
   if (!path && draws.chance(0.1)) solver["tangent"] = draws.word("solver.tangent");
 }
@@ -54,7 +56,9 @@ void add_probes(const Scales& s, const std::vector<RowBody>& row, Json& scene) {
     const bool line = scene["bodies"][b.name]["domain"].contains("line");
     const double y = line ? 0.5 : 0.44, z = b.thin ? 0.5 : b.carried ? 0.2 : b.stiff ? 0 : 0.29;
     const Json at = Json::object({{"at", {b.from + 0.71 * (b.to - b.from), y * s.width, z * s.width}}});
-    if (!tube) add("displacement", at), add("rotation", at), add("velocity", at);
+    const bool statics = scene["solver"]["kind"] == "static";
+    if (!tube) add("displacement", at), add("rotation", at);
+    if (!tube && !statics) add("velocity", at);
     if (!b.stiff && !b.carried) {
       if (!tube) add("strain", at), add("stress", at);
       add("energy");

@@ -51,8 +51,11 @@ double scale_of(const RandomScene& scene, const Outcome& run, const Measured& pr
   for (const std::vector<double>& row : probe.rows)
     for (const double v : row) scale = std::max(scale, std::abs(v));
   const double momentum = mass_of(run) * run.largest("m/s"), length = scene.scales.length;
-  if (probe.unit == "N") scale = std::max(scale, scene.load_size);
-  if (probe.unit == "N m") scale = std::max({scale, scene.load_size * length, run.largest("N") * length});
+  const double section = scene.scales.width * scene.scales.width;
+  const double force = std::max({scene.load_size, run.largest("N"), run.largest("Pa") * section});
+  if (probe.unit == "N") scale = std::max(scale, force);
+  if (probe.unit == "N m") scale = std::max(scale, force * length);
+  if (probe.unit == "Pa") scale = std::max(scale, scene.load_size / section);
   if (probe.unit == "J") scale = std::max(scale, scene.load_size * run.largest("m"));
   if (probe.unit == "kg m/s") scale = std::max(scale, momentum);
   if (probe.unit == "kg m2/s") scale = std::max(scale, momentum * (length + run.largest("m")));
@@ -98,7 +101,7 @@ std::optional<std::string> balance_of_forces(const RandomScene& scene, const Out
   }
   for (const auto& [name, probe] : run.probes)
     if (probe.quantity == "force") take(vector_of(probe.last()));
-  scale += scene.load_size;
+  scale += scene.load_size + run.largest("Pa") * scene.scales.width * scene.scales.width;
   if (run.summary["couplings"].contains("tie")) take(run.summary["couplings"]["tie"]["force"].get<Vector>());
   const double allowed = 1e2 * std::max(kTolerance, run.residual()) * scale + rounding_of(scene, run, "N");
   if (length(sum) <= allowed) return "";

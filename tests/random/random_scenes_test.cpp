@@ -80,7 +80,10 @@ class Examination {
     static const char* const kinds[] = {"agrees", "fails alike", "has several ends, as is said",
                                         "alone converges or fails", "DIFFERS"};
     tally.count("twin " + name + ": " + kinds[static_cast<int>(c.kind)]);
-    if (c.kind == Comparison::Kind::differ || c.kind == Comparison::Kind::one_failed)
+    // Conjugate gradients may give up where a factor does not, and say so: on thin shells and sheets above all.
+    const bool gave_up = c.kind == Comparison::Kind::one_failed && name == "solver";
+    if (gave_up) std::printf("seed %llu: one linear solver alone converges\n", static_cast<unsigned long long>(seed_));
+    if (c.kind == Comparison::Kind::differ || (c.kind == Comparison::Kind::one_failed && !gave_up))
       faults_.push_back("twin " + name + ": " + c.text + "\n# the twin:\n" + text_of(tree).text);
   }
 
@@ -93,24 +96,54 @@ class Examination {
 
 constexpr int kShares = 8;
 
+void examine(std::uint64_t seed, Tally& tally) {
+  Examination examination(seed);
+  const char* keep = std::getenv("FASCIA_KEEP_SCENES");
+  if (keep != nullptr) std::ofstream(fmt::format("{}/{}.toml", keep, seed)) << examination.text();
+  for (const std::string& fault : examination.run(tally))
+    ADD_FAILURE() << "seed " << seed << ": " << fault << "\n# the scene:\n" << examination.text();
+}
+
 class RandomScenes : public testing::TestWithParam<int> {};
 
+/// FASCIA_FIRST_SEED and FASCIA_CASES say which seeds; FASCIA_KEEP_SCENES where the scenes are kept.
 TEST_P(RandomScenes, KeepTheirInvariants) {
   Tally tally;
-  const int count = test::cases(80);
+  const int count = test::cases(40);
   const char* first = std::getenv("FASCIA_FIRST_SEED");
-  const char* keep = std::getenv("FASCIA_KEEP_SCENES");
-  for (int i = GetParam(); i < count; i += kShares) {
-    const std::uint64_t seed = static_cast<std::uint64_t>((first != nullptr ? std::atoi(first) : 1) + i);
-    Examination examination(seed);
-    if (keep != nullptr) std::ofstream(fmt::format("{}/{}.toml", keep, seed)) << examination.text();
-    for (const std::string& fault : examination.run(tally))
-      ADD_FAILURE() << "seed " << seed << ": " << fault << "\n# the scene:\n" << examination.text();
-  }
+  for (int i = GetParam(); i < count; i += kShares)
+    examine(static_cast<std::uint64_t>((first != nullptr ? std::atoi(first) : 1) + i), tally);
   tally.print();
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, testing::Range(0, kShares));
+
+/// The comparison is worth something: a modulus that is off by a thousandth is seen wherever it has an effect.
+TEST(RandomScenesSee, AThousandthOfAModulus) {
+  int seen = 0, looked_at = 0;
+  for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+    const RandomScene scene = random_scene(seed);
+    Json other = scene.tree;
+    bool changed = false;
+    for (auto& [name, body] : other["bodies"].items())
+      if (body.contains("material") && body["material"].is_object() && body["material"].contains("young") &&
+          body["material"]["young"].is_number()) {
+        body["material"]["young"] = 1.001 * body["material"]["young"].get<double>();
+        changed = true;
+      }
+    if (!scene.wrong.empty() || !changed || !scene.tree.contains("loads") || scene.tree["solver"]["kind"] != "static")
+      continue;
+    const test::TemporaryFolder folder;
+    const Outcome one = random_scenes::run(text_of(scene.tree).text, folder.path);
+    if (one.exit_status != 0) continue;
+    const Outcome two = random_scenes::run(text_of(other).text, folder.path);
+    ++looked_at;
+    seen += compare(scene, one, two, {}).kind == Comparison::Kind::differ ? 1 : 0;
+  }
+  std::printf("%d of %d\n", seen, looked_at);
+  EXPECT_GE(looked_at, 5);
+  EXPECT_GE(seen, looked_at - 1) << "one may have loads on what is held alone";
+}
 
 }  // namespace
 }  // namespace fascia::random_scenes_test

@@ -168,6 +168,10 @@ Json in_frame(const Json& scene, const Frame& frame) {
 std::string no_twin(const Json& scene, const Frame& frame) {
   if (scene["solver"].contains("imperfection")) return "either sign of an imperfection's mode will do";
   if (!frame.turned && !frame.mirrored) return "";
+  if (scene.contains("couplings"))
+    for (const auto& [name, c] : scene["couplings"].items())
+      if (c["kind"] == "weld" && scene["bodies"][c["to"].get<std::string>()]["model"] != "rigid")
+        return "a welded node may be as near to another frame";
   for (const auto& [name, body] : scene["bodies"].items()) {
     const Json& domain = body["domain"];
     if (body.contains("frames") && !body["frames"].contains("grid")) return "scattered frames are drawn along the axes";
