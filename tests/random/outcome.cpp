@@ -69,7 +69,7 @@ bool Outcome::says_several_ends() const {
   for (const Json& warning : summary["warnings"]) {
     const std::string text = warning.dump();
     if (text.find("several solutions") != std::string::npos) return true;
-    for (const char* name : {"stability", "snap", "solver", "inverted"})
+    for (const char* name : {"stability", "snap", "solver", "inverted", "resolution"})
       if (text.find(std::string("[") + name + "]") != std::string::npos) return true;
   }
   return false;

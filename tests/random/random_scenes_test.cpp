@@ -55,6 +55,8 @@ class Examination {
     twin("units", units, outcome, tally);
     twin("turned", Frame{.turned = true}, outcome, tally);
     twin("mirrored", Frame{.mirrored = draws.whole(0, 2)}, outcome, tally);
+    if (seed_ % 4 == 0 && !scene_.tree["solver"].contains("imperfection"))
+      compare_with("texts", with_texts(scene_.tree), {}, outcome, tally);
     const Json other = with_other_solver(scene_.tree);
     if (!other.is_null()) compare_with("solver", other, {}, outcome, tally);
     return faults_;

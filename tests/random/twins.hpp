@@ -28,6 +28,9 @@ Json in_frame(const Json& scene, const Frame& frame);
 /// Why a scene has no exact twin in the frame; empty where it has one.
 std::string no_twin(const Json& scene, const Frame& frame);
 
+/// The same scene with numbers as texts in units that are not of the SI: "12 mm".
+Json with_texts(const Json& scene);
+
 /// The scene with the other linear solver; null where it solves no linear systems.
 Json with_other_solver(const Json& scene);
 
