@@ -108,6 +108,15 @@ std::optional<std::string> balance_of_forces(const RandomScene& scene, const Out
   return fmt::format("reactions do not balance loads: {} N are left of {} N, {} allowed", length(sum), scale, allowed);
 }
 
+/// What is said to be within the tolerance is within that of the scene.
+std::optional<std::string> kept_tolerance(const Outcome& run) {
+  static const std::regex within("residual ([0-9.e+-]+) .*within the tolerance ([0-9.e+-]+)");
+  const std::string said = run.summary["convergence"];
+  std::smatch found;
+  if (!std::regex_search(said, found, within)) return std::nullopt;  // what rounding leaves, or no step
+  return std::stod(found[1]) <= kTolerance && std::stod(found[2]) <= kTolerance ? "" : said;
+}
+
 /// Every step leaves at most the residual, a part of inertia.
 std::optional<std::string> constant(const Outcome& run, const std::string& name, double scale) {
   const std::vector<std::vector<double>>& rows = run.probes.at(name).rows;
@@ -179,6 +188,7 @@ std::vector<std::string> faults_of_balance(const RandomScene& scene, const Outco
     if (!fault->empty()) faults.push_back(*fault);
   };
   const std::string kind = solver(scene)["kind"];
+  if (kind != "modes" && kind != "explicit" && run.exit_status == 0) note("tolerance", kept_tolerance(run));
   if (kind == "modes" || run.exit_status != 0 || run.times.empty()) return faults;
   if (is_static(scene)) {
     note("forces", balance_of_forces(scene, run));

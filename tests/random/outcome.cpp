@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <regex>
 
 namespace fascia::random_scenes {
 namespace {
@@ -60,7 +61,11 @@ void read_table(Outcome& out) {
 
 double Outcome::residual() const {
   if (!summary.is_object()) return 0;
-  return std::max(summary.value("residual", 0.0), summary.value("residual_floor", 0.0));
+  const double said = std::max(summary.value("residual", 0.0), summary.value("residual_floor", 0.0));
+  static const std::regex of_loads("([0-9.e+-]+) of the loads");  // on a soft part, or where the residual stands still
+  std::smatch found;
+  const std::string convergence = summary.value("convergence", "");
+  return std::regex_search(convergence, found, of_loads) ? std::max(said, std::stod(found[1])) : said;
 }
 
 bool Outcome::says_several_ends() const {
