@@ -174,6 +174,9 @@ std::string no_twin(const Json& scene, const Frame& frame) {
     for (const auto& [name, c] : scene["couplings"].items())
       if (c["kind"] == "weld" && scene["bodies"][c["to"].get<std::string>()]["model"] != "rigid")
         return "a welded node may be as near to another frame";
+  if (frame.mirrored && scene.contains("loads"))
+    for (const Json& load : scene["loads"])
+      if (load.contains("total_torque")) return "a torque is spread over triangles, which are cut along one diagonal";
   for (const auto& [name, body] : scene["bodies"].items()) {
     const Json& domain = body["domain"];
     if (body.contains("frames") && !body["frames"].contains("grid")) return "scattered frames are drawn along the axes";
