@@ -9,7 +9,7 @@ namespace fascia::app {
 
 namespace {
 
-constexpr double kMostFlops = 1e9;  ///< with the solves beside it well below a second
+constexpr double kMostFlops = 1e9;  ///< with the solves beside it below half a second
 constexpr double kFewDigits = 6;
 
 /// Stands the system where the first solve begins.
@@ -43,9 +43,9 @@ std::string condition_line(const Simulation& s) {
   if (c.kind == TangentCondition::Kind::not_definite)
     return "tangent at rest: not positive definite, so that its condition says nothing";
   std::string line = fmt::format(
-      "tangent at rest: condition {:.2g} when scaled: conjugate gradients would take up to about {:.2g} iterations, a "
+      "tangent at rest: condition {:.2g} (scaled by its diagonal blocks); conjugate gradients take {} {} iterations, a "
       "direct solve keeps about {:.0f} digits",
-      c.ratio(), std::max(1.0, c.cg_iterations(settings.cg.tolerance)), c.digits());
+      c.ratio(), c.cg_converged ? "about" : "more than", c.cg_iterations, c.digits());
   if (c.digits() < kFewDigits)
     line +=
         "; so few come from parts that are much softer, thinner or smaller than what they hang on, or from "

@@ -1,12 +1,14 @@
 #include "core/solver/tangent_condition.hpp"
+
 #include "core/math/index.hpp"
 #include "core/solver/lanczos.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/positive_inverse.hpp"
+#include "core/solver/small_factor.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 
 /// The parts of TangentSolver and MechanicalSystem that estimate the condition of a tangent.
@@ -18,12 +20,10 @@ using Vector = std::vector<double>;
 
 /// Large eigenvalues need not be known well: their root counts.
 constexpr LanczosOptions kLooks{100, 5, 3e-3};
+/// Products wait for memory: so many operations of them take as long as a factor.
+constexpr double kPartOfFlops = 0.3;
 
 }  // namespace
-
-double TangentCondition::cg_iterations(double tolerance) const {
-  return 0.5 * std::sqrt(ratio()) * std::log(2 / tolerance);
-}
 
 double TangentCondition::digits() const {
   return std::max(0.0, -std::log10(std::numeric_limits<double>::epsilon() * ratio()));
@@ -47,33 +47,36 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   Vector start(at(dofs.total()));
   for (double& x : start) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
   filter_.clear_fixed(start);
-  const auto by_blocks = [&](const Vector& blocks, const Vector& x, Vector& y) {
-    for (int node = 0; node < dofs.node_count(); ++node)
-      for (int i = 0; i < dofs.size(node); ++i) {
-        const double* row = blocks.data() + dofs.block_begin(node) + at(dofs.size(node) * i);
-        double sum = 0;
-        for (int j = 0; j < dofs.size(node); ++j) sum += row[j] * x[at(dofs.begin(node) + j)];
-        y[at(dofs.begin(node) + i)] = sum;
-      }
-    filter_.clear_fixed(y);
+  std::vector<SmallFactor> inverse(at(dofs.node_count()));  // of the inverse blocks
+  for (int node = 0; node < dofs.node_count(); ++node)
+    inverse[at(node)].factorize(inverse_blocks_.data() + dofs.block_begin(node), dofs.size(node));
+  const auto scale = [&](const Vector& r, Vector& v) {
+    for (int node = 0; node < dofs.node_count(); ++node) {
+      const double* row = inverse_blocks_.data() + dofs.block_begin(node);
+      for (int i = dofs.begin(node); i < dofs.begin(node + 1); ++i, row += dofs.size(node))
+        v[at(i)] = std::inner_product(row, row + dofs.size(node), r.begin() + dofs.begin(node), 0.0);
+    }
+  };
+  const auto unscale = [&](const Vector& v, Vector& r) {
+    r = v;
+    for (int node = 0; node < dofs.node_count(); ++node) inverse[at(node)].solve(r.data() + dofs.begin(node));
+    filter_.clear_fixed(r);
   };
   LanczosOptions options = kLooks;
   options.most = std::min(options.most, filter_.free_count());
-  out.largest = largest_ratio(
-                    start, options, [&](const Vector& r, Vector& v) { by_blocks(inverse_blocks_, r, v); },
-                    [&](const Vector& v, Vector& w) {
-                      apply_matrix(v, w);
-                      filter_.clear_fixed(w);
-                    })
-                    .value;
-  Vector blocks = std::move(inverse_blocks_);
-  for (int node = 0; node < dofs.node_count(); ++node)
-    positive_inverse(blocks.data() + dofs.block_begin(node), dofs.size(node));
-  const double softest = largest_ratio(
-                             start, options, [&](const Vector& r, Vector& v) { solve_with_factor(r, v); },
-                             [&](const Vector& v, Vector& w) { by_blocks(blocks, v, w); })
-                             .value;
-  out.smallest = 1 / softest;
+  out.largest = largest_ratio(start, options, scale, [&](const Vector& v, Vector& w) {
+                  apply_matrix(v, w);
+                  filter_.clear_fixed(w);
+                }).value;
+  const auto solve = [&](const Vector& r, Vector& v) { solve_with_factor(r, v); };
+  out.smallest = 1 / largest_ratio(start, options, solve, unscale).value;
+  const CgOptions asked = settings_.cg;
+  const double product = 2.0 * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
+  settings_.cg.max_iterations = std::min(asked.max_iterations, static_cast<int>(kPartOfFlops * most_flops / product));
+  Vector x(start.size());
+  out.cg_iterations = solve_cg(start, x).iterations;
+  out.cg_converged = out.cg_iterations < settings_.cg.max_iterations;
+  settings_.cg = asked;
   out.kind = TangentCondition::Kind::known;
   return out;
 }

@@ -8,10 +8,10 @@ struct TangentCondition {
   enum class Kind { left_out, not_definite, known };
   Kind kind = Kind::left_out;  ///< left out: nothing is free, or the factor costs too much
   double largest = 1, smallest = 1;
+  int cg_iterations = 0;      ///< that conjugate gradients took for a load in all directions, with the run's settings
+  bool cg_converged = false;  ///< false: they were ended there
 
   double ratio() const { return largest / smallest; }
-  /// An upper estimate of the iterations that reduce the residual to a part: ½ √κ ln(2/tolerance).
-  double cg_iterations(double tolerance) const;
   /// Decimal digits of a direct solve that rounding leaves: −log₁₀(ε κ).
   double digits() const;
 };
