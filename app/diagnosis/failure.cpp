@@ -141,7 +141,7 @@ class Search {
     const SimulatedBody& b = s_.bodies[at(worst_.body)];
     const FailureMarks& m = found_.marks[at(worst_.body)];
     const auto suspects = std::count(m.suspect.begin(), m.suspect.end(), 1);
-    const double J = m.volume[worst_.point], share = load_[at(worst_.body)][worst_.point];
+    const double J = m.volume[worst_.point], share = share_at(b, worst_.point);
     const char* quantity = crushed_ ? "det F" : dynamic_ ? "kinetic energy" : "residual";
     std::string& text = found_.text;
     text = fmt::format("worst at {} of body \"{}\": ", point_name(b, worst_.point), b.name);
@@ -149,7 +149,7 @@ class Search {
       text += fmt::format("its volume is {:.3g} of that at rest ({} of {} integration points are {})", J, suspects,
                           m.suspect.size(), J <= 0 ? "turned inside out" : "crushed");
     else
-      text += fmt::format("{:.2g} % of the {} is at its nodes", 100 * share_at(b, worst_.point), quantity);
+      text += fmt::format("{:.0f} % of the {} is at its nodes", 100 * share, quantity);
     text += remedy(s_.scene.bodies[at(worst_.body)], b.body->points()[worst_.point]);
     const Vec3d X = point_place(b, worst_.point);
     const int cell = b.groups() == nullptr ? -1 : b.body->points()[worst_.point].cell;
