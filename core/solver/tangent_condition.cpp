@@ -19,7 +19,7 @@ namespace {
 using Vector = std::vector<double>;
 
 /// Large eigenvalues need not be known well: their root counts.
-constexpr LanczosOptions kLooks{100, 5, 3e-3};
+constexpr LanczosOptions kLooks{200, 5, 1e-3};
 /// Products wait for memory: so many operations of them take as long as a factor.
 constexpr double kPartOfFlops = 0.3;
 
@@ -47,6 +47,10 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   Vector start(at(dofs.total()));
   for (double& x : start) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
   filter_.clear_fixed(start);
+  // As large in torques as in forces, by what each resists.
+  for (int node = 0; node < dofs.node_count(); ++node)
+    for (int k = 0, n = dofs.size(node); k < n; ++k)
+      start[at(dofs.begin(node) + k)] /= std::sqrt(inverse_blocks_[dofs.block_begin(node) + at(n * k + k)]);
   std::vector<SmallFactor> inverse(at(dofs.node_count()));  // of the inverse blocks
   for (int node = 0; node < dofs.node_count(); ++node)
     inverse[at(node)].factorize(inverse_blocks_.data() + dofs.block_begin(node), dofs.size(node));
