@@ -1,5 +1,8 @@
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
+#include "app/diagnosis/condition.hpp"
+#include "app/diagnosis/step_limit.hpp"
+#include "app/diagnosis/thickness.hpp"
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
 #include "app/need/kept_costs.hpp"
@@ -45,6 +48,9 @@ int check_scene(const RunOptions& options) {
     if (!b.body->quality().empty()) fmt::print("body {}: {}\n", b.name, b.body->quality());
   for (const SimulatedBody& b : s.bodies)
     for (const std::string& choice : b.body->choices()) fmt::print("body {}: {}\n", b.name, choice);
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    if (const std::string line = thickness_line(s, b); !line.empty())
+      fmt::print("body {}: {}\n", s.bodies[b].name, line);
   for (const FluidOfBody& f : s.fluids)
     fmt::print("body {}: its fluid fills {:.6g} m3 at rest\n", s.bodies[at(f.body)].name,
                s.model.surfaces[at(f.surface)].rest_volume);
@@ -60,11 +66,15 @@ int check_scene(const RunOptions& options) {
                                             : "nothing elastic limits the time step",
                s.scene.solver.time_step_automatic ? "about " : "", s.scene.solver.steps, s.scene.solver.time_step,
                s.scene.solver.time_step_automatic ? " at first" : "");
-  for (const SimulatedBody& b : s.bodies)
-    if (s.stable_step > 0 && b.body->fastest_cell() > 0)
-      fmt::print("body {}: {} {} limits the time step\n", b.name,
-                 b.body->cells().type == CellType::triangle ? "triangle" : "element", b.body->fastest_cell());
+  // Before the diagnosis, whose own memory is no run's.
   const RunMemory memory = run_memory(s, backend == Backend::cuda);
+  if (s.stable_step > 0 && std::isfinite(s.stable_step)) {
+    ThreadPool pool(s.scene.solver.threads);
+    MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
+    if (const StepLimit limit = step_limit(s, system); limit.body >= 0)
+      fmt::print("the time step is limited by {}\n", limit.text);
+  }
+  if (const std::string condition = condition_line(s); !condition.empty()) fmt::print("{}\n", condition);
   fmt::print("memory: about {:.3g} MB{}\n", memory.peak / 1e6,
              memory.beyond > 1.05 * memory.peak
                  ? fmt::format(", {:.3g} MB where the path passes a limit point", memory.beyond / 1e6)

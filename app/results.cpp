@@ -215,18 +215,22 @@ std::string state_file(const SimulatedBody& body, std::size_t state) {
   return fmt::format("{}_{:05d}.vtu", body.name, state);
 }
 
+io::VisualMesh ResultFiles::state_mesh(const SimulatedBody& body, const State& state, double time) {
+  io::VisualMesh mesh = visual(body, state);
+  set_units(mesh.point_fields);
+  set_units(mesh.cell_fields);
+  mesh.time = time;
+  mesh.provenance = provenance_;
+  return mesh;
+}
+
 void ResultFiles::add_state(double time, const State& state) {
   const Clock::time_point start = Clock::now();
   std::vector<std::string> files;
   try {
     for (const SimulatedBody& body : simulation_.bodies) {
       files.push_back(state_file(body, times_.size()));
-      io::VisualMesh mesh = visual(body, state);
-      set_units(mesh.point_fields);
-      set_units(mesh.cell_fields);
-      mesh.time = time;
-      mesh.provenance = provenance_;
-      io::write_vtu(directory_ / files.back(), mesh);
+      io::write_vtu(directory_ / files.back(), state_mesh(body, state, time));
     }
   } catch (const std::exception&) {  // the bodies that are there are no whole state
     std::error_code ignored;

@@ -17,6 +17,8 @@
 
 namespace fascia::app {
 
+struct Failure;
+
 /// Name of the .vtu of a body. @param state  number of the saved state, from 0
 std::string state_file(const SimulatedBody& body, std::size_t state);
 
@@ -33,6 +35,9 @@ class ResultFiles {
   /// The .vtu files of a state. @param time  in the .pvd, where times must not decrease: of a path its step
   /// @throws FileError, InputError
   void add_state(double time, const State& state);
+  /// The .vtu files of a state in which the run failed, with what is suspect in it; in no .pvd.
+  /// @return  their names. @throws FileError (diagnosis/failed_files.cpp)
+  std::vector<std::string> add_failed(const Failure& failure);
   /// Bytes of the .vtu files of a state, about.
   double estimated_size(const State& state);
   /// Waits until probes.csv and the .pvd are on the disk.
@@ -52,6 +57,7 @@ class ResultFiles {
   BodyTensors tensors(const SimulatedBody& b, const State& state);
   io::VisualMesh visual_mesh(const SimulatedBody& b, const State& state);
   io::VisualMesh visual(const SimulatedBody& body, const State& state);
+  io::VisualMesh state_mesh(const SimulatedBody& body, const State& state, double time);
   const Simulation& simulation_;
   std::filesystem::path directory_;
   std::string name_, provenance_;

@@ -47,6 +47,11 @@ void RunResult::add_state(double time, const State& state) {
   directory_.show();
 }
 
+std::vector<std::string> RunResult::add_failed(const Failure& failure) {
+  const std::lock_guard lock(writing_);
+  return files_.add_failed(failure);
+}
+
 void RunResult::note(const StepInfo& step) {
   steps_ = step.step;
   time_ = step.time;

@@ -26,6 +26,7 @@ class RunResult {
   /// These do what those of ResultFiles do.
   void add_probes(double time, const Snapshot& at);
   void add_state(double time, const State& state);
+  std::vector<std::string> add_failed(const Failure& failure);
   const std::vector<double>& last_values(std::size_t probe) const { return files_.last_values(probe); }
   double seconds() const { return files_.seconds(); }
   const std::vector<double>& times() const { return files_.times(); }

@@ -2,6 +2,7 @@
 
 #include "app/backend.hpp"
 #include "app/coupling_report.hpp"
+#include "app/diagnosis/failure.hpp"
 #include "app/estimate/error_estimate.hpp"
 #include "app/gpu_run.hpp"
 #include "app/interruption.hpp"
@@ -79,6 +80,7 @@ struct Outcome {
   double stabilization = 0;
   std::vector<FluidState> fluids;
   CouplingReports couplings;
+  nlohmann::ordered_json failure;  ///< null: none
 };
 
 Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
@@ -209,6 +211,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   const bool ended = out.run.status == RunStatus::converged;
   add_result_warnings(s, state, out.run, out.warnings);
   out.failed = !ended || out.run.status == RunStatus::unstable || out.run.status == RunStatus::inverted;
+  if (out.failed) out.failure = keep_failed(s, state, !not_shown.empty(), out.run, files);
   out.couplings = coupling_report(s, system, state);
   for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
   if (!snaps.warning().empty()) out.warnings.add("snap", snaps.warning());
@@ -363,6 +366,7 @@ int run_scene(const RunOptions& options) {
   s.warnings.add(out.warnings);
   nlohmann::ordered_json j = summary(s, out.backend, out.gpus, out.run, out.times, pool.size(), out.probes,
                                      out.stabilization, out.fluids, out.couplings, files.provenance());
+  if (!out.failure.is_null()) j["failure"] = out.failure;
   if (options.complete) options.complete(j);
   finish(s, files, j);
   if (s.scene.output.picture && out.run.status != RunStatus::interrupted)

@@ -1,3 +1,5 @@
+#include "app/diagnosis/places.hpp"
+#include "app/diagnosis/step_limit.hpp"
 #include "app/scene/errors.hpp"
 #include "app/simulation.hpp"
 #include "core/model/errors.hpp"
@@ -14,10 +16,12 @@ namespace {
 
 constexpr double kMostSteps = 1e9;
 
-/// " (element 12 of body "liver" limits it)" of a single body; nothing otherwise.
-std::string limit_of(const Simulation& s) {
-  if (s.bodies.size() != 1 || s.bodies[0].body->fastest_cell() == 0) return "";
-  return fmt::format("; its element {} limits it", s.bodies[0].body->fastest_cell());
+/// "; element 12 at (..) of body "liver" limits it"; nothing where no cell or point does.
+std::string limit_of(const Simulation& s, MechanicalSystem& system) {
+  const StepLimit limit = step_limit(s, system);
+  if (limit.body < 0) return "";
+  const SimulatedBody& b = s.bodies[static_cast<std::size_t>(limit.body)];
+  return fmt::format("; {} of body \"{}\" limits it", point_name(b, limit.point), b.name);
 }
 
 /// With four digits, never more than it is.
@@ -41,7 +45,7 @@ void settle_time_step(Simulation& s, MechanicalSystem& system) {
     throw SceneError(
         {{solver.time_step_place, fmt::format("{:.4g} s is above the stable step, {} s{}; use that or \"auto\", "
                                               "a coarser mesh, or an implicit kind",
-                                              solver.time_step, rounded_down(s.stable_step), limit_of(s))}});
+                                              solver.time_step, rounded_down(s.stable_step), limit_of(s, system))}});
   }
   const double duration = *solver.duration, every = saving_time(s.scene.output);
   const double part = every > 0 && every < duration ? every : duration;
@@ -50,7 +54,7 @@ void settle_time_step(Simulation& s, MechanicalSystem& system) {
     throw SceneError(
         {{solver.time_step_place, fmt::format("the stable time step is {:.4g} s{}: {:.3g} steps, at most {:.0g}; use "
                                               "an implicit kind",
-                                              s.stable_step, limit_of(s), steps, kMostSteps)}});
+                                              s.stable_step, limit_of(s, system), steps, kMostSteps)}});
   solver.steps = static_cast<int>(steps);
   solver.time_step = std::min(s.stable_step, part);
 }

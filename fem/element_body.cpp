@@ -135,7 +135,6 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
 void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& builder) {
   const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
   const double length = mean_edge(mesh());
-  double fastest = 0;
   std::array<std::vector<std::size_t>, 4> by_law;
   for (std::size_t e = 0; e < mesh().size(); ++e)
     by_law[static_cast<std::size_t>(law(static_cast<int>(e)))].push_back(e);
@@ -158,12 +157,6 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
         const ElementPoint p = shape_at(mesh(), e, q.xi);
         block.gradient.insert(block.gradient.end(), p.dN_dX.begin(), p.dN_dX.begin() + block.nodes);
         block.volume.push_back(p.det_J * q.weight);
-        double squares = 0;  // (λ + 2μ) Σ |∇N|²/ρ bounds the square of an element's highest frequency
-        for (const Vec3d& g : p.dN_dX) squares += squared_norm(g);
-        const double speed = (material_[e].lambda + 2 * material_[e].mu) * squares;
-        if (speed <= fastest) continue;
-        fastest = speed;
-        fastest_cell_ = mesh().element_number[e];
       }
       const PointMaterialSpec& m = material_[e];
       block.material.push_back({m.lambda, m.mu, m.stiffness_damping, spec.penalty});

@@ -49,7 +49,7 @@ class ElementBody final : public ModelBody {
   std::vector<char> nodes_on_boundary() const override { return on_boundary_; }
   double distance(const Vec3d& X) const override { return locator_.locate(X).distance; }
   std::string quality() const override { return quality_; }
-  std::int64_t fastest_cell() const override { return fastest_cell_; }
+  std::int64_t cell_number(int cell) const override { return mesh().element_number[static_cast<std::size_t>(cell)]; }
 
   ElementLaw law(int element) const;
   bool averaged() const { return averaged_; }
@@ -84,7 +84,6 @@ class ElementBody final : public ModelBody {
   double penalty_ = 0;
   std::vector<char> on_boundary_;
   std::string quality_;
-  std::int64_t fastest_cell_ = 0;
 };
 
 }  // namespace fascia

@@ -18,11 +18,23 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Extremes over the corners of one element.
 struct CornerFigures {
   double least_cosine = 1, greatest_cosine = -1;  ///< of dihedral angles
-  double jacobian = infinite, height = infinite;
+  double jacobian = infinite, height = infinite, ratio = infinite;
 };
 
 /// 0 where the denominator is.
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+/// 3 det(A)^⅔/|A|² of the edges at a corner, of tetrahedra mapped to a regular one.
+double mean_ratio(std::array<Vec3d, 3> edge, bool tetrahedron) {
+  if (tetrahedron) {  // columns of [a b c] W⁻¹, W the edges of a regular tetrahedron at a corner
+    const double third = 1 / std::sqrt(3.0);
+    edge[2] = (edge[2] * 3.0 - edge[1] - edge[0]) * std::sqrt(1.0 / 6);
+    edge[1] = (edge[1] * 2.0 - edge[0]) * third;
+  }
+  const double det = dot(edge[0], cross(edge[1], edge[2]));
+  const double squares = squared_norm(edge[0]) + squared_norm(edge[1]) + squared_norm(edge[2]);
+  return det > 0 ? 3 * std::pow(det, 2.0 / 3) / squares : 0;
+}
 
 CornerFigures corner_figures(const ElementMesh& mesh, std::size_t e) {
   CornerFigures figures;
@@ -35,6 +47,7 @@ CornerFigures corner_figures(const ElementMesh& mesh, std::size_t e) {
     for (std::size_t k = 0; k < 3; ++k) normal[k] = cross(edge[(k + 1) % 3], edge[(k + 2) % 3]);
     const double det = dot(edge[0], normal[0]);
     figures.jacobian = std::min(figures.jacobian, ratio(det, norm(edge[0]) * norm(edge[1]) * norm(edge[2])));
+    figures.ratio = std::min(figures.ratio, mean_ratio(edge, neighbours.size() == 4));
     for (std::size_t k = 0; k < 3; ++k) {
       figures.height = std::min(figures.height, ratio(std::abs(det), norm(normal[k])));
       // The faces at edge k have the normals n_(k+1) and n_(k+2), both outward or both inward.
@@ -59,6 +72,8 @@ std::string text(const WorstElement& worst, const char* unit = "") {
   return text(worst.value) + unit + " (element " + std::to_string(worst.number) + ")";
 }
 
+std::string place_text(const Vec3d& x) { return "(" + text(x[0]) + ", " + text(x[1]) + ", " + text(x[2]) + ")"; }
+
 std::string sentence_of(const ElementMesh& mesh, const MeshQuality& q) {
   const bool tetrahedra = family_of(mesh.shape) == ElementFamily::tetrahedra;
   std::string sentence = std::to_string(mesh.size()) + (order_of(mesh.shape) == 2 ? " quadratic" : "") +
@@ -67,7 +82,9 @@ std::string sentence_of(const ElementMesh& mesh, const MeshQuality& q) {
                          text(q.greatest_dihedral, " degrees") + ", smallest volume " + text(q.least_volume) +
                          " of the mean";
   if (!tetrahedra) sentence += ", smallest scaled Jacobian " + text(q.least_jacobian);
-  return sentence + ", shortest height " + text(q.shortest_height, " m");
+  return sentence + ", shortest height " + text(q.shortest_height, " m") + ", least mean ratio " +
+         text(q.least_ratio.value) + " (element " + std::to_string(q.least_ratio.number) + " at " +
+         place_text(q.least_ratio.middle) + ")";
 }
 
 }  // namespace
@@ -75,7 +92,8 @@ std::string sentence_of(const ElementMesh& mesh, const MeshQuality& q) {
 MeshQuality mesh_quality(const ElementMesh& mesh) {
   assert(mesh.size() > 0);
   MeshQuality q;
-  q.least_dihedral.value = q.least_volume.value = q.least_jacobian.value = q.shortest_height.value = infinite;
+  q.least_dihedral.value = q.least_volume.value = q.least_jacobian.value = q.shortest_height.value =
+      q.least_ratio.value = infinite;
   q.greatest_dihedral.value = -infinite;
   const element_parts::ElementJacobians jacobians(mesh.shape);
   std::size_t folded = 0;
@@ -83,13 +101,14 @@ MeshQuality mesh_quality(const ElementMesh& mesh) {
   for (std::size_t e = 0; e < mesh.size(); ++e) {
     const std::int64_t number = mesh.element_number[e];
     const auto keep_least = [&](WorstElement& worst, double value) {
-      if (value < worst.value) worst = {value, number};
+      if (value < worst.value) worst = {value, number, {}};
     };
     const CornerFigures figures = corner_figures(mesh, e);
     const double least = degrees(figures.greatest_cosine), greatest = degrees(figures.least_cosine);
     keep_least(q.least_dihedral, least);
-    if (greatest > q.greatest_dihedral.value) q.greatest_dihedral = {greatest, number};
+    if (greatest > q.greatest_dihedral.value) q.greatest_dihedral = {greatest, number, {}};
     keep_least(q.least_jacobian, figures.jacobian);
+    if (figures.ratio < q.least_ratio.value) q.least_ratio = {figures.ratio, number, element_middle(mesh, e)};
     keep_least(q.shortest_height, figures.height);
     const double volume = jacobians.volume(mesh, e);
     keep_least(q.least_volume, volume);
@@ -103,7 +122,9 @@ MeshQuality mesh_quality(const ElementMesh& mesh) {
   if (q.slivers > 0)
     q.messages.push_back(place + std::to_string(q.slivers) + " of " + std::to_string(mesh.size()) +
                          " elements are slivers (a dihedral angle below 5 or above 175 degrees; the first: element " +
-                         std::to_string(first_sliver) + "); they lock and slow the solver down");
+                         std::to_string(first_sliver) + "; the flattest: element " +
+                         std::to_string(q.least_ratio.number) + " at " + place_text(q.least_ratio.middle) +
+                         "); they lock and slow the solver down");
   if (folded > 0)
     q.messages.push_back(place + std::to_string(folded) + " of " + std::to_string(mesh.size()) +
                          " elements are folded at a corner (the first: element " + std::to_string(first_folded) + ")");

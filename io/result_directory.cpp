@@ -59,8 +59,9 @@ bool belongs(const std::string& file, const ResultNames& names) {
   if (file == kSummary || file == "probes.csv" || file == kDescriptionFile || file == kChosenScene ||
       file == names.stem + ".pvd" || file == names.stem + ".png")
     return true;
-  return std::any_of(names.bodies.begin(), names.bodies.end(),
-                     [&](const std::string& body) { return is_state_of(file, body); });
+  return std::any_of(names.bodies.begin(), names.bodies.end(), [&](const std::string& body) {
+    return is_state_of(file, body) || file == failed_state_file(body);
+  });
 }
 
 /// Files of a directory that a result of these names would have, and those that it was writing; summary.json first.

@@ -15,10 +15,13 @@ inline constexpr const char* kChosenScene = "chosen.toml";
 /// A folder inside of the directory for what is computed beside the result; it goes with the next one at the latest.
 inline constexpr const char* kTwins = ".fascia.twins";
 
+/// The state of a body in which a run failed.
+inline std::string failed_state_file(const std::string& body) { return body + "_failed.vtu"; }
+
 /// The files of a result are called after these.
 struct ResultNames {
   std::string stem;                 ///< of the scene's file: NAME.pvd, NAME.png
-  std::vector<std::string> bodies;  ///< BODY_00000.vtu
+  std::vector<std::string> bodies;  ///< BODY_00000.vtu, BODY_failed.vtu
 };
 
 /// A directory of results, which a run fills as they arise. The files of an older result are set aside, in the

@@ -225,10 +225,11 @@ void CloudBody::describe(const CloudSpec& spec, const std::vector<ScatteredWeigh
   if (spec.grid && !share_.empty()) choices_.push_back(replaced_by_shares(share_.size()));
   if (spec.grid) return;
   warn_of_overlap(spec, weights);
-  std::size_t least = frame_position_.size(), most = 0, lowered = 0, first_lowered = 0;
+  std::size_t least = frame_position_.size(), most = 0, lowered = 0, first_lowered = 0, narrowest = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
     least = std::min(least, weights[p].frame.size());
     most = std::max(most, weights[p].frame.size());
+    if (weights[p].spread < weights[narrowest].spread) narrowest = p;
     if (weights[p].lowered && lowered++ == 0) first_lowered = p;
   }
   const bool consistent = trace(weights.front().consistent) > 0;
@@ -243,6 +244,9 @@ void CloudBody::describe(const CloudSpec& spec, const std::vector<ScatteredWeigh
   else
     out << "linear fields are off by " << c.position << " spacings (rms), a uniform stretch by " << 100 * c.gradient
         << " %";
+  if (consistent)
+    out << "; frames are spread least about " << text(places_[narrowest].X) << ", by " << weights[narrowest].spread
+        << " in their narrowest direction";
   quality_ = out.str();
   if (!consistent) messages_.push_back(quality_ + "; use kind = \"mls\" where the stiffness matters");
   if (lowered > 0)

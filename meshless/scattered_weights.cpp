@@ -92,10 +92,12 @@ ScatteredWeights in_world(const ScatteredPlace& place, Shares&& shares) {
 struct KeptDirections {
   int count = 0;
   Mat3d projector, inverse;
+  double narrowest = 0;  ///< least eigenvalue of those that the matter has
 
-  KeptDirections(const Mat3d& spread, double least) {
+  KeptDirections(const Mat3d& spread, double least, int dimension) {
     const Eigen::Matrix3d C = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&spread.m[0][0]);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(C);
+    narrowest = eigen.eigenvalues()[3 - dimension];
     for (int k = 0; k < 3; ++k) {
       const double value = eigen.eigenvalues()[k];
       if (!(value > least)) continue;
@@ -159,11 +161,12 @@ ScatteredWeights MlsWeights::at(const ScatteredPlace& place, std::span<const Nea
     spread += outer(z, z) * shares.w[i];
     square_distance += shares.square_distance[i] * shares.w[i];
   }
-  const KeptDirections kept(spread, kLeastSpread * square_distance);
+  const KeptDirections kept(spread, kLeastSpread * square_distance, place.dimension);
   if (kept.count > 0) correct(shares, c, kept.inverse);
   ScatteredWeights r = in_world(place, std::move(shares));
   r.consistent = times_transpose(place.axes * kept.projector, place.axes);
   r.lowered = kept.count < place.dimension;
+  r.spread = square_distance > 0 ? std::max(0.0, kept.narrowest) / square_distance : 0;
   return r;
 }
 

@@ -110,7 +110,7 @@ double ShellBody::tilt(std::size_t t) const {
 
 void ShellBody::add_triangles(const ShellBodySpec& spec, PointSetBuilder& builder) {
   std::vector<ShellElementSpec> elements;
-  double edges = 0, fastest = 0;
+  double edges = 0;
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const PlaneTriangle p = corners(t);
     ShellSection s = section(t);
@@ -134,12 +134,6 @@ void ShellBody::add_triangles(const ShellBodySpec& spec, PointSetBuilder& builde
     point.cell = static_cast<int>(t);
     points_.push_back(point);
     volume_ += point.volume;
-    double squares = 0;  // bounds the membrane's highest frequency
-    for (const auto& g : linear_gradients(p).g) squares += g[0] * g[0] + g[1] * g[1];
-    const double speed = s.young / (1 - s.poisson * s.poisson) * squares;
-    if (speed <= fastest) continue;
-    fastest = speed;
-    fastest_cell_ = mesh_.file_number.empty() ? static_cast<std::int64_t>(t) : mesh_.file_number[t];
   }
   mass_ = volume_ * spec.density;
   std::vector<Vec3d> middles;

@@ -41,7 +41,9 @@ class ShellBody final : public ModelBody {
   std::vector<char> nodes_on_boundary() const override;  ///< the rim
   double distance(const Vec3d& X) const override;
   std::string quality() const override { return quality_; }
-  std::int64_t fastest_cell() const override { return fastest_cell_; }
+  std::int64_t cell_number(int cell) const override {
+    return mesh_.file_number.empty() ? cell : mesh_.file_number[static_cast<std::size_t>(cell)];
+  }
 
   double thickness(std::size_t triangle) const { return thickness_[triangle]; }
 
@@ -76,7 +78,6 @@ class ShellBody final : public ModelBody {
   std::vector<double> angle_;
   TriangleTree tree_;
   std::string quality_;
-  std::int64_t fastest_cell_ = 0;
 };
 
 }  // namespace fascia

@@ -147,8 +147,8 @@ class ModelBody {
   virtual std::vector<char> nodes_on_boundary() const = 0;
   /// Distance from X to the body [m]; 0 inside.
   virtual double distance(const Vec3d& X) const = 0;
-  /// The mesh's own number of the cell with the fastest waves through it, which limits explicit steps; 0: no mesh.
-  virtual std::int64_t fastest_cell() const { return 0; }
+  /// The mesh's own number of a cell. @param cell  BodyPoint::cell, at least 0
+  virtual std::int64_t cell_number(int cell) const { return cell; }
   /// One line on how the weights do in this body; empty where there is nothing to say.
   virtual std::string quality() const { return ""; }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -30,21 +31,37 @@ using StepObserver = ObserverOf<MechanicalSystem>;
 /// Factors of all schedules at a time [s] (statics: at a load factor).
 using FactorFunction = std::function<std::vector<double>(double)>;
 
+/// Where a run failed: not an equilibrium, and perhaps with numbers that are not finite.
+struct FailedState {
+  State state;
+  std::vector<double> gradient;  ///< residual there, by degrees of freedom in world axes; empty of explicit dynamics
+  int step = 0;                  ///< that failed, counted from 1
+};
+
 struct RunReport {
   RunStatus status = RunStatus::converged;
   int steps = 0, newton_iterations = 0, linear_iterations = 0;
   double residual = 0, residual_floor = 0;  ///< largest of the steps, relative
   double time = 0;
-  int steps_at_limit = 0;           ///< accepted above the tolerance (proceed_on_limit)
-  std::string trouble;              ///< of a followed path: its end may be unstable
-  std::string convergence;          ///< why the last step counts as converged, in words
-  Stability stability;              ///< of the end of statics under load control
-  int indefinite_solves = 0;        ///< in which a tangent was not positive definite
-  int indefinite_steps = 0;         ///< time steps with such solves
-  double first_indefinite = 0;      ///< end of the first of them [s]
-  std::vector<std::string> events;  ///< limit points and bifurcations that were passed, a sentence each
-  std::string message;              ///< one sentence on what went wrong, where, and what to try
+  int steps_at_limit = 0;                     ///< accepted above the tolerance (proceed_on_limit)
+  std::string trouble;                        ///< of a followed path: its end may be unstable
+  std::string convergence;                    ///< why the last step counts as converged, in words
+  Stability stability;                        ///< of the end of statics under load control
+  int indefinite_solves = 0;                  ///< in which a tangent was not positive definite
+  int indefinite_steps = 0;                   ///< time steps with such solves
+  double first_indefinite = 0;                ///< end of the first of them [s]
+  std::vector<std::string> events;            ///< limit points and bifurcations that were passed, a sentence each
+  std::string message;                        ///< one sentence on what went wrong, where, and what to try
+  std::shared_ptr<const FailedState> failed;  ///< of a run on the processor that ended in a failure
 };
+
+/// Keeps where a system stands after a solve that failed.
+template <class System>
+void keep_failure(RunReport& run, const System& system) {
+  if constexpr (std::is_same_v<System, MechanicalSystem>)
+    run.failed = std::make_shared<FailedState>(
+        FailedState{system.state(), {system.gradient().begin(), system.gradient().end()}, run.steps + 1});
+}
 
 /// Which criterion ended a step, with its figures; empty where none did.
 std::string convergence_sentence(const NewtonReport& newton, const SolverSettings& settings);

@@ -96,6 +96,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     if (!acceptable(report, settings)) {
       increment = 0.5 * (target - reached);
       if (increment >= kSmallest && ++failures < kMostFailures) continue;
+      keep_failure(run, system);
       std::ostringstream message;
       message << "load step " << run.steps + 1 << " (load factor " << target
               << "): " << failure_sentence(report, settings);
@@ -191,6 +192,7 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
     const NewtonReport report = stepper.advance(state, end, dt, kMostHalvings);
     note_indefinite(run, solves, end);
     if (!acceptable(report, settings)) {
+      keep_failure(run, system);
       state = before;
       std::ostringstream message;
       message << "step " << step << " (t = " << end << " s): " << failure_sentence(report, settings)

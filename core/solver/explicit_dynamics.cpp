@@ -91,6 +91,7 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
     if (!sound) {
       run.status = RunStatus::diverged;
       run.message = explicit_divergence(system, good, step, state.time, plan);
+      run.failed = std::make_shared<FailedState>(FailedState{state, {}, step});
       state = good;
       run.time = state.time;
       run.steps = good_step;

@@ -3,7 +3,9 @@
 #include "core/solver/drivers.hpp"
 #include "core/solver/explicit_plan.hpp"
 
+#include <limits>
 #include <string>
+#include <vector>
 
 namespace fascia {
 
@@ -31,6 +33,17 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
 double stable_time_step(MechanicalSystem& system, const State& state);
 /// At rest, where a run begins.
 double stable_time_step(MechanicalSystem& system);
+
+/// The motion that limits the time step of central differences: that of the highest frequency.
+struct LimitingMotion {
+  double step = std::numeric_limits<double>::infinity();      ///< stable_time_step() [s]
+  double undamped = std::numeric_limits<double>::infinity();  ///< the same without stiffness damping [s]
+  std::vector<double> motion;   ///< by degrees of freedom in world axes; empty: nothing is stiff
+  std::vector<double> kinetic;  ///< each node's part of its kinetic energy; 1 in all
+};
+
+/// It costs twice what stable_time_step() does. @throws InputError  where a node has no inertia
+LimitingMotion limiting_motion(MechanicalSystem& system, const State& state);
 
 /// A run keeps its state every so many steps, to return to where it blows up.
 inline constexpr int kExplicitKeepEvery = 100;

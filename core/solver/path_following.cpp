@@ -56,7 +56,10 @@ class PathFollower {
     Newton newton(system_, settings_, {1, 0});
     const NewtonReport report = newton.solve();
     run_.newton_iterations += report.iterations;
-    if (report.status != NewtonStatus::converged) return give_up(report, "there is no equilibrium to start from");
+    if (report.status != NewtonStatus::converged) {
+      keep_failure(run_, system_);
+      return give_up(report, "there is no equilibrium to start from");
+    }
     state_ = system_.finish_step(0);
     begin();
     system_.evaluate();
@@ -233,6 +236,7 @@ class PathFollower {
         length *= 2;
       }
     }
+    keep_failure(run_, system_);
     begin();
     const std::string why = failed.status == NewtonStatus::converged ? "steps of any length meet another path; " : "";
     give_up(failed, why + (displacement() ? "where the controlled displacement turns back (snap-back), only control = "

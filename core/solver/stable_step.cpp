@@ -1,12 +1,13 @@
 #include "core/model/errors.hpp"
 #include "core/solver/dependents.hpp"
 #include "core/solver/explicit_dynamics.hpp"
+#include "core/solver/lanczos.hpp"
 #include "core/solver/node_inertia.hpp"
 #include "core/solver/small_factor.hpp"
-#include "core/solver/tridiagonal.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <sstream>
@@ -60,52 +61,58 @@ class HighestFrequency {
 
   /// ω² [1/s²]. @param inverse_step  of the viscous stress [1/s]
   double squared(double inverse_step) {
-    constexpr int kMost = 400, kLook = 10;
-    constexpr double kSettled = 1e-4;
-    const auto n = at(dofs_.total());
-    std::vector<double> v(n), y(n), y_old(n, 0.0), w(n);
     history_.inverse_step = inverse_step;
+    std::vector<double> w(at(dofs_.total()));
     executor_.gradient(state_, history_, w);
     executor_.linearize(state_, history_, Tangent::full, lin_);
     lin_.low_rank = fluids_;
     dependents_.transfer(w, dependent_forces_);
     dependents_.add_turning(dependent_forces_, lin_.node_blocks);
-    std::mt19937 random(1);
-    for (double& x : y) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
-    filter_.clear_fixed(y);
-    std::vector<double> diagonal, off;
-    double beta = 0, found = 0, looked = 0;
-    for (int k = 1; k <= std::min(kMost, filter_.free_count()); ++k) {
-      solve_mass(y, v);
-      double norm2 = 0;
-      for (std::size_t i = 0; i < n; ++i) norm2 += v[i] * y[i];
-      beta = std::sqrt(norm2);
-      if (!(beta > 1e-8 * std::abs(found))) break;
-      if (k > 1) off.push_back(beta);
-      for (std::size_t i = 0; i < n; ++i) {
-        v[i] /= beta;
-        y[i] /= beta;
+    found_ = iterate({});
+    return found_.value;
+  }
+
+  /// The motion of the last call, by repeating its iterations: world axes, 1/√kg in all, and each node's part of it.
+  void motion(LimitingMotion& out) {
+    if (found_.diagonal.empty()) return;
+    const std::vector<double> s = largest_eigenvector(found_.diagonal, found_.off, found_.value);
+    std::vector<double> x(at(dofs_.total()), 0.0), momentum = x;
+    iterate([&](std::size_t k, const std::vector<double>& v, const std::vector<double>& y) {
+      for (std::size_t i = 0; i < x.size() && k < s.size(); ++i) {
+        x[i] += s[k] * v[i];
+        momentum[i] += s[k] * y[i];
       }
-      multiply(v, w);
-      double alpha = 0;
-      for (std::size_t i = 0; i < n; ++i) alpha += v[i] * w[i];
-      diagonal.push_back(alpha);
-      const double beside = k > 1 ? beta : 0.0;
-      for (std::size_t i = 0; i < n; ++i) {
-        const double next = w[i] - alpha * y[i] - beside * y_old[i];
-        y_old[i] = y[i];
-        y[i] = next;
+    });
+    out.kinetic.assign(at(dofs_.node_count()), 0.0);
+    double sum = 0;
+    for (int node = 0; node < dofs_.node_count(); ++node) {
+      for (int k = 0; k < dofs_.size(node); ++k) {
+        const std::size_t i = at(dofs_.begin(node) + k);
+        out.kinetic[at(node)] += x[i] * momentum[i];
       }
-      if (k % kLook == 0 || k == 1) {
-        found = largest_eigenvalue(diagonal, off);
-        if (k > 1 && found - looked <= kSettled * found) break;
-        looked = found;
-      }
+      sum += out.kinetic[at(node)];
     }
-    return diagonal.empty() ? 0.0 : std::max(0.0, largest_eigenvalue(diagonal, off));
+    for (double& part : out.kinetic) part /= sum;
+    filter_.to_global(x);
+    dependents_.expand(x);
+    out.motion = std::move(x);
   }
 
  private:
+  using Vector = std::vector<double>;
+
+  LanczosValue iterate(const std::function<void(std::size_t, const Vector&, const Vector&)>& each) {
+    Vector y(at(dofs_.total()));
+    std::mt19937 random(1);
+    for (double& x : y) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
+    filter_.clear_fixed(y);
+    LanczosOptions options;
+    options.most = std::min(options.most, filter_.free_count());
+    return largest_ratio(
+        std::move(y), options, [&](const Vector& r, Vector& v) { solve_mass(r, v); },
+        [&](const Vector& v, Vector& w) { multiply(v, w); }, each);
+  }
+
   void solve_mass(const std::vector<double>& y, std::vector<double>& v) const {
     for (int node = 0; node < dofs_.node_count(); ++node) {
       const int n = dofs_.size(node), first = dofs_.begin(node);
@@ -137,7 +144,28 @@ class HighestFrequency {
   StrainHistory history_;
   Linearization lin_;
   std::vector<double> inverse_mass_, global_, dependent_forces_;
+  LanczosValue found_;  ///< of the last call of squared()
 };
+
+/// The stable step with its margin; leaves `highest` at the viscous stress that belongs to it.
+LimitingMotion stable_step_of(HighestFrequency& highest, bool damped) {
+  LimitingMotion out;
+  const double elastic = highest.squared(0);
+  if (!(elastic > 0)) return out;
+  double dt = 2 / std::sqrt(elastic);
+  out.step = out.undamped = kStableMargin * dt;
+  if (!damped) return out;
+  // The limit is dt² (K + 2 C / dt) = 4 M: ω² grows with 2/dt, by a line that each round finds anew.
+  for (int round = 0; round < 20; ++round) {
+    const double damping = 0.5 * dt * std::max(0.0, highest.squared(2 / dt) - elastic);
+    const double next = 4 / (damping + std::sqrt(damping * damping + 4 * elastic));
+    const bool settled = std::abs(next - dt) <= 1e-4 * dt;
+    dt = next;
+    if (settled) break;
+  }
+  out.step = kStableMargin * dt;
+  return out;
+}
 
 }  // namespace
 
@@ -158,19 +186,15 @@ void require_inertia(const Model& model, const DofFilter& filter) {
 double stable_time_step(MechanicalSystem& system, const State& state) {
   if (system.filter().free_count() == 0) return std::numeric_limits<double>::infinity();
   HighestFrequency highest(system, state);
-  const double elastic = highest.squared(0);
-  if (!(elastic > 0)) return std::numeric_limits<double>::infinity();
-  double dt = 2 / std::sqrt(elastic);
-  if (!system.model().points.damped) return kStableMargin * dt;
-  // The limit is dt² (K + 2 C / dt) = 4 M: ω² grows with 2/dt, by a line that each round finds anew.
-  for (int round = 0; round < 20; ++round) {
-    const double damping = 0.5 * dt * std::max(0.0, highest.squared(2 / dt) - elastic);
-    const double next = 4 / (damping + std::sqrt(damping * damping + 4 * elastic));
-    const bool settled = std::abs(next - dt) <= 1e-4 * dt;
-    dt = next;
-    if (settled) break;
-  }
-  return kStableMargin * dt;
+  return stable_step_of(highest, system.model().points.damped).step;
+}
+
+LimitingMotion limiting_motion(MechanicalSystem& system, const State& state) {
+  if (system.filter().free_count() == 0) return {};
+  HighestFrequency highest(system, state);
+  LimitingMotion out = stable_step_of(highest, system.model().points.damped);
+  if (std::isfinite(out.step)) highest.motion(out);
+  return out;
 }
 
 double stable_time_step(MechanicalSystem& system) { return stable_time_step(system, State::at_rest(system.model())); }

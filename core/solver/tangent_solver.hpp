@@ -7,6 +7,7 @@
 #include "core/solver/low_rank.hpp"
 #include "core/solver/settings.hpp"
 #include "core/solver/stability.hpp"
+#include "core/solver/tangent_condition.hpp"
 #include "core/solver/vectors.hpp"
 
 #include <functional>
@@ -50,6 +51,10 @@ class TangentSolver {
   /// @param made     iterations of CG in the run so far
   /// @param current  `at` is that of the last solve, but for a correction too small to matter
   SoftestDirection softest(const Linearization& at, long made, bool current);
+
+  /// Of a tangent that is symmetric and positive definite: eigenvalues by Lanczos iterations, to about a percent.
+  /// @param most_flops  a factor that takes more operations is left out (tangent_condition.cpp)
+  TangentCondition condition(const Linearization& at, double most_flops);
 
   /// Cholesky is used, and not CG.
   bool direct();

@@ -21,6 +21,7 @@ TEST(Quality, regular_tetrahedron) {
   EXPECT_NEAR(q.greatest_dihedral.value, angle, 1e-9);
   EXPECT_NEAR(q.least_jacobian.value, std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(q.shortest_height.value, 4 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(q.least_ratio.value, 1, 1e-12);  // a regular one
   EXPECT_NEAR(q.volume, 8.0 / 3, 1e-12);
   EXPECT_NEAR(q.least_volume.value, 1, 1e-12);
   EXPECT_EQ(q.least_volume.number, 7);
@@ -37,7 +38,9 @@ TEST(Quality, bricks) {
       q.sentence,
       "4 quadratic hexahedra on 51 nodes: dihedral angles from 90 (element 1) to 90 degrees (element 1), smallest "
       "volume 1 (element 1) of the mean, smallest scaled Jacobian 1 (element 1), shortest height 0.1 m "
-      "(element 1)");
+      "(element 1), least mean ratio 0.323 (element 1 at (0.25, 0.5, 0.05))");
+  // Edges 0.5, 1, 0.1, and the same at any size.
+  EXPECT_NEAR(q.least_ratio.value, 3 * std::pow(0.05, 2.0 / 3) / 1.26, 1e-12);
 }
 
 TEST(Quality, slivers_and_folded_corners) {
