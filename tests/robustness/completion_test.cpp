@@ -31,9 +31,9 @@ class Completion : public SceneRuns {
 };
 
 TEST_F(Completion, CommandsOptionsAndScenes) {
-  EXPECT_EQ(offered("fascia "),
-            (std::vector<std::string>{"run", "check", "rerun", "compare", "study", "tune", "verify", "explain", "bench",
-                                      "list", "completion", "--help", "--version", "organs.toml"}));
+  EXPECT_EQ(offered("fascia "), (std::vector<std::string>{"run", "check", "rerun", "compare", "study", "tune", "verify",
+                                                          "explain", "extremes", "bench", "list", "completion",
+                                                          "--help", "--version", "organs.toml"}));
   EXPECT_EQ(offered("fascia run o"), std::vector<std::string>{"organs.toml"});
   EXPECT_EQ(offered("fascia run --ver"), std::vector<std::string>{"--verbose"});
   EXPECT_EQ(offered("fascia run organs.toml --backend c"), (std::vector<std::string>{"cpu", "cuda"}));
