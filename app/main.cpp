@@ -189,6 +189,8 @@ CLI::App* add_extremes(CLI::App& app, ExtremesOptions& options) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   extremes->add_option("--output", options.output, "directory of the map")->capture_default_str();
   extremes->add_option("--compare", options.compare, "extremes.csv of an older map: exit 3 where a cell is worse");
+  extremes->add_option("--beside", options.beside,
+                       "what another program said of the cells: a table of bench/calculix.py");
   extremes
       ->add_option("--quicker-than", options.quicker_than, "with --compare: only cells that took less seconds there")
       ->check(number_from(0, true, false));

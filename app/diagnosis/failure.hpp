@@ -19,7 +19,7 @@ struct FailureMarks {
 };
 
 /// What is known of a run that failed.
-struct Failure {
+struct Failure {                    // NOLINT(bugprone-exception-escape): moving JSON throws nothing
   State state;                      ///< where it failed; places that were not finite stand as in the last good state
   std::vector<FailureMarks> marks;  ///< of each body
   std::string text;                 ///< "worst at element 12 at (..) of body "b": det F = -0.3 ..", and what to change

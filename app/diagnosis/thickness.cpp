@@ -26,7 +26,8 @@ double area_of(const TriangleMesh& surface) {
 /// Mean length of the edges of the cells [m].
 double spacing_of(const SimulatedBody& b) {
   const BodyCells& cells = b.body->cells();
-  const double volume = b.body->volume() / static_cast<double>(cells.nodes.size() / at(cells.nodes_per_cell));
+  const std::size_t count = cells.nodes.size() / at(cells.nodes_per_cell);
+  const double volume = b.body->volume() / static_cast<double>(count);
   return std::cbrt(cells.type == CellType::tetrahedron ? 6 * volume : volume);
 }
 

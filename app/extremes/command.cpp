@@ -122,6 +122,7 @@ int run_extremes(const ExtremesOptions& options) {
     return 128 + interruption.signal();
   }
   map.seconds = seconds_since(start);
+  if (options.beside) read_beside(map, *options.beside);
   if (options.compare) compare_with_stored(map, *options.compare);
   directory.write("extremes.csv", csv_of(map));
   directory.write("extremes.html", html_of(map, directory.path()));

@@ -12,7 +12,8 @@ struct ExtremesOptions {
   std::vector<std::string> overrides;          ///< of the scene
   std::filesystem::path output = "results/extremes";
   std::optional<std::filesystem::path> compare;  ///< a stored extremes.csv
-  std::vector<std::string> only;                 ///< cells whose names hold all of these; none: all
+  std::optional<std::filesystem::path> beside;  ///< what another program said of the cells, as bench/calculix.py writes
+  std::vector<std::string> only;                ///< cells whose names hold all of these; none: all
   std::optional<std::string> backend;
   int jobs = 0;               ///< runs at once; 0: as many as there are processors
   double time_limit = 60;     ///< of each run [s]

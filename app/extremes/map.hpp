@@ -25,6 +25,7 @@ struct ExtremesMap {
   std::vector<std::string> files;        ///< of their scenes, "cells/…toml"
   std::vector<std::string> regressions;  ///< sentences: cells that are worse than in a stored map
   std::vector<std::string> gains;        ///< sentences: cells that are better
+  std::vector<std::string> others;       ///< what another program said of each cell; empty: nothing
   double seconds = 0;
 };
 
@@ -47,6 +48,11 @@ void keep_quick(std::vector<ExtremeCell>& cells, const std::filesystem::path& st
 /// Compares with a stored extremes.csv: a cell that got worse is a regression.
 /// @throws InputError  no such table, or one that is not as a map is written: its line, and what is wrong
 void compare_with_stored(ExtremesMap& map, const std::filesystem::path& stored);
+
+/// Reads what another program said of cells: rows of a cell's file without ".toml", this program's status, the other's
+/// and the difference of both, below a head whose third cell is the other's name.
+/// @throws InputError  it is no such table, or none of its rows is a cell of the map
+void read_beside(ExtremesMap& map, const std::filesystem::path& table);
 
 /// extremes.html @param scenes  the folder that holds cells/, as one names it in a shell
 std::string html_of(const ExtremesMap& map, const std::filesystem::path& scenes);

@@ -47,13 +47,15 @@ std::string sign_of(const CellOutcome& o) {
   }
 }
 
-std::string detail_of(const ExtremeCell& c, const CellOutcome& o) {
+std::string detail_of(const ExtremeCell& c, const CellOutcome& o, const std::string& other) {
   std::string text = fmt::format("{}: {}", c.name(), name_of(o.verdict));
   if (o.status != name_of(o.verdict)) text += fmt::format(" ({})", o.status);
   if (o.difference) text += fmt::format(", differs from its twin by {:.1e}", *o.difference);
   if (o.theory_error) text += fmt::format(", tip {:+.2g} % from the theory of beams", 100 * *o.theory_error);
   text += fmt::format(", {:.2g} s", o.seconds);
-  return o.reason.empty() ? text : text + "\n" + o.reason;
+  for (const std::string& line : {o.reason, other})
+    if (!line.empty()) text += "\n" + line;
+  return text;
 }
 
 template <class T>
@@ -81,7 +83,7 @@ HeatMap map_of(const ExtremesMap& map, const std::string& axis, const std::files
     HeatCell& cell = heat.cells[at[i].first][at[i].second];
     cell.state = state_of(map.outcomes[i].verdict);
     cell.sign = sign_of(map.outcomes[i]);
-    cell.detail = detail_of(map.cells[i], map.outcomes[i]);
+    cell.detail = detail_of(map.cells[i], map.outcomes[i], map.others.empty() ? "" : map.others[i]);
     cell.command = "fascia run " + quoted_for_shell((scenes / map.files[i]).string());
   }
   return heat;

@@ -14,6 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A message without the folder of the scene, which is another one the next time.
+void leave_out(std::string& message, const fs::path& folder) {
+  const std::string prefix = folder.string() + "/";
+  for (std::size_t at = message.find(prefix); at != std::string::npos; at = message.find(prefix, at))
+    message.erase(at, prefix.size());
+}
+
 /// A text as a file's name: letters, digits, dots, signs and dashes.
 std::string file_name(const std::string& text) {
   std::string name;
@@ -64,6 +71,7 @@ void run_map(ExtremesMap& map, const fs::path& directory, const std::function<vo
           std::error_code ignored;
           fs::remove_all(children[k].output, ignored);
           if (result.summary.is_object()) result.summary.erase("provenance");
+          leave_out(result.message, children[k].scene.parent_path());
           into[cells[k]] = std::move(result);
           tell(++ended, 2 * n);
         },

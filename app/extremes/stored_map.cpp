@@ -86,6 +86,27 @@ void keep_quick(std::vector<ExtremeCell>& cells, const std::filesystem::path& pa
   });
 }
 
+void read_beside(ExtremesMap& map, const std::filesystem::path& path) {
+  const std::vector<std::vector<std::string>> rows = read_csv(io::read_file(path));
+  if (rows.empty() || rows.front().size() != 4)
+    throw InputError(
+        fmt::format("{}:1: must have four columns: cell, fascia, the other program's name, difference", path.string()));
+  std::map<std::string, std::string> said;
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    if (rows[r].size() != 4) throw InputError(fmt::format("{}:{}: must have four cells", path.string(), r + 1));
+    said["cells/" + rows[r][0] + ".toml"] =
+        fmt::format("{}: {}{}", rows.front()[2], rows[r][2],
+                    rows[r][3].empty() ? "" : fmt::format(", differs from it by {}", rows[r][3]));
+  }
+  std::size_t known = 0;
+  for (const std::string& file : map.files) {
+    const auto found = said.find(file);
+    map.others.push_back(found == said.end() ? "" : found->second);
+    known += found != said.end() ? 1 : 0;
+  }
+  if (known == 0) throw InputError(fmt::format("{}: none of its rows is a cell of this map", path.string()));
+}
+
 void compare_with_stored(ExtremesMap& map, const std::filesystem::path& path) {
   const std::map<std::string, StoredCell> stored = read_stored(path);
   std::size_t unknown = 0;

@@ -160,6 +160,17 @@ TEST_F(StoredMap, RefusesWhatIsNone) {
   EXPECT_NE(refusal().find("a quote begins and does not end"), std::string::npos) << refusal();
 }
 
+TEST_F(StoredMap, TellsWhatAnotherProgramSaid) {
+  map_.files = {"cells/one.toml", "cells/two.toml"};
+  write("cell,fascia,calculix,difference\ntwo,inverted,converged,\n");
+  read_beside(map_, file());
+  EXPECT_EQ(map_.others, (std::vector<std::string>{"", "calculix: converged"}));
+  write("cell,fascia,calculix,difference\nthree,inverted,converged,\n");
+  EXPECT_THROW(read_beside(map_, file()), InputError);
+  write("cell\n");
+  EXPECT_THROW(read_beside(map_, file()), InputError);
+}
+
 TEST(Csv, ReadsWhatItWrites) {
   const std::vector<std::string> row{"a,b", "say \"x\"", "two\nlines", ""};
   EXPECT_EQ(read_csv(csv_row(row) + csv_row({"1", "2"})), (std::vector<std::vector<std::string>>{row, {"1", "2"}}));
