@@ -241,7 +241,7 @@ TEST_F(Similarity, FarBodiesWarnOfLostDigits) {
   EXPECT_NE((r.out + r.err).find("keep 6 digits of its size"), std::string::npos) << r.out << r.err;
   write("near.toml", moved(bar(kBodies[0].text, kFace), {4e6, 0, 0}));
   const ProgramResult near = fascia({"check", "near.toml"});
-  EXPECT_EQ((near.out + near.err).find("digits"), std::string::npos) << near.out << near.err;
+  EXPECT_EQ((near.out + near.err).find("digits of its size"), std::string::npos) << near.out << near.err;
 }
 
 /// Weights that reach over far too many frames make a stiffness that is as good as singular: check says so.
