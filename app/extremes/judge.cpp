@@ -83,6 +83,15 @@ std::optional<double> theory_error(const ExtremeCell& cell, const std::map<std::
   return std::sqrt(squares) / *cell.theory - 1;
 }
 
+/// None where there is no such probe.
+std::optional<double> size_of(const std::map<std::string, ProbeNumbers>& probes) {
+  std::optional<double> size;
+  for (const auto& [name, p] : probes)
+    if (p.unit == "m")
+      for (const double v : p.values) size = std::max(size.value_or(0), std::abs(v));
+  return size;
+}
+
 CellVerdict of_failure(const ChildResult& run) {
   if (run.timed_out) return CellVerdict::limit;
   if (run.message.find("out of memory") != std::string::npos) return CellVerdict::limit;
@@ -117,6 +126,7 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
     return outcome;
   }
   outcome.theory_error = theory_error(cell, numbers);
+  outcome.size = size_of(numbers);
   if (twin.exit_status != kDone) {
     outcome.verdict = CellVerdict::unconfirmed;
     outcome.reason = "the twin ended so: " + twin.message;

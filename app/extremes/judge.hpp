@@ -34,6 +34,7 @@ struct CellOutcome {
   std::string reason;                  ///< its message, or what is wrong
   std::optional<double> difference;    ///< largest of the probes, relative, to the twin
   std::optional<double> theory_error;  ///< relative, of the tip, to the theory of beams
+  std::optional<double> size;          ///< largest number of the probes in metres [m]
   double seconds = 0;                  ///< that the run took
 };
 

@@ -14,8 +14,8 @@ namespace fascia::app {
 namespace {
 
 /// extremes.csv begins with these; a later version that means something else by them has other names.
-const std::vector<std::string> kColumns{"row",        "axis",         "value",   "verdict", "status",
-                                        "difference", "theory_error", "seconds", "reason"};
+const std::vector<std::string> kColumns{"row",        "axis",         "value", "verdict", "status",
+                                        "difference", "theory_error", "size",  "seconds", "reason"};
 
 std::string key_of(const std::string& row, const std::string& axis, const std::string& value) {
   return row + ": " + axis + " " + value;
@@ -26,8 +26,13 @@ std::string rounded(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.1e}", *value) : "";
 }
 
+/// A right cell whose displacement is another one by more is a regression: twins share a fault of a formula, an older
+/// map does not. Verdicts allow a tenth of it.
+constexpr double kAllowedChange = 1e-5;
+
 struct StoredCell {
   CellVerdict verdict;
+  double size;  ///< 0: not told
   double seconds;
 };
 
@@ -53,8 +58,8 @@ std::map<std::string, StoredCell> read_stored(const std::filesystem::path& path)
       fail(r + 1, fmt::format("{} cells in the place of {}", row.size(), kColumns.size()));
     const std::optional<CellVerdict> verdict = verdict_of(row[3]);
     if (!verdict) fail(r + 1, fmt::format("\"{}\" is no verdict", row[3]));
-    const double seconds = std::strtod(row[7].c_str(), nullptr);
-    if (!stored.emplace(key_of(row[0], row[1], row[2]), StoredCell{*verdict, seconds}).second)
+    const double size = std::strtod(row[7].c_str(), nullptr), seconds = std::strtod(row[8].c_str(), nullptr);
+    if (!stored.emplace(key_of(row[0], row[1], row[2]), StoredCell{*verdict, size, seconds}).second)
       fail(r + 1, fmt::format("\"{}\" stands there twice", key_of(row[0], row[1], row[2])));
   }
   return stored;
@@ -72,8 +77,9 @@ std::string csv_of(const ExtremesMap& map) {
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
     const ExtremeCell& c = map.cells[i];
     const CellOutcome& o = map.outcomes[i];
-    text += csv_row({c.row, c.axis, c.value, name_of(o.verdict), o.status, rounded(o.difference),
-                     rounded(o.theory_error), fmt::format("{:.2g}", o.seconds), o.reason});
+    text +=
+        csv_row({c.row, c.axis, c.value, name_of(o.verdict), o.status, rounded(o.difference), rounded(o.theory_error),
+                 o.size ? fmt::format("{:.9g}", *o.size) : "", fmt::format("{:.2g}", o.seconds), o.reason});
   }
   return text;
 }
@@ -119,6 +125,11 @@ void compare_with_stored(ExtremesMap& map, const std::filesystem::path& path) {
     }
     const CellOutcome& now = map.outcomes[i];
     const CellVerdict before = found->second.verdict;
+    const double size = found->second.size;
+    if (before == CellVerdict::right && now.verdict == CellVerdict::right && size > 0 && now.size &&
+        !(std::abs(*now.size - size) <= kAllowedChange * size))
+      map.regressions.push_back(
+          fmt::format("{}: the largest displacement was {:.9g} m, is {:.9g} m", c.name(), size, *now.size));
     if (rank(now.verdict) == rank(before)) continue;
     const bool worse = rank(now.verdict) > rank(before);
     (worse ? map.regressions : map.gains)

@@ -31,7 +31,7 @@ class ExtremesProgram : public testing::Test {
 /// map at the ends of its axes.
 TEST_F(ExtremesProgram, TheReducedMapIsNoWorseThanTheStoredOne) {
   const ProgramResult r =
-      extremes({"--reduced", "--compare", (source_dir() / "docs/extremes.csv").string(), "--quicker-than", "0.12"});
+      extremes({"--reduced", "--compare", (source_dir() / "docs/extremes.csv").string(), "--quicker-than", "0.08"});
   EXPECT_EQ(r.status, 0) << r.out << r.err;
   EXPECT_EQ(r.out.find("worse: "), std::string::npos) << r.out;
 }

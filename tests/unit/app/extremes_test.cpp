@@ -144,6 +144,19 @@ TEST_F(StoredMap, TellsWhatGotWorseAndBetter) {
   EXPECT_EQ(map_.gains.size(), 1U);
 }
 
+/// A fault that a cell and its twin share.
+TEST_F(StoredMap, TellsThatADisplacementIsAnotherOne) {
+  map_.outcomes[0].size = 0.125;
+  write(csv_of(map_));
+  map_.outcomes[0].size = 0.1250005;
+  compare_with_stored(map_, file());
+  EXPECT_TRUE(map_.regressions.empty());
+  map_.outcomes[0].size = 0.12501;
+  compare_with_stored(map_, file());
+  ASSERT_EQ(map_.regressions.size(), 1U);
+  EXPECT_NE(map_.regressions[0].find("was 0.125 m, is 0.12501 m"), std::string::npos) << map_.regressions[0];
+}
+
 TEST_F(StoredMap, RefusesWhatIsNone) {
   write("row,axis\n1,2\n");
   EXPECT_NE(refusal().find("extremes.csv:1: the columns are not"), std::string::npos) << refusal();
