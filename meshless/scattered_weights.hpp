@@ -34,8 +34,8 @@ struct ScatteredWeights {
   /// Π, projector on the directions in which linear fields are reproduced: Π (Σ w_i x_i − X) = 0, Π Σ x_i ∇w_iᵀ = Π.
   Mat3d consistent{};
   bool lowered = false;  ///< linear fields are reproduced in fewer directions than the matter has
-  /// Of moving least squares: how wide the frames are spread in their narrowest direction of the matter, the smallest
-  /// eigenvalue there of C over Σ ω |x_i − X|² (MlsWeights); 1 of others [-].
+  /// Tells, of moving least squares, how wide the frames are spread in their narrowest direction of the matter, the
+  /// smallest eigenvalue there of C over Σ ω |x_i − X|² (MlsWeights); 1 of others [-].
   double spread = 1;
 };
 

@@ -18,7 +18,7 @@ void clear_infinite(std::vector<io::FieldArray>& fields) {
       if (!std::isfinite(value)) value = 0;
 }
 
-/// Of the points of each cell: the least volume, and whether one is suspect.
+/// Takes, from the points of each cell, the least volume, and whether one is suspect.
 void add_marks_of_cells(const SimulatedBody& b, const FailureMarks& m, io::VisualMesh& mesh) {
   const std::size_t count = mesh.volumes[0].size();
   std::vector<double> volume(count, INFINITY), suspect(count, 0.0);

@@ -18,7 +18,7 @@ struct FailureMarks {
   std::vector<char> suspect;   ///< of each integration point: 1 where the failure is
 };
 
-/// What is known of a run that failed.
+/// All that is known of a run that failed.
 struct Failure {                    // NOLINT(bugprone-exception-escape): moving JSON throws nothing
   State state;                      ///< where it failed; places that were not finite stand as in the last good state
   std::vector<FailureMarks> marks;  ///< of each body
@@ -28,7 +28,7 @@ struct Failure {                    // NOLINT(bugprone-exception-escape): moving
 
 class RunResult;
 
-/// Of a run that failed: writes the state in which it did, adds the place to its message, and returns "failure" of
+/// Writes the state in which a run failed, adds the place to its message, and returns "failure" of
 /// summary.json. Null where nothing is known (a run on the GPU, one that was interrupted).
 /// @param end      the last state of the run
 /// @param unshown  it has values that no file can hold

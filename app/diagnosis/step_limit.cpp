@@ -50,8 +50,8 @@ class Search {
     for (std::size_t b = 0; b < s.bodies.size(); ++b) look(static_cast<int>(b));
   }
 
-  /// Of the point with most strain energy; where thin points have most of the motion, or no point much of the energy,
-  /// of the one whose nodes move most.
+  /// Describes the point with most strain energy; where thin points have most of the motion, or no point much of the
+  /// energy, of the one whose nodes move most.
   StepLimit found() const {
     const double total = 2 / std::pow(limit_.undamped / kStableMargin, 2);  // ω²/2
     const Candidate& best = strained_.energy > kMost * total || moved_.body < 0 ? strained_ : moved_;
@@ -100,7 +100,7 @@ class Search {
     }
   }
 
-  /// What makes it faster than the rest of the model.
+  /// Says why it is faster than the rest of the model.
   std::string differences(double length, double stiffness, double rho) const {
     std::vector<std::string> said;
     const double V = means_.volume;

@@ -6,8 +6,8 @@
 
 namespace fascia::app {
 
-/// Of a slender or flat body of elements of order 1 that has no node inside: one element through its thickness, which
-/// hardly bends. Empty otherwise.
+/// Tells of a slender or flat body of elements of order 1 that has no node inside: one element through its thickness,
+/// which hardly bends. Empty otherwise.
 std::string thickness_line(const Simulation& simulation, std::size_t body);
 
 }  // namespace fascia::app

@@ -25,7 +25,7 @@ std::string name_of(CellVerdict verdict);
 /// @return none  no such name
 std::optional<CellVerdict> verdict_of(std::string_view name);
 
-/// Whether a map with such a cell is sound.
+/// True where a user would take a wrong answer for a right one, or gets none in time.
 inline bool leads_astray(CellVerdict v) { return v > CellVerdict::stopped; }
 
 struct CellOutcome {

@@ -38,7 +38,7 @@ std::string name_of(Model model);
 bool is_element(Model model);  ///< of tetrahedra or hexahedra alone
 bool is_thin(Model model);     ///< of a surface or a line
 
-/// What acts on the beam, which is held at x = 0.
+/// Loads and motions of the beam, which is held at x = 0.
 enum class Action {
   bend,      ///< force F = amount 3 E I / L^2 at the far end: moves it by amount L in linear theory
   weight,    ///< gravity across, such that it moves by about amount L

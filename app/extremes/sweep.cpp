@@ -65,7 +65,7 @@ class Sweep {
     }
   }
 
-  /// The same experiment, larger: materials stay; loads, gravity and times go with the lengths, so that strains stay.
+  /// Makes the experiment larger: materials stay; loads, gravity and times go with the lengths, so that strains stay.
   void size() {
     for (const double k : {1e-4, 1e-2, 1e2, 1e4}) {
       Value document = document_;
@@ -109,7 +109,7 @@ class Sweep {
     cells_.push_back({row_, axis, value, std::move(text), std::nullopt});
   }
 
-  /// Of all materials. @return false where there is none with one
+  /// Sets it in all materials. @return false where there is none with one
   static bool set_poisson(Value& value, double poisson) {
     bool found = false;
     if (Table* members = value.as_table())

@@ -12,7 +12,7 @@ namespace {
 /// No powers of two, and no round ones.
 constexpr UnitFactors kOtherUnits{7.3, 0.37, 1.9};
 
-/// Of length 1, and of no symmetry that a body may have.
+/// A direction of length 1 and of no symmetry that a body may have.
 constexpr std::array kSkew{0.48, 0.6, 0.64};
 
 void largest(const nlohmann::ordered_json& value, double& size) {

@@ -11,7 +11,7 @@
 
 namespace fascia::app {
 
-/// The same scene in other units of mass, length and time; its numbers have no digits in common with the cell's.
+/// A cell's scene in other units of mass, length and time; its numbers have no digits in common with the cell's.
 struct Twin {
   std::string text;
   UnitFactors units;  ///< all 1 where files hold numbers that cannot be reached

@@ -81,7 +81,8 @@ class MechanicalSystem {
   /// @param current  the last direction was that of a correction too small to matter
   Stability stability(const State& end, long made, bool current);
 
-  /// Of the tangent at the state of the last evaluation (tangent_condition.cpp); see TangentSolver::condition().
+  /// Condition of the tangent at the state of the last evaluation (tangent_condition.cpp); see
+  /// TangentSolver::condition().
   TangentCondition condition(double most_flops);
 
   // What path following asks for (path_system.cpp).

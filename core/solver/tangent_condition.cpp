@@ -47,7 +47,7 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   Vector start(at(dofs.total()));
   for (double& x : start) x = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
   filter_.clear_fixed(start);
-  // As large in torques as in forces, by what each resists.
+  // It is as large in torques as in forces, by what each resists.
   for (int node = 0; node < dofs.node_count(); ++node)
     for (int k = 0, n = dofs.size(node); k < n; ++k)
       start[at(dofs.begin(node) + k)] /= std::sqrt(inverse_blocks_[dofs.block_begin(node) + at(n * k + k)]);

@@ -52,7 +52,7 @@ class TangentSolver {
   /// @param current  `at` is that of the last solve, but for a correction too small to matter
   SoftestDirection softest(const Linearization& at, long made, bool current);
 
-  /// Of a tangent that is symmetric and positive definite: eigenvalues by Lanczos iterations, to about a percent.
+  /// Looks at a tangent that is symmetric and positive definite: eigenvalues by Lanczos iterations, to about a percent.
   /// @param most_flops  a factor that takes more operations is left out (tangent_condition.cpp)
   TangentCondition condition(const Linearization& at, double most_flops);
 

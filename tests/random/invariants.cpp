@@ -44,8 +44,8 @@ double mass_of(const Outcome& run) {
   return mass;
 }
 
-/// What the residual is a part of: the largest that was measured of a probe, a hundredth of the largest that was of its
-/// unit, and what cancels in it.
+/// The force that the residual is a part of: the largest that was measured of a probe, a hundredth of the largest that
+/// was of its unit, and what cancels in it.
 double scale_of(const RandomScene& scene, const Outcome& run, const Measured& probe) {
   double scale = 1e-2 * run.largest(probe.unit);
   for (const std::vector<double>& row : probe.rows)
@@ -62,7 +62,8 @@ double scale_of(const RandomScene& scene, const Outcome& run, const Measured& pr
   return scale;
 }
 
-/// What is left of displacements that cancel, and of none: 1e-11 of the largest displacement, 1e-17 of the width.
+/// Rounding leaves this of displacements that cancel, and of none: 1e-11 of the largest displacement, 1e-17 of the
+/// width.
 double rounding_of(const RandomScene& scene, const Outcome& run, const std::string& unit) {
   const Scales& s = scene.scales;
   const double size = run.largest("m") + 1e-6 * s.width, strain = 1e-11 * size / s.width;
@@ -108,7 +109,7 @@ std::optional<std::string> balance_of_forces(const RandomScene& scene, const Out
   return fmt::format("reactions do not balance loads: {} N are left of {} N, {} allowed", length(sum), scale, allowed);
 }
 
-/// What is said to be within the tolerance is within that of the scene.
+/// A residual that is said to be within the tolerance is within that of the scene.
 std::optional<std::string> kept_tolerance(const Outcome& run) {
   static const std::regex within("residual ([0-9.e+-]+) .*within the tolerance ([0-9.e+-]+)");
   const std::string said = run.summary["convergence"];

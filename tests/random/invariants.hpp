@@ -13,7 +13,7 @@ namespace fascia::random_scenes {
 /// A run ended in a way that scripts know, says why, and wrote finite numbers. @return  what is wrong, in words
 std::vector<std::string> faults_of_end(const Outcome& run);
 
-/// What was made wrong on purpose is refused, by file, line and key.
+/// A scene that was made wrong on purpose is refused, by file, line and key.
 std::vector<std::string> faults_of_refusal(const RandomScene& scene, const SceneText& text, const Outcome& run);
 
 /// Balances and conservation laws that apply to a scene. @param checked  gets the names of those that were looked at

@@ -54,7 +54,7 @@ void add_probes(const Scales& scales, const std::vector<RowBody>& row, Json& sce
 /// Makes one thing wrong.
 void spoil(Draws& draws, RandomScene& scene);
 
-/// What lies between two places along x, as a region.
+/// A region between two places along x.
 Json slab(double from, double to, const Scales& scales);
 
 }  // namespace fascia::random_scenes

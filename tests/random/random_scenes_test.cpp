@@ -16,7 +16,7 @@ namespace {
 
 using namespace fascia::random_scenes;
 
-/// What a number of scenes came to.
+/// Counts of how scenes ended.
 struct Tally {
   std::map<std::string, int> counts;
   std::vector<double> seconds;  ///< of a processor, of each scene's run

@@ -17,7 +17,7 @@ struct Powers {
   int mass, length, time;
 };
 
-/// Of a unit as "kg m2/s".
+/// Reads the dimension of a unit such as "kg m2/s".
 Powers powers_of(const std::string& unit) {
   static const std::map<std::string, Powers> known{
       {"1", {0, 0, 0}}, {"rad", {0, 0, 0}}, {"byte", {0, 0, 0}}, {"m", {0, 1, 0}},  {"kg", {1, 0, 0}},
@@ -120,7 +120,7 @@ class Rewriter {
   const Frame& frame_;
 };
 
-/// What a reflection changes beside components: corners of boxes, the order of a block's, the normals of open sheets.
+/// A reflection changes more than components: corners of boxes, the order of a block's, the normals of open sheets.
 void mend_reflection(Json& scene, const Frame& frame) {
   visit(scene, [&](const Place& at) {
     Json& value = *at.value;

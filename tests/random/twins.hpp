@@ -21,14 +21,14 @@ struct Frame {
                              const std::string& unit) const;
 };
 
-/// The same scene with every number by its dimension and every direction in another frame.
+/// The scene with every number by its dimension and every direction in another frame.
 /// @param scene  without texts as quantities
 Json in_frame(const Json& scene, const Frame& frame);
 
 /// Why a scene has no exact twin in the frame; empty where it has one.
 std::string no_twin(const Json& scene, const Frame& frame);
 
-/// The same scene with numbers as texts in units that are not of the SI: "12 mm".
+/// The scene with numbers as texts in units that are not of the SI: "12 mm".
 Json with_texts(const Json& scene);
 
 /// The scene with the other linear solver; null where it solves no linear systems.

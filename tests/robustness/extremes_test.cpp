@@ -27,7 +27,7 @@ class ExtremesProgram : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// What was right stays right, and what was refused or stopped is not called converged: the quick cells of the stored
+/// Right cells stay right, and those refused or stopped are not called converged: the quick cells of the stored
 /// map at the ends of its axes, and slower ones of scattered frames, whose weights are their own.
 TEST_F(ExtremesProgram, TheReducedMapIsNoWorseThanTheStoredOne) {
   const std::string stored = (source_dir() / "docs/extremes.csv").string();

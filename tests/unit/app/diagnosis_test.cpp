@@ -16,7 +16,7 @@
 #include <fstream>
 #include <random>
 
-// What is told of a scene before its run, against dense eigenvalues and the power method.
+// Diagnosis of a scene before its run, against dense eigenvalues and the power method.
 namespace fascia::app::diagnosis_test {
 namespace {
 

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <iterator>
 
-// What a run leaves that failed: both states, the marks of what is suspect, and a message with a place.
+// A run that failed leaves these: both states, the marks of what is suspect, and a message with a place.
 namespace fascia::app::failure_test {
 namespace {
 
