@@ -1,7 +1,10 @@
 #include "app/extremes/other_units.hpp"
 
 #include "app/scene/diagnostics.hpp"
+#include "app/scene/overrides.hpp"
 #include "app/scene/units.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -30,10 +33,9 @@ const Shape* alternative_for(const Value& value, const Shape& shape) {
   for (const Shape& item : shape.items) {
     const Shape& s = resolved(item);
     const bool nested = s.type == Type::one_of && alternative_for(value, s) != nullptr;
+    const std::string* text = value.as_string();
     const bool number =
-        s.type == Type::number &&
-        (std::holds_alternative<double>(value.data) || std::holds_alternative<std::int64_t>(value.data) ||
-         (value.as_string() != nullptr && parse_quantity(*value.as_string(), s.unit).index() == 0));
+        s.type == Type::number && (number_in(value) || (text != nullptr && parse_quantity(*text, s.unit).index() == 0));
     const bool list = value.as_array() != nullptr && (s.type == Type::array || s.type == Type::tuple);
     const bool table = value.as_table() != nullptr && (s.type == Type::table || s.type == Type::named_tables);
     if (nested || number || list || table) return &s;
@@ -81,10 +83,8 @@ class Walk {
   void multiply(Value& value, const Shape& shape, const std::string& path) const {
     const double factor = factor_(shape.unit, path);
     if (factor == 1) return;
-    if (const double* number = std::get_if<double>(&value.data))
+    if (const std::optional<double> number = number_in(value))
       value.data = *number * factor;
-    else if (const std::int64_t* whole = std::get_if<std::int64_t>(&value.data))
-      value.data = static_cast<double>(*whole) * factor;
     else if (const std::string* text = value.as_string())
       if (const auto read = parse_quantity(*text, shape.unit); const double* quantity = std::get_if<double>(&read))
         value.data = *quantity * factor;
@@ -96,20 +96,13 @@ class Walk {
 /// True where a table of this document has a key.
 bool has(const Value& table, std::string_view key) { return table.find(key) != nullptr; }
 
-/// Sets a number of a table, which is made where it is missing.
-Value& member(Value& table, std::string_view key) {
-  if (Value* found = table.find(key)) return *found;
-  return table.as_table()->emplace_back(Member{std::string(key), {}, {}}).value;
-}
-
 /// A mesh's own numbers stand in a file: the transform of the body makes up for them.
 void enlarge_file(Value& body, double length) {
-  Value& transform = member(body, "transform");
-  if (transform.as_table() == nullptr) transform.data = Table{};
-  Value& scale = member(transform, "scale");
-  const double* number = std::get_if<double>(&scale.data);
-  const std::int64_t* whole = std::get_if<std::int64_t>(&scale.data);
-  scale.data = length * (number != nullptr ? *number : whole != nullptr ? static_cast<double>(*whole) : 1);
+  const Value* transform = body.find("transform");
+  const Value* scale = transform != nullptr ? transform->find("scale") : nullptr;
+  Diagnostics none("");
+  const double old = scale != nullptr ? number_in(*scale).value_or(1) : 1;
+  apply_override(body, fmt::format("transform.scale={:.17g}", length * old), none);
 }
 
 /// Numbers of other files, or of the clock on the wall.
@@ -149,6 +142,12 @@ double UnitFactors::of(std::string_view si_unit) const {
     i = end;
   }
   return factor;
+}
+
+std::optional<double> number_in(const Value& value) {
+  if (const double* number = std::get_if<double>(&value.data)) return *number;
+  if (const std::int64_t* whole = std::get_if<std::int64_t>(&value.data)) return static_cast<double>(*whole);
+  return std::nullopt;
 }
 
 void scale_numbers(Value& value, const Shape& shape,

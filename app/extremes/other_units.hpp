@@ -4,6 +4,7 @@
 #include "app/scene/schema.hpp"
 
 #include <functional>
+#include <optional>
 #include <string_view>
 
 /// A scene in other units: every number by its dimension, so that the run must end the same.
@@ -18,6 +19,9 @@ struct UnitFactors {
   /// @throws std::invalid_argument  a symbol that no key of a scene has
   double of(std::string_view si_unit) const;
 };
+
+/// The number that a value is, as a double; none where it is no number.
+std::optional<double> number_in(const Value& value);
 
 /// Multiplies numbers of a document by what `factor` says of their unit and of the path of their key,
 /// "bodies.liver.density". Texts with a unit become numbers in SI.

@@ -91,11 +91,10 @@ class Sweep {
     for (const double v : {1e-6, 1e-4, 1e-2, 1e-1, 1.0}) {
       Value document = document_;
       Diagnostics none("");
-      for (const std::string& change : {std::string("solver.duration="), std::string("solver.steps="),
-                                        fmt::format("solver.time_step={}", v), fmt::format("solver.steps={}", kSteps)})
-        if (document.find("solver")->find("duration") != nullptr || change != "solver.duration=")
-          if (document.find("solver")->find("steps") != nullptr || change != "solver.steps=")
-            apply_override(document, change, none);
+      for (const char* key : {"duration", "steps"})
+        if (solver->find(key) != nullptr) apply_override(document, fmt::format("solver.{}=", key), none);
+      apply_override(document, fmt::format("solver.time_step={}", v), none);
+      apply_override(document, fmt::format("solver.steps={}", kSteps), none);
       add("time step", fmt::format("{:g} s", v), document_text(document));
     }
   }

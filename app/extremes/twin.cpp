@@ -1,6 +1,10 @@
 #include "app/extremes/twin.hpp"
 
+#include "app/scene/diagnostics.hpp"
+#include "app/scene/overrides.hpp"
 #include "app/scene/toml_text.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -32,11 +36,6 @@ double disturbance(const nlohmann::ordered_json& summary) {
   return mass > 0 ? kDisturbance * force / mass : 0;
 }
 
-Value& member(Value& table, const std::string& key, Value otherwise) {
-  if (Value* found = table.find(key)) return *found;
-  return table.as_table()->emplace_back(Member{key, {}, std::move(otherwise)}).value;
-}
-
 }  // namespace
 
 std::string document_text(const Value& document) {
@@ -57,21 +56,18 @@ std::optional<Twin> disturbed_twin(const ExtremeCell& cell, const nlohmann::orde
   const double acceleration = disturbance(summary);
   if (acceleration == 0) return std::nullopt;
   Twin twin = twin_of(cell);
-  Value document = parse_toml(twin.text), none, zero;
-  none.data = Table{};
-  zero.data = Array(3);
-  for (Value& v : std::get<Array>(zero.data)) v.data = 0.0;
-  Value& gravity = member(member(document, "world", none), "gravity", zero);
-  Array* components = gravity.as_array();
-  if (components == nullptr || components->size() != kSkew.size()) return std::nullopt;
-  for (std::size_t i = 0; i < kSkew.size(); ++i) {
-    Value& c = (*components)[i];
-    const std::int64_t* whole = std::get_if<std::int64_t>(&c.data);
-    const double* number = std::get_if<double>(&c.data);
-    if (whole == nullptr && number == nullptr) return std::nullopt;
-    c.data =
-        (whole != nullptr ? static_cast<double>(*whole) : *number) + kSkew[i] * acceleration * twin.units.of("m/s2");
+  Value document = parse_toml(twin.text);
+  const Value* world = document.find("world");
+  const Value* gravity = world != nullptr ? world->find("gravity") : nullptr;
+  const Array* components = gravity != nullptr ? gravity->as_array() : nullptr;
+  std::array<double, 3> g{};
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const std::optional<double> old = components != nullptr ? number_in(components->at(i)) : 0.0;
+    if (!old) return std::nullopt;
+    g[i] = *old + kSkew[i] * acceleration * twin.units.of("m/s2");
   }
+  Diagnostics none("");
+  apply_override(document, fmt::format("world.gravity=[{:.17g}, {:.17g}, {:.17g}]", g[0], g[1], g[2]), none);
   twin.text = document_text(document);
   return twin;
 }

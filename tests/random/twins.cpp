@@ -1,5 +1,6 @@
 #include "tests/random/twins.hpp"
 
+#include "app/extremes/other_units.hpp"
 #include "tests/random/scene_tree.hpp"
 
 #include <fmt/format.h>
@@ -12,38 +13,6 @@
 
 namespace fascia::random_scenes {
 namespace {
-
-struct Powers {
-  int mass, length, time;
-};
-
-/// Reads the dimension of a unit such as "kg m2/s".
-Powers powers_of(const std::string& unit) {
-  static const std::map<std::string, Powers> known{
-      {"1", {0, 0, 0}}, {"rad", {0, 0, 0}}, {"byte", {0, 0, 0}}, {"m", {0, 1, 0}},  {"kg", {1, 0, 0}},
-      {"s", {0, 0, 1}}, {"N", {1, 1, -2}},  {"Pa", {1, -1, -2}}, {"J", {1, 2, -2}}, {"Hz", {0, 0, -1}}};
-  Powers sum{0, 0, 0};
-  int sign = 1;
-  std::string name;
-  const auto take = [&] {
-    if (name.empty()) return;
-    int power = sign;
-    if (name.size() > 1 && std::isdigit(static_cast<unsigned char>(name.back())) != 0) {
-      power *= name.back() - '0';
-      name.pop_back();
-    }
-    const Powers p = known.at(name);
-    sum = {sum.mass + power * p.mass, sum.length + power * p.length, sum.time + power * p.time};
-    name.clear();
-  };
-  for (const char c : unit) {
-    if (c == ' ' || c == '/') take();
-    if (c == '/') sign = -1;
-    if (c != ' ' && c != '/') name += c;
-  }
-  take();
-  return sum;
-}
 
 /// A reflection turns these about: vectors along an axis of rotation.
 bool is_axial(const std::string& key) {
@@ -139,10 +108,7 @@ void mend_reflection(Json& scene, const Frame& frame) {
 
 }  // namespace
 
-double Frame::factor(const std::string& unit) const {
-  const Powers p = powers_of(unit);
-  return std::pow(mass, p.mass) * std::pow(length, p.length) * std::pow(time, p.time);
-}
+double Frame::factor(const std::string& unit) const { return app::UnitFactors{mass, length, time}.of(unit); }
 
 std::vector<double> Frame::values(const std::vector<double>& old, const std::string& quantity,
                                   const std::string& unit) const {
