@@ -130,13 +130,29 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     warnings.add("stability", "the end state may be an unstable equilibrium: " + run.trouble);
   const bool judged = is_judged(s, run);
   if (judged) judge_stability(s, end, run, warnings);
-  for (const std::string& event : run.events) warnings.add("solver", event);
+  const auto doubt = [&](const char* name, const std::string& text) {
+    run.doubts.push_back(text);
+    warnings.add(name, text);
+  };
+  const bool followed = s.scene.solver.control != StaticControl::load;  // then what was passed is known
+  for (const std::string& event : run.events)
+    if (followed)
+      warnings.add("solver", event);
+    else
+      doubt("solver", event);
   if (run.indefinite_steps > 0)
-    warnings.add("time-step",
-                 fmt::format("in {} time step{}, first at t = {:.4g} s, the stiffness became indefinite on the way: so "
-                             "long a step may have "
-                             "several solutions, of which one was found; compare with a smaller time_step",
-                             run.indefinite_steps, run.indefinite_steps == 1 ? "" : "s", run.first_indefinite));
+    doubt(
+        "time-step",
+        fmt::format("in {} time step{}, first at t = {:.4g} s, the stiffness became indefinite on the way: so "
+                    "long a step may have several solutions, of which one was found; compare with a smaller time_step",
+                    run.indefinite_steps, run.indefinite_steps == 1 ? "" : "s", run.first_indefinite));
+  if (run.halved_steps > 0)
+    doubt("time-step",
+          fmt::format("{} time step{}, first at t = {:.4g} s, {} taken in parts, because Newton's method did not "
+                      "converge in one: their error of time is another one than that of the rest; compare with a "
+                      "smaller time_step",
+                      run.halved_steps, run.halved_steps == 1 ? "" : "s", run.first_halved,
+                      run.halved_steps == 1 ? "was" : "were"));
   if (run.residual_floor > 1e-3 && !(s.model.loads.empty() && s.model.surfaces.empty()))
     warnings.add("rounding",
                  fmt::format("rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion",

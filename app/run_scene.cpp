@@ -214,7 +214,10 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   if (out.failed) out.failure = keep_failed(s, state, !not_shown.empty(), out.run, files);
   out.couplings = coupling_report(s, system, state);
   for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
-  if (!snaps.warning().empty()) out.warnings.add("snap", snaps.warning());
+  if (!snaps.warning().empty()) {
+    out.run.doubts.push_back(snaps.warning());
+    out.warnings.add("snap", snaps.warning());
+  }
   out.times.output = output_seconds;
   if (out.run.status == RunStatus::interrupted) out.run.message = fmt::format("interrupted at {:.6g}", out.run.time);
   for (std::size_t i = 0; i < s.probes.size(); ++i) out.probes.push_back(probe_json(s.probes[i], files.last_values(i)));

@@ -103,6 +103,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, c
                   {"step_max", times.steps.percentile(1.0)}};
   j["peak_memory_bytes"] = static_cast<std::uint64_t>(peak_memory());
   j["warnings"] = s.warnings.summary();
+  j["doubts"] = run.doubts;
   j["probes"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
     const Probe& p = *s.probes[i].probe;

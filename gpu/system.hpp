@@ -172,6 +172,7 @@ class System {
   bool conservative_, extrapolates_, turning_, damped_;
   MotionSizes motions_;
   std::vector<double> masses_;  ///< part_masses()
+  std::vector<char> driven_;    ///< driven_parts()
 
   Pose start_;
   StepConstants step_;

@@ -30,7 +30,8 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
       turning_(model.has_frames()),
       damped_(model.points.damped),
       motions_(motion_sizes(model)),
-      masses_(part_masses(model)) {
+      masses_(part_masses(model)),
+      driven_(driven_parts(model)) {
   const auto n = at(model.node_count()), dofs = at(model.dof_count()), parts = at(model.points.part_count());
   const std::size_t frames = turning_ ? n : 0;
   for (auto* array : {&du_, &saved_du_, &u_}) array->resize(n);
@@ -236,6 +237,7 @@ Evaluation System<Space>::judge() {
         .tether = tethers,
         .momentum = q[kernels::kCancelled],
         .rounding = 4 * leverage * std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]), of_surfaces)};
+    forces[p].driven = driven_[p] != 0;
     forces[p].adrift = step_.h > 0 && forces[p].load == 0 && forces[p].reaction == 0 && tethers == 0 &&
                        forces[p].momentum > 0 && moves(static_cast<int>(p), forces[p].momentum);
   }

@@ -38,7 +38,7 @@ std::vector<Specimen> all_rows() {
 }
 
 ExtremeCell cell_of(const Specimen& s, const std::string& axis, const std::string& value) {
-  return {row_of(s), axis, value, s.text(), s.theory()};
+  return {row_of(s), axis, value, s.text(), s.theory(), s.young * s.section(), s.length};
 }
 
 }  // namespace

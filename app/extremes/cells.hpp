@@ -16,6 +16,7 @@ struct ExtremeCell {
   std::string value;             ///< "1e+12 Pa"
   std::string text;              ///< the scene, TOML
   std::optional<double> theory;  ///< size of the probe "tip" by the theory of beams [m]
+  double force = 0, length = 0;  ///< of the beam: E A [N], and its length [m]; 0: not known
 
   std::string name() const { return row + ": " + axis + " " + value; }
 };

@@ -14,8 +14,8 @@
 namespace fascia::app {
 namespace {
 
-constexpr std::array kVerdicts{"right",       "sensitive", "branch", "refused", "stopped",
-                               "unconfirmed", "limit",     "wrong",  "crashed"};
+constexpr std::array kVerdicts{"right",   "sensitive",   "branch", "warned", "refused",
+                               "stopped", "unconfirmed", "limit",  "wrong",  "crashed"};
 
 /// All numbers of a value, in their order; what is null is no number.
 void flatten(const nlohmann::ordered_json& value, std::vector<double>& numbers) {
@@ -54,10 +54,9 @@ struct Deviation {
   std::string probe;
 };
 
-/// The largest difference, each relative to the largest number of its unit.
+/// The largest difference, each relative to the largest number of its unit, or to `least` of that unit.
 Deviation deviation(const std::map<std::string, ProbeNumbers>& run, const std::map<std::string, ProbeNumbers>& twin,
-                    const UnitFactors& units) {
-  std::map<std::string, double> scales;
+                    std::map<std::string, double> scales, const UnitFactors& units = {}) {
   for (const auto& [name, p] : run)
     for (const double v : p.values) scales[p.unit] = std::max(scales[p.unit], std::abs(v));
   Deviation largest;
@@ -90,6 +89,17 @@ std::optional<double> size_of(const std::map<std::string, ProbeNumbers>& probes)
     if (p.unit == "m")
       for (const double v : p.values) size = std::max(size.value_or(0), std::abs(v));
   return size;
+}
+
+std::map<std::string, double> in_units(std::map<std::string, double> sizes, const UnitFactors& units) {
+  for (auto& [unit, size] : sizes) size *= units.of(unit);
+  return sizes;
+}
+
+/// Why the run says that another one may end elsewhere; empty where it does not.
+std::string first_doubt(const nlohmann::ordered_json& summary) {
+  const auto found = summary.find("doubts");
+  return found == summary.end() || found->empty() ? "" : found->front().get<std::string>();
 }
 
 CellVerdict of_failure(const ChildResult& run) {
@@ -127,28 +137,38 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
   }
   outcome.theory_error = theory_error(cell, numbers);
   outcome.size = size_of(numbers);
+  const std::map<std::string, double> least{{"N", kNothing * cell.force}, {"m", kNothing * cell.length}};
+  const auto stays = [&] {
+    if (runs.sharper->exit_status != kDone) return false;
+    const double change = deviation(numbers, probes_of(runs.sharper->summary), least).size;
+    outcome.reason += fmt::format("; a hundredth of the tolerance changes it by {:.1e}", change);
+    return change <= kAllowedDifference;
+  };
+  const auto without_agreement = [&](CellVerdict otherwise) {
+    if (stays()) return CellVerdict::branch;
+    const std::string doubt = first_doubt(run.summary);
+    if (doubt.empty()) return otherwise;
+    outcome.reason += "; the run says: " + doubt;
+    return CellVerdict::warned;
+  };
   if (twin.exit_status != kDone) {
-    outcome.verdict = CellVerdict::unconfirmed;
     outcome.reason = "the twin ended so: " + twin.message;
+    outcome.verdict = without_agreement(CellVerdict::unconfirmed);
     return outcome;
   }
   const auto twins = probes_of(twin.summary);
-  const Deviation found = deviation(numbers, twins, runs.units);
+  const Deviation found = deviation(numbers, twins, least, runs.units);
   outcome.difference = found.size;
   outcome.verdict = found.size <= kAllowedDifference ? CellVerdict::right : CellVerdict::wrong;
   if (outcome.verdict == CellVerdict::right) return outcome;
   outcome.reason = fmt::format("probe {} differs from that of the twin by {:.1e}", found.probe, found.size);
   if (disturbed.exit_status == kDone) {
-    const double answer = deviation(twins, probes_of(disturbed.summary), {}).size;
+    const double answer = deviation(twins, probes_of(disturbed.summary), in_units(least, runs.units)).size;
     // In another direction the residual may weigh a few times as much.
     if (answer >= 0.1 * found.size) outcome.verdict = CellVerdict::sensitive;
     outcome.reason += fmt::format("; forces of {:.0e} of the largest change the twin by {:.1e}", kDisturbance, answer);
   }
-  if (outcome.verdict == CellVerdict::wrong && runs.sharper->exit_status == kDone) {
-    const double change = deviation(numbers, probes_of(runs.sharper->summary), {}).size;
-    if (change <= kAllowedDifference) outcome.verdict = CellVerdict::branch;
-    outcome.reason += fmt::format("; a hundredth of the tolerance changes it by {:.1e}", change);
-  }
+  if (outcome.verdict == CellVerdict::wrong) outcome.verdict = without_agreement(CellVerdict::wrong);
   return outcome;
 }
 

@@ -14,6 +14,7 @@ enum class CellVerdict {
   right,        ///< converged, and the twin agrees
   sensitive,    ///< converged and differs from the twin, as it does when forces change by the residual allowed
   branch,       ///< converged to another solution than the twin: it stays where it is when the tolerance is smaller
+  warned,       ///< converged and differs from the twin, and the run itself warns that there may be other solutions
   refused,      ///< exit 2, before anything was computed, with a reason
   stopped,      ///< exit 3, with a reason
   unconfirmed,  ///< converged, but the twin did not
@@ -40,6 +41,10 @@ struct CellOutcome {
 
 /// Two converged runs must not differ by more.
 inline constexpr double kAllowedDifference = 1e-6;
+
+/// Forces below this part of E A, and displacements below this part of the length, count as none: a body that moves
+/// rigidly by its own size has stresses of rounding, 1e-16 of E.
+inline constexpr double kNothing = 1e-9;
 
 /// A cell's run and those that it is judged by; the twin is the same scene in other units, see twin.hpp.
 struct CellRuns {

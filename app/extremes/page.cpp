@@ -22,11 +22,17 @@ bool is_starred(const CellOutcome& o) {
 ResultState state_of(CellVerdict verdict) {
   switch (verdict) {
     case CellVerdict::right:
+    case CellVerdict::sensitive:
+    case CellVerdict::branch:
       return ResultState::right;
     case CellVerdict::refused:
       return ResultState::refused;
     case CellVerdict::stopped:
       return ResultState::stopped;
+    case CellVerdict::warned:
+    case CellVerdict::unconfirmed:
+    case CellVerdict::limit:
+      return ResultState::doubtful;
     default:
       return ResultState::wrong;
   }
@@ -36,6 +42,12 @@ std::string sign_of(const CellOutcome& o) {
   switch (o.verdict) {
     case CellVerdict::right:
       return is_starred(o) ? "✓*" : "✓";
+    case CellVerdict::sensitive:
+      return "✓~";
+    case CellVerdict::branch:
+      return "✓2";
+    case CellVerdict::warned:
+      return "W";
     case CellVerdict::unconfirmed:
       return "?";
     case CellVerdict::limit:
@@ -147,9 +159,10 @@ std::string html_of(const ExtremesMap& map, const std::filesystem::path& scenes)
       "mass, length and time, by Cholesky, to a hundredth of the tolerance. ✓ right, ✓* right but more than 10 % from "
       "the "
       "theory of slender beams (coarse or locking), ✓~ differs from the twin no more than the scene answers a "
-      "disturbance of 1e-8 of its forces, ✓2 another solution of the same equations than that of the twin, R refused "
-      "before the run with a reason, S stopped by the program "
-      "with a reason, ? converged but the twin did not, T took too long or too much memory, ✗ differs from the twin, "
+      "disturbance of 1e-8 of its forces, ✓2 another solution of the same equations than that of the twin, W differs "
+      "from the twin and warns itself that there may be other solutions, R refused before the run with a reason, "
+      "S stopped by the program with a reason, ? converged but the twin did not, T took too long or too much memory, ✗ "
+      "differs from the twin, "
       "! crashed. Click a cell for its numbers, its reason and the command that repeats it.");
   page.table(row_table(map));
   for (const auto& [title, lines] : {std::pair{"Worse than in the stored map", &map.regressions},

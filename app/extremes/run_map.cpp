@@ -120,7 +120,8 @@ void run_map(ExtremesMap& map, const fs::path& directory, const std::function<vo
   std::vector<std::size_t> doubted;
   for (std::size_t i = 0; i < n; ++i) {
     map.outcomes[i] = verdict(i);
-    if (map.outcomes[i].verdict == CellVerdict::wrong) doubted.push_back(i);
+    const CellVerdict v = map.outcomes[i].verdict;
+    if (v == CellVerdict::wrong || v == CellVerdict::warned || v == CellVerdict::unconfirmed) doubted.push_back(i);
   }
   for (const std::size_t i : doubted)
     if (const std::optional<Twin> twin = disturbed_twin(map.cells[i], runs[i].summary)) add_twin(i, *twin);

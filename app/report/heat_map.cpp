@@ -10,8 +10,8 @@
 namespace fascia::app {
 namespace {
 
-constexpr ResultState kStates[] = {ResultState::right, ResultState::refused, ResultState::stopped, ResultState::wrong,
-                                   ResultState::none};
+constexpr ResultState kStates[] = {ResultState::right,    ResultState::refused, ResultState::stopped,
+                                   ResultState::doubtful, ResultState::wrong,   ResultState::none};
 
 void check_sizes(const HeatMap& map) {
   if (map.cells.size() != map.rows.size()) throw std::invalid_argument("heat map: one row of cells a name");

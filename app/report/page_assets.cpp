@@ -4,10 +4,10 @@ namespace fascia::app {
 
 const char* const page_style = R"css(
 :root { color-scheme: light dark; --ground: #fff; --ink: #1c1f22; --soft: #5b6369; --rule: #d5d9dc; --face: #f3f5f6;
-  --link: #0059a3; --right: #dcefe2; --refused: #e6e8ea; --stopped: #fdebc8; --wrong: #f9d5d0; --strong: #b3261e; }
+  --link: #0059a3; --right: #dcefe2; --refused: #e6e8ea; --stopped: #fdebc8; --doubtful: #f6d9b8; --wrong: #f9d5d0; --strong: #b3261e; }
 @media screen and (prefers-color-scheme: dark) {
   :root { --ground: #14171a; --ink: #e6e8ea; --soft: #a3abb1; --rule: #394147; --face: #1f2428; --link: #7cc0ff;
-    --right: #1d4a30; --refused: #353c42; --stopped: #5c4512; --wrong: #6b231d; --strong: #ff9a91; }
+    --right: #1d4a30; --refused: #353c42; --stopped: #5c4512; --doubtful: #70391c; --wrong: #6b231d; --strong: #ff9a91; }
   .plot .ground { fill: var(--ground); }
   .plot text { fill: var(--ink); }
   .plot .halo { stroke: var(--ground); }
@@ -65,6 +65,7 @@ td.number { white-space: nowrap; }
 .state.right, .map td.right { background: var(--right); }
 .state.refused, .map td.refused { background: var(--refused); }
 .state.stopped, .map td.stopped { background: var(--stopped); }
+.state.doubtful, .map td.doubtful { background: var(--doubtful); }
 .state.wrong, .map td.wrong { background: var(--wrong); outline: 2px solid var(--strong); outline-offset: -2px; }
 .state.none, .map td.none { background: none; color: var(--soft); }
 .states { display: flex; flex-wrap: wrap; gap: .3rem 1.2rem; padding: 0; list-style: none; font-size: .9rem; }

@@ -10,6 +10,8 @@ const char* state_name(ResultState state) {
       return "refused";
     case ResultState::stopped:
       return "stopped";
+    case ResultState::doubtful:
+      return "doubtful";
     case ResultState::wrong:
       return "wrong";
     case ResultState::none:
@@ -28,6 +30,8 @@ const char* state_sign(ResultState state) {
       return "R";
     case ResultState::stopped:
       return "S";
+    case ResultState::doubtful:
+      return "?";
     case ResultState::wrong:
       return "✗";
     case ResultState::none:

@@ -9,8 +9,7 @@ std::string convergence_sentence(const NewtonReport& r, const SolverSettings& se
     case Convergence::none:
       return "";
     case Convergence::tolerance:
-      out << "residual " << r.last.relative << " of the largest of loads, inertia and reactions, within the tolerance "
-          << settings.tolerance;
+      out << "residual " << r.last.relative << " of what acts, within the tolerance " << settings.tolerance;
       if (r.last.left_of_load > 100 * settings.tolerance)
         out << " (" << r.last.left_of_load << " of the loads on a part that is soft or light beside the others)";
       break;
@@ -32,6 +31,14 @@ std::string passed_sentence(double from, double to) {
       << " the tangent stiffness became indefinite: the structure may have passed a limit point or a bifurcation, and "
          "what follows may be another equilibrium than the path leads to; compare with more load_steps, or follow the "
          "path with control = \"arc-length\"";
+  return out.str();
+}
+
+std::string detour_sentence(double to) {
+  std::ostringstream out;
+  out << "on the way to load factor " << to
+      << " Newton's method met tangents that were not positive definite: where several equilibria exist, it may have "
+         "found another one than the path leads to";
   return out.str();
 }
 

@@ -50,7 +50,10 @@ struct RunReport {
   int indefinite_solves = 0;                  ///< in which a tangent was not positive definite
   int indefinite_steps = 0;                   ///< time steps with such solves
   double first_indefinite = 0;                ///< end of the first of them [s]
+  int halved_steps = 0;                       ///< time steps taken in parts, because Newton's method failed
+  double first_halved = 0;                    ///< end of the first of them [s]
   std::vector<std::string> events;            ///< limit points and bifurcations that were passed, a sentence each
+  std::vector<std::string> doubts;            ///< why another run may find another solution, a sentence each
   std::string message;                        ///< one sentence on what went wrong, where, and what to try
   std::shared_ptr<const FailedState> failed;  ///< of a run on the processor that ended in a failure
 };
@@ -67,6 +70,8 @@ void keep_failure(RunReport& run, const System& system) {
 std::string convergence_sentence(const NewtonReport& newton, const SolverSettings& settings);
 /// That a load step led past a place where the path of equilibria turns or branches.
 std::string passed_sentence(double from, double to);
+/// That Newton's method left the states that a load step passes through; told in RunReport::doubts alone.
+std::string detour_sentence(double to);
 /// Why a step did not converge.
 std::string failure_sentence(const NewtonReport& newton, const SolverSettings& settings);
 /// Of the equilibrium at the end of statics, which the system stands at.

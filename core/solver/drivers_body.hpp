@@ -17,6 +17,8 @@ namespace drivers {
 /// Solves of one load step that may fail before the step does, and of a time step as often as it may be halved: where
 /// short steps fail and succeed in turn, more of them only take time.
 constexpr int kMostFailures = 16, kMostHalvings = 8;
+/// Load steps in a row that conjugate gradients do not solve, however short.
+constexpr int kMostUnsolved = 3;
 
 inline void count(RunReport& run, const NewtonReport& newton) {
   run.newton_iterations += newton.iterations;
@@ -76,6 +78,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
   const double longest = statics.load_steps > 0 ? 1.0 / statics.load_steps : 1.0;
   double reached = 0, increment = longest;
   int failures = 0;       // since the last step that was as long as asked
+  int unsolved = 0;       // in a row, by conjugate gradients: shorter steps do not help them
   bool definite = false;  // all tangents of the last step
   state.time = 0;
   while (reached < 1) {
@@ -95,7 +98,8 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     count(run, report);
     if (!acceptable(report, settings)) {
       increment = 0.5 * (target - reached);
-      if (increment >= kSmallest && ++failures < kMostFailures) continue;
+      unsolved = report.status == NewtonStatus::unsolved ? unsolved + 1 : 0;
+      if (increment >= kSmallest && ++failures < kMostFailures && unsolved < kMostUnsolved) continue;
       keep_failure(run, system);
       std::ostringstream message;
       message << "load step " << run.steps + 1 << " (load factor " << target
@@ -116,9 +120,13 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
       return run;
     }
     if (target == asked) failures = 0;
+    unsolved = 0;
     state = system.finish_step(target);
     accept(run, report, settings, target);
-    if (definite && report.indefinite) run.events.push_back(passed_sentence(reached, target));
+    if (definite && report.indefinite)
+      run.events.push_back(passed_sentence(reached, target));
+    else if (report.indefinite)
+      run.doubts.push_back(detour_sentence(target));
     definite = !report.indefinite;
     reached = target;
     increment = std::min(longest, 2 * increment);
@@ -203,6 +211,7 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
       return run;
     }
     accept(run, report, settings, end);
+    if (stepper.failures > 0 && run.halved_steps++ == 0) run.first_halved = end;
     const bool equal = step > 1 && std::abs(dt - dynamics.length_of(step - 1)) <= 1e-9 * dt;
     if (observe && system.solves_for_middle())
       system.look_back(state, before, equal ? earlier : typename System::Pose{}, dt);

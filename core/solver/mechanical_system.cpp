@@ -23,6 +23,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
       surfaces_(model),
       masses_(part_masses(model)),
+      driven_(driven_parts(model)),
       state_(State::at_rest(model)) {
   const auto n = at(model.dof_count());
   gradient_.resize(n);
@@ -246,6 +247,7 @@ std::vector<PartForces> MechanicalSystem::part_forces() const {
     PartForces& f = parts[p];
     if (!kept_loads_.empty()) f.load = std::max(f.load, kept_loads_[p]);
     const double still = kAtRest * masses_[p] * executor_.motion(part) / (form_.h * form_.h);
+    f.driven = driven_[p] != 0;
     f.adrift = form_.h > 0 && f.load == 0 && f.reaction == 0 && f.tether == 0 && f.momentum > still * still;
   }
   return parts;

@@ -199,6 +199,7 @@ class MechanicalSystem {
   bool conservative_, extrapolates_;
   SurfaceLoads surfaces_;
   std::vector<double> masses_;  ///< part_masses()
+  std::vector<char> driven_;    ///< driven_parts()
 
   State start_, state_;
   StepForm form_;

@@ -26,7 +26,8 @@ enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linea
 
 /// Why a solve counts as converged: its residual is below the tolerance; or it is what rounding leaves; or it is a
 /// small share of the loads and falls no further, and the last correction was small. The correction of a system that
-/// conjugate gradients did not solve says nothing: soft directions are found last, and leave next to no residual.
+/// conjugate gradients did not solve says nothing: soft directions are found last, and leave next to no residual. Nor
+/// does that of loads without a potential, whose tangent is symmetrised: such corrections may grow again.
 enum class Convergence { none, tolerance, rounding, stagnation };
 
 struct NewtonReport {
@@ -106,12 +107,14 @@ class Newton {
     return step;
   }
 
-  /// Rounding excuses a residual only where Newton's method has reduced it, or has tried to and cannot; and only with
-  /// directions that were solved for.
+  /// Rounding excuses a residual only where Newton's method has reduced it by a correction that was small itself, or
+  /// has tried to and cannot; and only with directions that were solved for. What a linear solver leaves of a large
+  /// correction may be as small as rounding and still bend what is soft: the next correction takes it away.
   bool settled() const {
     if (!current_.converged()) return false;
     if (!current_.by_rounding) return true;
-    return !unsolved_ && (current_.residual <= kReduced * first_residual_ || standing_ >= kStands);
+    const bool reduced = current_.residual <= kReduced * first_residual_ && small_correction_;
+    return !unsolved_ && (reduced || standing_ >= kStands);
   }
 
   /// Counts full steps in a row that did not reduce the residual.
@@ -121,9 +124,11 @@ class Newton {
 
   /// What is left is a small share of the loads, the last corrections were small, and it falls no further.
   bool stagnates(const DirectionReport& d) const {
-    return !d.unsolved && standing_ >= kStands && std::abs(d.slope) <= kSmallDecrement * current_.energy_scale &&
+    return !d.unsolved && system_.conservative() && standing_ >= kStands && is_small(d) &&
            marked_.left_of_load <= kLargestShare;
   }
+
+  bool is_small(const DirectionReport& d) const { return std::abs(d.slope) <= kSmallDecrement * current_.energy_scale; }
 
   DirectionReport direction() {
     if (settings_.iterating)
@@ -135,6 +140,7 @@ class Newton {
     report_.linear_iterations += d.linear_iterations;
     report_.trouble = d.trouble;
     unsolved_ = d.unsolved;
+    small_correction_ = is_small(d);
     report_.indefinite = report_.indefinite || !d.trouble.empty();
     report_.linear_residual = d.linear_residual;
     report_.cg_seconds += d.cg_seconds;
@@ -199,10 +205,11 @@ class Newton {
   /// an equilibrium, however well its forces balance.
   NewtonReport give_up(NewtonStatus status) {
     if (system_.has_prescribed_increment()) return finish(status);
-    if (status == NewtonStatus::stalled && unsolved_) status = NewtonStatus::unsolved;
+    if (unsolved_ && (status == NewtonStatus::stalled || status == NewtonStatus::limit))
+      status = NewtonStatus::unsolved;
     if (status == NewtonStatus::stalled && marked_.converged()) return finish_at_best(Convergence::rounding);
     const bool small = last_decrement_ <= kSmallDecrement * marked_.energy_scale;
-    if (status == NewtonStatus::stalled && small && marked_.left_of_load <= kLargestShare)
+    if (status == NewtonStatus::stalled && small && system_.conservative() && marked_.left_of_load <= kLargestShare)
       return finish_at_best(Convergence::stagnation);
     return_to_best();
     return finish(status);
@@ -221,6 +228,7 @@ class Newton {
   Evaluation current_, marked_;
   int detour_ = 0, standing_ = 0;
   bool unsolved_ = false;             ///< the last direction is what conjugate gradients had at their limit
+  bool small_correction_ = false;     ///< the last direction gained next to no energy
   double leap_ = 0;                   ///< rotation of the indefinite step that left the mark; 0 of a definite one
   double leap_cap_ = kIndefiniteCap;  ///< what such a step may be now
   double first_residual_ = 0;

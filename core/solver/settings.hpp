@@ -29,7 +29,7 @@ inline constexpr int kMostDevices = 8;
 
 struct SolverSettings {
   int max_iterations = 50;        ///< Newton iterations of a load or time step
-  double tolerance = 1e-8;        ///< residual relative to the largest of load, inertia and reactions
+  double tolerance = 1e-8;        ///< residual relative to what acts, see judge()
   bool proceed_on_limit = false;  ///< go on with the residual reached
   LinearMethod linear = LinearMethod::automatic;
   Preconditioner preconditioner = Preconditioner::automatic;

@@ -18,6 +18,12 @@ double excused(const PartForces& f) {
   return acting > kAboveRounding * f.rounding ? std::min(f.rounding, kLargestShare * acting) : f.rounding;
 }
 
+/// The size of what a whole has to balance.
+double acting_on(const PartForces& whole) {
+  const double loads = largest_root({whole.load, whole.inertia});
+  return loads > 0 && !whole.driven ? loads : std::max(loads, largest_root({whole.reaction, whole.tether}));
+}
+
 }  // namespace
 
 std::vector<double> part_masses(const Model& model) {
@@ -30,6 +36,21 @@ std::vector<double> part_masses(const Model& model) {
   return squares;
 }
 
+std::vector<char> driven_parts(const Model& model) {
+  const PointSet& points = model.points;
+  std::vector<char> wholes(at(points.part_count()), 0), parts(wholes.size(), 0);
+  const auto drive = [&](int part, int motion) {
+    if (motion >= 0) wholes[at(points.part_whole[at(part)])] = 1;
+  };
+  for (const FrameConstraint& c : model.constraints) {
+    for (const int motion : c.translation_motion) drive(points.node_part[at(c.node)], motion);
+    for (const int motion : c.rotation_motion) drive(points.node_part[at(c.node)], motion);
+  }
+  for (const Tether& t : model.tethers) drive(points.part_of_group(t.group), t.motion);
+  for (std::size_t p = 0; p < parts.size(); ++p) parts[p] = wholes[at(points.part_whole[p])];
+  return parts;
+}
+
 void judge(std::span<const PartForces> parts, std::span<const int> whole, double tolerance, Evaluation& e) {
   std::vector<PartForces> wholes(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -38,6 +59,7 @@ void judge(std::span<const PartForces> parts, std::span<const int> whole, double
     sum.inertia += parts[p].inertia;
     sum.reaction += parts[p].reaction;
     sum.tether += parts[p].tether;
+    sum.driven = sum.driven || parts[p].driven;
   }
   double total = 0;
   e.excess = e.relative = e.relative_floor = e.left_of_load = 0;
@@ -47,7 +69,7 @@ void judge(std::span<const PartForces> parts, std::span<const int> whole, double
     const PartForces& all = wholes[at(whole[p])];
     total += f.residual;
     const double residual = std::sqrt(f.residual);
-    const double reference = largest_root({all.load, all.inertia, all.reaction, all.tether});
+    const double reference = acting_on(all);
     double allowed = tolerance * reference;
     if (f.load > 0) allowed = std::min(allowed, kLargestShare * std::sqrt(f.load));
     allowed = std::max(allowed, tolerance * largest_root({f.load, f.inertia}));

@@ -15,16 +15,17 @@ struct PartForces {
   double momentum = 0;  ///< of what cancels in the inertia: mass times motion over the step's square
   double rounding = 0;  ///< estimate of what rounding alone leaves in the residual: a norm, no square [N]
   bool adrift = false;  ///< nothing holds or loads it, and it moves: its momentum is what there is to keep
+  bool driven = false;  ///< a boundary motion moves the whole that it belongs to, see driven_parts()
 };
 
 /// A system at a state, in numbers. Residuals are norms with torques divided by a length [N]. Each part of the model is
 /// judged by itself, so that a stiff or heavy neighbour does not hide what is left in a soft one.
 struct Evaluation {
-  double energy = 0;        ///< potential that an equilibrium minimises [J]
-  double energy_scale = 0;  ///< sum of the sizes of its terms [J]
-  double residual = 0;      ///< of all free degrees of freedom
-  double excess = 0;        ///< largest of the parts: residual over what is allowed; at most 1 where converged
-  double relative = 0;  ///< that part's residual over the largest load, inertia or reaction of its whole, or rounding
+  double energy = 0;          ///< potential that an equilibrium minimises [J]
+  double energy_scale = 0;    ///< sum of the sizes of its terms [J]
+  double residual = 0;        ///< of all free degrees of freedom
+  double excess = 0;          ///< largest of the parts: residual over what is allowed; at most 1 where converged
+  double relative = 0;        ///< that part's residual over what acts on its whole (judge()), or rounding
   double relative_floor = 0;  ///< what rounding leaves of it, likewise
   double left_of_load = 0;    ///< largest of the parts: residual over its loads, or over what acts where there are none
   bool by_rounding = false;   ///< some part is above the tolerance and allowed by its rounding alone
@@ -44,11 +45,16 @@ inline constexpr double kAtRest = 1e-4;
 /// √Σ m² over the nodes of each part [kg]: with it a motion of all nodes is as large as the forces of PartForces.
 std::vector<double> part_masses(const Model& model);
 
+/// Parts whose whole a boundary motion moves (true), by a support or by a tether. What moves them shows in reactions
+/// alone. Where loads do, reactions say less: bending makes them larger than the load by length over thickness.
+std::vector<char> driven_parts(const Model& model);
+
 /// Judges the residuals of all parts; fills what Evaluation says of them.
 ///
 /// A part is in equilibrium where its residual is at most
 ///   - tolerance × the largest of its own load and inertia, or
-///   - tolerance × the largest force or reaction in the whole that it belongs to, but at most kLargestShare × its load,
+///   - tolerance × the largest load or inertia in the whole that it belongs to (reactions and tethers count where a
+///     motion drives it, or nothing else acts), but at most kLargestShare × its load,
 ///   - or its rounding floor, as far as that excuses it: never more than kLargestShare × its load.
 ///
 /// @param whole  of each part (PointSet::part_whole)

@@ -92,6 +92,22 @@ TEST(CellVerdicts, SayWhatATwinSays) {
   EXPECT_EQ(verdict(run, ended(kDone, 2.00001), ended(kDone, 2.0000100001)), CellVerdict::wrong);
   EXPECT_EQ(verdict(run, ended(kDone, 3), {}, ended(kDone, 1)), CellVerdict::branch);
   EXPECT_EQ(verdict(run, ended(kNotConverged, 2, "stalled")), CellVerdict::unconfirmed);
+  EXPECT_EQ(verdict(run, ended(kNotConverged, 2, "stalled"), {}, ended(kDone, 1)), CellVerdict::branch);
+  ChildResult doubtful = run;
+  doubtful.summary["doubts"] = {"the body snapped"};
+  EXPECT_EQ(verdict(doubtful, ended(kDone, 3)), CellVerdict::warned);
+  EXPECT_EQ(verdict(doubtful, ended(kDone, 2)), CellVerdict::right);
+}
+
+/// Two runs whose displacements are rounding of a length of 1 m.
+TEST(CellVerdicts, CountRoundingAsNone) {
+  const ChildResult run = ended(kDone, 3e-17), twin = ended(kDone, -1e-16);
+  ExtremeCell cell{"row", "axis", "1", "", std::nullopt};
+  const ChildResult none;
+  const CellRuns runs{&run, &twin, &none, &none, {1, 2, 1}};
+  EXPECT_EQ(judge(cell, runs).verdict, CellVerdict::wrong);
+  cell.length = 1;
+  EXPECT_EQ(judge(cell, runs).verdict, CellVerdict::right);
 }
 
 TEST(CellVerdicts, OfRunsThatFail) {
