@@ -93,6 +93,8 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
     }
     if (!sound || plan.collapsed()) {
       const int failed = progress.unsound > 0 ? progress.unsound : step;
+      system.pose().download(state);
+      run.failed = std::make_shared<FailedState>(FailedState{state, {}, step});
       good.download(state);
       ThreadPool pool(0);
       MechanicalSystem host(model, pool, solver);

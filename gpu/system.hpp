@@ -63,6 +63,8 @@ class System {
   const SolverSettings& settings() const { return settings_; }
   const DofFilter& filter() const { return filter_; }
   std::span<const double> factors() const { return factors_; }
+  /// The present one, of Newton's method; its velocities are those of the step's start.
+  State state() const;
   InternalEnergy internal_energy() const { return internal_; }
   /// By degrees of freedom, as MechanicalSystem::gradient().
   std::vector<double> gradient() const { return gradient_.downloaded(); }

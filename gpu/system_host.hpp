@@ -59,6 +59,15 @@ StepInProgress System<Space>::step_in_progress() const {
 }
 
 template <class Space>
+State System<Space>::state() const {
+  State present = State::at_rest(model_);
+  start_.download(present);
+  u_.download(present.u);
+  if (turning_) D_.download(std::span(&*present.D.begin(), D_.size()));
+  return present;
+}
+
+template <class Space>
 DirectionReport System<Space>::direction_of_host() {
   MechanicalSystem& solver = host();
   solver.stand_in(step_in_progress());

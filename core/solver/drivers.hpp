@@ -55,15 +55,15 @@ struct RunReport {
   std::vector<std::string> events;            ///< limit points and bifurcations that were passed, a sentence each
   std::vector<std::string> doubts;            ///< why another run may find another solution, a sentence each
   std::string message;                        ///< one sentence on what went wrong, where, and what to try
-  std::shared_ptr<const FailedState> failed;  ///< of a run on the processor that ended in a failure
+  std::shared_ptr<const FailedState> failed;  ///< of a run that ended in a failure
 };
 
 /// Keeps where a system stands after a solve that failed.
 template <class System>
 void keep_failure(RunReport& run, const System& system) {
-  if constexpr (std::is_same_v<System, MechanicalSystem>)
-    run.failed = std::make_shared<FailedState>(
-        FailedState{system.state(), {system.gradient().begin(), system.gradient().end()}, run.steps + 1});
+  const auto gradient = system.gradient();
+  run.failed = std::make_shared<FailedState>(
+      FailedState{system.state(), {gradient.begin(), gradient.end()}, run.steps + 1});
 }
 
 /// Which criterion ended a step, with its figures; empty where none did.

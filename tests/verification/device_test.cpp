@@ -237,6 +237,19 @@ TEST_P(DeviceChoice, OfALinearSolverIsTheProgramsOwn) {
   expect_solution_of_processor(*simulation, where(), app::settings_of(simulation->scene.solver));
 }
 
+/// One Newton iteration is not enough, however short the load step.
+TEST_P(DeviceChoice, KeepsTheStateInWhichItFailed) {
+  const Simulation s = small_scene("soft_cantilever", kToRounding);
+  SolverSettings settings = app::settings_of(s.scene.solver);
+  settings.max_iterations = 1;
+  const RunReport expected = solve(s, Where::processor, settings).report, got = solve(s, where(), settings).report;
+  EXPECT_EQ(got.message, expected.message);
+  ASSERT_TRUE(expected.failed && got.failed);
+  EXPECT_EQ(got.failed->step, expected.failed->step);
+  EXPECT_LE(displacement_difference(got.failed->state, expected.failed->state), kSameSolution);
+  EXPECT_LE(difference(got.failed->gradient, expected.failed->gradient), 1e-6);  // of what is left, 1e-4 of the loads
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceChoice,
                          ::testing::Combine(::testing::Values(Where::host, Where::device),
                                             ::testing::Values("rigid_turn")),
