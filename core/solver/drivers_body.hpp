@@ -18,7 +18,7 @@ namespace drivers {
 /// short steps fail and succeed in turn, more of them only take time.
 constexpr int kMostFailures = 16, kMostHalvings = 8;
 /// Load steps in a row that conjugate gradients do not solve, however short.
-constexpr int kMostUnsolved = 3;
+constexpr int kMostUnsolved = 8;
 
 inline void count(RunReport& run, const NewtonReport& newton) {
   run.newton_iterations += newton.iterations;
