@@ -128,8 +128,8 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
   if (twins.stopped()) return false;
   const bool precision = simulation_.scene.solver.precision != "double";
   const bool halved = kind == SolverKind::central_differences;
-  const auto told = [&](EstimatedError error, const std::string& unit, bool of_components) {
-    if (residual && has_tolerance(kind)) error.solver = residual;
+  const auto told = [&](EstimatedError error, const std::string& unit, bool of_components, bool solved_for = true) {
+    if (residual && has_tolerance(kind)) error.solver = solved_for ? residual : 0.0;
     return json_of(error, unit, of_components);
   };
   Json errors = Json::object();
@@ -139,7 +139,7 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
     errors[p.name] = told(measured({own.series(p.name, kind), of_twin, norm, rounding_of(simulation_, p.quantity),
                                     guard_of(simulation_.scene, p.body, is_derivative(p.quantity)), halved},
                                    kind, precision),
-                          probe_unit(p.quantity), true);
+                          probe_unit(p.quantity), true, p.quantity != Quantity::mass);
   }
   for (std::size_t b = 0; fields_ && b < fields_->size(); ++b) {
     const auto of_twin = [&](TwinRole role) { return twins.field(role, b); };

@@ -12,7 +12,7 @@ namespace fascia::app {
 struct MapSettings {
   int jobs = 1;                        ///< runs at once, each on one thread
   double time_limit = 60;              ///< of each run [s]
-  double memory_limit = 4e9;           ///< of its address space [bytes]
+  double memory_limit = 4e9;           ///< of what it writes to [bytes]
   std::optional<std::string> backend;  ///< of the runs; the twins are the processor's
 };
 

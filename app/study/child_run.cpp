@@ -73,7 +73,7 @@ std::vector<std::string> arguments_of(const ChildRun& run) {
   if (run.memory_limit > 0) {
     const auto bytes = static_cast<rlim_t>(run.memory_limit);
     const rlimit limit{bytes, bytes};
-    setrlimit(RLIMIT_AS, &limit);
+    setrlimit(RLIMIT_DATA, &limit);  // not of addresses: the driver of a GPU reserves more of them than there is memory
   }
   if (run.processor_limit > 0) {
     const auto seconds = static_cast<rlim_t>(std::ceil(run.processor_limit));

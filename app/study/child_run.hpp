@@ -19,7 +19,7 @@ struct ChildRun {
   std::optional<std::string> backend;  ///< none: as the scene says
   double time_limit = 0;               ///< [s], after which it is ended; 0: none
   double processor_limit = 0;          ///< the same of processor time; whole seconds
-  double memory_limit = 0;             ///< of its address space [bytes]; 0: none
+  double memory_limit = 0;             ///< of what it writes to [bytes]; 0: none
 };
 
 /// How it ended.

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 namespace fascia {
 
@@ -18,6 +19,8 @@ constexpr int kMostIterations = 15;  ///< of a step; one that needs more is bett
 constexpr double kMostBent = 0.3;    ///< what the mean of the tangents at the ends of a step may miss of it
 constexpr double kPolished = 0.02;   ///< residual over the rounding floor
 constexpr int kMostPolishing = 2;
+constexpr double kBeyond = 1.005;              ///< of the step to a limit point
+constexpr double kBeside = 0.95;               ///< of a step that cannot be corrected because its tangent is singular
 constexpr double kSlopeWidth = 2e-4;           ///< load factors apart for the slopes of factors
 constexpr double kRotationPerIteration = 0.8;  ///< [rad]
 
@@ -195,6 +198,7 @@ class PathFollower {
     const double left = to_go();
     NewtonReport failed;
     bool at_extremum = false;  // the step was shortened to a limit point
+    bool beside = false;       // and then a little more, because the tangent is singular there
     bool never_ends = false;   // the path seemed to come to λ = 1 within the step and does not
     // The first step may be far too long: its length was a guess.
     const double smallest = std::min(first_, left) * (run_.steps == 0 ? kSmallest * kSmallest : kSmallest);
@@ -203,6 +207,7 @@ class PathFollower {
       if (report.status != NewtonStatus::converged) {
         failed = report;
         calm_ = 3;
+        if (report.status == NewtonStatus::linear_failure && !std::exchange(beside, true)) length *= 2 * kBeside;
         continue;
       }
       PathDirections end = directions();
@@ -215,10 +220,11 @@ class PathFollower {
       const double s =
           ends_by_displacement() || never_ends ? 2.0 : curve.first_at(1 - 1e-6 * std::abs(curve.b - curve.a));
       if (s > 1 && !at_extremum && !has_corner() && system_.conservative() && curve.has_extremum()) {
-        // A step ends there, which locates the limit point to second order.
+        // A step ends there, which locates the limit point to second order; a little beyond, where the tangent is not
+        // singular to rounding.
         at_extremum = true;
         if (const double e = curve.extremum(); e > 0.1 && e < 0.9) {
-          length = 2 * e * p;
+          length = 2 * kBeyond * e * p;
           continue;
         }
       }

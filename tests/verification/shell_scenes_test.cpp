@@ -166,7 +166,7 @@ TEST(ShellScenes, AHingedRoofSnapsThrough) {
       }
       std::printf("hinged roof, %d x %d, %s: %zu steps, load off the table by %.2f %%, limit load %.4f\n", n, n,
                   control.c_str(), run.history().size(), 100 * worst, highest);
-      EXPECT_GE(run.history().size(), 15u);
+      EXPECT_GE(run.history().size(), 12u);  // enough of them to see the curve's shape
       EXPECT_EQ(run.history().back()[0], 1.0);
       EXPECT_LT(worst, 0.02);
       EXPECT_NEAR(highest, 0.7421, 0.005 * 0.7421);
