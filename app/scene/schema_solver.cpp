@@ -9,7 +9,8 @@ constexpr double many = 1e9;
 Shape newton_schema() {
   return table(
       {key("max_iterations", integer(between(1, many)), "Iterations of a step.").defaults("50"),
-       key("tolerance", number("1", inside(0, 1)), "Residual relative to the largest load or inertia; to reactions too where a motion drives the body.")
+       key("tolerance", number("1", inside(0, 1)),
+           "Residual relative to the largest load or inertia; to reactions too where a motion drives the body.")
            .defaults("1e-8"),
        key("on_limit",
            choice(

@@ -44,6 +44,12 @@ std::string detour_sentence(double to) {
 
 namespace {
 
+/// Rounding leaves about as much, and no step is short enough to change that.
+bool is_left_by_rounding(const Evaluation& last, const SolverSettings& settings) {
+  constexpr double kAbout = 10;
+  return last.relative > settings.tolerance && last.relative <= kAbout * last.relative_floor;
+}
+
 /// The residual that was left, against what it should be.
 void describe_residual(const Evaluation& last, const SolverSettings& settings, std::ostream& out) {
   if (last.relative > settings.tolerance)
@@ -51,6 +57,11 @@ void describe_residual(const Evaluation& last, const SolverSettings& settings, s
   else
     out << ", residual " << last.left_of_load << " > " << kLargestShare
         << " of the loads on a part that is soft or light beside the others";
+  if (is_left_by_rounding(last, settings))
+    out << ", where rounding leaves up to " << last.relative_floor
+        << ": the body is too thin for its elements or frames, or its parts too unlike (check tells the digits left); "
+           "a "
+           "shell, a sheet or a line may do";
 }
 
 }  // namespace

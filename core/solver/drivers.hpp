@@ -62,8 +62,8 @@ struct RunReport {
 template <class System>
 void keep_failure(RunReport& run, const System& system) {
   const auto gradient = system.gradient();
-  run.failed = std::make_shared<FailedState>(
-      FailedState{system.state(), {gradient.begin(), gradient.end()}, run.steps + 1});
+  run.failed =
+      std::make_shared<FailedState>(FailedState{system.state(), {gradient.begin(), gradient.end()}, run.steps + 1});
 }
 
 /// Which criterion ended a step, with its figures; empty where none did.

@@ -94,6 +94,7 @@ class Newton {
   static constexpr double kShorterLeap = 0.25;   ///< such a step, after one that led to no better state
   static constexpr int kDetour = 4, kHalvings = 14;
   static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
+  static constexpr double kNoDecrement = 1e-12;    ///< the same of a correction of 1e-6 of the motion
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
   static constexpr int kUnsolvedStands = 5;        ///< the same, where conjugate gradients do not get to their end
@@ -124,11 +125,14 @@ class Newton {
 
   /// What is left is a small share of the loads, the last corrections were small, and it falls no further.
   bool stagnates(const DirectionReport& d) const {
-    return !d.unsolved && system_.conservative() && standing_ >= kStands && is_small(d) &&
+    return !d.unsolved && system_.conservative() && standing_ >= kStands && is_small(d, kSmallDecrement) &&
            marked_.left_of_load <= kLargestShare;
   }
 
-  bool is_small(const DirectionReport& d) const { return std::abs(d.slope) <= kSmallDecrement * current_.energy_scale; }
+  /// @param part  of the energies at play that the correction would gain
+  bool is_small(const DirectionReport& d, double part) const {
+    return std::abs(d.slope) <= part * current_.energy_scale;
+  }
 
   DirectionReport direction() {
     if (settings_.iterating)
@@ -140,7 +144,7 @@ class Newton {
     report_.linear_iterations += d.linear_iterations;
     report_.trouble = d.trouble;
     unsolved_ = d.unsolved;
-    small_correction_ = is_small(d);
+    small_correction_ = is_small(d, kNoDecrement);
     report_.indefinite = report_.indefinite || !d.trouble.empty();
     report_.linear_residual = d.linear_residual;
     report_.cg_seconds += d.cg_seconds;
