@@ -211,6 +211,7 @@ CLI::App* add_extremes(CLI::App& app, ExtremesOptions& options) {
   extremes->add_option("--memory-limit", options.memory_limit, "of each run, in bytes; 0: none")
       ->check(number_from(0, false, false))
       ->capture_default_str();
+  extremes->add_flag("--resume", options.resume, "go on with a map that was interrupted");
   extremes->add_flag("--quiet", options.quiet, "no progress");
   return extremes;
 }

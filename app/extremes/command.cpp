@@ -1,11 +1,11 @@
 #include "app/extremes/extremes.hpp"
 #include "app/extremes/map.hpp"
+#include "app/extremes/stored_map.hpp"
 #include "app/extremes/sweep.hpp"
 #include "app/interruption.hpp"
 #include "app/messages.hpp"
 #include "app/report/report_directory.hpp"
 #include "app/run_scene.hpp"
-#include "app/version.hpp"
 #include "core/cpu/thread_pool.hpp"
 #include "core/model/errors.hpp"
 #include "core/solver/clock.hpp"
@@ -19,6 +19,9 @@
 
 namespace fascia::app {
 namespace {
+
+/// What has ended is written so often [s].
+constexpr double kSaveEvery = 5;
 
 std::vector<ExtremeCell> cells_of(const ExtremesOptions& options) {
   if (options.scene) {
@@ -57,9 +60,9 @@ class Teller {
     if (quiet_) return;
     const double left = seconds_since(start_) * static_cast<double>(of - ended) / static_cast<double>(ended);
     if (terminal_)
-      say("\r\033[K{} of at most {} runs, about {:.0f} s left", ended, of, left);
+      say("\r\033[K{} of {} cells, about {:.0f} s left", ended, of, left);
     else if (ended % std::max<std::size_t>(1, of / 20) == 0)
-      say("{} of at most {} runs, about {:.0f} s left\n", ended, of, left);
+      say("{} of {} cells, about {:.0f} s left\n", ended, of, left);
     std::fflush(stderr);
   }
 
@@ -69,14 +72,13 @@ class Teller {
 };
 
 std::string json_text(const ExtremesMap& map) {
-  nlohmann::ordered_json j{{"fascia", FASCIA_VERSION}, {"title", map.title}, {"cells", map.cells.size()}};
+  nlohmann::ordered_json j = settings_json(map);
+  j["cells"] = map.cells.size();
   const std::vector<std::size_t> counts = count(map);
   for (std::size_t v = 0; v < counts.size(); ++v) j["verdicts"][name_of(static_cast<CellVerdict>(v))] = counts[v];
   j["regressions"] = map.regressions;
   j["gains"] = map.gains;
   j["jobs"] = map.settings.jobs;
-  j["time_limit"] = map.settings.time_limit;
-  j["memory_limit"] = map.settings.memory_limit;
   j["seconds"] = map.seconds;
   return j.dump(2) + "\n";
 }
@@ -106,27 +108,38 @@ int run_extremes(const ExtremesOptions& options) {
     for (const ExtremeCell& c : map.cells) fmt::print("{}\n", c.name());
     return kDone;
   }
+  if (options.resume) resume(map, options.output);
   Interruption interruption;
   const ReportDirectory directory(options.output, "extremes", {"cells", "extremes.csv", "extremes.html"});
   directory.write("extremes.json", json_text(map));
   announce(map, options.quiet);
   const Clock::time_point start = Clock::now();
+  const std::size_t all = map.cells.size();
   {
     Teller teller(options.quiet);
+    Clock::time_point saved = start;
     run_map(
-        map, directory.path(), [&](std::size_t ended, std::size_t of) { teller.tell(ended, of); },
+        map, directory.path(),
+        [&](std::size_t ended, std::size_t of) {
+          teller.tell(ended, of);
+          if (seconds_since(saved) < kSaveEvery) return;
+          directory.write("extremes.csv", csv_of(map));
+          saved = Clock::now();
+        },
         [&] { return interruption.requested(); });
   }
-  if (interruption.requested()) {
-    say("interrupted: no map was written\n");
-    return 128 + interruption.signal();
-  }
+  keep_ended(map);
   map.seconds = seconds_since(start);
   if (options.beside) read_beside(map, *options.beside);
-  if (options.compare) compare_with_stored(map, *options.compare);
+  if (options.compare && !map.cells.empty()) compare_with_stored(map, *options.compare);
   directory.write("extremes.csv", csv_of(map));
   directory.write("extremes.html", html_of(map, directory.path()));
   directory.write("extremes.json", json_text(map));
+  if (interruption.requested()) {
+    say("interrupted: {} of {} cells are in {}; the same command with --resume goes on\n", map.cells.size(), all,
+        directory.path().string());
+    return 128 + interruption.signal();
+  }
   fmt::print("{}map in {}: extremes.html, extremes.csv\n", text_of(map), directory.path().string());
   const bool astray = std::any_of(map.outcomes.begin(), map.outcomes.end(),
                                   [](const CellOutcome& o) { return leads_astray(o.verdict); });

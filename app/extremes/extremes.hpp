@@ -21,6 +21,7 @@ struct ExtremesOptions {
   int pairs = 300;            ///< cells in which two numbers are extreme
   double quicker_than = 0;    ///< leaves out cells that took longer in `compare` [s]; 0: none
   bool reduced = false, list = false, quiet = false;
+  bool resume = false;  ///< goes on with what `output` holds of the same map
 };
 
 /// Runs the map of extremes, or a scene over decades of its numbers, and writes extremes.csv, extremes.html,

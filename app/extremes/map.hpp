@@ -21,7 +21,8 @@ struct ExtremesMap {
   std::string title;  ///< of what: "the map of extremes", "scenes/liver.toml"
   MapSettings settings;
   std::vector<ExtremeCell> cells;
-  std::vector<CellOutcome> outcomes;
+  std::vector<CellOutcome> outcomes;     ///< of cells that have ended
+  std::vector<char> ended;               ///< 1: its outcome stands
   std::vector<std::string> files;        ///< of their scenes, "cells/…toml"
   std::vector<std::string> regressions;  ///< sentences: cells that are worse than in a stored map
   std::vector<std::string> gains;        ///< sentences: cells that are better
@@ -32,13 +33,22 @@ struct ExtremesMap {
 /// Cells of each verdict.
 std::vector<std::size_t> count(const ExtremesMap& map);
 
-/// Runs every cell, and a twin of each one that converges, in processes of their own.
+/// Runs every cell that has not ended, and a twin of each one that converges, in processes of their own.
 /// @param directory  their scenes are written to cells/ of it
-/// @param tell  is told of each run that ended: how many of how many
+/// @param tell  is told of each cell that ended: how many of how many
+/// @param stop  once it says true the rest is left out: `ended` says what there is
 void run_map(ExtremesMap& map, const std::filesystem::path& directory,
              const std::function<void(std::size_t, std::size_t)>& tell, const std::function<bool()>& stop);
 
-/// extremes.csv: a row for each cell.
+/// Takes the outcomes of an older map that was made with the same settings, for run_map() to go on with.
+/// @param directory  that holds its extremes.json and extremes.csv
+/// @throws InputError  there is none, or it has other settings
+void resume(ExtremesMap& map, const std::filesystem::path& directory);
+
+/// Leaves out cells that have not ended.
+void keep_ended(ExtremesMap& map);
+
+/// extremes.csv: a row for each cell that has ended.
 std::string csv_of(const ExtremesMap& map);
 
 /// Leaves out cells that took longer in a stored map, and those that it has not.

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <mutex>
 #include <set>
+#include <utility>
 
 namespace fascia::app {
 namespace {
@@ -35,15 +37,68 @@ std::string file_name(const std::string& text) {
   return name;
 }
 
-ChildRun child(const fs::path& scene, const fs::path& output, const MapSettings& settings) {
-  ChildRun run;
-  run.scene = scene;
-  run.output = output;
-  run.threads = 1;
-  run.time_limit = settings.time_limit;
-  run.memory_limit = settings.memory_limit;
-  return run;
-}
+/// Runs a cell and what it is judged by, one after the other, in a folder of its own.
+class CellJudgement {
+ public:
+  CellJudgement(const ExtremeCell& cell, fs::path scene, fs::path folder, const MapSettings& settings,
+                const std::function<bool()>& stop)
+      : cell_(cell), scene_(std::move(scene)), folder_(std::move(folder)), settings_(settings), stop_(stop) {
+    fs::create_directories(folder_);
+  }
+
+  CellOutcome outcome() {
+    run_ = run_own({});
+    if (run_.exit_status != kDone) return judged();
+    const Twin twin = twin_of(cell_);
+    units_ = twin.units;
+    twin_ = run_twin(twin);
+    if (const CellVerdict v = judged().verdict;
+        v != CellVerdict::wrong && v != CellVerdict::warned && v != CellVerdict::unconfirmed)
+      return judged();
+    if (const std::optional<Twin> other = disturbed_twin(cell_, run_.summary)) disturbed_ = run_twin(*other);
+    sharper_ = run_own(sharper_solver());
+    return judged();
+  }
+
+ private:
+  CellOutcome judged() const { return judge(cell_, {&run_, &twin_, &disturbed_, &sharper_, units_}); }
+
+  ChildResult run(ChildRun child) const {
+    child.output = folder_ / "out";
+    child.threads = 1;
+    child.memory_limit = settings_.memory_limit;
+    ChildResult result = run_child(child, stop_);
+    // A result is looked at and removed: thousands of them need not fit.
+    std::error_code ignored;
+    fs::remove_all(child.output, ignored);
+    if (result.summary.is_object()) result.summary.erase("provenance");
+    leave_out(result.message, child.scene.parent_path());
+    return result;
+  }
+  ChildResult run_own(const std::vector<std::string>& overrides) const {
+    ChildRun child;
+    child.scene = scene_;
+    child.overrides = overrides;
+    child.backend = settings_.backend;
+    child.time_limit = settings_.time_limit;
+    return run(child);
+  }
+  ChildResult run_twin(const Twin& twin) const {
+    ChildRun child;
+    child.scene = folder_ / "twin.toml";
+    io::write_file(child.scene, twin.text);
+    child.overrides = twin_solver();
+    child.time_limit = 4 * settings_.time_limit;  // other solver, smaller tolerance
+    return run(child);
+  }
+
+  const ExtremeCell& cell_;
+  fs::path scene_, folder_;
+  const MapSettings& settings_;
+  const std::function<bool()>& stop_;
+  ChildResult run_, twin_, disturbed_, sharper_;
+  UnitFactors units_;
+};
 
 }  // namespace
 
@@ -57,82 +112,49 @@ void run_map(ExtremesMap& map, const fs::path& directory, const std::function<vo
              const std::function<bool()>& stop) {
   const TemporaryFolder results("fascia-extremes");
   const std::size_t n = map.cells.size();
-  std::size_t ended = 0;
-  std::vector<ChildResult> runs(n), twins(n), disturbed(n), sharper(n);
-  std::vector<UnitFactors> units(n);
-  std::vector<ChildRun> children;
-  std::vector<std::size_t> cells;  // of the children
-
-  const auto run_all = [&](std::vector<ChildResult>& into) {
-    run_children(
-        children, map.settings.jobs,
-        [&](std::size_t k, ChildResult result) {
-          // A result is looked at and removed: thousands of them need not fit.
-          std::error_code ignored;
-          fs::remove_all(children[k].output, ignored);
-          if (result.summary.is_object()) result.summary.erase("provenance");
-          leave_out(result.message, children[k].scene.parent_path());
-          into[cells[k]] = std::move(result);
-          tell(++ended, 2 * n);
-        },
-        stop);
-    children.clear();
-    cells.clear();
-  };
-  const auto add = [&](std::size_t i, const fs::path& scene) {
-    children.push_back(child(scene, results.path() / std::to_string(i), map.settings));
-    cells.push_back(i);
-  };
-  const auto add_twin = [&](std::size_t i, const Twin& twin) {
-    const fs::path scene = results.path() / fmt::format("{}.toml", i);
-    io::write_file(scene, twin.text);
-    add(i, scene);
-    children.back().overrides = twin_solver();
-    children.back().time_limit *= 4;  // other solver, smaller tolerance
-  };
-
+  map.outcomes.resize(n);
+  map.ended.resize(n, 0);
   std::set<std::string> taken;
+  std::vector<std::size_t> open;
   for (std::size_t i = 0; i < n; ++i) {
     std::string name = file_name(map.cells[i].name());
     if (!taken.insert(name).second) taken.insert(name += fmt::format("-{}", i));
     map.files.push_back("cells/" + name + ".toml");
     io::write_file(directory / map.files.back(), map.cells[i].text);
-    add(i, directory / map.files.back());
-    children.back().backend = map.settings.backend;
+    if (map.ended[i] == 0) open.push_back(i);
   }
-  run_all(runs);
+  std::mutex telling;
+  std::size_t ended = n - open.size();
+  at_once(
+      open.size(), map.settings.jobs,
+      [&](std::size_t k) {
+        const std::size_t i = open[k];
+        const fs::path folder = results.path() / std::to_string(i);
+        const CellOutcome outcome =
+            CellJudgement(map.cells[i], directory / map.files[i], folder, map.settings, stop).outcome();
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
+        if (stop()) return;  // which may have ended its runs
+        const std::lock_guard lock(telling);
+        map.outcomes[i] = outcome;
+        map.ended[i] = 1;
+        tell(++ended, n);
+      },
+      stop);
+}
 
-  for (std::size_t i = 0; i < n; ++i) {
-    if (runs[i].exit_status != kDone) {
-      ++ended;
-      continue;
-    }
-    const Twin twin = twin_of(map.cells[i]);
-    units[i] = twin.units;
-    add_twin(i, twin);
+void keep_ended(ExtremesMap& map) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < map.cells.size(); ++i) {
+    if (map.ended[i] == 0) continue;
+    map.cells[kept] = map.cells[i];
+    map.outcomes[kept] = map.outcomes[i];
+    map.files[kept++] = map.files[i];
   }
-  run_all(twins);
-
-  const auto verdict = [&](std::size_t i) {
-    return judge(map.cells[i], {&runs[i], &twins[i], &disturbed[i], &sharper[i], units[i]});
-  };
-  map.outcomes.resize(n);
-  std::vector<std::size_t> doubted;
-  for (std::size_t i = 0; i < n; ++i) {
-    map.outcomes[i] = verdict(i);
-    const CellVerdict v = map.outcomes[i].verdict;
-    if (v == CellVerdict::wrong || v == CellVerdict::warned || v == CellVerdict::unconfirmed) doubted.push_back(i);
-  }
-  for (const std::size_t i : doubted)
-    if (const std::optional<Twin> twin = disturbed_twin(map.cells[i], runs[i].summary)) add_twin(i, *twin);
-  run_all(disturbed);
-  for (const std::size_t i : doubted) {
-    add(i, directory / map.files[i]);
-    children.back().backend = map.settings.backend;
-    children.back().overrides = sharper_solver();
-  }
-  run_all(sharper);
-  for (const std::size_t i : doubted) map.outcomes[i] = verdict(i);
+  map.cells.resize(kept);
+  map.outcomes.resize(kept);
+  map.files.resize(kept);
+  map.ended.assign(kept, 1);
 }
 
 }  // namespace fascia::app

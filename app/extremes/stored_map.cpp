@@ -1,4 +1,4 @@
-#include "app/extremes/map.hpp"
+#include "app/extremes/stored_map.hpp"
 #include "app/report/csv.hpp"
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <map>
 
 namespace fascia::app {
 namespace {
@@ -16,10 +15,6 @@ namespace {
 /// extremes.csv begins with these; a later version that means something else by them has other names.
 const std::vector<std::string> kColumns{"row",        "axis",         "value", "verdict", "status",
                                         "difference", "theory_error", "size",  "seconds", "reason"};
-
-std::string key_of(const std::string& row, const std::string& axis, const std::string& value) {
-  return row + ": " + axis + " " + value;
-}
 
 /// Two digits: more would change from one processor to the next.
 std::string rounded(const std::optional<double>& value) {
@@ -30,13 +25,19 @@ std::string rounded(const std::optional<double>& value) {
 /// map does not. Verdicts allow a tenth of it.
 constexpr double kAllowedChange = 1e-5;
 
-struct StoredCell {
-  CellVerdict verdict;
-  double size;  ///< 0: not told
-  double seconds;
-};
+/// A number, or none where the cell is empty.
+std::optional<double> number_or_none(const std::string& cell) {
+  return cell.empty() ? std::nullopt : std::optional(std::strtod(cell.c_str(), nullptr));
+}
 
-std::map<std::string, StoredCell> read_stored(const std::filesystem::path& path) {
+/// Refused and stopped are as good as one another.
+int rank(CellVerdict v) {
+  return v == CellVerdict::stopped ? static_cast<int>(CellVerdict::refused) : static_cast<int>(v);
+}
+
+}  // namespace
+
+StoredMap read_stored(const std::filesystem::path& path) {
   const auto fail = [&](std::size_t line, const std::string& what) {
     throw InputError(
         fmt::format("{}:{}: {}; must be an extremes.csv as fascia extremes writes it: make the map again "
@@ -51,30 +52,31 @@ std::map<std::string, StoredCell> read_stored(const std::filesystem::path& path)
   }
   if (rows.empty() || rows.front() != kColumns)
     fail(1, fmt::format("the columns are not {}", fmt::join(kColumns, ",")));
-  std::map<std::string, StoredCell> stored;
+  StoredMap stored;
   for (std::size_t r = 1; r < rows.size(); ++r) {
     const std::vector<std::string>& row = rows[r];
     if (row.size() != kColumns.size())
       fail(r + 1, fmt::format("{} cells in the place of {}", row.size(), kColumns.size()));
     const std::optional<CellVerdict> verdict = verdict_of(row[3]);
     if (!verdict) fail(r + 1, fmt::format("\"{}\" is no verdict", row[3]));
-    const double size = std::strtod(row[7].c_str(), nullptr), seconds = std::strtod(row[8].c_str(), nullptr);
-    if (!stored.emplace(key_of(row[0], row[1], row[2]), StoredCell{*verdict, size, seconds}).second)
-      fail(r + 1, fmt::format("\"{}\" stands there twice", key_of(row[0], row[1], row[2])));
+    CellOutcome outcome;
+    outcome.verdict = *verdict;
+    outcome.status = row[4];
+    outcome.difference = number_or_none(row[5]);
+    outcome.theory_error = number_or_none(row[6]);
+    outcome.size = number_or_none(row[7]);
+    outcome.seconds = number_or_none(row[8]).value_or(0);
+    outcome.reason = row[9];
+    const std::string name = ExtremeCell{row[0], row[1], row[2], "", std::nullopt}.name();
+    if (!stored.emplace(name, outcome).second) fail(r + 1, fmt::format("\"{}\" stands there twice", name));
   }
   return stored;
 }
 
-/// Refused and stopped are as good as one another.
-int rank(CellVerdict v) {
-  return v == CellVerdict::stopped ? static_cast<int>(CellVerdict::refused) : static_cast<int>(v);
-}
-
-}  // namespace
-
 std::string csv_of(const ExtremesMap& map) {
   std::string text = csv_row(kColumns);
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
+    if (map.ended[i] == 0) continue;
     const ExtremeCell& c = map.cells[i];
     const CellOutcome& o = map.outcomes[i];
     text +=
@@ -85,9 +87,9 @@ std::string csv_of(const ExtremesMap& map) {
 }
 
 void keep_quick(std::vector<ExtremeCell>& cells, const std::filesystem::path& path, double seconds) {
-  const std::map<std::string, StoredCell> stored = read_stored(path);
+  const StoredMap stored = read_stored(path);
   std::erase_if(cells, [&](const ExtremeCell& c) {
-    const auto found = stored.find(key_of(c.row, c.axis, c.value));
+    const auto found = stored.find(c.name());
     return found == stored.end() || found->second.seconds > seconds;
   });
 }
@@ -114,18 +116,18 @@ void read_beside(ExtremesMap& map, const std::filesystem::path& path) {
 }
 
 void compare_with_stored(ExtremesMap& map, const std::filesystem::path& path) {
-  const std::map<std::string, StoredCell> stored = read_stored(path);
+  const StoredMap stored = read_stored(path);
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
     const ExtremeCell& c = map.cells[i];
-    const auto found = stored.find(key_of(c.row, c.axis, c.value));
+    const auto found = stored.find(c.name());
     if (found == stored.end()) {
       ++unknown;
       continue;
     }
     const CellOutcome& now = map.outcomes[i];
     const CellVerdict before = found->second.verdict;
-    const double size = found->second.size;
+    const double size = found->second.size.value_or(0);
     if (before == CellVerdict::right && now.verdict == CellVerdict::right && size > 0 && now.size &&
         !(std::abs(*now.size - size) <= kAllowedChange * size))
       map.regressions.push_back(

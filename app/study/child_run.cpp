@@ -153,30 +153,41 @@ ChildResult run_child(const ChildRun& run, const std::function<bool()>& stop) {
   return result;
 }
 
-void run_children(const std::vector<ChildRun>& runs, int parallel,
-                  const std::function<void(std::size_t, ChildResult)>& done, const std::function<bool()>& stop) {
+void at_once(std::size_t count, int parallel, const std::function<void(std::size_t)>& work,
+             const std::function<bool()>& stop) {
   std::atomic<std::size_t> next{0};
-  std::mutex telling;
+  std::mutex failing;
   std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs.size() && !(stop && stop()); i = next++) {
+  const auto take = [&] {
+    for (std::size_t i = next++; i < count && !(stop && stop()); i = next++) {
       try {
-        ChildResult result = run_child(runs[i], stop);
-        const std::lock_guard lock(telling);
-        done(i, std::move(result));
+        work(i);
       } catch (...) {
-        const std::lock_guard lock(telling);
+        const std::lock_guard lock(failing);
         if (!error) error = std::current_exception();
-        next = runs.size();
+        next = count;
       }
     }
   };
   // The caller takes part: a child ends with the thread that started it.
   std::vector<std::thread> others;
-  for (int i = 1; i < parallel; ++i) others.emplace_back(work);
-  work();
+  for (int i = 1; i < parallel; ++i) others.emplace_back(take);
+  take();
   for (std::thread& other : others) other.join();
   if (error) std::rethrow_exception(error);
+}
+
+void run_children(const std::vector<ChildRun>& runs, int parallel,
+                  const std::function<void(std::size_t, ChildResult)>& done, const std::function<bool()>& stop) {
+  std::mutex telling;
+  at_once(
+      runs.size(), parallel,
+      [&](std::size_t i) {
+        ChildResult result = run_child(runs[i], stop);
+        const std::lock_guard lock(telling);
+        done(i, std::move(result));
+      },
+      stop);
 }
 
 }  // namespace fascia::app

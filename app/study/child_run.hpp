@@ -40,6 +40,11 @@ struct ChildResult {               // NOLINT(bugprone-exception-escape): moving 
 /// @throws std::system_error  no process can be started
 ChildResult run_child(const ChildRun& run, const std::function<bool()>& stop = {});
 
+/// Does work(0), work(1), ... count - 1, `parallel` at once, in threads of their own but for one. What one throws is
+/// thrown when all have ended; then, and once `stop` says true, nothing more is begun.
+void at_once(std::size_t count, int parallel, const std::function<void(std::size_t)>& work,
+             const std::function<bool()>& stop);
+
 /// Runs several, `parallel` at once, in their order. @param done  is told each one that ended, one at a time
 /// @param stop  once it says true, what runs is ended, and nothing is begun
 void run_children(const std::vector<ChildRun>& runs, int parallel,

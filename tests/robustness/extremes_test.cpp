@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <csignal>
 #include <fstream>
+#include <sstream>
 
 namespace fascia::extremes_program_test {
 namespace {
@@ -51,6 +54,34 @@ TEST_F(ExtremesProgram, WritesATableAndAPageThatSayHowToRepeatACell) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path / "out/cells/line-static-cg-pull-1e-09-e-a.toml"));
 }
 
+/// What had ended stands in the table, and is not run again.
+TEST_F(ExtremesProgram, GoesOnWhereItWasInterrupted) {
+  const std::vector<std::string> cells{"--only", "linear tetrahedra, static, cg", "--pairs", "0"};
+  std::vector<std::string> words{program(), "extremes", "--quiet", "--output", "out", "--jobs", "1"};
+  words.insert(words.end(), cells.begin(), cells.end());
+  ProgramOptions options;
+  options.directory = folder_.path;
+  options.signal = SIGINT;
+  options.signal_after = std::chrono::milliseconds(1500);
+  const ProgramResult stopped = run_program(words, options);
+  ASSERT_EQ(stopped.status, 130) << stopped.out << stopped.err;
+  EXPECT_NE(stopped.err.find("--resume goes on"), std::string::npos) << stopped.err;
+  const std::string begun = file("extremes.csv");
+  ASSERT_GT(std::count(begun.begin(), begun.end(), '\n'), 1) << begun;
+  words = cells;
+  words.insert(words.end(), {"--resume", "--time-limit", "7"});
+  const ProgramResult other = extremes(words);
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("time_limit = 60.0, and now it is 7.0"), std::string::npos) << other.err;
+  words.resize(words.size() - 2);
+  const ProgramResult rest = extremes(words);
+  EXPECT_EQ(rest.status, 0) << rest.out << rest.err;
+  const std::string whole = file("extremes.csv");
+  EXPECT_GT(whole.size(), begun.size());
+  std::istringstream rows(begun);
+  for (std::string row; std::getline(rows, row);) EXPECT_NE(whole.find(row), std::string::npos) << row;
+}
+
 TEST_F(ExtremesProgram, SweepsAScene) {
   write("s.toml",
         "materials.m = { young = \"10 kPa\", poisson = 0.3 }\n"
@@ -77,6 +108,7 @@ TEST_F(ExtremesProgram, RefusesWhatItCannotDo) {
   refusal({"--only", "nonsense"}, "no cell's name holds all words");
   refusal({"--set", "a=1"}, "--set changes a scene");
   refusal({"--quicker-than", "1"}, "add --compare");
+  refusal({"--resume"}, "holds no map");
   write("none.toml", "bodies.b = { model = \"line\" }\n");
   refusal({"none.toml"}, "none.toml:1");
   write("mute.toml",
