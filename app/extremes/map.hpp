@@ -22,12 +22,14 @@ struct ExtremesMap {
   MapSettings settings;
   std::vector<ExtremeCell> cells;
   std::vector<CellOutcome> outcomes;     ///< of cells that have ended
-  std::vector<char> ended;               ///< 1: its outcome stands
+  std::vector<char> ended;               ///< 1: its outcome stands; empty: all of them do
   std::vector<std::string> files;        ///< of their scenes, "cells/…toml"
   std::vector<std::string> regressions;  ///< sentences: cells that are worse than in a stored map
   std::vector<std::string> gains;        ///< sentences: cells that are better
   std::vector<std::string> others;       ///< what another program said of each cell; empty: nothing
   double seconds = 0;
+
+  bool has_ended(std::size_t cell) const { return ended.empty() || ended[cell] != 0; }
 };
 
 /// Cells of each verdict.

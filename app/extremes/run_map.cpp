@@ -146,7 +146,7 @@ void run_map(ExtremesMap& map, const fs::path& directory, const std::function<vo
 void keep_ended(ExtremesMap& map) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
-    if (map.ended[i] == 0) continue;
+    if (!map.has_ended(i)) continue;
     map.cells[kept] = map.cells[i];
     map.outcomes[kept] = map.outcomes[i];
     map.files[kept++] = map.files[i];

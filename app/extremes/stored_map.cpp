@@ -76,7 +76,7 @@ StoredMap read_stored(const std::filesystem::path& path) {
 std::string csv_of(const ExtremesMap& map) {
   std::string text = csv_row(kColumns);
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
-    if (map.ended[i] == 0) continue;
+    if (!map.has_ended(i)) continue;
     const ExtremeCell& c = map.cells[i];
     const CellOutcome& o = map.outcomes[i];
     text +=
