@@ -54,7 +54,8 @@ struct Deviation {
   std::string probe;
 };
 
-/// The largest difference, each relative to the largest number of its unit, or to `least` of that unit.
+/// The largest difference, each relative to the largest number of its unit, or to the scale
+/// given for that unit.
 Deviation deviation(const std::map<std::string, ProbeNumbers>& run, const std::map<std::string, ProbeNumbers>& twin,
                     std::map<std::string, double> scales, const UnitFactors& units = {}) {
   for (const auto& [name, p] : run)

@@ -60,8 +60,7 @@ void describe_residual(const Evaluation& last, const SolverSettings& settings, s
   if (is_left_by_rounding(last, settings))
     out << ", where rounding leaves up to " << last.relative_floor
         << ": the body is too thin for its elements or frames, or its parts too unlike (check tells the digits left); "
-           "a "
-           "shell, a sheet or a line may do";
+           "a shell, a sheet or a line may do";
 }
 
 }  // namespace
