@@ -165,7 +165,9 @@ class Setup {
     system_->set_factors(s_.factors(0));
     system_->evaluate();
     linearize(dt);
-    to_come_.keep(3 * state_bytes(s_.model) + 12 * vector_bytes(s_.model));
+    // Directions of GMRES, two vectors each, come beside where loads have no potential.
+    const double directions = on_gpu || s_.model.loads_are_conservative() ? 0 : 24;
+    to_come_.keep(3 * state_bytes(s_.model) + (12 + directions) * vector_bytes(s_.model));
     if (!on_gpu && s_.model.free_dof_count() > 0) of_solver();
   }
 

@@ -112,8 +112,11 @@ void judge_stability(const Simulation& s, const State& end, RunReport& run, Warn
                             "no equilibrium nearby");
   if (!found.is_unstable()) return;
   if (!s.model.loads_are_conservative())
-    return warnings.add("stability", "the end state may be an unstable equilibrium" + where +
-                                         "; loads that follow the body have no energy that could tell");
+    return warnings.add(
+        "stability",
+        "the end state may be an unstable equilibrium" + where +
+            ": its tangent has a real negative eigenvalue; loads that follow the body have no energy, and dynamics "
+            "alone shows what becomes of it");
   const std::string message =
       "the end state is an unstable equilibrium" + where + ": the smallest disturbance makes the body leave it";
   if (s.scene.solver.accept_unstable) return warnings.add("stability", message);

@@ -233,7 +233,7 @@ struct FaceProduct {
     const SurfaceFace face = set.face(f);
     const int s = set.face_surface[f];
     Vec3d force[kMostFaceNodes];
-    add_face_product(face, tangent.x, tangent.pressure[s], tangent.gradient[s], dx,
+    add_face_product(face, tangent.x, tangent.pressure[s], tangent.gradient[s], dx, TangentPart::symmetric,
                      [&](int a, const Vec3d& term) { force[a] += term; });
     for (int a = 0; a < face.nodes; ++a) corner[set.face_begin[f] + a] = force[a];
   }

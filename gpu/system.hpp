@@ -56,6 +56,7 @@ class System {
   void restore();
   bool has_prescribed_increment() const { return prescribed_left_; }
   bool conservative() const { return conservative_; }
+  bool compares_energies() const { return conservative_; }
   double prescribed_rotation();
   bool solves_for_middle() const { return step_.scheme == TimeScheme::midpoint; }
 
@@ -153,6 +154,9 @@ class System {
   bool host_may_solve() const;
   bool host_is_faster(int iterations);
   StepInProgress step_in_progress() const;
+  bool unsymmetric() const;
+  CgReport solve_unsymmetric(const CgOptions& asked);
+  void product_at_rest(double* p);
   DirectionReport direction_of_host();
   SoftestDirection softest();
   CgReport solve_in_tiles(const CgOptions& options);
@@ -201,7 +205,7 @@ class System {
 
   Array<Space, Mat3d> Q_, dA_;
   Array<Space, Vec3d> dx_;
-  Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, direction_, still_, still_Ap_, slope_, spin_;
+  Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, direction_, asked_, still_, still_Ap_, slope_, spin_;
   Array<Space, float> narrow_blocks_, narrow_inverse_, narrow_d_;
   Array<Space, Vec3<float>> narrow_dx_;
   Array<Space, Mat3<float>> narrow_dA_;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "core/solver/gmres.hpp"
 #include "gpu/system.hpp"
+
+#include <algorithm>
 
 /// Newton's directions of System that the host solves.
 namespace fascia::gpu {
@@ -10,7 +13,71 @@ namespace fascia::gpu {
 /// asked for conjugate gradients or set their limit.
 template <class Space>
 bool System<Space>::host_may_solve() const {
-  return limit_is_guessed() && model_.free_dof_count() <= kMostOfFactor && model_.surfaces.empty();
+  const bool fluids = std::any_of(model_.surfaces.begin(), model_.surfaces.end(),
+                                  [](const SurfaceLoad& s) { return s.bulk_modulus > 0; });
+  return limit_is_guessed() && model_.free_dof_count() <= kMostOfFactor && !fluids;
+}
+
+/// The tangent of loads without a potential is unsymmetric, which matters in statics; in dynamics inertia makes little
+/// of what conjugate gradients leave out.
+template <class Space>
+bool System<Space>::unsymmetric() const {
+  return !conservative_ && step_.h <= 0 && settings_.tangent == Tangent::full;
+}
+
+/// GMRES with what the host adds to products, preconditioned by conjugate gradients with the symmetric part. What they
+/// had in rhs() becomes what they have in solution(). Where they meet negative curvature, that is the report.
+template <class Space>
+CgReport System<Space>::solve_unsymmetric(const CgOptions& asked) {
+  MechanicalSystem& loads = host();
+  loads.stand_in(step_in_progress());
+  loads.linearize();
+  const auto n = static_cast<std::size_t>(model_.dof_count());
+  std::vector<double> b(n), x;
+  with_scalars([&]<class T, class V>() {
+    std::vector<V> rhs(n);
+    Space::copy_out(rhs.data(), solver<V>().rhs(), n * sizeof(V));
+    std::copy(rhs.begin(), rhs.end(), b.begin());
+  });
+  if (prescribed_left_) {
+    std::vector<double> moved(n);
+    loads.add_unsymmetric(prescribed_.downloaded(), moved);
+    filter_.clear_fixed(moved);
+    for (std::size_t i = 0; i < n; ++i) b[i] -= moved[i];
+  }
+  CgOptions inner = asked;
+  inner.tolerance = std::max(asked.tolerance, kInnerTolerance);
+  CgReport report;
+  const auto precondition = [&](const std::vector<double>& r, std::vector<double>& z) {
+    with_scalars([&]<class T, class V>() {
+      std::vector<V> vector(r.begin(), r.end());
+      Space::copy_in(solver<V>().rhs(), vector.data(), n * sizeof(V));
+      const CgReport cg = solve(inner);
+      Space::copy_out(vector.data(), solver<V>().solution(), n * sizeof(V));
+      std::copy(vector.begin(), vector.end(), z.begin());
+      report.status = cg.status;
+      report.iterations += cg.iterations;
+    });
+    return report.status == CgStatus::converged;
+  };
+  const auto apply = [&](const std::vector<double>& z, std::vector<double>& w) {
+    asked_.upload(z);
+    product_at_rest(asked_.data());
+    w = still_Ap_.downloaded();
+    loads.add_unsymmetric(z, w);
+    filter_.clear_fixed(w);
+  };
+  GmresOptions options;
+  options.tolerance = asked.tolerance;
+  const GmresReport gmres = gmres_by_length(CpuVectors(loads.executor().pool()), motion_lengths(model_, filter_), apply,
+                                            precondition, b, x, options);
+  report.relative_norm = gmres.relative_residual;
+  if (report.status == CgStatus::converged && !gmres.converged) report.status = CgStatus::limit;
+  with_scalars([&]<class T, class V>() {
+    const std::vector<V> solution(x.begin(), x.end());
+    Space::copy_in(solver<V>().solution(), solution.data(), n * sizeof(V));
+  });
+  return report;
 }
 
 /// So many iterations take more than twice as long as the host, assembly and factorisation. Counts tell, not clocks,

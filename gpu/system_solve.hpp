@@ -199,24 +199,32 @@ SoftestDirection System<Space>::softest() {
   return found;
 }
 
+/// still_Ap_ = K p in constraint axes, beside whatever solve is under way.
+template <class Space>
+void System<Space>::product_at_rest(double* p) {
+  const auto n = static_cast<std::size_t>(model_.dof_count());
+  still_.resize(n);
+  still_Ap_.resize(n);
+  still_.set_zero();
+  idle_.set_zero();
+  const CgView<double> v{nullptr, nullptr, p, still_.data(), still_Ap_.data(), idle_.data()};
+  if (use_tiles())
+    tiles_->multiply(p, still_Ap_.data());
+  else if (settings_.precision == Precision::full)
+    apply_tangent<double, double>(v);
+  else
+    apply_tangent<float, double>(v);
+}
+
 template <class Space>
 DirectionReport System<Space>::direction() {
-  if (indefinite_ || too_slow_) return direction_of_host();
+  const bool whole = unsymmetric();
+  if (indefinite_ || too_slow_ || (whole && host_may_solve())) return direction_of_host();
   linearize(settings_.tangent, true, taken_step());
   const int n = model_.node_count();
   const double* moved = nullptr;
   if (prescribed_left_) {
-    still_.resize(prescribed_.size());
-    still_Ap_.resize(prescribed_.size());
-    still_.set_zero();
-    idle_.set_zero();
-    const CgView<double> v{nullptr, nullptr, prescribed_.data(), still_.data(), still_Ap_.data(), idle_.data()};
-    if (use_tiles())
-      tiles_->multiply(prescribed_.data(), still_Ap_.data());
-    else if (settings_.precision == Precision::full)
-      apply_tangent<double, double>(v);
-    else
-      apply_tangent<float, double>(v);
+    product_at_rest(prescribed_.data());
     moved = still_Ap_.data();
   }
   const auto right_hand_side = [&] {
@@ -227,7 +235,7 @@ DirectionReport System<Space>::direction() {
   right_hand_side();
   const Clock::time_point start = Clock::now();
   const CgOptions options = solve_options();
-  CgReport cg = solve(options);
+  CgReport cg = whole ? solve_unsymmetric(options) : solve(options);
   const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;
   if (host_is_faster(cg.iterations)) too_slow_ = true;
   if ((too_slow_ || cg.status == CgStatus::negative_curvature) && failed && host_may_solve()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/cpu/element_executor.hpp"
+#include "core/cpu/follower_tangent.hpp"
 #include "core/cpu/shell_executor.hpp"
 #include "core/cpu/surface_tangent.hpp"
 #include "core/cpu/thread_pool.hpp"
@@ -50,8 +51,13 @@ struct Linearization {
   AlignedVector<double> E;          ///< StrainHistory::E, where elements or shells are damped
   bool extrapolated = false;        ///< stresses are extrapolated
   AlignedVector<double> stress;     ///< such stresses of elements and shells, in the layout of E
-  std::vector<SurfaceTangent> surfaces;  ///< of surface loads; added by who knows them, as to node_blocks
-  std::vector<RankOne> low_rank;         ///< terms that no matrix holds; products have them
+  std::vector<SurfaceTangent> surfaces;    ///< of surface loads; added by who knows them, as to node_blocks
+  std::vector<RankOne> low_rank;           ///< terms that no matrix holds; products have them
+  std::vector<FollowerTangent> followers;  ///< as those of surfaces
+  std::vector<TorqueTangent> torques;
+
+  /// Loads have a potential: nothing is beside the symmetric part, which matrices and products hold.
+  bool symmetric() const;
 };
 
 /// Executes a point set on the processor: one pass over groups of points, one gather over frames. No atomics, sums in

@@ -2,6 +2,8 @@
 #include "core/cpu/group_kernels.hpp"
 #include "core/math/index.hpp"
 
+#include <algorithm>
+
 /// Linearization: all that products with the tangent need of a state.
 namespace fascia {
 
@@ -17,12 +19,19 @@ void turn(const FrameMatrices& D, std::vector<Mat3d>& Q) {
 
 }  // namespace
 
+bool Linearization::symmetric() const {
+  return followers.empty() && torques.empty() &&
+         std::all_of(surfaces.begin(), surfaces.end(), [](const SurfaceTangent& s) { return s.load->has_potential; });
+}
+
 void CpuExecutor::linearize(const State& state, const StrainHistory& history, Tangent tangent, Linearization& out,
                             bool tethers_turn, const TakenStep* taken) {
   out.tangent = tangent;
   out.inverse_step = history.inverse_step;
   out.surfaces.clear();
   out.low_rank.clear();
+  out.followers.clear();
+  out.torques.clear();
   if (tangent == Tangent::material) taken = nullptr;
   out.extrapolated = taken != nullptr;
   linearize_points(state, history, taken, out);

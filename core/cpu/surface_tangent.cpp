@@ -35,7 +35,7 @@ void gather_forces(const SurfaceLoad& load, const std::vector<Vec3d>& force, con
 }
 
 void add_product(const SurfaceTangent& tangent, const DofLayout& dofs, const std::vector<Mat3d>& Q,
-                 std::span<const double> x, std::span<double> y) {
+                 std::span<const double> x, std::span<double> y, TangentPart part) {
   const SurfaceLoad& load = *tangent.load;
   std::vector<Vec3d> dx(load.X.size()), force(load.X.size());
   for (int v = 0; v < load.vertex_count(); ++v)
@@ -45,7 +45,7 @@ void add_product(const SurfaceTangent& tangent, const DofLayout& dofs, const std
     }
   for (int f = 0; f < load.face_count(); ++f) {
     const SurfaceFace face = SurfaceFace::of(load, f);
-    add_face_product(face, tangent.x.data(), tangent.pressure, tangent.gradient, dx.data(),
+    add_face_product(face, tangent.x.data(), tangent.pressure, tangent.gradient, dx.data(), part,
                      [&](int a, const Vec3d& term) { force[at(face.vertex[a])] += term; });
   }
   for (int v = 0; v < load.vertex_count(); ++v)

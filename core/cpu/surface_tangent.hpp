@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/model/dof_layout.hpp"
+#include "core/model/surface_face.hpp"
 #include "core/model/surface_load.hpp"
 #include "core/solver/block_matrix.hpp"
 
@@ -14,7 +15,7 @@ namespace fascia {
 ///   K_ij = −½ ∫ p ((N_i N_j,t − N_j N_i,t) [x,s]× − (N_i N_j,s − N_j N_i,s) [x,t]×) + N_i N_j (n gᵀ + g nᵀ) ds dt,
 ///
 /// with n = x,s × x,t and g the gradient of p. Of a closed surface, or one whose free edges are held, that is all of
-/// it; an open edge that moves has an antisymmetric part, which is left out.
+/// it; an open edge that moves has an antisymmetric part, which no matrix holds.
 struct SurfaceTangent {
   const SurfaceLoad* load = nullptr;
   std::vector<Vec3d> x;  ///< SurfaceForces::x
@@ -32,9 +33,9 @@ struct RankOne {
 void gather_forces(const SurfaceLoad& load, const std::vector<Vec3d>& force, const State& state, const DofLayout& dofs,
                    std::span<double> out);
 
-/// y += K x. @param Q  I + D of each node
+/// y += K x, or what the antisymmetric part makes of x. @param Q  I + D of each node
 void add_product(const SurfaceTangent& tangent, const DofLayout& dofs, const std::vector<Mat3d>& Q,
-                 std::span<const double> x, std::span<double> y);
+                 std::span<const double> x, std::span<double> y, TangentPart part = TangentPart::symmetric);
 void add_product(const RankOne& update, std::span<const double> x, std::span<double> y);
 
 /// Adds the blocks of pairs of nodes that the pattern has (nodes of a face that share no group or element do not),

@@ -14,6 +14,11 @@ Eigenpairs symmetric_eigen(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+ComplexEigenpairs general_eigen(const Eigen::MatrixXd& A) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& A) {
   return Eigen::HouseholderQR<Eigen::MatrixXd>(A).householderQ() * Eigen::MatrixXd::Identity(A.rows(), A.cols());
 }

@@ -122,18 +122,22 @@ FASCIA_HD inline void face_blocks(const SurfaceFace& face, const Vec3d* x, doubl
     }
 }
 
+/// Half the sum of a derivative and its transpose, or half their difference; their sum is the derivative.
+enum class TangentPart { symmetric, antisymmetric };
+
 /// Calls add(i, Σ_j K_ij dx_j) for the corners, term by term. @param dx  of the vertices, the rest as above
 template <class Add>
 FASCIA_HD void add_face_product(const SurfaceFace& face, const Vec3d* x, double pressure, const Vec3d& gradient,
-                                const Vec3d* dx, const Add& add) {
+                                const Vec3d* dx, TangentPart part, const Add& add) {
+  const double transposed = part == TangentPart::symmetric ? 1 : -1;
   for (int k = 0; k < face.points; ++k) {
     const FaceRulePoint& q = face.rule[k];
     const FacePlace now(q, face, x), moved(q, face, dx);
     const double half = -0.5 * q.weight, p = half * (pressure + dot(gradient, now.x));
     const Vec3d ps = now.s * p, pt = now.t * p, normal = cross(now.s, now.t);
-    const Vec3d slope = (normal * dot(gradient, moved.x) + gradient * dot(normal, moved.x)) * half;
+    const Vec3d slope = (normal * dot(gradient, moved.x) + gradient * (transposed * dot(normal, moved.x))) * half;
     const Vec3d along = cross(ps, moved.t) - cross(pt, moved.s) + slope;
-    const Vec3d by_s = cross(pt, moved.x), by_t = cross(ps, moved.x);
+    const Vec3d by_s = cross(pt, moved.x) * transposed, by_t = cross(ps, moved.x) * transposed;
     for (int i = 0; i < face.nodes; ++i) add(i, along * q.N[at(i)] + by_s * q.ds[at(i)] - by_t * q.dt[at(i)]);
   }
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace fascia {
@@ -170,11 +171,16 @@ void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) const {
   const bool full = lin.tangent == Tangent::full;
   const DofLayout& dofs = model_.points.dofs;
   if (full) {
-    for (const DeadLoad& load : model_.loads)
-      for (const NodeLoad& n : load.nodes)
-        if (rigid(at(n.node)))
-          add_dead_load_block(n, factors_[at(load.schedule)], lin.Q[at(n.node)],
-                              lin.node_blocks.data() + dofs.block_begin(n.node));
+    for (const DeadLoad& load : model_.loads) {
+      const double s = factors_[at(load.schedule)];
+      for (const NodeLoad& n : load.nodes) {
+        if (!rigid(at(n.node))) continue;
+        add_dead_load_block(n, s, lin.Q[at(n.node)], lin.node_blocks.data() + dofs.block_begin(n.node));
+        if (squared_norm(n.torque) > 0) lin.torques.push_back({n.node, n.torque * s});
+      }
+    }
+    for (const FollowerLoad& load : model_.followers)
+      lin.followers.emplace_back(load, state_, factors_[at(load.schedule)]);
     if (turning) dependents_.add_turning(dependent_forces_, lin.node_blocks);
   }
   surfaces_.linearize(state_, factors_, lin);
@@ -215,18 +221,28 @@ void MechanicalSystem::add_squares(std::span<const double> global, std::vector<d
 Evaluation MechanicalSystem::evaluate() {
   if (known_) return *std::exchange(known_, std::nullopt);
   internal_ = executor_.gradient(state_, history_, gradient_);
-  add_loads();
+  evaluate_loads();
   add_inertia();
   for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] += inertia_[i] - load_[i];
   dependents_.transfer(gradient_, dependent_forces_);
   Evaluation e;
-  e.energy = internal_.total() + load_energy_ + inertia_energy_;
+  e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
   add_squares(load_, part_squares_.load, part_squares_.held_load);
   add_squares(inertia_, part_squares_.inertia, part_squares_.unused);
   add_squares(gradient_, part_squares_.residual, part_squares_.reaction);
   e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
   judge(part_forces(), model_.points.part_whole, settings_.tolerance, e);
   return e;
+}
+
+/// After a step, the work that its loads did and that their potential does not show.
+void MechanicalSystem::evaluate_loads() {
+  const double potential = load_energy_, half = 0.5 * applied_;
+  const auto along = [&] { return half * std::inner_product(load_.begin(), load_.end(), direction_.begin(), 0.0); };
+  if (half != 0) load_work_ += along();
+  add_loads();
+  if (half != 0) load_work_ += along() + load_energy_ - potential;
+  applied_ = 0;
 }
 
 std::vector<PartForces> MechanicalSystem::part_forces() const {
@@ -273,6 +289,7 @@ DirectionReport MechanicalSystem::direction() {
   report.usable = solved.usable;
   report.linear_iterations = solved.iterations;
   report.trouble = solved.trouble;
+  report.indefinite = solved.indefinite;
   report.unsolved = solved.unsolved;
   report.linear_residual = solved.residual;
   report.cg_seconds = solved.cg_seconds;
@@ -284,9 +301,23 @@ DirectionReport MechanicalSystem::direction() {
   return report;
 }
 
-std::vector<double> MechanicalSystem::product(std::span<const double> d) {
+void MechanicalSystem::linearize() {
   executor_.linearize(state_, history_, settings_.tangent, lin_);
   add_node_blocks(lin_);
+}
+
+void MechanicalSystem::add_unsymmetric(std::span<const double> x, std::span<double> y) {
+  std::vector<double> all(x.begin(), x.end()), product(x.size());
+  filter_.to_global(all);
+  dependents_.expand(all);
+  add_unsymmetric_product(lin_, model_.points.dofs, all, product);
+  dependents_.transfer(product);
+  filter_.to_local(product);
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += product[i];
+}
+
+std::vector<double> MechanicalSystem::product(std::span<const double> d) {
+  linearize();
   std::vector<double> all(d.begin(), d.end()), y(d.size());
   dependents_.expand(all);
   executor_.multiply(lin_, all, y);
@@ -306,6 +337,7 @@ void MechanicalSystem::note_step(double step) {
 
 void MechanicalSystem::apply(double step) {
   note_step(step);
+  if (!conservative_) applied_ = step;
   surfaces_.approach(step);
   for (int i = 0; i < model_.node_count(); ++i) {
     const double* d = direction_.data() + model_.points.dofs.begin(i);
@@ -322,12 +354,15 @@ void MechanicalSystem::apply(double step) {
 
 void MechanicalSystem::save() {
   saved_ = increment_;
+  saved_work_ = load_work_;
   surfaces_.save();
 }
 
 void MechanicalSystem::restore() {
   has_taken_ = false;
   increment_ = saved_;
+  load_work_ = saved_work_;
+  applied_ = 0;
   surfaces_.restore();
   rebuild_state();
 }

@@ -74,6 +74,8 @@ class MechanicalSystem {
   void restore();
   bool has_prescribed_increment() const;
   bool conservative() const { return conservative_; }
+  /// Of loads without a potential, the energy of an evaluation has the work that they did since the start of the step.
+  static constexpr bool compares_energies() { return true; }
 
   /// Of the equilibrium that the last step of statics found, which the system still stands at (tangent_stability.cpp).
   /// @param end   as finish_step() returned it
@@ -132,6 +134,10 @@ class MechanicalSystem {
   /// Stands where another system does within its step, for direction(). The model has no fluids, whose pressures
   /// Newton's method follows by itself.
   void stand_in(const StepInProgress& step);
+  /// y += what the tangent of loads without a potential has beside its symmetric part, of x, at the state where
+  /// linearize() was called last; in constraint axes.
+  void add_unsymmetric(std::span<const double> x, std::span<double> y);
+  void linearize();
   /// By degrees of freedom in world axes.
   std::span<const double> last_direction() const { return direction_; }
 
@@ -170,6 +176,7 @@ class MechanicalSystem {
   double energy_at_start();
   void rebuild_state();
   void note_step(double step);
+  void evaluate_loads();
   void place_dependents_of_step();
   void add_loads();
   void add_inertia();
@@ -224,6 +231,9 @@ class MechanicalSystem {
   std::optional<Evaluation> known_;  ///< of the present state, where evaluate() would repeat itself
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0;
+  /// Work of loads without a potential along the steps of Newton's method, by the mean of their forces at the ends of
+  /// each [J]; and the length of a step whose end was not evaluated yet.
+  double load_work_ = 0, saved_work_ = 0, applied_ = 0;
   Linearization lin_;
 };
 

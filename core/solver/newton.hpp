@@ -17,6 +17,7 @@ struct DirectionReport {
   double largest_rotation = 0;  ///< [rad]
   int linear_iterations = 0;
   std::string trouble;         ///< a sentence, where there was any
+  bool indefinite = false;     ///< the symmetric part of an unsymmetric tangent is, which says nothing by itself
   bool unsolved = false;       ///< conjugate gradients ended at their limit of iterations
   double linear_residual = 0;  ///< |r| / |b| that conjugate gradients left; 0 of a direct solve
   double cg_seconds = 0;       ///< in conjugate gradients
@@ -35,8 +36,10 @@ struct NewtonReport {
   Convergence convergence = Convergence::none;
   int iterations = 0, linear_iterations = 0;
   Evaluation last;
-  std::string trouble;         ///< of the last direction, empty where there was none
-  bool indefinite = false;     ///< a tangent on the way was not positive definite
+  std::string trouble;  ///< of the last direction, empty where there was none
+  /// A tangent on the way was not positive definite; of loads without a potential its symmetric part, and the way
+  /// turned back somewhere.
+  bool indefinite = false;
   double linear_residual = 0;  ///< of the last direction
   double last_tangent = 0;     ///< relative residual where the last tangent was taken; infinite where a boundary moved
   double cg_seconds = 0;       ///< of all directions
@@ -53,7 +56,8 @@ struct SolvedStep {
 /// it). Where that leads nowhere, it returns to the best state and searches along the line.
 ///
 /// System: evaluate() → Evaluation; direction() → DirectionReport; apply(step); save() and restore(), one state;
-/// has_prescribed_increment(): boundary motion that the next direction still carries; conservative().
+/// has_prescribed_increment(): boundary motion that the next direction still carries; conservative();
+/// compares_energies(): of two states on a way of Newton's method the one with less energy is nearer to the solution.
 template <class System>
 class Newton {
  public:
@@ -146,6 +150,7 @@ class Newton {
     unsolved_ = d.unsolved;
     small_correction_ = is_small(d, kNoDecrement);
     report_.indefinite = report_.indefinite || !d.trouble.empty();
+    in_doubt_ = in_doubt_ || d.indefinite;
     report_.linear_residual = d.linear_residual;
     report_.cg_seconds += d.cg_seconds;
     return d;
@@ -162,12 +167,14 @@ class Newton {
   /// Less energy than at the mark while the residual stays within reach, or a residual that is clearly smaller.
   bool better_than_mark() const {
     if (current_.residual <= 0.5 * marked_.residual) return true;
-    return system_.conservative() && current_.energy < marked_.energy && current_.residual <= 1e3 * marked_.residual;
+    return system_.compares_energies() && current_.energy < marked_.energy &&
+           current_.residual <= 1e3 * marked_.residual;
   }
 
   NewtonStatus search_from_mark() {
     if (leap_ > 0) leap_cap_ = kShorterLeap * leap_;
     leap_ = 0;
+    turned_back_ = true;
     system_.restore();
     standing_ = 0;
     current_ = system_.evaluate();
@@ -181,7 +188,7 @@ class Newton {
       current_ = system_.evaluate();
       if (current_.finite() &&
           (moving || current_.residual <= (1 - 0.1 * step) * marked_.residual ||
-           (system_.conservative() && current_.energy <= marked_.energy + 1e-4 * step * d.slope))) {
+           (system_.compares_energies() && current_.energy <= marked_.energy + 1e-4 * step * d.slope))) {
         mark();
         return NewtonStatus::converged;
       }
@@ -221,6 +228,7 @@ class Newton {
 
   NewtonReport finish(NewtonStatus status) {
     report_.status = status;
+    report_.indefinite = report_.indefinite || (in_doubt_ && turned_back_);
     report_.last = current_;
     return report_;
   }
@@ -232,6 +240,8 @@ class Newton {
   Evaluation current_, marked_;
   int detour_ = 0, standing_ = 0;
   bool unsolved_ = false;             ///< the last direction is what conjugate gradients had at their limit
+  bool in_doubt_ = false;             ///< DirectionReport::indefinite of any direction
+  bool turned_back_ = false;          ///< to the best state, to search from there
   bool small_correction_ = false;     ///< the last direction gained next to no energy
   double leap_ = 0;                   ///< rotation of the indefinite step that left the mark; 0 of a definite one
   double leap_cap_ = kIndefiniteCap;  ///< what such a step may be now

@@ -219,7 +219,7 @@ class PathFollower {
       const LoadCurve curve{state_.time, rate_ * p, lambda_, rate * p};
       const double s =
           ends_by_displacement() || never_ends ? 2.0 : curve.first_at(1 - 1e-6 * std::abs(curve.b - curve.a));
-      if (s > 1 && !at_extremum && !has_corner() && system_.conservative() && curve.has_extremum()) {
+      if (s > 1 && !at_extremum && !has_corner() && curve.has_extremum()) {
         // A step ends there, which locates the limit point to second order; a little beyond, where the tangent is not
         // singular to rounding.
         at_extremum = true;
@@ -282,8 +282,7 @@ class PathFollower {
   /// the path for another one, and is short enough to show the path's shape.
   bool follows(const PathDirections& end, double rate) const {
     if (!end.usable || !std::isfinite(rate)) return false;
-    // Around a corner they say nothing, and of loads without a potential the tangent is not that of the path.
-    if (has_corner() || !system_.conservative()) return true;
+    if (has_corner()) return true;  // around it they say nothing
     const double p = moved(), a = rate_ * p, b = rate * p, dlambda = lambda_ - state_.time;
     const double off = std::abs(dlambda - 0.5 * (a + b));
     if (off > kMostBent * std::max({std::abs(dlambda), std::abs(a), std::abs(b)})) return false;
@@ -315,7 +314,7 @@ class PathFollower {
     run_.time = lambda_;
     run_.residual = std::max(run_.residual, report.last.relative);
     run_.residual_floor = std::max(run_.residual_floor, report.last.relative_floor);
-    if (!corner && system_.conservative()) note_events(curve, end.unstable - tangent_.unstable);
+    if (!corner) note_events(curve, end.unstable - tangent_.unstable);
     report.trouble = run_.trouble = describe(end.unstable);
     tangent_ = std::move(end);
     rate_ = rate;

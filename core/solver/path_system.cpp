@@ -7,6 +7,10 @@
 /// The parts of TangentSolver and MechanicalSystem that path following needs.
 namespace fascia {
 
+namespace {
+constexpr double kPathTolerance = 1e-10;  ///< of solves with an unsymmetric tangent
+}
+
 std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
   if (filter_.free_count() == 0) return 0;
   assemble(lin, matrix());
@@ -16,10 +20,14 @@ std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
   const std::optional<int> negative = factorize_any();
   as_is_ = &*indefinite_;
   if (negative) unstable_ = *negative;
-  return negative;
+  if (!negative || lin.symmetric()) return negative;
+  solving_ = as_is_;
+  const SoftestDirection whole = softest_unsymmetric(lin);
+  return whole.probe.usable ? std::optional(whole.probe.unstable) : std::nullopt;
 }
 
-bool TangentSolver::solve_as_is(std::span<const double> prescribed, std::span<const double> b, std::span<double> x) {
+bool TangentSolver::solve_as_is(const Linearization& lin, std::span<const double> prescribed, std::span<const double> b,
+                                std::span<double> x) {
   const std::size_t n = b.size();
   if (filter_.free_count() == 0) {
     std::copy(prescribed.begin(), prescribed.end(), x.begin());
@@ -28,6 +36,15 @@ bool TangentSolver::solve_as_is(std::span<const double> prescribed, std::span<co
   work_.resize(n);
   solution_.resize(n);
   rhs_.assign(b.begin(), b.end());
+  if (!lin.symmetric()) {
+    apply_unsymmetric(lin, prescribed, solution_);
+    for (std::size_t i = 0; i < n; ++i) rhs_[i] -= solution_[i];
+    filter_.clear_fixed(rhs_);
+    solving_ = as_is_;
+    const bool solved = solve_whole(lin, rhs_, x, kPathTolerance, nullptr);
+    take_prescribed(prescribed, x);
+    return solved;
+  }
   apply_matrix(prescribed, solution_);
   for (std::size_t i = 0; i < n; ++i) rhs_[i] -= solution_[i];
   filter_.clear_fixed(rhs_);
@@ -71,7 +88,7 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   for (std::size_t i = 0; i < n; ++i) rhs[i] = -gradient_[i];
   filter_.to_local(rhs);
   prescribed_increments(model_, filter_, state_, increment_.turned, factors_, prescribed);
-  out.usable = tangent_.solve_as_is(prescribed, rhs, out.d_r);
+  out.usable = tangent_.solve_as_is(lin_, prescribed, rhs, out.d_r);
 
   // Loads are linear in their factors: −∂r/∂λ is the load of the factors' slopes.
   const std::vector<double> present = factors_;
@@ -95,7 +112,7 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   prescribed_increments(model_, filter_, state_, increment_.turned, ahead, prescribed);
   prescribed_increments(model_, filter_, state_, increment_.turned, behind, other);
   for (std::size_t i = 0; i < n; ++i) prescribed[i] = (prescribed[i] - other[i]) / width;
-  out.usable = tangent_.solve_as_is(prescribed, rhs, out.d_f) && out.usable;
+  out.usable = tangent_.solve_as_is(lin_, prescribed, rhs, out.d_f) && out.usable;
   filter_.to_global(out.d_r);
   filter_.to_global(out.d_f);
   dependents_.expand(out.d_r);

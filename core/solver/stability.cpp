@@ -10,7 +10,14 @@ namespace fascia {
 
 namespace {
 
-/// Polynomials of low degree in the rest position with random coefficients, and a little of noise.
+double weighted(std::span<const double> x, std::span<const double> weights) {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum += weights[i] * x[i] * x[i];
+  return sum;
+}
+
+}  // namespace
+
 std::vector<double> smooth_motion(const Model& model) {
   constexpr double kNoise = 0.05;
   std::mt19937 random(1);
@@ -41,14 +48,6 @@ std::vector<double> smooth_motion(const Model& model) {
   return motion;
 }
 
-double weighted(std::span<const double> x, std::span<const double> weights) {
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += weights[i] * x[i] * x[i];
-  return sum;
-}
-
-}  // namespace
-
 std::vector<double> motion_weights(const Model& model, const DofFilter& filter) {
   const DofLayout& dofs = model.points.dofs;
   std::vector<double> weights(at(model.dof_count()), 0.0);
@@ -58,6 +57,12 @@ std::vector<double> motion_weights(const Model& model, const DofFilter& filter) 
       if (const std::size_t i = at(dofs.begin(node) + k); !filter.is_fixed(i)) weights[i] = k < 3 ? 1 : length * length;
   }
   return weights;
+}
+
+std::vector<double> motion_lengths(const Model& model, const DofFilter& filter) {
+  std::vector<double> lengths = motion_weights(model, filter);
+  for (double& length : lengths) length = std::sqrt(length);
+  return lengths;
 }
 
 double quotient(std::span<const double> x, std::span<const double> Kx, std::span<const double> weights) {

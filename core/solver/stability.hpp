@@ -41,6 +41,12 @@ struct SoftestDirection {
 /// W: what displacements and rotations of each degree of freedom count, 1 and the squared length of the node's part
 /// [m²]; 0 of what is prescribed and of dependent nodes.
 std::vector<double> motion_weights(const Model& model, const DofFilter& filter);
+/// Their roots [m].
+std::vector<double> motion_lengths(const Model& model, const DofFilter& filter);
+
+/// Polynomials of low degree in the rest position with random coefficients, and a little of noise: a motion that has a
+/// share of every softest direction.
+std::vector<double> smooth_motion(const Model& model);
 
 /// Inverse iteration x ← K⁻¹ W x from a smooth random motion, which has a share of every softest direction: a load that
 /// is symmetric never shows the direction in which a straight column buckles.

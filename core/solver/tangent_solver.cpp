@@ -19,7 +19,6 @@ constexpr int kDirectDofs = 15000;
 constexpr double kFlopsPerNonzero = 2000;
 /// A limit of CG below this is a budget that the user set, and not too small a guess of ours.
 constexpr int kEnoughForBulk = 1000;
-constexpr double kMostFactorBytes = 2e9;
 
 constexpr int kNodeChunk = 512;
 
@@ -114,6 +113,13 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   work_.resize(n);
   assemble(lin, matrix());
   low_rank_.set(lin.low_rank, filter_);
+  if (!lin.symmetric() && filter_.free_count() > 0) {
+    if (std::optional<TangentReport> exact = solve_unsymmetric(lin, prescribed, b, x, relinearize)) {
+      take_prescribed(prescribed, x);
+      return *exact;
+    }
+    assemble(lin, matrix());
+  }
   rhs_.assign(b.begin(), b.end());
   if (!prescribed.empty()) {
     solution_.resize(n);
@@ -145,10 +151,13 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   }
   if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))
     return {false, report.iterations, "the linear solver returned a number that is not finite"};
-  if (!prescribed.empty())
-    for (std::size_t i = 0; i < n; ++i)
-      if (filter_.is_fixed(i)) x[i] = prescribed[i];
+  take_prescribed(prescribed, x);
   return report;
+}
+
+void TangentSolver::take_prescribed(std::span<const double> prescribed, std::span<double> x) const {
+  for (std::size_t i = 0; i < prescribed.size(); ++i)
+    if (filter_.is_fixed(i)) x[i] = prescribed[i];
 }
 
 bool TangentSolver::factorize(const Relinearize& relinearize, TangentReport& report) {
@@ -244,7 +253,7 @@ void TangentSolver::build_block_jacobi() {
   });
 }
 
-TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<double> x) {
+TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<double> x, const CgOptions& options) {
   const Clock::time_point start = Clock::now();
   const Preconditioner kind = settings_.preconditioner;
   const auto apply = [&](const std::vector<double>& p, std::vector<double>& Ap) {
@@ -261,7 +270,7 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
           z = r;
           return vectors_.dot(r, z);
         },
-        rhs, result, settings_.cg);
+        rhs, result, options);
   } else if (kind == Preconditioner::cholesky) {
     if (!factor_is_preconditioner_) factor_is_preconditioner_ = factor().factorize(matrix());
     if (!factor_is_preconditioner_)
@@ -272,7 +281,7 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
           factor().solve(r, z);
           return vectors_.dot(r, z);
         },
-        rhs, result, settings_.cg);
+        rhs, result, options);
     if (cg.iterations > 30) factor_is_preconditioner_ = false;  // out of date: renewed next time
   } else {
     build_block_jacobi();
@@ -299,7 +308,7 @@ TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<doubl
       return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
     };
     chunk_sums_.resize(at((model_.node_count() + kNodeChunk - 1) / kNodeChunk));
-    cg = conjugate_gradients(vectors_, apply, precondition, rhs, result, settings_.cg);
+    cg = conjugate_gradients(vectors_, apply, precondition, rhs, result, options);
   }
   std::copy(result.begin(), result.end(), x.begin());
   TangentReport report;

@@ -20,9 +20,10 @@ struct TangentReport {
   bool usable = true;
   int iterations = 0;
   std::string trouble;
-  bool unsolved = false;  ///< CG ended at its limit of iterations
-  double residual = 0;    ///< |r| / |b| that CG left; 0 of a direct solve
-  double cg_seconds = 0;  ///< in conjugate gradients
+  bool indefinite = false;  ///< as in DirectionReport
+  bool unsolved = false;    ///< CG ended at its limit of iterations
+  double residual = 0;      ///< |r| / |b| that CG left; 0 of a direct solve
+  double cg_seconds = 0;    ///< in conjugate gradients
 };
 
 /// Tangents that are positive definite where the full one is not: without the pull of tethers on turning frames, and
@@ -43,8 +44,9 @@ class TangentSolver {
   /// Factorises K as it is, indefinite or not, and counts the directions in which the equilibrium is unstable. None
   /// where a pivot vanishes. (path_system.cpp)
   std::optional<int> factorize_as_is(const Linearization& at);
-  /// Solves with that factor. False where rounding spoils the solution: K is all but singular.
-  bool solve_as_is(std::span<const double> prescribed, std::span<const double> b, std::span<double> x);
+  /// Solves with that factor and the same tangent. False where rounding spoils the solution: K is all but singular.
+  bool solve_as_is(const Linearization& at, std::span<const double> prescribed, std::span<const double> b,
+                   std::span<double> x);
 
   /// The softest direction of a tangent, and how many negative ones it has: from a factor where one is at hand or cheap
   /// beside the iterations that CG has made, else by CG. (tangent_stability.cpp)
@@ -68,16 +70,28 @@ class TangentSolver {
   bool gives_way_to_factor(long iterations);
 
  private:
+  static constexpr double kMostFactorBytes = 2e9;
   void assemble(const Linearization& at, BlockMatrix& matrix, Entries entries = Entries::all);
+  void take_prescribed(std::span<const double> prescribed, std::span<double> x) const;
   bool cg_is_too_slow(const TangentReport& report);
   bool factorize(const Relinearize& relinearize, TangentReport& report);
   bool definite_with_low_rank();
   bool shift_until_definite(const Relinearize& relinearize);
   std::optional<int> factorize_any();
   void finish_shifted(std::span<double> x);
-  TangentReport solve_cg(std::span<const double> b, std::span<double> x);
+  TangentReport solve_cg(std::span<const double> b, std::span<double> x, const CgOptions& options);
+  TangentReport solve_cg(std::span<const double> b, std::span<double> x) { return solve_cg(b, x, settings_.cg); }
   void build_block_jacobi();
   void apply_matrix(std::span<const double> local, std::span<double> out);
+  // tangent_unsymmetric.cpp
+  void apply_unsymmetric(const Linearization& at, std::span<const double> x, std::span<double> Ax);
+  bool factorize_symmetric_part();
+  bool solve_whole(const Linearization& at, std::span<const double> b, std::span<double> x, double tolerance,
+                   TangentReport* report);
+  std::optional<TangentReport> solve_unsymmetric(const Linearization& at, std::span<const double> prescribed,
+                                                 std::span<const double> b, std::span<double> x,
+                                                 const Relinearize& relinearize);
+  SoftestDirection softest_unsymmetric(const Linearization& at);
   void solve_with_factor(std::span<const double> b, std::span<double> x);
 
   const Model& model_;
@@ -98,6 +112,7 @@ class TangentSolver {
   double shift_ = 0;      ///< of the last factorisation that needed one
   bool shifted_ = false;  ///< the last factor is such
   std::vector<double> inverse_blocks_, work_, rhs_, solution_, chunk_sums_;
+  std::vector<double> length_;  ///< what a degree of freedom moves: 1, or its part's length [m]; 0 where it is fixed
 };
 
 }  // namespace fascia

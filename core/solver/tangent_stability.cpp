@@ -38,6 +38,7 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
       return TangentProbe{settled || (report.usable && met), met ? 1 : 0};
     };
     SoftestDirection found = softest_direction(model_, filter_, solve, kRoundsOfCg);
+    if (!lin.symmetric() && found.probe.unstable > 0) return {};  // of the symmetric part alone: nothing is known
     // A solve that was cut short has no quotient, and must not pass for one near a limit point.
     if (found.probe.unstable > 0) found.stiffness = -std::numeric_limits<double>::infinity();
     return found;
@@ -53,6 +54,7 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
       negative = *found;
     }
   }
+  if (!lin.symmetric()) return softest_unsymmetric(lin);
   const auto solve = [&](std::span<const double> b, std::span<double> x) {
     solve_with_factor(b, x);
     const bool finite = std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); });

@@ -21,6 +21,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   increment_.Ds.set_zero();
   increment_.turned = start_.turned;
   has_taken_ = false;
+  load_work_ = saved_work_ = applied_ = 0;
   surfaces_.begin_step();
   executor_.start_from(start_);
   static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);

@@ -41,6 +41,16 @@ void CpuVectors::advance(double s, std::span<const double> p, std::span<const do
   });
 }
 
+void CpuVectors::add(double s, std::span<const double> x, std::span<double> y) const {
+  pool_->for_ranges(static_cast<int>(x.size()), kChunk, [&](int begin, int end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) y[i] += s * x[i];
+  });
+}
+
+void CpuVectors::scale(double s, std::span<double> x) const {
+  for (double& value : x) value *= s;
+}
+
 void CpuVectors::xpay(std::span<const double> x, double s, std::span<double> y) const {
   pool_->for_ranges(static_cast<int>(x.size()), kChunk, [&](int begin, int end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) y[i] = x[i] + s * y[i];

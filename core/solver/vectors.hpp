@@ -19,6 +19,9 @@ class CpuVectors {
   /// x += s p, r −= s q
   void advance(double s, std::span<const double> p, std::span<const double> q, std::span<double> x,
                std::span<double> r) const;
+  /// y += s x
+  void add(double s, std::span<const double> x, std::span<double> y) const;
+  void scale(double s, std::span<double> x) const;
   /// y = x + s y
   void xpay(std::span<const double> x, double s, std::span<double> y) const;
 

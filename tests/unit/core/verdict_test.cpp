@@ -135,6 +135,7 @@ struct OneSpring {
   void restore() { x = saved; }
   bool has_prescribed_increment() const { return false; }
   bool conservative() const { return has_potential; }
+  bool compares_energies() const { return has_potential; }
 };
 
 NewtonReport solve(OneSpring& system, int iterations) {
