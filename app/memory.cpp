@@ -165,7 +165,7 @@ class Setup {
     system_->set_factors(s_.factors(0));
     system_->evaluate();
     linearize(dt);
-    // Directions of GMRES, two vectors each, come beside where loads have no potential.
+    // Some twelve directions of GMRES, two vectors each, come beside where loads have no potential.
     const double directions = on_gpu || s_.model.loads_are_conservative() ? 0 : 24;
     to_come_.keep(3 * state_bytes(s_.model) + (12 + directions) * vector_bytes(s_.model));
     if (!on_gpu && s_.model.free_dof_count() > 0) of_solver();
@@ -192,7 +192,8 @@ class Setup {
                   (statics && load && tangent.factor_is_cheap(kGuessedSolves * guessed_iterations()));
     if (!factorizes_) return;
     take(tangent.factor(), tangent.matrix());
-    if (!load) beyond_ = bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any), tangent.matrix());
+    if (!load || !s_.model.loads_are_conservative())
+      beyond_ = bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any), tangent.matrix());
   }
 
   /// CG takes about ten iterations a solve for each node along a body. At the end of statics a factor tells whether the

@@ -155,7 +155,7 @@ class System {
   bool host_is_faster(int iterations);
   StepInProgress step_in_progress() const;
   bool unsymmetric() const;
-  CgReport solve_unsymmetric(const CgOptions& asked);
+  std::optional<CgReport> solve_unsymmetric(const CgOptions& asked);
   void product_at_rest(double* p);
   DirectionReport direction_of_host();
   SoftestDirection softest();

@@ -26,12 +26,13 @@ bool System<Space>::unsymmetric() const {
 }
 
 /// GMRES with what the host adds to products, preconditioned by conjugate gradients with the symmetric part. What they
-/// had in rhs() becomes what they have in solution(). Where they meet negative curvature, that is the report.
+/// had in rhs() becomes what they have in solution(). None where too much is left, as when they meet negative
+/// curvature.
 template <class Space>
-CgReport System<Space>::solve_unsymmetric(const CgOptions& asked) {
+std::optional<CgReport> System<Space>::solve_unsymmetric(const CgOptions& asked) {
   MechanicalSystem& loads = host();
   loads.stand_in(step_in_progress());
-  loads.linearize();
+  loads.linearize_loads();
   const auto n = static_cast<std::size_t>(model_.dof_count());
   std::vector<double> b(n), x;
   with_scalars([&]<class T, class V>() {
@@ -71,8 +72,9 @@ CgReport System<Space>::solve_unsymmetric(const CgOptions& asked) {
   options.tolerance = asked.tolerance;
   const GmresReport gmres = gmres_by_length(CpuVectors(loads.executor().pool()), motion_lengths(model_, filter_), apply,
                                             precondition, b, x, options);
+  if (!gmres.converged && !(gmres.relative_residual <= kUsefulResidual)) return std::nullopt;
   report.relative_norm = gmres.relative_residual;
-  if (report.status == CgStatus::converged && !gmres.converged) report.status = CgStatus::limit;
+  report.status = gmres.converged ? CgStatus::converged : CgStatus::limit;
   with_scalars([&]<class T, class V>() {
     const std::vector<V> solution(x.begin(), x.end());
     Space::copy_in(solver<V>().solution(), solution.data(), n * sizeof(V));

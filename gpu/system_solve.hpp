@@ -194,6 +194,7 @@ SoftestDirection System<Space>::softest() {
     });
   };
   SoftestDirection found = softest_direction(model_, filter_, probe, 1);
+  if (!conservative_ && found.probe.unstable > 0) return {};  // of the symmetric part alone: nothing is known
   // A solve that was cut short has no quotient, and must not pass for one near a limit point.
   if (found.probe.unstable > 0) found.stiffness = -std::numeric_limits<double>::infinity();
   return found;
@@ -222,20 +223,22 @@ DirectionReport System<Space>::direction() {
   if (indefinite_ || too_slow_ || (whole && host_may_solve())) return direction_of_host();
   linearize(settings_.tangent, true, taken_step());
   const int n = model_.node_count();
-  const double* moved = nullptr;
-  if (prescribed_left_) {
-    product_at_rest(prescribed_.data());
-    moved = still_Ap_.data();
-  }
   const auto right_hand_side = [&] {
+    if (prescribed_left_) product_at_rest(prescribed_.data());
+    const double* moved = prescribed_left_ ? still_Ap_.data() : nullptr;
     with_scalars([&]<class T, class V>() {
       Space::for_each(n, kernels::RightHandSide<V>{data_.view(), gradient_.data(), moved, solver<V>().rhs()});
     });
   };
-  right_hand_side();
   const Clock::time_point start = Clock::now();
   const CgOptions options = solve_options();
-  CgReport cg = whole ? solve_unsymmetric(options) : solve(options);
+  right_hand_side();
+  std::optional<CgReport> exact;
+  if (whole) {
+    exact = solve_unsymmetric(options);
+    if (!exact) right_hand_side();
+  }
+  CgReport cg = exact ? *exact : solve(options);
   const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;
   if (host_is_faster(cg.iterations)) too_slow_ = true;
   if ((too_slow_ || cg.status == CgStatus::negative_curvature) && failed && host_may_solve()) {

@@ -237,12 +237,14 @@ Evaluation MechanicalSystem::evaluate() {
 
 /// After a step, the work that its loads did and that their potential does not show.
 void MechanicalSystem::evaluate_loads() {
-  const double potential = load_energy_, half = 0.5 * applied_;
-  const auto along = [&] { return half * std::inner_product(load_.begin(), load_.end(), direction_.begin(), 0.0); };
-  if (half != 0) load_work_ += along();
   add_loads();
-  if (half != 0) load_work_ += along() + load_energy_ - potential;
+  if (applied_ != 0) load_work_ += 0.5 * applied_ * (start_power_ + load_power()) + load_energy_ - start_potential_;
   applied_ = 0;
+}
+
+/// Work of the present loads along the direction, for a step of 1 [J].
+double MechanicalSystem::load_power() const {
+  return std::inner_product(load_.begin(), load_.end(), direction_.begin(), 0.0);
 }
 
 std::vector<PartForces> MechanicalSystem::part_forces() const {
@@ -298,11 +300,22 @@ DirectionReport MechanicalSystem::direction() {
   surfaces_.aim(lin_, direction_);
   for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
   report.largest_rotation = std::max(largest_rotation_in(direction_), executor_.largest_spin(direction_));
+  if (!conservative_) {
+    start_power_ = load_power();
+    start_potential_ = load_energy_;
+  }
   return report;
 }
 
-void MechanicalSystem::linearize() {
-  executor_.linearize(state_, history_, settings_.tangent, lin_);
+void MechanicalSystem::linearize_loads() {
+  lin_.tangent = settings_.tangent;
+  lin_.surfaces.clear();
+  lin_.low_rank.clear();
+  lin_.followers.clear();
+  lin_.torques.clear();
+  lin_.node_blocks.assign(model_.points.dofs.block_total(), 0.0);
+  lin_.Q.resize(state_.D.size());
+  for (std::size_t i = 0; i < lin_.Q.size(); ++i) lin_.Q[i] = Mat3d::identity() + state_.D[i];
   add_node_blocks(lin_);
 }
 
@@ -317,7 +330,8 @@ void MechanicalSystem::add_unsymmetric(std::span<const double> x, std::span<doub
 }
 
 std::vector<double> MechanicalSystem::product(std::span<const double> d) {
-  linearize();
+  executor_.linearize(state_, history_, settings_.tangent, lin_);
+  add_node_blocks(lin_);
   std::vector<double> all(d.begin(), d.end()), y(d.size());
   dependents_.expand(all);
   executor_.multiply(lin_, all, y);

@@ -135,9 +135,9 @@ class MechanicalSystem {
   /// Newton's method follows by itself.
   void stand_in(const StepInProgress& step);
   /// y += what the tangent of loads without a potential has beside its symmetric part, of x, at the state where
-  /// linearize() was called last; in constraint axes.
+  /// linearize_loads() was called last; in constraint axes.
   void add_unsymmetric(std::span<const double> x, std::span<double> y);
-  void linearize();
+  void linearize_loads();
   /// By degrees of freedom in world axes.
   std::span<const double> last_direction() const { return direction_; }
 
@@ -177,6 +177,7 @@ class MechanicalSystem {
   void rebuild_state();
   void note_step(double step);
   void evaluate_loads();
+  double load_power() const;
   void place_dependents_of_step();
   void add_loads();
   void add_inertia();
@@ -232,8 +233,9 @@ class MechanicalSystem {
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0;
   /// Work of loads without a potential along the steps of Newton's method, by the mean of their forces at the ends of
-  /// each [J]; and the length of a step whose end was not evaluated yet.
-  double load_work_ = 0, saved_work_ = 0, applied_ = 0;
+  /// each [J]; the length of a step whose end was not evaluated yet; where the direction starts, the loads' work along
+  /// it and their potential [J].
+  double load_work_ = 0, saved_work_ = 0, applied_ = 0, start_power_ = 0, start_potential_ = 0;
   Linearization lin_;
 };
 

@@ -28,7 +28,8 @@ enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linea
 /// Why a solve counts as converged: its residual is below the tolerance; or it is what rounding leaves; or it is a
 /// small share of the loads and falls no further, and the last correction was small. The correction of a system that
 /// conjugate gradients did not solve says nothing: soft directions are found last, and leave next to no residual. Nor
-/// does that of loads without a potential, whose tangent is symmetrised: such corrections may grow again.
+/// does that of loads without a potential, of whose tangent a solver may take the symmetric part alone: such
+/// corrections may grow again.
 enum class Convergence { none, tolerance, rounding, stagnation };
 
 struct NewtonReport {
@@ -188,7 +189,7 @@ class Newton {
       current_ = system_.evaluate();
       if (current_.finite() &&
           (moving || current_.residual <= (1 - 0.1 * step) * marked_.residual ||
-           (system_.compares_energies() && current_.energy <= marked_.energy + 1e-4 * step * d.slope))) {
+           (system_.compares_energies() && current_.energy <= marked_.energy + 1e-4 * step * std::min(d.slope, 0.0)))) {
         mark();
         return NewtonStatus::converged;
       }

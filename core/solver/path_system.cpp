@@ -22,7 +22,7 @@ std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
   if (negative) unstable_ = *negative;
   if (!negative || lin.symmetric()) return negative;
   solving_ = as_is_;
-  const SoftestDirection whole = softest_unsymmetric(lin);
+  const SoftestDirection whole = softest_unsymmetric(lin, false);
   return whole.probe.usable ? std::optional(whole.probe.unstable) : std::nullopt;
 }
 

@@ -22,7 +22,7 @@ struct TangentReport {
   std::string trouble;
   bool indefinite = false;  ///< as in DirectionReport
   bool unsolved = false;    ///< CG ended at its limit of iterations
-  double residual = 0;      ///< |r| / |b| that CG left; 0 of a direct solve
+  double residual = 0;      ///< |r| / |b| that CG left; 0 of a direct solve, whose rest is rounding
   double cg_seconds = 0;    ///< in conjugate gradients
 };
 
@@ -91,7 +91,7 @@ class TangentSolver {
   std::optional<TangentReport> solve_unsymmetric(const Linearization& at, std::span<const double> prescribed,
                                                  std::span<const double> b, std::span<double> x,
                                                  const Relinearize& relinearize);
-  SoftestDirection softest_unsymmetric(const Linearization& at);
+  SoftestDirection softest_unsymmetric(const Linearization& at, bool definite);
   void solve_with_factor(std::span<const double> b, std::span<double> x);
 
   const Model& model_;

@@ -54,7 +54,7 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
       negative = *found;
     }
   }
-  if (!lin.symmetric()) return softest_unsymmetric(lin);
+  if (!lin.symmetric()) return softest_unsymmetric(lin, definite_);
   const auto solve = [&](std::span<const double> b, std::span<double> x) {
     solve_with_factor(b, x);
     const bool finite = std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); });
