@@ -16,6 +16,7 @@ namespace {
 using Vector = CpuVectors::Vector;
 
 constexpr double kTolerance = 1e-10;  ///< of a direct solve; beside a factor another digit costs a product or two
+constexpr int kMostSolvesOfCg = 50;
 constexpr int kEigenDirections = 24;
 constexpr int kFirstLook = 4;             ///< at the softest one alone
 constexpr double kEigenTolerance = 1e-5;  ///< of solves for eigenvalues
@@ -91,11 +92,13 @@ bool TangentSolver::solve_whole(const Linearization& lin, std::span<const double
     report->iterations += inner.iterations;
     report->cg_seconds += inner.cg_seconds;
     report->indefinite = report->indefinite || !inner.trouble.empty();
-    return inner.usable && inner.trouble.empty() && !inner.unsolved;
+    const bool gives_way = inner.unsolved && settings_.linear == LinearMethod::automatic;
+    return inner.usable && inner.trouble.empty() && !gives_way;
   };
   Vector found;
   GmresOptions options;
   options.tolerance = tolerance;
+  if (report != nullptr) options.max_iterations = kMostSolvesOfCg;
   const GmresReport gmres = gmres_by_length(
       vectors_, length_, [&](const Vector& z, Vector& w) { apply_unsymmetric(lin, z, w); }, precondition, b, found,
       options);
