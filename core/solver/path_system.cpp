@@ -7,10 +7,6 @@
 /// The parts of TangentSolver and MechanicalSystem that path following needs.
 namespace fascia {
 
-namespace {
-constexpr double kPathTolerance = 1e-10;  ///< of solves with an unsymmetric tangent
-}
-
 std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
   if (filter_.free_count() == 0) return 0;
   assemble(lin, matrix());
@@ -41,7 +37,7 @@ bool TangentSolver::solve_as_is(const Linearization& lin, std::span<const double
     for (std::size_t i = 0; i < n; ++i) rhs_[i] -= solution_[i];
     filter_.clear_fixed(rhs_);
     solving_ = as_is_;
-    const bool solved = solve_whole(lin, rhs_, x, kPathTolerance, nullptr);
+    const bool solved = solve_whole(lin, rhs_, x, kDirectTolerance, nullptr);
     take_prescribed(prescribed, x);
     return solved;
   }

@@ -71,6 +71,8 @@ class TangentSolver {
 
  private:
   static constexpr double kMostFactorBytes = 2e9;
+  /// Of GMRES beside a factor, where another digit costs a product or two.
+  static constexpr double kDirectTolerance = 1e-10;
   void assemble(const Linearization& at, BlockMatrix& matrix, Entries entries = Entries::all);
   void take_prescribed(std::span<const double> prescribed, std::span<double> x) const;
   bool cg_is_too_slow(const TangentReport& report);

@@ -15,7 +15,6 @@ namespace {
 
 using Vector = CpuVectors::Vector;
 
-constexpr double kTolerance = 1e-10;  ///< of a direct solve; beside a factor another digit costs a product or two
 constexpr int kMostSolvesOfCg = 50;
 constexpr int kEigenDirections = 24;
 constexpr int kFirstLook = 4;             ///< at the softest one alone
@@ -136,7 +135,7 @@ std::optional<TangentReport> TangentSolver::solve_unsymmetric(const Linearizatio
     report.unsolved = false;
     report.residual = 0;
   }
-  if (!factorize_symmetric_part() || !solve_whole(lin, rhs_, x, kTolerance, nullptr)) return std::nullopt;
+  if (!factorize_symmetric_part() || !solve_whole(lin, rhs_, x, kDirectTolerance, nullptr)) return std::nullopt;
   report.indefinite = !definite_;
   return report;
 }
