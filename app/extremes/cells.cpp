@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 #include <random>
+#include <set>
 
 namespace fascia::app {
 namespace {
@@ -13,9 +14,14 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 bool always(const Specimen&) { return true; }
 bool in_dynamics(const Specimen& s) { return s.dynamic; }
-bool of_cells(const Specimen& s) { return is_element(s.model) || s.model == Model::shell || s.model == Model::sheet; }
+bool of_cells(const Specimen& s) {
+  return is_element(s.model) || s.model == BeamModel::shell || s.model == BeamModel::sheet;
+}
 bool with_end_face(const Specimen& s) { return !is_thin(s.model); }
-bool coupled(const Specimen& s) { return s.model == Model::coupled; }
+bool of_laws(const Specimen& s) {
+  return !is_thin(s.model) && s.model != BeamModel::linear_tetrahedra && s.model != BeamModel::corotational_tetrahedra;
+}
+bool coupled(const Specimen& s) { return s.model == BeamModel::coupled; }
 
 void act(Specimen& s, Action action, double amount) {
   s.action = action;
@@ -29,7 +35,7 @@ std::vector<Specimen> all_rows() {
     for (const bool dynamic : {false, true})
       for (const bool cg : {false, true}) {
         Specimen s;
-        s.model = static_cast<Model>(m);
+        s.model = static_cast<BeamModel>(m);
         s.dynamic = dynamic;
         s.cg = cg;
         rows.push_back(s);
@@ -65,6 +71,14 @@ const std::vector<ExtremeAxis>& extreme_axes() {
        }},
       {"length to thickness", "", {2, 10, 1e2, 1e3, 1e4}, always, [](Specimen& s, double v) { s.slenderness = v; }},
       {"stretch", "", {0.2, 0.5, 0.8, 1.5, 2, 3}, always, [](Specimen& s, double v) { act(s, Action::stretch, v); }},
+      {"neo-Hookean stretch",
+       "",
+       {0.2, 0.5, 0.8, 1.5, 2, 3},
+       of_laws,
+       [](Specimen& s, double v) {
+         act(s, Action::stretch, v);
+         s.neo_hookean = true;
+       }},
       {"twist",
        "degree",
        {90, 180, 360, 720},
@@ -132,6 +146,7 @@ std::vector<ExtremeCell> pair_cells(int count, std::uint64_t seed) {
   const std::vector<ExtremeAxis>& axes = extreme_axes();
   std::mt19937_64 random(seed);
   const auto draw = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  std::set<std::string> names;
   while (cells.size() < static_cast<std::size_t>(count)) {
     Specimen s = rows[draw(rows.size())];
     const ExtremeAxis &a = axes[draw(axes.size())], &b = axes[draw(axes.size())];
@@ -139,7 +154,8 @@ std::vector<ExtremeCell> pair_cells(int count, std::uint64_t seed) {
     if (&a == &b || !a.applies(s) || !b.applies(s)) continue;
     a.set(s, va);
     b.set(s, vb);
-    cells.push_back(cell_of(s, "pairs", fmt::format("{} {}, {} {}", a.name, a.text_of(va), b.name, b.text_of(vb))));
+    ExtremeCell cell = cell_of(s, "pairs", fmt::format("{} {}, {} {}", a.name, a.text_of(va), b.name, b.text_of(vb)));
+    if (names.insert(cell.name()).second) cells.push_back(std::move(cell));
   }
   return cells;
 }

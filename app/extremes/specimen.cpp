@@ -14,6 +14,9 @@ constexpr int kSteps = 10;  ///< of dynamics
 /// Half the length of a thin slice around a plane, relative to the beam's length.
 constexpr double kSlice = 1e-6;
 
+/// Loads across what is pressed, relative to those that bend it by its length or buckle it.
+constexpr double kAcross = 1e-3;
+
 std::string point(double x, double y, double z) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", x, y, z); }
 
 std::string box(double x0, double y0, double z0, double x1, double y1, double z1) {
@@ -41,57 +44,75 @@ std::string solid_domain(const Specimen& s, double from, double to) {
                      point(x1, w, high), point(x0, w, h), cells);
 }
 
-std::string body_text(const Specimen& s, const std::string& name, const std::string& model, const std::string& domain,
-                      const std::string& more, double density) {
-  const std::string far =
-      s.stiffness_contrast == 1
-          ? R"("near")"
-          : fmt::format(R"([{{ where = {}, use = "near" }}, {{ use = "far" }}])", slice(s, -1, 0.5));
+/// The near half and the far one.
+std::string both_materials(const Specimen& s) {
+  return s.stiffness_contrast == 1
+             ? R"("near")"
+             : fmt::format(R"([{{ where = {}, use = "near" }}, {{ use = "far" }}])", slice(s, -1, 0.5));
+}
+
+std::string body_text(const std::string& name, const std::string& model, const std::string& domain,
+                      const std::string& material, const std::string& more, double density) {
   return fmt::format("[bodies.{}]\nmodel = \"{}\"\ndomain = {}\ndensity = {:.17g}\nmaterial = {}\n{}\n", name, model,
-                     domain, density, far, more);
+                     domain, density, material, more);
+}
+
+std::string material_text(const Specimen& s, const char* name, double young) {
+  return fmt::format("[materials.{}]\nyoung = {:.17g}\npoisson = {:.17g}\n{}", name, young, s.poisson,
+                     s.neo_hookean ? "law = \"neo-hookean\"\n" : "");
+}
+
+/// Gravity across that moves the far end of a cantilever by about a part of the length.
+std::string weight_text(const Specimen& s, double part) {
+  const double l = s.length;
+  return fmt::format("[world]\ngravity = {}\n",
+                     point(0, 0, -part * 8 * s.young * s.second_moment() / (l * l * l * s.section() * s.density)));
 }
 
 std::string bodies_text(const Specimen& s) {
   const double l = s.length, w = s.width(), h = s.thickness();
   const std::string grid = fmt::format("frames = {{ grid = [{}, 3, 3] }}\n", kCells + 1);
   const auto whole = [&](const char* model, const std::string& more) {
-    return body_text(s, "beam", model, solid_domain(s, 0, 1), more, s.density);
+    return body_text("beam", model, solid_domain(s, 0, 1), both_materials(s), more, s.density);
   };
   const auto surface = [&](const char* model, const std::string& more, const std::string& cells) {
     const std::string rectangle = fmt::format("{{ rectangle = {{ origin = [0, 0, 0], edge_u = {}, edge_v = {}{} }} }}",
                                               point(l, 0, 0), point(0, w, 0), cells);
-    return body_text(s, "beam", model, rectangle, more + fmt::format("thickness = {:.17g}\n", h), s.density);
+    return body_text("beam", model, rectangle, both_materials(s), more + fmt::format("thickness = {:.17g}\n", h),
+                     s.density);
   };
   switch (s.model) {
-    case Model::grid:
+    case BeamModel::grid:
       return whole("meshless", grid);
-    case Model::scattered:
+    case BeamModel::scattered:
       return whole("meshless",
                    fmt::format("frames = {{ poisson_disk = {:.17g} }}\npoints = {{ poisson_disk = {:.17g} }}\n",
                                l / kCells, l / (2 * kCells)));
-    case Model::affine:
+    case BeamModel::affine:
       return whole("meshless", fmt::format("frames = {{ grid = [{}, 3, 3], kind = \"affine\" }}\n", kCells + 1));
-    case Model::sheet:
+    case BeamModel::sheet:
       return surface("meshless", fmt::format("frames = {{ grid = [{}, 3] }}\n", kCells + 1), "");
-    case Model::line:
-      return body_text(
-          s, "beam", "meshless", fmt::format("{{ line = {{ from = [0, 0, 0], to = {} }} }}", point(l, 0, 0)),
-          fmt::format("frames = {{ grid = [{}] }}\nradius = {:.17g}\n", 2 * kCells + 1, 0.5 * h), s.density);
-    case Model::linear_tetrahedra:
+    case BeamModel::line:
+      return body_text("beam", "meshless", fmt::format("{{ line = {{ from = [0, 0, 0], to = {} }} }}", point(l, 0, 0)),
+                       both_materials(s),
+                       fmt::format("frames = {{ grid = [{}] }}\nradius = {:.17g}\n", 2 * kCells + 1, 0.5 * h),
+                       s.density);
+    case BeamModel::linear_tetrahedra:
       return whole("tetrahedra", "formulation = \"linear\"\n");
-    case Model::corotational_tetrahedra:
+    case BeamModel::corotational_tetrahedra:
       return whole("tetrahedra", "formulation = \"corotational\"\n");
-    case Model::tetrahedra:
+    case BeamModel::tetrahedra:
       return whole("tetrahedra", "");
-    case Model::quadratic_tetrahedra:
+    case BeamModel::quadratic_tetrahedra:
       return whole("tetrahedra", "order = 2\n");
-    case Model::hexahedra:
+    case BeamModel::hexahedra:
       return whole("hexahedra", "");
-    case Model::shell:
+    case BeamModel::shell:
       return surface("shell", "", fmt::format(", cells = [{}, 2]", kCells));
-    case Model::coupled:
-      return body_text(s, "beam", "tetrahedra", solid_domain(s, 0.5, 1), "", s.density * s.density_contrast) +
-             body_text(s, "root", "meshless", solid_domain(s, 0, 0.5),
+    case BeamModel::coupled:
+      return body_text("beam", "tetrahedra", solid_domain(s, 0.5, 1),
+                       s.stiffness_contrast == 1 ? R"("near")" : R"("far")", "", s.density * s.density_contrast) +
+             body_text("root", "meshless", solid_domain(s, 0, 0.5), R"("near")",
                        fmt::format("frames = {{ grid = [{}, 3, 3] }}\n", kCells / 2 + 1), s.density) +
              fmt::format("[couplings.joint]\nkind = \"embed\"\nbody = \"beam\"\nwhere = {}\nto = \"root\"\n",
                          slice(s, 0.5 - kSlice, 0.5 + kSlice));
@@ -114,68 +135,69 @@ std::string action_text(const Specimen& s) {
     case Action::bend:
       return force_text(s, 0, s.amount * 3 * ei / (l * l));
     case Action::weight:
-      return fmt::format("[world]\ngravity = {}\n",
-                         point(0, 0, -s.amount * 8 * ei / (l * l * l * s.section() * s.density)));
+      return weight_text(s, s.amount);
     case Action::pull:
       return force_text(s, s.amount * s.young * s.section(), 0);
     case Action::stretch:
-      return moved("translate = " + point((s.amount - 1) * l, 0, 0));
+      return moved("translate = " + point((s.amount - 1) * l, 0, 0)) + (s.amount < 1 ? weight_text(s, kAcross) : "");
     case Action::twist:
       return moved(fmt::format("rotate = {{ axis = [1, 0, 0], angle = {:.17g}, center = {} }}", s.amount,
-                               is_thin(s.model) ? point(0, s.model == Model::line ? 0 : 0.5 * s.width(), 0)
+                               is_thin(s.model) ? point(0, s.model == BeamModel::line ? 0 : 0.5 * s.width(), 0)
                                                 : point(0, 0.5 * s.width(), 0.5 * s.thickness())));
     case Action::compress:
-      return force_text(s, -s.amount * euler, 1e-3 * s.amount * euler);
+      return force_text(s, -s.amount * euler, kAcross * s.amount * euler);
     case Action::push:
       return fmt::format("[[loads]]\nbody = \"beam\"\nwhere = {}\npressure = {:.17g}\n", far_end(s),
                          s.amount * euler / s.section()) +
-             force_text(s, 0, 1e-3 * s.amount * euler);
+             force_text(s, 0, kAcross * s.amount * euler);
   }
   return "";
 }
 
 }  // namespace
 
-std::string name_of(Model model) { return kModelNames[static_cast<std::size_t>(model)]; }
+std::string name_of(BeamModel model) { return kModelNames[static_cast<std::size_t>(model)]; }
 
-bool is_element(Model model) {
-  return model == Model::linear_tetrahedra || model == Model::corotational_tetrahedra || model == Model::tetrahedra ||
-         model == Model::quadratic_tetrahedra || model == Model::hexahedra;
+bool is_element(BeamModel model) {
+  return model == BeamModel::linear_tetrahedra || model == BeamModel::corotational_tetrahedra ||
+         model == BeamModel::tetrahedra || model == BeamModel::quadratic_tetrahedra || model == BeamModel::hexahedra;
 }
 
-bool is_thin(Model model) { return model == Model::sheet || model == Model::line || model == Model::shell; }
+bool is_thin(BeamModel model) {
+  return model == BeamModel::sheet || model == BeamModel::line || model == BeamModel::shell;
+}
 
 double Specimen::thickness() const {
-  const double usual = model == Model::sheet || model == Model::shell ? 40 : 4;
+  const bool column = action == Action::compress || action == Action::push;
+  const double usual = model == BeamModel::sheet || model == BeamModel::shell ? 40 : column ? 20 : 4;
   return length / (slenderness > 0 ? slenderness : usual);
 }
 
-double Specimen::width() const { return 0.25 * length / (is_thin(model) ? taper : 1); }
+double Specimen::width() const { return is_thin(model) ? 0.25 * length / taper : 0.3 * length; }
 
 double Specimen::section() const {
   const double h = thickness();
-  return model == Model::line ? 0.25 * std::numbers::pi * h * h : width() * h;
+  return model == BeamModel::line ? 0.25 * std::numbers::pi * h * h : width() * h;
 }
 
 double Specimen::second_moment() const {
   const double h = thickness();
-  return model == Model::line ? std::numbers::pi * std::pow(h, 4) / 64 : width() * std::pow(h, 3) / 12;
+  return model == BeamModel::line ? std::numbers::pi * std::pow(h, 4) / 64 : width() * std::pow(h, 3) / 12;
 }
 
 std::string Specimen::text() const {
-  std::string text = fmt::format("[materials.near]\nyoung = {:.17g}\npoisson = {:.17g}\n", young, poisson);
-  if (stiffness_contrast != 1)
-    text += fmt::format("[materials.far]\nyoung = {:.17g}\npoisson = {:.17g}\n", young * stiffness_contrast, poisson);
+  std::string text = material_text(*this, "near", young);
+  if (stiffness_contrast != 1) text += material_text(*this, "far", young * stiffness_contrast);
   text += bodies_text(*this);
   if (held)
     text += fmt::format("[[constraints]]\nbody = \"{}\"\nwhere = {}\nfix = \"all\"\n",
-                        model == Model::coupled ? "root" : "beam", near_end(*this));
+                        model == BeamModel::coupled ? "root" : "beam", near_end(*this));
   text += action_text(*this);
   text += "[solver]\nbackend = \"cpu\"\n";
   text += dynamic ? fmt::format("kind = \"implicit-euler\"\ntime_step = {:.17g}\nsteps = {}\n", time_step, kSteps)
                   : std::string("kind = \"static\"\n");
   text += fmt::format("linear = {{ kind = \"{}\" }}\n", cg ? "cg" : "cholesky");
-  const double y = model == Model::line ? 0 : 0.5 * width(), z = is_thin(model) ? 0 : 0.5 * thickness();
+  const double y = model == BeamModel::line ? 0 : 0.5 * width(), z = is_thin(model) ? 0 : 0.5 * thickness();
   const auto probe = [&](const char* name, const char* quantity, const std::string& where) {
     text += fmt::format("[probes.{}]\nbody = \"beam\"\nquantity = \"{}\"\n{}", name, quantity, where);
   };
@@ -186,7 +208,7 @@ std::string Specimen::text() const {
   if (action != Action::weight) probe("acting", "force", "where = " + far_end(*this) + "\n");
   if (held)
     text += fmt::format("[probes.support]\nbody = \"{}\"\nquantity = \"force\"\nwhere = {}\n",
-                        model == Model::coupled ? "root" : "beam", near_end(*this));
+                        model == BeamModel::coupled ? "root" : "beam", near_end(*this));
   // Fields are not looked at, and what is extreme is meant.
   return text + "[output]\nfields = [\"displacement\"]\n";
 }
