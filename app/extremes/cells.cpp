@@ -1,5 +1,7 @@
 #include "app/extremes/cells.hpp"
 
+#include "core/model/errors.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -144,9 +146,17 @@ std::vector<ExtremeCell> pair_cells(int count, std::uint64_t seed) {
   std::vector<ExtremeCell> cells;
   const std::vector<Specimen> rows = all_rows();
   const std::vector<ExtremeAxis>& axes = extreme_axes();
+  std::size_t all = 0;
+  for (const Specimen& s : rows)
+    for (const ExtremeAxis& a : axes)
+      for (const ExtremeAxis& b : axes)
+        if (&a != &b && a.applies(s) && b.applies(s)) all += a.values.size() * b.values.size();
+  if (count > 0 && static_cast<std::size_t>(count) > all)
+    throw InputError(
+        fmt::format("extremes: --pairs {}: there are {} pairs of extremes; give that at most", count, all));
+  std::set<std::string> names;
   std::mt19937_64 random(seed);
   const auto draw = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
-  std::set<std::string> names;
   while (cells.size() < static_cast<std::size_t>(count)) {
     Specimen s = rows[draw(rows.size())];
     const ExtremeAxis &a = axes[draw(axes.size())], &b = axes[draw(axes.size())];

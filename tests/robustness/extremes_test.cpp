@@ -107,6 +107,7 @@ TEST_F(ExtremesProgram, RefusesWhatItCannotDo) {
   };
   refusal({"--only", "nonsense"}, "no cell's name holds all words");
   refusal({"--set", "a=1"}, "--set changes a scene");
+  refusal({"--pairs", "1000000000"}, "give that at most");
   refusal({"--quicker-than", "1"}, "add --compare");
   refusal({"--resume"}, "holds no map");
   write("none.toml", "bodies.b = { model = \"line\" }\n");
