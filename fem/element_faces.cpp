@@ -9,15 +9,15 @@ namespace fascia {
 namespace {
 
 /// A place of a reference face, as weights of its corners, with the derivatives of these along two directions of it.
-struct FacePlace {
+struct RulePoint {
   std::array<double, 4> N{}, ds{}, dt{};
   double weight = 0;  ///< they add up to the area of the reference face in s and t
 };
 
 /// Six points, exact for degree 4 (Dunavant 1985).
-std::vector<FacePlace> triangle_rule() {
+std::vector<RulePoint> triangle_rule() {
   constexpr double a = 0.445948490915965, b = 0.091576213509771, wa = 0.223381589678011, wb = 0.109951743655322;
-  std::vector<FacePlace> rule;
+  std::vector<RulePoint> rule;
   for (const auto& [c, w] : {std::pair{a, wa}, std::pair{b, wb}})
     for (const auto& [s, t] : {std::pair{c, c}, std::pair{1 - 2 * c, c}, std::pair{c, 1 - 2 * c}})
       rule.push_back({{1 - s - t, s, t, 0}, {-1, 1, 0, 0}, {-1, 0, 1, 0}, 0.5 * w});
@@ -25,9 +25,9 @@ std::vector<FacePlace> triangle_rule() {
 }
 
 /// 3 × 3 Gauss points.
-std::vector<FacePlace> quadrilateral_rule() {
+std::vector<RulePoint> quadrilateral_rule() {
   const double g = std::sqrt(0.6);
-  std::vector<FacePlace> rule;
+  std::vector<RulePoint> rule;
   for (const auto& [s, ws] : {std::pair{-g, 5.0 / 9}, std::pair{0.0, 8.0 / 9}, std::pair{g, 5.0 / 9}})
     for (const auto& [t, wt] : {std::pair{-g, 5.0 / 9}, std::pair{0.0, 8.0 / 9}, std::pair{g, 5.0 / 9}})
       rule.push_back({{(1 - s) * (1 - t) / 4, (1 + s) * (1 - t) / 4, (1 + s) * (1 + t) / 4, (1 - s) * (1 + t) / 4},
@@ -64,7 +64,7 @@ std::vector<std::vector<int>> ElementBody::faces() const {
 
 std::vector<FacePoint> ElementBody::face_points() const {
   const ElementFamily family = family_of(mesh().shape);
-  const std::vector<FacePlace> rule = family == ElementFamily::tetrahedra ? triangle_rule() : quadrilateral_rule();
+  const std::vector<RulePoint> rule = family == ElementFamily::tetrahedra ? triangle_rule() : quadrilateral_rule();
   const auto reference = reference_corners(family);
   std::vector<FacePoint> points;
   const std::vector<element_parts::ElementFace> faces = element_parts::sorted_faces(mesh());
@@ -73,7 +73,7 @@ std::vector<FacePoint> ElementBody::face_points() const {
     const auto e = at(same[0].element);
     const std::array<int, 4>& corners = faces_of(family)[at(same[0].face)];
     const std::vector<int> nodes = nodes_of_face(mesh(), e, corners);
-    for (const FacePlace& place : rule) {
+    for (const RulePoint& place : rule) {
       Vec3d xi, along_s, along_t, ds, dt;
       for (std::size_t k = 0; k < 4; ++k) {
         if (corners[k] < 0) continue;
