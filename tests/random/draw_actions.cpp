@@ -5,17 +5,7 @@
 #include <algorithm>
 
 namespace fascia::random_scenes {
-namespace {
 
-/// A part of a body's length that no cell is as short as.
-double sliver(const Scales& s) { return 1e-3 * s.width; }
-
-Json end_of(const RowBody& b, bool far, const Scales& s) {
-  const double x = far ? b.to : b.from;
-  return slab(x - sliver(s), x + sliver(s), s);
-}
-
-/// Beside a load or motion: how it grows; nothing in statics, where that has no meaning.
 void add_schedule(Draws& draws, const Json& scene, Json& entry) {
   if (!scene["solver"].contains("time_step") || draws.chance(0.5)) return;
   const double step = scene["solver"]["time_step"];
@@ -25,6 +15,8 @@ void add_schedule(Draws& draws, const Json& scene, Json& entry) {
   if (kind >= 2) entry["over"] = 3 * step;
   if (kind == 3) entry["profile"] = "smooth";
 }
+
+namespace {
 
 Json motion(Draws& draws, const Scales& s, const RowBody& b) {
   Json move;
@@ -177,7 +169,7 @@ class LoadDrawing {
  private:
   /// Within a face of a cell: between cells a torque acts on one of them.
   Json place(const RowBody& b) {
-    return Json{b.to, (b.thin ? 0.5 : 0.44) * s_.width, (b.thin ? 0.5 : 0.29) * s_.width};
+    return Json{b.to, (b.thin ? 0.5 : 0.44) * s_.width, b.lift + (b.thin ? 0.5 : 0.29) * s_.width};
   }
 
   Draws& draws_;
@@ -191,11 +183,13 @@ void add_loads(Draws& draws, const Scales& s, const std::vector<RowBody>& row, R
   LoadDrawing drawing(draws, s, scene);
   const int count = draws.pick<int>({0, 1, 1, 1, 2, 3});
   for (int i = 0; i < count; ++i) drawing.add(draws.pick(row));
-  if (draws.chance(0.35)) {
-    const double part = draws.chance(0.9) ? draws.decades(-8, -1.5) : draws.decades(-1.5, 1);
-    const double slender = s.width / s.length;
-    scene.tree["world"]["gravity"] = draws.directed(part * s.young * slender * slender / (s.density * s.length));
-  }
+  if (draws.chance(0.35)) add_gravity(draws, s, scene.tree);
+}
+
+void add_gravity(Draws& draws, const Scales& s, Json& scene) {
+  const double part = draws.chance(0.9) ? draws.decades(-8, -1.5) : draws.decades(-1.5, 1);
+  const double slender = s.width / s.length;
+  scene["world"]["gravity"] = draws.directed(part * s.young * slender * slender / (s.density * s.length));
 }
 
 }  // namespace fascia::random_scenes

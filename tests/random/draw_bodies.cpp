@@ -159,13 +159,16 @@ class BodyDrawing {
 
 }  // namespace
 
+RowBody add_body(Draws& draws, const Scales& scales, int index, double from, bool on_solid, Json& scene) {
+  return BodyDrawing(draws, scales, scene).add(index, from, on_solid);
+}
+
 std::vector<RowBody> add_bodies(Draws& draws, const Scales& scales, Json& scene) {
-  BodyDrawing drawing(draws, scales, scene);
   std::vector<RowBody> row;
   const int count = draws.chance(0.5) ? 1 : draws.whole(2, 3);
   for (int i = 0; i < count; ++i)
-    row.push_back(
-        drawing.add(i, row.empty() ? 0.0 : row.back().to, !row.empty() && row.back().solid && !row.back().stiff));
+    row.push_back(add_body(draws, scales, i, row.empty() ? 0.0 : row.back().to,
+                           !row.empty() && row.back().solid && !row.back().stiff, scene));
   return row;
 }
 

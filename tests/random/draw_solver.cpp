@@ -51,19 +51,23 @@ void add_probes(const Scales& s, const std::vector<RowBody>& row, Json& scene) {
       probe = Json{{"quantity", quantity}, {"body", b.name}};
       probe.update(more);
     };
-    const bool tube = scene["bodies"][b.name]["domain"].contains("cylinder");
+    const Json& body = scene["bodies"][b.name];
+    const Json& domain = body["domain"];
+    // No place of the row's section need be a point of these.
+    const bool elsewhere = domain.contains("cylinder") || domain.contains("ellipsoid") || domain.contains("as");
     // Within a cell, where strains are not of two.
-    const bool line = scene["bodies"][b.name]["domain"].contains("line");
+    const bool line = domain.contains("line");
     const double y = line ? 0.5 : 0.44, z = b.thin ? 0.5 : b.carried ? 0.2 : b.stiff ? 0 : 0.29;
-    const Json at = Json::object({{"at", {b.from + 0.71 * (b.to - b.from), y * s.width, z * s.width}}});
+    const Json at = Json::object({{"at", {b.from + 0.71 * (b.to - b.from), y * s.width, b.lift + z * s.width}}});
     const bool statics = scene["solver"]["kind"] == "static";
-    if (!tube) add("displacement", at), add("rotation", at);
-    if (!tube && !statics) add("velocity", at);
+    if (!elsewhere) add("displacement", at), add("rotation", at);
+    if (!elsewhere && !statics) add("velocity", at);
     if (!b.stiff && !b.carried) {
-      if (!tube) add("strain", at), add("stress", at);
+      if (!elsewhere) add("strain", at), add("stress", at);
       add("energy");
     }
     add("max_displacement");
+    if (body.contains("fluid")) add("fluid_volume"), add("fluid_pressure");
     Json held = Json::array();
     if (scene.contains("constraints"))
       for (const Json& c : scene["constraints"])

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "tests/random/draws.hpp"
+#include "tests/random/mesh_file.hpp"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +30,9 @@ struct RandomScene {
   std::vector<std::optional<Vector>> resultants;  ///< of each load at its full size [N]; none where it is not known
   std::string wrong;                              ///< what was made wrong on purpose; empty in a sound scene
   std::string blamed;                             ///< the key that an error must name
-  std::string section;                            ///< and where it stands: a key of SceneText::lines
+  std::string section;                            ///< and where it stands: a key of SceneText::lines; empty in a mesh
+  std::map<std::string, MeshFile> meshes;         ///< by the name of their file
+  std::vector<std::string> features;              ///< fluids, tissues and meshes, in words
 };
 
 RandomScene random_scene(std::uint64_t seed);
@@ -42,19 +46,41 @@ struct RowBody {
   bool has_boundary;          ///< a closed surface
   bool alone;                 ///< it is coupled to none before it
   double young;               ///< [Pa]
+  double lift = 0;            ///< of its section along z [m]
 };
 
 // Parts of random_scene(), in files of their own.
 std::vector<RowBody> add_bodies(Draws& draws, const Scales& scales, Json& scene);
+/// @param on_solid  the body before it can carry a surface
+RowBody add_body(Draws& draws, const Scales& scales, int index, double from, bool on_solid, Json& scene);
 void add_couplings(Draws& draws, const Scales& scales, std::vector<RowBody>& row, Json& scene);
 void add_constraints(Draws& draws, const Scales& scales, const std::vector<RowBody>& row, Json& scene);
 void add_loads(Draws& draws, const Scales& scales, const std::vector<RowBody>& row, RandomScene& scene);
+void add_gravity(Draws& draws, const Scales& scales, Json& scene);
+/// Beside a load, motion or fluid: how it grows; nothing in statics, where that has no meaning.
+void add_schedule(Draws& draws, const Json& scene, Json& entry);
 void add_solver(Draws& draws, const Scales& scales, Json& scene);
 void add_probes(const Scales& scales, const std::vector<RowBody>& row, Json& scene);
 /// Makes one thing wrong.
 void spoil(Draws& draws, RandomScene& scene);
 
+// Parts of one scene in five.
+/// A shell that a fluid can fill takes the place of the last body.
+void add_closed_shell(Draws& draws, const Scales& scales, std::vector<RowBody>& row, Json& scene);
+/// A body beside one of the row, and what fills the space between them.
+void add_tissue(Draws& draws, const Scales& scales, bool flies, std::vector<RowBody>& row, RandomScene& scene);
+/// A file takes the place of a box or a rectangle.
+void add_mesh(Draws& draws, const Scales& scales, const std::vector<RowBody>& row, const std::string& file,
+              RandomScene& scene);
+void add_fluid(Draws& draws, bool flies, const std::vector<RowBody>& row, RandomScene& scene);
+
+/// A part of a body's length that no cell is as short as.
+double sliver(const Scales& scales);
 /// A region between two places along x.
 Json slab(double from, double to, const Scales& scales);
+/// A body's end along x.
+Json end_of(const RowBody& body, bool far, const Scales& scales);
+/// A sheet, of a shell or of frames.
+bool is_rectangle(const Json& body);
 
 }  // namespace fascia::random_scenes

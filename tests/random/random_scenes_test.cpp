@@ -35,7 +35,11 @@ class Examination {
 
   /// @return  what is wrong, in words
   std::vector<std::string> run(Tally& tally) {
+    write_meshes(scene_.meshes, {}, folder_.path);
     const Outcome outcome = random_scenes::run(text_.text, folder_.path);
+    for (const std::string& f : scene_.features)
+      tally.count(
+          fmt::format("with {}: exit status {}{}", f, outcome.exit_status, scene_.wrong.empty() ? "" : ", wrong"));
     tally.count(fmt::format("exit status {}{}", outcome.exit_status, scene_.wrong.empty() ? "" : ", wrong on purpose"));
     if (scene_.wrong.empty() && outcome.exit_status == 3) tally.count("status " + outcome.status());
     tally.seconds.push_back(outcome.seconds);
@@ -62,6 +66,10 @@ class Examination {
     return faults_;
   }
   const std::string& text() const { return text_.text; }
+  void keep(const std::filesystem::path& folder) const {
+    std::ofstream(folder / fmt::format("{}.toml", seed_)) << text_.text;
+    write_meshes(scene_.meshes, {}, folder);
+  }
 
  private:
   void note(const std::vector<std::string>& faults, const std::string& of) {
@@ -76,6 +84,7 @@ class Examination {
 
   void compare_with(const std::string& name, const Json& tree, const Frame& frame, const Outcome& outcome,
                     Tally& tally) {
+    write_meshes(scene_.meshes, frame, folder_.path);
     const Outcome other = random_scenes::run(text_of(tree).text, folder_.path);
     note(faults_of_end(other), "twin " + name + ": ");
     const Comparison c = compare(scene_, outcome, other, frame);
@@ -107,7 +116,7 @@ const std::map<std::uint64_t, const char*> kOpen{
 void examine(std::uint64_t seed, Tally& tally) {
   Examination examination(seed);
   const char* keep = std::getenv("FASCIA_KEEP_SCENES");
-  if (keep != nullptr) std::ofstream(fmt::format("{}/{}.toml", keep, seed)) << examination.text();
+  if (keep != nullptr) examination.keep(keep);
   const std::vector<std::string> faults = examination.run(tally);
   const auto open = kOpen.find(seed);
   if (open != kOpen.end()) {
@@ -156,6 +165,7 @@ TEST(RandomScenesSee, AThousandthOfAModulus) {
     if (!scene.wrong.empty() || !changed || !scene.tree.contains("loads") || scene.tree["solver"]["kind"] != "static")
       continue;
     const test::TemporaryFolder folder;
+    write_meshes(scene.meshes, {}, folder.path);
     const Outcome one = random_scenes::run(text_of(scene.tree).text, folder.path);
     if (one.exit_status != 0) continue;
     const Outcome two = random_scenes::run(text_of(other).text, folder.path);
