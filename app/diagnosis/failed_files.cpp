@@ -18,7 +18,8 @@ void clear_infinite(std::vector<io::FieldArray>& fields) {
       if (!std::isfinite(value)) value = 0;
 }
 
-/// Takes, from the points of each cell, the least volume, and whether one is suspect.
+/// Takes, from the points of each cell, the least volume, and whether one is suspect. Cells of what has no matter,
+/// rigid bodies and surfaces, have no points: they keep their volume.
 void add_marks_of_cells(const SimulatedBody& b, const FailureMarks& m, io::VisualMesh& mesh) {
   const std::size_t count = mesh.volumes[0].size();
   std::vector<double> volume(count, INFINITY), suspect(count, 0.0);
@@ -27,6 +28,7 @@ void add_marks_of_cells(const SimulatedBody& b, const FailureMarks& m, io::Visua
     volume[cell] = std::min(volume[cell], m.volume[q]);
     suspect[cell] = std::max(suspect[cell], static_cast<double>(m.suspect[q]));
   }
+  std::replace(volume.begin(), volume.end(), static_cast<double>(INFINITY), 1.0);
   mesh.cell_fields.push_back({"suspect", 1, std::move(suspect)});
   mesh.cell_fields.push_back({"volume_ratio", 1, std::move(volume)});
   mesh.point_fields.push_back({"failure_share", 1, m.share});

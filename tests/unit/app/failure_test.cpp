@@ -117,6 +117,34 @@ TEST_F(FailedRun, ExplicitStepsToo) {
   EXPECT_EQ(std::count(left.begin(), left.end(), 1.0), 0);
 }
 
+/// Bodies without matter have cells, in which no point says how far they are compressed.
+TEST_F(FailedRun, BodiesWithoutMatterKeepTheirVolume) {
+  const char* more = R"(
+[bodies.skin]
+model = "surface"
+domain = { box = { min = [0.05, 0.02, 0.02], max = [0.25, 0.08, 0.08] } }
+[couplings.ride]
+kind = "embed"
+body = "skin"
+where = "all"
+to = "left"
+[bodies.bone]
+model = "rigid"
+domain = { box = { min = [0, 2, 0], max = [0.1, 2.1, 0.1] } }
+density = 1000
+[[constraints]]
+body = "bone"
+where = "all"
+fix = "all"
+)";
+  const char* solver = "kind = \"static\"\nnewton = { max_iterations = 6 }";
+  ASSERT_EQ(run(bars("neo-hookean", "hexahedra", solver, 0.5) + more), kNotConverged);
+  expect_both_states();
+  EXPECT_EQ(summary_.at("failure").at("body"), "right");
+  for (const char* body : {"skin", "bone"})
+    for (const double volume : failed(body, "volume_ratio")) EXPECT_EQ(volume, 1) << body;
+}
+
 TEST_F(FailedRun, MatterInsideOutIsMarked) {
   ASSERT_EQ(run(bars("st-venant-kirchhoff", "hexahedra", "kind = \"static\"\nload_steps = 4", 0.5)), kNotConverged);
   expect_both_states();
