@@ -77,6 +77,8 @@ void add_fluid(Draws& draws, bool flies, const std::vector<RowBody>& row, Random
     if (is_closed(scene.tree["bodies"][b.name])) closed.push_back(&b);
   if (closed.empty()) return;
   const RowBody& b = *draws.pick(closed);
+  const bool weighs = !flies && draws.chance(0.4);
+  if (weighs && !scene.tree.contains("world")) add_gravity(draws, s, scene.tree);
   Json& body = scene.tree["bodies"][b.name];
   const double pressure = pressure_for(draws, s, b, body) * (draws.chance(0.8) ? 1 : -1);
   const bool along_a_path = scene.tree["solver"].value("control", "load") != "load";
@@ -91,8 +93,7 @@ void add_fluid(Draws& draws, bool flies, const std::vector<RowBody>& row, Random
     scene.scales.stiffest = std::max(s.stiffest, modulus);
     scene.features.emplace_back("fluid with a bulk modulus");
   }
-  if (!flies && draws.chance(0.4)) {
-    if (!scene.tree.contains("world")) add_gravity(draws, s, scene.tree);
+  if (weighs) {
     const Vector g = scene.tree["world"]["gravity"].get<Vector>();
     fluid["density"] = std::abs(pressure) * draws.decades(-3, 0) / (std::hypot(g[0], g[1], g[2]) * s.width);
     scene.features.emplace_back("fluid with a weight");

@@ -215,7 +215,7 @@ void add_mesh(Draws& draws, const Scales& s, const std::vector<RowBody>& row, co
   scene.meshes[name] = std::move(mesh);
   scene.features.push_back("mesh " + ending);
   scene.features.push_back("mesh of " + body["model"].get<std::string>());
-  if (draws.chance(0.2)) spoil_mesh(draws, name, cells, solid, scene);
+  if (draws.chance(0.15)) spoil_mesh(draws, name, cells, solid, scene);
 }
 
 }  // namespace fascia::random_scenes

@@ -8,13 +8,13 @@ namespace fascia::random_scenes {
 namespace {
 
 /// Sets apart the draws of what one scene in five has beside the rest. None of the seeds that tests name is of these.
-constexpr std::uint64_t kMore = 0x1000000000a;
+constexpr std::uint64_t kMore = 0xb4;
 
 struct Additions {
   explicit Additions(Draws& draws) {
     if (!draws.chance(0.2)) return;
     fluid = draws.chance(0.5);
-    tissue = draws.chance(0.45);
+    tissue = draws.chance(0.6);
     mesh = draws.chance(0.5) || !(fluid || tissue);
   }
   bool fluid = false, tissue = false, mesh = false;

@@ -135,6 +135,9 @@ Json in_frame(const Json& scene, const Frame& frame) {
 
 std::string no_twin(const Json& scene, const Frame& frame) {
   if (scene["solver"].contains("imperfection")) return "either sign of an imperfection's mode will do";
+  for (const auto& [name, body] : scene["bodies"].items())
+    if (body["model"] == "tetrahedra" && body["domain"].contains("refine"))
+      return "of two shortest diagonals of a tetrahedron rounding chooses the one along which it is refined";
   if (!frame.turned && !frame.mirrored) return "";
   if (scene.contains("couplings"))
     for (const auto& [name, c] : scene["couplings"].items())
