@@ -46,6 +46,7 @@ class Examination {
     if (outcome.seconds > 2) tally.count(fmt::format("seed {} takes {:.0f} s", seed_, outcome.seconds));
     note(faults_of_end(outcome), "");
     if (!scene_.wrong.empty()) {
+      tally.count("wrong: " + scene_.wrong);
       note(faults_of_refusal(scene_, text_, outcome), "");
       return faults_;
     }
