@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace fascia::app {
@@ -16,10 +18,57 @@ constexpr double kResolved = 0.5;
 /// A triangle with less of its area collapses: strains of that size are no physical state of this law.
 constexpr double kCollapsed = 0.1;
 
-void add_shell_warnings(const SimulatedBody& b, const State& end, Warnings& warnings) {
+/// Tension folds a shell's triangles from about this on: the largest strain times the square of the middle one of the
+/// sides over the thickness, the longer side of a cell that was halved (docs/manual.md, "Thin shells that are pulled").
+constexpr double kFolds = 2.5;
+
+/// The largest stretch of a triangle's plane, squared. @param X, x  corners at rest and now
+double largest_stretch_squared(const Vec3d (&X)[3], const Vec3d (&x)[3]) {
+  const Vec3d A = X[1] - X[0], B = X[2] - X[0], a = x[1] - x[0], b = x[2] - x[0];
+  const double AA = dot(A, A), AB = dot(A, B), BB = dot(B, B), area = AA * BB - AB * AB;
+  const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b);
+  const double half_trace = (BB * aa - 2 * AB * ab + AA * bb) / (2 * area);
+  const double determinant = (aa * bb - ab * ab) / area;
+  return half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - determinant));
+}
+
+/// Where the tension is so large for the triangles' size that they may fold by themselves.
+struct Folds {
+  int triangles = 0;
+  double largest = 0, strain = 0, slenderness = 0;  ///< the largest of strain · slenderness², and of what it is
+  Vec3d where;
+
+  void look(const Vec3d (&X)[3], const Vec3d (&x)[3], double volume) {
+    const double area = 0.5 * norm(cross(X[1] - X[0], X[2] - X[0])), thickness = volume / area;
+    std::array<double, 3> side{norm(X[1] - X[0]), norm(X[2] - X[1]), norm(X[0] - X[2])};
+    std::sort(side.begin(), side.end());
+    const double tension = 0.5 * (largest_stretch_squared(X, x) - 1), l = side[1] / thickness, size = tension * l * l;
+    triangles += size > kFolds ? 1 : 0;
+    if (size <= largest) return;
+    largest = size, strain = tension, slenderness = l;
+    where = (1.0 / 3) * (X[0] + X[1] + X[2]);
+  }
+};
+
+/// What dynamics cannot tell and statics judge by their tangent: an equilibrium that is not stable.
+void warn_of_folds(const SimulatedBody& b, const Folds& folds, RunReport& run, Warnings& warnings) {
+  if (folds.triangles == 0) return;
+  run.doubts.push_back(fmt::format(
+      "body \"{}\": {} of {} triangles are too large for the tension in them, worst at ({:.4g}, {:.4g}, {:.4g}), where "
+      "the strain is {:.2g} and the second longest side {:.3g} thicknesses: strain times the square of that is {:.3g}, "
+      "and "
+      "from {:g} on triangles may fold by themselves, which is the mesh's doing; take sides below {:.2g} thicknesses "
+      "there, or a meshless sheet",
+      b.name, folds.triangles, b.body->points().size(), folds.where[0], folds.where[1], folds.where[2], folds.strain,
+      folds.slenderness, folds.largest, kFolds, std::sqrt(kFolds / folds.strain)));
+  warnings.add("resolution", run.doubts.back());
+}
+
+void add_shell_warnings(const SimulatedBody& b, const State& end, bool judged, RunReport& run, Warnings& warnings) {
   int unresolved = 0, against = 0;
   double smallest = 1;
   Vec3d where;
+  Folds folds;
   const std::vector<BodyPoint>& triangles = b.body->points();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const Attachment a = b.body->attach_point(t);
@@ -31,11 +80,13 @@ void add_shell_warnings(const SimulatedBody& b, const State& end, Warnings& warn
       X[k] = b.nodes[b.index_of(a.nodes[k])];
       x[k] = X[k] + end.u[static_cast<std::size_t>(a.nodes[k])];
     }
+    folds.look(X, x, triangles[t].volume);
     const double left = norm(cross(x[1] - x[0], x[2] - x[0])) / norm(cross(X[1] - X[0], X[2] - X[0]));
     if (left >= smallest) continue;
     smallest = left;
     where = triangles[t].X;
   }
+  if (!judged) warn_of_folds(b, folds, run, warnings);
   if (smallest < kCollapsed)
     warnings.add(
         "inverted",
@@ -164,7 +215,7 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   for (const SimulatedBody& b : s.bodies) {
     const auto index = static_cast<std::size_t>(&b - s.bodies.data());
     if (is_shell(s.scene.bodies[index])) {
-      add_shell_warnings(b, end, warnings);
+      add_shell_warnings(b, end, judged, run, warnings);
       continue;
     }
     int inverted = 0, unresolved = 0;
