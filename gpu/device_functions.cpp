@@ -4,6 +4,7 @@
 #include "gpu/loaded_module.hpp"
 
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 
 namespace fascia::gpu {
@@ -17,9 +18,11 @@ struct Loaded {
   std::string reason;
 };
 
-/// Beside the library or program that holds this function; of one that is chosen by the processor
-/// (glibc-hwcaps/LEVEL), in the folder that all levels share.
+/// The one that kModuleVariable names; else beside the library or program that holds this function; of one that is
+/// chosen by the processor (glibc-hwcaps/LEVEL), in the folder that all levels share.
 fs::path module_file() {
+  const char* named = std::getenv(kModuleVariable);
+  if (named != nullptr && *named != '\0') return fs::absolute(named);
   const fs::path folder = file_of(reinterpret_cast<const void*>(&device_functions)).parent_path();
   const bool chosen = folder.parent_path().filename() == "glibc-hwcaps";
   return (chosen ? folder.parent_path().parent_path() : folder) / "fascia-cuda.so";
@@ -29,12 +32,16 @@ Loaded load() {
   const fs::path file = module_file();
   if (!fs::exists(file))
     return {nullptr, "this build has no CUDA backend: there is no " + file.string() +
-                         " (of the package fascia-cuda; in a checkout ./run builds it where there is a CUDA toolkit)"};
+                         (std::getenv(kModuleVariable) != nullptr
+                              ? std::string(", which ") + kModuleVariable + " names"
+                              : " (of the package fascia-cuda; in a checkout ./run builds it where there is a CUDA "
+                                "toolkit)")};
   const LoadedModule module = load_module(file, kModuleEntry);
   if (module.entry == nullptr) return {nullptr, "the CUDA backend cannot be loaded: " + module.reason};
   const DeviceFunctions* functions = reinterpret_cast<ModuleEntry>(module.entry)();
   if (functions == nullptr || std::string(functions->build) != FASCIA_INTERFACE_TAG)
-    return {nullptr, file.string() + " is of another build than this program: build the target fascia-cuda again"};
+    return {nullptr, file.string() + " is of another build than this program: build the target " +
+                         file.stem().string() + " again"};
   return {functions, ""};
 }
 

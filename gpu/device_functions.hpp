@@ -32,6 +32,10 @@ bool device_module_exists();
 /// Takes these in place of a module: for programs that CUDA's part is linked into. Before the first use of a device.
 void use_device_functions(const DeviceFunctions& functions);
 
+/// The environment variable that names another module in place of fascia-cuda.so: fascia-host.so, whose "device" is
+/// the processor.
+inline constexpr const char* kModuleVariable = "FASCIA_DEVICE_MODULE";
+
 /// The name by which a module hands out its functions, of type ModuleEntry.
 inline constexpr const char* kModuleEntry = "fascia_device_functions";
 using ModuleEntry = const DeviceFunctions* (*)();

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 namespace fascia::extremes_program_test {
 namespace {
@@ -17,9 +18,10 @@ using namespace fascia::test;
 
 class ExtremesProgram : public testing::Test {
  protected:
-  ProgramResult extremes(std::vector<std::string> words) const {
+  ProgramResult extremes(std::vector<std::string> words, std::vector<std::string> environment = {}) const {
     words.insert(words.begin(), {program(), "extremes", "--quiet", "--output", "out"});
     ProgramOptions options;
+    options.environment = std::move(environment);
     options.directory = folder_.path;
     options.timeout = std::chrono::minutes(3);  // hundreds of runs, beside what else the machine does
     return run_program(words, options);
@@ -44,6 +46,18 @@ TEST_F(ExtremesProgram, TheReducedMapIsNoWorseThanTheStoredOne) {
     EXPECT_EQ(r.status, 0) << r.out << r.err;
     EXPECT_EQ(r.out.find("worse: "), std::string::npos) << r.out;
   }
+}
+
+/// What a GPU would do, in the space of the host: no cell is worse than on the processor.
+TEST_F(ExtremesProgram, TheStepsOfAGpuAreNoWorseThanTheStoredMap) {
+  const std::string stored = (source_dir() / "docs/extremes.csv").string();
+  const std::string module = (build_dir() / "fascia-host.so").string();
+  const ProgramResult r =
+      extremes({"--backend", "cuda", "--reduced", "--only", ", cg", "--compare", stored, "--quicker-than", "0.04"},
+               {"FASCIA_DEVICE_MODULE=" + module});
+  EXPECT_EQ(r.status, 0) << r.out << r.err;
+  EXPECT_EQ(r.out.find("worse: "), std::string::npos) << r.out;
+  EXPECT_EQ(file("extremes.json").find("\"backend\": \"cpu\""), std::string::npos);
 }
 
 TEST_F(ExtremesProgram, WritesATableAndAPageThatSayHowToRepeatACell) {
