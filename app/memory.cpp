@@ -28,6 +28,7 @@ namespace {
 /// A run reads more of the program and its libraries than a check: solvers, the writer of results.
 constexpr double kCodeOfRun = 3.5e6;
 
+constexpr double kLevels = 0.45;    // of the matrix's numbers: what levels hold
 constexpr long kGuessedSolves = 3;  // Newton iterations of a static solve
 
 /// A number of bytes for people.
@@ -190,10 +191,21 @@ class Setup {
     factorizes_ = tangent.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
                   (statics && tangent.gives_way_to_factor(guessed_iterations())) ||
                   (statics && load && tangent.factor_is_cheap(kGuessedSolves * guessed_iterations()));
-    if (!factorizes_) return;
+    if (!factorizes_) return of_levels(tangent.matrix());
     take(tangent.factor(), tangent.matrix());
     if (!load || !s_.model.loads_are_conservative())
       beyond_ = bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any), tangent.matrix());
+  }
+
+  /// Levels of rigid frames, where blocks would take too many iterations: a prolongator, and what it is made from.
+  void of_levels(const BlockMatrix& matrix) {
+    const PreconditionerKind kind = s_.scene.solver.preconditioner;
+    const bool asked = kind == PreconditionerKind::multigrid;
+    const int most = s_.scene.solver.linear_max_iterations;
+    if (!asked && (kind != PreconditionerKind::automatic || guessed_iterations() < most)) return;
+    const double levels = kLevels * 8 * static_cast<double>(matrix.value_count());
+    to_come_.pass(2 * levels);
+    to_come_.keep(levels);
   }
 
   /// CG takes about ten iterations a solve for each node along a body. At the end of statics a factor tells whether the

@@ -50,7 +50,8 @@ struct Folds {
   }
 };
 
-/// What dynamics cannot tell and statics judge by their tangent: an equilibrium that is not stable.
+/// What statics judge by their tangent and dynamics do not: where that became indefinite on the way and the tension is
+/// so large, folds are likely.
 void warn_of_folds(const SimulatedBody& b, const Folds& folds, RunReport& run, Warnings& warnings) {
   if (folds.triangles == 0) return;
   run.doubts.push_back(fmt::format(
@@ -86,7 +87,7 @@ void add_shell_warnings(const SimulatedBody& b, const State& end, bool judged, R
     smallest = left;
     where = triangles[t].X;
   }
-  if (!judged) warn_of_folds(b, folds, run, warnings);
+  if (!judged && run.indefinite_steps > 0) warn_of_folds(b, folds, run, warnings);
   if (smallest < kCollapsed)
     warnings.add(
         "inverted",

@@ -25,6 +25,9 @@ SolverSettings settings_of(const Solver& solver) {
     case PreconditionerKind::block_jacobi:
       s.preconditioner = Preconditioner::block_jacobi;
       break;
+    case PreconditionerKind::multigrid:
+      s.preconditioner = Preconditioner::multigrid;
+      break;
     case PreconditionerKind::cholesky:
       s.preconditioner = Preconditioner::cholesky;
       break;

@@ -163,6 +163,12 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
   outcome.verdict = found.size <= kAllowedDifference ? CellVerdict::right : CellVerdict::wrong;
   if (outcome.verdict == CellVerdict::right) return outcome;
   outcome.reason = fmt::format("probe {} differs from that of the twin by {:.1e}", found.probe, found.size);
+  const double floor = run.summary.value("residual_floor", 0.0);
+  if (found.size <= floor) {
+    outcome.verdict = CellVerdict::sensitive;
+    outcome.reason += fmt::format("; the run says that rounding leaves {:.1e} of what acts", floor);
+    return outcome;
+  }
   if (disturbed.exit_status == kDone) {
     const double answer = deviation(twins, probes_of(disturbed.summary), in_units(least, runs.units)).size;
     // In another direction the residual may weigh a few times as much.

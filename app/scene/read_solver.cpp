@@ -18,6 +18,7 @@ PreconditionerKind preconditioner_of(const std::string& name) {
   if (name == "none") return PreconditionerKind::none;
   if (name == "jacobi") return PreconditionerKind::jacobi;
   if (name == "block-jacobi") return PreconditionerKind::block_jacobi;
+  if (name == "multigrid") return PreconditionerKind::multigrid;
   if (name == "cholesky") return PreconditionerKind::cholesky;
   return PreconditionerKind::automatic;
 }

@@ -261,7 +261,7 @@ constexpr bool is_dynamic(SolverKind kind) {
 }
 
 enum class LinearKind { automatic, cg, cholesky };
-enum class PreconditionerKind { automatic, none, jacobi, block_jacobi, cholesky };
+enum class PreconditionerKind { automatic, none, jacobi, block_jacobi, multigrid, cholesky };
 enum class OnLimit { stop, proceed };
 
 enum class StaticControl { load, displacement, arc_length };

@@ -30,6 +30,7 @@ Shape linear_schema() {
                    {"none", "None."},
                    {"jacobi", "Diagonal."},
                    {"block-jacobi", "A block for each node."},
+                   {"multigrid", "Levels of rigid frames: iterations hardly grow with the number of unknowns."},
                    {"cholesky", "An older factorisation."}}),
            "Preconditioner of conjugate gradients.")
            .defaults("\"auto\""),

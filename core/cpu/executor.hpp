@@ -46,7 +46,7 @@ struct Linearization {
   std::vector<Mat3d> Q;             ///< I + D of each frame
   std::vector<double> node_blocks;  ///< what acts on one frame alone, by rows: rotation-rotation terms, inertia, loads
   AlignedVector<double> points;     ///< (groups × kRows × 8): H (9), Dbar (9), S (6), drilling (3)
-  std::vector<Vec3d> u;             ///< displacements, where there are elements or shells
+  std::vector<Vec3d> u;             ///< displacements
   std::vector<Mat3d> D;             ///< rotations − I, where there are shells
   AlignedVector<double> E;          ///< StrainHistory::E, where elements or shells are damped
   bool extrapolated = false;        ///< stresses are extrapolated

@@ -46,8 +46,8 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
       for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);
   }
   linearize_springs(state, out);
-  if (elements_.empty() && shells_.empty()) return;
   out.u = state.u;
+  if (elements_.empty() && shells_.empty()) return;
   out.E = history.E;
   if (!shells_.empty()) out.D.assign(state.D.values().begin(), state.D.values().end());
   if (taken != nullptr) extrapolate_blocks(history, *taken, out);

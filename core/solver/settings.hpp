@@ -9,7 +9,7 @@
 namespace fascia {
 
 enum class LinearMethod { automatic, cg, cholesky };
-enum class Preconditioner { automatic, none, jacobi, block_jacobi, cholesky };
+enum class Preconditioner { automatic, none, jacobi, block_jacobi, multigrid, cholesky };
 
 /// Arithmetic of Newton's directions; residuals, states and energies are of 64 bits always, and so what a converged run
 /// is judged by. mixed: products with the tangent of 32 bits; single: vectors of conjugate gradients too. Sums over

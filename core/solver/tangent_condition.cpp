@@ -41,7 +41,7 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
     out.kind = TangentCondition::Kind::not_definite;
     return out;
   }
-  build_block_jacobi();
+  build_block_jacobi(matrix());
   const DofLayout& dofs = model_.points.dofs;
   std::mt19937 random(1);
   Vector start(at(dofs.total()));
@@ -78,8 +78,9 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   const double product = 2.0 * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
   settings_.cg.max_iterations = std::min(asked.max_iterations, static_cast<int>(kPartOfFlops * most_flops / product));
   Vector x(start.size());
-  out.cg_iterations = solve_cg(start, x).iterations;
-  out.cg_converged = out.cg_iterations < settings_.cg.max_iterations;
+  const TangentReport made = solve_cg(start, x);
+  out.cg_iterations = made.iterations;
+  out.cg_converged = made.usable && !made.unsolved;
   settings_.cg = asked;
   out.kind = TangentCondition::Kind::known;
   return out;

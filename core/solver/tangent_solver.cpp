@@ -78,27 +78,29 @@ bool TangentSolver::gives_way_to_factor(long iterations) {
 }
 
 bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
-  if (!report.usable || !gives_way_to_factor(report.iterations)) return false;
+  if (!report.usable || !report.unsolved || !gives_way_to_factor(report.iterations)) return false;
   direct_ = true;
   return true;
 }
 
 void TangentSolver::assemble(const Linearization& lin, BlockMatrix& out, Entries entries) {
+  note_places(lin);
   executor_.assemble(lin, out, dependents_.empty() ? entries : Entries::all);
   if (dependents_.empty()) return;
   dependents_.turn(lin.Q);
   dependents_.condense(out);
 }
 
+void TangentSolver::apply_blocks(const BlockMatrix& matrix, std::span<const double> local, std::span<double> out) {
+  if (!filter_.turns()) return matrix.multiply(executor_.pool(), local, out);
+  std::copy(local.begin(), local.end(), work_.begin());
+  filter_.to_global(work_);
+  matrix.multiply(executor_.pool(), work_, out);
+  filter_.to_local(out);
+}
+
 void TangentSolver::apply_matrix(std::span<const double> local, std::span<double> out) {
-  if (!filter_.turns()) {
-    matrix().multiply(executor_.pool(), local, out);
-  } else {
-    std::copy(local.begin(), local.end(), work_.begin());
-    filter_.to_global(work_);
-    matrix().multiply(executor_.pool(), work_, out);
-    filter_.to_local(out);
-  }
+  apply_blocks(matrix(), local, out);
   low_rank_.add_product(local, out);
 }
 
@@ -111,6 +113,11 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
                                    std::span<const double> b, std::span<double> x, const Relinearize& relinearize) {
   const std::size_t n = b.size();
   work_.resize(n);
+  relinearize_ = &relinearize;
+  const struct Lent {
+    const Relinearize*& within;
+    ~Lent() { within = nullptr; }
+  } lent{relinearize_};
   assemble(lin, matrix());
   low_rank_.set(lin.low_rank, filter_);
   if (!lin.symmetric() && filter_.free_count() > 0) {
@@ -233,7 +240,7 @@ void TangentSolver::finish_shifted(std::span<double> x) {
     std::copy(result.begin(), result.end(), x.begin());
 }
 
-void TangentSolver::build_block_jacobi() {
+void TangentSolver::build_block_jacobi(const BlockMatrix& matrix) {
   const bool blocks = settings_.preconditioner != Preconditioner::jacobi;
   const DofLayout& dofs = model_.points.dofs;
   inverse_blocks_.resize(dofs.block_total());
@@ -241,7 +248,7 @@ void TangentSolver::build_block_jacobi() {
     for (int node = begin; node < end; ++node) {
       const int n = dofs.size(node);
       double* block = inverse_blocks_.data() + dofs.block_begin(node);
-      filter_.rotate_block(node, node, matrix_->block(matrix_->diagonal(node)), block);
+      filter_.rotate_block(node, node, matrix.block(matrix.diagonal(node)), block);
       for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) {
           const bool held = filter_.is_fixed(at(dofs.begin(node) + i)) || filter_.is_fixed(at(dofs.begin(node) + j));
@@ -253,62 +260,87 @@ void TangentSolver::build_block_jacobi() {
   });
 }
 
+CgReport TangentSolver::solve_by_blocks(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options) {
+  build_block_jacobi(*matrix_);
+  const DofLayout& dofs = model_.points.dofs;
+  const auto precondition = [&](const std::vector<double>& r, std::vector<double>& z) {
+    executor_.pool().for_ranges(model_.node_count(), kNodeChunk, [&](int begin, int end) {
+      double sum = 0;
+      for (int node = begin; node < end; ++node) {
+        const double* inverse = inverse_blocks_.data() + dofs.block_begin(node);
+        const std::size_t first = at(dofs.begin(node));
+        switch (dofs.size(node)) {
+          case 3:
+            sum += apply_block<3>(inverse, r.data() + first, z.data() + first);
+            break;
+          case 6:
+            sum += apply_block<6>(inverse, r.data() + first, z.data() + first);
+            break;
+          default:
+            sum += apply_block<12>(inverse, r.data() + first, z.data() + first);
+        }
+      }
+      chunk_sums_[at(begin / kNodeChunk)] = sum;
+    });
+    return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
+  };
+  chunk_sums_.resize(at((model_.node_count() + kNodeChunk - 1) / kNodeChunk));
+  return solve_cg_with(precondition, b, x, options);
+}
+
+CgReport TangentSolver::solve_by_factor(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options) {
+  const CgReport cg = solve_cg_with(
+      [&](const auto& r, auto& z) {
+        factor().solve(r, z);
+        return vectors_.dot(r, z);
+      },
+      b, x, options);
+  if (cg.iterations > 30) factor_is_preconditioner_ = false;  // out of date: renewed next time
+  return cg;
+}
+
+/// Blocks precondition; levels of rigid frames do from the first solve on that ends at its limit of iterations, where
+/// no factor takes over and the limit is not a budget that the user set.
+CgReport TangentSolver::solve_by_either(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options) {
+  if (levels_pay_) return solve_by_multigrid(b, x, options);
+  const CgReport tried = solve_by_blocks(b, x, options);
+  const bool budget = options.max_iterations < kEnoughForBulk;
+  if (tried.status != CgStatus::limit || budget || gives_way_to_factor(options.max_iterations)) return tried;
+  levels_pay_ = true;
+  CgReport cg = solve_by_multigrid(b, x, options);
+  cg.iterations += tried.iterations;
+  return cg;
+}
+
 TangentReport TangentSolver::solve_cg(std::span<const double> b, std::span<double> x, const CgOptions& options) {
   const Clock::time_point start = Clock::now();
-  const Preconditioner kind = settings_.preconditioner;
-  const auto apply = [&](const std::vector<double>& p, std::vector<double>& Ap) {
-    apply_matrix(p, Ap);
-    filter_.clear_fixed(Ap);
-  };
   const CpuVectors::Vector rhs(b.begin(), b.end());
   CpuVectors::Vector result;
   CgReport cg;
-  if (kind == Preconditioner::none) {
-    cg = conjugate_gradients(
-        vectors_, apply,
-        [&](const auto& r, auto& z) {
-          z = r;
-          return vectors_.dot(r, z);
-        },
-        rhs, result, options);
-  } else if (kind == Preconditioner::cholesky) {
-    if (!factor_is_preconditioner_) factor_is_preconditioner_ = factor().factorize(matrix());
-    if (!factor_is_preconditioner_)
-      return {false, 0, "the tangent is not positive definite: no Cholesky preconditioner"};
-    cg = conjugate_gradients(
-        vectors_, apply,
-        [&](const auto& r, auto& z) {
-          factor().solve(r, z);
-          return vectors_.dot(r, z);
-        },
-        rhs, result, options);
-    if (cg.iterations > 30) factor_is_preconditioner_ = false;  // out of date: renewed next time
-  } else {
-    build_block_jacobi();
-    const DofLayout& dofs = model_.points.dofs;
-    const auto precondition = [&](const std::vector<double>& r, std::vector<double>& z) {
-      executor_.pool().for_ranges(model_.node_count(), kNodeChunk, [&](int begin, int end) {
-        double sum = 0;
-        for (int node = begin; node < end; ++node) {
-          const double* inverse = inverse_blocks_.data() + dofs.block_begin(node);
-          const std::size_t first = at(dofs.begin(node));
-          switch (dofs.size(node)) {
-            case 3:
-              sum += apply_block<3>(inverse, r.data() + first, z.data() + first);
-              break;
-            case 6:
-              sum += apply_block<6>(inverse, r.data() + first, z.data() + first);
-              break;
-            default:
-              sum += apply_block<12>(inverse, r.data() + first, z.data() + first);
-          }
-        }
-        chunk_sums_[at(begin / kNodeChunk)] = sum;
-      });
-      return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
-    };
-    chunk_sums_.resize(at((model_.node_count() + kNodeChunk - 1) / kNodeChunk));
-    cg = conjugate_gradients(vectors_, apply, precondition, rhs, result, options);
+  switch (settings_.preconditioner) {
+    case Preconditioner::none:
+      cg = solve_cg_with(
+          [&](const auto& r, auto& z) {
+            z = r;
+            return vectors_.dot(r, z);
+          },
+          rhs, result, options);
+      break;
+    case Preconditioner::cholesky:
+      if (!factor_is_preconditioner_) factor_is_preconditioner_ = factor().factorize(matrix());
+      if (!factor_is_preconditioner_)
+        return {false, 0, "the tangent is not positive definite: no Cholesky preconditioner"};
+      cg = solve_by_factor(rhs, result, options);
+      break;
+    case Preconditioner::multigrid:
+      cg = solve_by_multigrid(rhs, result, options);
+      break;
+    case Preconditioner::automatic:
+      cg = solve_by_either(rhs, result, options);
+      break;
+    case Preconditioner::jacobi:
+    case Preconditioner::block_jacobi:
+      cg = solve_by_blocks(rhs, result, options);
   }
   std::copy(result.begin(), result.end(), x.begin());
   TangentReport report;

@@ -5,6 +5,7 @@
 #include "core/solver/dependents.hpp"
 #include "core/solver/dof_filter.hpp"
 #include "core/solver/low_rank.hpp"
+#include "core/solver/multigrid.hpp"
 #include "core/solver/settings.hpp"
 #include "core/solver/stability.hpp"
 #include "core/solver/tangent_condition.hpp"
@@ -83,8 +84,28 @@ class TangentSolver {
   void finish_shifted(std::span<double> x);
   TangentReport solve_cg(std::span<const double> b, std::span<double> x, const CgOptions& options);
   TangentReport solve_cg(std::span<const double> b, std::span<double> x) { return solve_cg(b, x, settings_.cg); }
-  void build_block_jacobi();
+  void build_block_jacobi(const BlockMatrix& matrix);
   void apply_matrix(std::span<const double> local, std::span<double> out);
+  void apply_blocks(const BlockMatrix& matrix, std::span<const double> local, std::span<double> out);
+  // tangent_multigrid.cpp
+  void note_places(const Linearization& at);
+  bool build_multigrid(bool material);
+  CgReport solve_with_levels(Multigrid& levels, const CpuVectors::Vector& b, CpuVectors::Vector& x,
+                             const CgOptions& options);
+  CgReport solve_by_multigrid(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
+  CgReport solve_by_blocks(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
+  CgReport solve_by_factor(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
+  CgReport solve_by_either(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
+  /// @param precondition  precondition(r, z) returns r · z
+  template <class Precondition>
+  CgReport solve_cg_with(const Precondition& precondition, const CpuVectors::Vector& b, CpuVectors::Vector& x,
+                         const CgOptions& options) {
+    const auto apply = [this](const CpuVectors::Vector& p, CpuVectors::Vector& Ap) {
+      apply_matrix(p, Ap);
+      filter_.clear_fixed(Ap);
+    };
+    return conjugate_gradients(vectors_, apply, precondition, b, x, options);
+  }
   // tangent_unsymmetric.cpp
   void apply_unsymmetric(const Linearization& at, std::span<const double> x, std::span<double> Ax);
   bool factorize_symmetric_part();
@@ -111,8 +132,15 @@ class TangentSolver {
   std::optional<bool> direct_;
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;
-  double shift_ = 0;      ///< of the last factorisation that needed one
-  bool shifted_ = false;  ///< the last factor is such
+  bool levels_pay_ = false;      ///< an automatic preconditioner has found blocks slow
+  bool material_first_ = false;  ///< the last tangent was indefinite
+  double levels_tolerance_ = 0;  ///< that levels_iterations_ were made for
+  double shift_ = 0;             ///< of the last factorisation that needed one
+  bool shifted_ = false;         ///< the last factor is such
+  std::optional<Multigrid> multigrid_, material_multigrid_;
+  int levels_iterations_ = 0;                 ///< that multigrid_ took when it was made; 0: not made, or of no use
+  Multigrid::Places places_;                  ///< of the tangent that was assembled last
+  const Relinearize* relinearize_ = nullptr;  ///< within solve()
   std::vector<double> inverse_blocks_, work_, rhs_, solution_, chunk_sums_;
   std::vector<double> length_;  ///< what a degree of freedom moves: 1, or its part's length [m]; 0 where it is fixed
 };

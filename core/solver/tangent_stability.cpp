@@ -12,13 +12,17 @@ namespace {
 
 constexpr int kRoundsOfFactor = 4, kRoundsOfCg = 1;
 
+/// Products that an iteration with levels is worth.
+constexpr double kCycle = 6;
+
 }  // namespace
 
 bool TangentSolver::factor_is_cheap(long made) {
   constexpr double kSpeedup = 5, kShare = 0.1, kMostBytes = 2e9;
   constexpr int kAlways = 5000;  // less than a second, whatever the shape
   if (settings_.preconditioner == Preconditioner::cholesky || filter_.free_count() <= kAlways) return true;
-  const double product = 2.0 * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
+  const double product =
+      (multigrid_ ? kCycle : 1) * 2.0 * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
   return factor().factor_flops() <= kSpeedup * kShare * static_cast<double>(made) * product &&
          factor().factor_bytes() <= kMostBytes;
 }
@@ -34,7 +38,7 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
     const auto solve = [&](std::span<const double> b, std::span<double> x) {
       const TangentReport report = solve_cg(b, x);
       const bool met = !report.trouble.empty();
-      const bool settled = report.usable && report.iterations < settings_.cg.max_iterations;
+      const bool settled = report.usable && !report.unsolved;
       return TangentProbe{settled || (report.usable && met), met ? 1 : 0};
     };
     SoftestDirection found = softest_direction(model_, filter_, solve, kRoundsOfCg);

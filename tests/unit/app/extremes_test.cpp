@@ -93,6 +93,10 @@ TEST(CellVerdicts, SayWhatATwinSays) {
   EXPECT_EQ(verdict(run, ended(kDone, 3), {}, ended(kDone, 1)), CellVerdict::branch);
   EXPECT_EQ(verdict(run, ended(kNotConverged, 2, "stalled")), CellVerdict::unconfirmed);
   EXPECT_EQ(verdict(run, ended(kNotConverged, 2, "stalled"), {}, ended(kDone, 1)), CellVerdict::branch);
+  ChildResult rounded = run;
+  rounded.summary["residual_floor"] = 1e-4;
+  EXPECT_EQ(verdict(rounded, ended(kDone, 2.00001), ended(kDone, 2.0000100001)), CellVerdict::sensitive);
+  EXPECT_EQ(verdict(rounded, ended(kDone, 2.01), ended(kDone, 2.0100001)), CellVerdict::wrong);
   ChildResult doubtful = run;
   doubtful.summary["doubts"] = {"the body snapped"};
   EXPECT_EQ(verdict(doubtful, ended(kDone, 3)), CellVerdict::warned);

@@ -137,12 +137,13 @@ TEST(Results, CgAgreesWithCholesky) {
   BuiltModel built = block(o);
   hold_face(built.model);
   add_gravity(built.model, {{0, -0.5, 0}});
-  State ends[5];
+  State ends[6];
   int k = 0;
   for (const auto& [method, preconditioner] :
        {std::pair{LinearMethod::cholesky, Preconditioner::automatic},
         std::pair{LinearMethod::cg, Preconditioner::block_jacobi}, std::pair{LinearMethod::cg, Preconditioner::jacobi},
-        std::pair{LinearMethod::cg, Preconditioner::cholesky}, std::pair{LinearMethod::cg, Preconditioner::none}}) {
+        std::pair{LinearMethod::cg, Preconditioner::cholesky}, std::pair{LinearMethod::cg, Preconditioner::none},
+        std::pair{LinearMethod::cg, Preconditioner::multigrid}}) {
     ThreadPool pool(2);
     SolverSettings settings;
     settings.linear = method;
