@@ -50,15 +50,15 @@ struct Folds {
   }
 };
 
-/// What statics judge by their tangent and dynamics do not: where that became indefinite on the way and the tension is
-/// so large, folds are likely.
+/// Statics judge stability by their tangent, and dynamics do not: where that became indefinite on the way and the
+/// tension is so large, folds are likely.
 void warn_of_folds(const SimulatedBody& b, const Folds& folds, RunReport& run, Warnings& warnings) {
   if (folds.triangles == 0) return;
   run.doubts.push_back(fmt::format(
       "body \"{}\": {} of {} triangles are too large for the tension in them, worst at ({:.4g}, {:.4g}, {:.4g}), where "
       "the strain is {:.2g} and the second longest side {:.3g} thicknesses: strain times the square of that is {:.3g}, "
-      "and "
-      "from {:g} on triangles may fold by themselves, which is the mesh's doing; take sides below {:.2g} thicknesses "
+      "and from {:g} on triangles may fold by themselves, which is the mesh's doing; take sides below {:.2g} "
+      "thicknesses "
       "there, or a meshless sheet",
       b.name, folds.triangles, b.body->points().size(), folds.where[0], folds.where[1], folds.where[2], folds.strain,
       folds.slenderness, folds.largest, kFolds, std::sqrt(kFolds / folds.strain)));

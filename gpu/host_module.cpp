@@ -24,6 +24,6 @@ const DeviceFunctions kHostFunctions{FASCIA_INTERFACE_TAG,
 }  // namespace
 }  // namespace fascia::gpu
 
-/// What fascia-cuda.so computes on a device, computed in the space of the host: slow, and for checks of the GPU's
+/// Computes in the space of the host what fascia-cuda.so computes on a device: slow, and for checks of the GPU's
 /// arithmetic where there is no GPU.
 extern "C" const fascia::gpu::DeviceFunctions* fascia_device_functions() { return &fascia::gpu::kHostFunctions; }

@@ -75,6 +75,11 @@ Deviation deviation(const std::map<std::string, ProbeNumbers>& run, const std::m
   return largest;
 }
 
+std::map<std::string, ProbeNumbers> without_forces(std::map<std::string, ProbeNumbers> probes) {
+  std::erase_if(probes, [](const auto& p) { return p.second.unit == "N" || p.second.unit == "N m"; });
+  return probes;
+}
+
 std::optional<double> theory_error(const ExtremeCell& cell, const std::map<std::string, ProbeNumbers>& probes) {
   const auto tip = probes.find("tip");
   if (!cell.theory || tip == probes.end()) return std::nullopt;
@@ -163,8 +168,10 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
   outcome.verdict = found.size <= kAllowedDifference ? CellVerdict::right : CellVerdict::wrong;
   if (outcome.verdict == CellVerdict::right) return outcome;
   outcome.reason = fmt::format("probe {} differs from that of the twin by {:.1e}", found.probe, found.size);
+  // A reaction is a sum of residuals, known no better than these; a displacement has no such excuse.
   const double floor = run.summary.value("residual_floor", 0.0);
-  if (found.size <= floor) {
+  const bool motions_agree = deviation(without_forces(numbers), twins, least, runs.units).size <= kAllowedDifference;
+  if (motions_agree && found.size <= floor) {
     outcome.verdict = CellVerdict::sensitive;
     outcome.reason += fmt::format("; the run says that rounding leaves {:.1e} of what acts", floor);
     return outcome;

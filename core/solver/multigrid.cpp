@@ -8,7 +8,9 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
 
 namespace fascia {
 
@@ -57,6 +59,24 @@ void rigid_motion(int size, const Vec3d& arm, const Mat3d& Q, double* T) {
   }
 }
 
+/// Bit k: the motion k is a combination of those before it. @param G  6 × 6, products of motions; becomes L of L Lᵀ
+unsigned dependent_motions(std::array<double, 36>& G) {
+  unsigned found = 0;
+  for (int j = 0; j < kFrameDofs; ++j) {
+    const double whole = G[at(7 * j)];
+    double pivot = whole;
+    for (int k = 0; k < j; ++k) pivot -= G[at(6 * j + k)] * G[at(6 * j + k)];
+    const bool dead = !(pivot > kIndependent * whole);
+    if (dead) found |= 1U << j;
+    for (int i = j + 1; i < kFrameDofs; ++i) {
+      double sum = G[at(6 * i + j)];
+      for (int k = 0; k < j; ++k) sum -= G[at(6 * i + k)] * G[at(6 * j + k)];
+      G[at(6 * i + j)] = dead ? 0 : sum / std::sqrt(pivot);
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 struct Multigrid::Level {
@@ -66,8 +86,7 @@ struct Multigrid::Level {
   std::unique_ptr<FrameMatrix> matrix;  ///< of a coarse level
   std::vector<double> inverse;          ///< D⁻¹, by node
   Places places;
-  BlockRows P;  ///< from the next coarser level; empty: none
-  int coarse = 0;
+  BlockRows P;                 ///< from the next coarser level; empty: none
   std::vector<unsigned> dead;  ///< of the next coarser level: motions that its aggregates do not have
   double largest = 0;          ///< eigenvalue of D⁻¹ K
   std::vector<double> b, x, r, d, z;
@@ -186,22 +205,7 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
         for (int b = 0; b < kFrameDofs; ++b) gram[at(g)][at(6 * a + b)] += T[6 * r + a] * T[6 * r + b];
   }
   level.dead.assign(at(groups.count), 0U);
-  for (int g = 0; g < groups.count; ++g) {
-    auto& G = gram[at(g)];
-    for (int j = 0; j < kFrameDofs; ++j) {
-      const double whole = G[at(7 * j)];
-      double pivot = whole;
-      for (int k = 0; k < j; ++k) pivot -= G[at(6 * j + k)] * G[at(6 * j + k)];
-      const bool dead = !(pivot > kIndependent * whole);
-      if (dead) level.dead[at(g)] |= 1U << j;
-      const double root = dead ? 0 : std::sqrt(pivot);
-      for (int i = j + 1; i < kFrameDofs; ++i) {
-        double sum = G[at(6 * i + j)];
-        for (int k = 0; k < j; ++k) sum -= G[at(6 * i + k)] * G[at(6 * j + k)];
-        G[at(6 * i + j)] = dead ? 0 : sum / root;
-      }
-    }
-  }
+  for (int g = 0; g < groups.count; ++g) level.dead[at(g)] = dependent_motions(gram[at(g)]);
   const auto tentative = [&](int i, double* T) {
     raw(i, T);
     const unsigned dead = level.dead[at(groups.of_node[at(i)])];
@@ -212,7 +216,6 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   const auto inverse = [&](int i) {
     return level.inverse.data() + (fine ? matrix_.dofs().block_begin(i) : at(36 * i));
   };
-  level.coarse = groups.count;
   level.P = galerkin::smoothed(matrix, pool_, groups, 4 / (3 * level.largest), tentative, inverse);
   auto next = std::make_unique<Level>();
   next->nodes = groups.count;

@@ -18,7 +18,7 @@ bool is_closed(const Json& body) {
          !body.contains("thickness");
 }
 
-/// Of the space in a box, or in the prism that a cylinder's shell is [m³]; 0 where it is not known.
+/// Returns the volume of the space in a box, or in the prism that a cylinder's shell is [m³]; 0 where it is not known.
 double volume_of(const Json& domain) {
   if (domain.contains("box")) {
     double volume = 1;

@@ -23,7 +23,7 @@ std::string scattered_weights(Draws& draws) {
   return kind;
 }
 
-/// What fills the space, without its domain.
+/// Makes the body that fills the space, without its domain.
 Json matter(Draws& draws, const Scales& s, const std::string& as, double gap, double young) {
   Json body = Json::object({{"model", "meshless"}});
   if (as == "sheet") body["thickness"] = gap * draws.decades(-1.5, -0.5);

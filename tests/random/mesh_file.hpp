@@ -30,7 +30,7 @@ void turn_over(MeshCell& cell);
 /// The mesh in other units and axes. A reflection turns its cells over, so that they keep their orientation.
 MeshFile in_frame(const MeshFile& mesh, const Frame& frame);
 
-/// As Gmsh's version 2.2 or VTK's legacy format, both in ASCII, by the ending of the name.
+/// Writes Gmsh's version 2.2 or VTK's legacy format, both in ASCII, by the ending of the name.
 std::string text_of(const MeshFile& mesh, const std::string& name);
 
 void write_meshes(const std::map<std::string, MeshFile>& meshes, const Frame& frame,

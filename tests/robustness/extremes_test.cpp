@@ -48,7 +48,7 @@ TEST_F(ExtremesProgram, TheReducedMapIsNoWorseThanTheStoredOne) {
   }
 }
 
-/// What a GPU would do, in the space of the host: no cell is worse than on the processor.
+/// The steps of a GPU are taken in the space of the host: no cell is worse than on the processor.
 TEST_F(ExtremesProgram, TheStepsOfAGpuAreNoWorseThanTheStoredMap) {
   const std::string stored = (source_dir() / "docs/extremes.csv").string();
   const std::string module = (build_dir() / "fascia-host.so").string();

@@ -93,14 +93,26 @@ TEST(CellVerdicts, SayWhatATwinSays) {
   EXPECT_EQ(verdict(run, ended(kDone, 3), {}, ended(kDone, 1)), CellVerdict::branch);
   EXPECT_EQ(verdict(run, ended(kNotConverged, 2, "stalled")), CellVerdict::unconfirmed);
   EXPECT_EQ(verdict(run, ended(kNotConverged, 2, "stalled"), {}, ended(kDone, 1)), CellVerdict::branch);
-  ChildResult rounded = run;
-  rounded.summary["residual_floor"] = 1e-4;
-  EXPECT_EQ(verdict(rounded, ended(kDone, 2.00001), ended(kDone, 2.0000100001)), CellVerdict::sensitive);
-  EXPECT_EQ(verdict(rounded, ended(kDone, 2.01), ended(kDone, 2.0100001)), CellVerdict::wrong);
   ChildResult doubtful = run;
   doubtful.summary["doubts"] = {"the body snapped"};
   EXPECT_EQ(verdict(doubtful, ended(kDone, 3)), CellVerdict::warned);
   EXPECT_EQ(verdict(doubtful, ended(kDone, 2)), CellVerdict::right);
+}
+
+/// A reaction may differ by what rounding leaves of the forces, as the run says; a displacement may not.
+TEST(CellVerdicts, TakeWhatRoundingLeavesForReactionsAlone) {
+  const auto reacting = [](double displacement, double force) {
+    ChildResult r = ended(kDone, displacement);
+    r.summary["probes"]["support"] = {{"unit", "N"}, {"value", force}};
+    r.summary["residual_floor"] = 1e-4;
+    return r;
+  };
+  const ChildResult run = reacting(1, 1);  // forces of the twin are twice as large as well
+  EXPECT_EQ(verdict(run, reacting(2, 2)), CellVerdict::right);
+  EXPECT_EQ(verdict(run, reacting(2, 2.00002)), CellVerdict::sensitive);
+  EXPECT_EQ(verdict(run, reacting(2, 2.002)), CellVerdict::wrong);
+  EXPECT_EQ(verdict(run, reacting(2.00002, 2)), CellVerdict::wrong);
+  EXPECT_EQ(verdict(run, reacting(2.00001, 2.00002)), CellVerdict::wrong);
 }
 
 /// Two runs whose displacements are rounding of a length of 1 m.
