@@ -22,7 +22,8 @@ std::string not_on_gpu(const Simulation& s) {
   if (solver.control == StaticControl::displacement) return "solver.control = \"displacement\"";
   if (solver.linear == LinearKind::cholesky) return "solver.linear.kind = \"cholesky\"";
   if (solver.preconditioner == PreconditionerKind::cholesky) return "solver.linear.preconditioner = \"cholesky\"";
-  if (solver.preconditioner == PreconditionerKind::multigrid) return "solver.linear.preconditioner = \"multigrid\"";
+  if (solver.preconditioner == PreconditionerKind::multigrid && solver.precision == "single")
+    return "solver.linear.preconditioner = \"multigrid\" with precision = \"single\"";
   return "";
 }
 

@@ -201,7 +201,9 @@ class Setup {
   void of_levels(const BlockMatrix& matrix) {
     const PreconditionerKind kind = s_.scene.solver.preconditioner;
     const bool asked = kind == PreconditionerKind::multigrid;
-    const int most = s_.scene.solver.linear_max_iterations;
+    const Solver& solver = s_.scene.solver;
+    const int most =
+        solver.linear == LinearKind::automatic ? TangentSolver::kBeforeLevels : solver.linear_max_iterations;
     if (!asked && (kind != PreconditionerKind::automatic || guessed_iterations() < most)) return;
     const double levels = kLevels * 8 * static_cast<double>(matrix.value_count());
     to_come_.pass(2 * levels);

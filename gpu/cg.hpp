@@ -2,6 +2,7 @@
 
 #include "core/math/index.hpp"
 #include "core/solver/cg.hpp"
+#include "core/solver/multigrid.hpp"
 #include "gpu/array.hpp"
 #include "gpu/space.hpp"
 #include "gpu/views.hpp"
@@ -50,7 +51,9 @@ struct CgView {
     s.beta = rz / s.rz;
     s.rz = rz;
     s.done = 1;
-    if (rz <= s.tolerance * s.tolerance * s.rz_start)
+    if (rz < -kCycleRounding * s.rz_start)  // an indefinite preconditioner, with which the rest means nothing
+      s.status = CgStatus::not_finite;
+    else if (rz <= s.tolerance * s.tolerance * s.rz_start)
       s.status = CgStatus::converged;
     else if (s.iterations >= s.limit)
       s.status = CgStatus::limit;
@@ -97,15 +100,16 @@ struct CgBegin {
   FASCIA_HD void operator()(int) const { *v.progress = fresh; }
 };
 
-/// Ends the first sum: of the right-hand side.
-template <class V>
+/// Ends the first sum: of the right-hand side. @tparam kJudges  the preconditioner may be indefinite
+template <class V, bool kJudges>
 struct CgStart {
   CgView<V> v;
   FASCIA_HD void operator()(const Sums<2>& total) const {
     CgProgress& s = *v.progress;
     s.rz = s.rz_start = total.v[0];
     s.rr = s.rr_start = total.v[1];
-    if (s.rz - s.rz != 0) s.status = CgStatus::not_finite;
+    const bool indefinite = s.rz < 0 || (s.rz == 0 && s.rr > 0);
+    if (s.rz - s.rz != 0 || (kJudges && indefinite)) s.status = CgStatus::not_finite;
     if (s.limit <= 0) s.status = CgStatus::limit;
     s.done = !(s.rz > 0) || s.status != CgStatus::converged;
   }
@@ -115,6 +119,28 @@ template <class V>
 struct CgResidual {
   CgView<V> v;
   FASCIA_HD void operator()(const Sums<2>& total) const { v.residual(total.v[0], total.v[1]); }
+};
+
+/// x ← x + α p, r ← r − α Ap
+template <class V>
+struct CgAdvance {
+  CgView<V> v;
+  FASCIA_HD void operator()(int i) const {
+    const CgProgress& s = *v.progress;
+    if (s.done != 0 && s.alpha == 0) return;
+    v.x[i] = static_cast<V>(v.x[i] + s.alpha * v.p[i]);
+    v.r[i] = static_cast<V>(v.r[i] - s.alpha * v.Ap[i]);
+  }
+};
+
+/// r · z and r · r
+template <class V>
+struct CgProducts {
+  CgView<V> v;
+  FASCIA_HD void operator()(int i, Sums<2>& sums) const {
+    sums.v[0] += static_cast<double>(v.r[i]) * v.z[i];
+    sums.v[1] += static_cast<double>(v.r[i]) * v.r[i];
+  }
 };
 
 }  // namespace kernels
@@ -136,6 +162,39 @@ class ConjugateGradients {
   template <class Apply>
   CgReport solve(const NodesView& nodes, const V* inverse, const CgOptions& options, std::uint64_t key,
                  const Apply& apply) {
+    const CgView<V> v = begin(options);
+    const kernels::CgUpdate<V> update{nodes, v, inverse};
+    Space::template sum<2>(nodes.count, update, kernels::CgStart<V, false>{v});
+    loop_.run(key, options.max_iterations, kAtOnce, &progress_.data()->done, [&] {
+      apply(v);
+      Space::template sum<2>(nodes.count, update, kernels::CgResidual<V>{v});
+    });
+    return end();
+  }
+
+  /// @param precondition  precondition(r, z): loops that make z = M⁻¹ r, which take longer than a look at the flag; an
+  ///                      indefinite one ends as `not_finite`
+  template <class Precondition, class Apply>
+  CgReport solve_with(const Precondition& precondition, const CgOptions& options, std::uint64_t key,
+                      const Apply& apply) {
+    const CgView<V> v = begin(options);
+    const int dofs = static_cast<int>(x_.size());
+    const kernels::CgProducts<V> products{v};
+    precondition(v.r, v.z);
+    Space::template sum<2>(dofs, products, kernels::CgStart<V, true>{v});
+    cycles_.run(key, options.max_iterations, 1, &progress_.data()->done, [&] {
+      apply(v);
+      Space::for_each(dofs, kernels::CgAdvance<V>{v});
+      precondition(v.r, v.z);
+      Space::template sum<2>(dofs, products, kernels::CgResidual<V>{v});
+    });
+    return end();
+  }
+
+ private:
+  static constexpr int kAtOnce = 10;
+
+  CgView<V> begin(const CgOptions& options) {
     const CgView<V> v{x_.data(), r_.data(), z_.data(), p_.data(), Ap_.data(), progress_.data()};
     x_.set_zero();
     p_.set_zero();
@@ -144,12 +203,9 @@ class ConjugateGradients {
     fresh.tolerance = options.tolerance;
     fresh.limit = options.max_iterations;
     Space::for_each(1, kernels::CgBegin<V>{v, fresh});
-    const kernels::CgUpdate<V> update{nodes, v, inverse};
-    Space::template sum<2>(nodes.count, update, kernels::CgStart<V>{v});
-    loop_.run(key, options.max_iterations, &progress_.data()->done, [&] {
-      apply(v);
-      Space::template sum<2>(nodes.count, update, kernels::CgResidual<V>{v});
-    });
+    return v;
+  }
+  CgReport end() const {
     CgProgress end;
     progress_.download(std::span(&end, 1));
     if (end.status == CgStatus::converged && end.rz_start - end.rz_start != 0) end.status = CgStatus::not_finite;
@@ -157,10 +213,9 @@ class ConjugateGradients {
     return {end.status, end.iterations, ratio(end.rz, end.rz_start), ratio(end.rr, end.rr_start)};
   }
 
- private:
   Array<Space, V> x_, r_, z_, p_, Ap_;
   Array<Space, CgProgress> progress_;
-  typename Space::Loop loop_;
+  typename Space::Loop loop_, cycles_;
 };
 
 }  // namespace fascia::gpu

@@ -135,9 +135,9 @@ struct CudaSpace {
     ~Loop();
 
     template <class Body>
-    void run(std::uint64_t key, int limit, const int* done, const Body& body) {
+    void run(std::uint64_t key, int limit, int at_once, const int* done, const Body& body) {
       if (limit <= 0) return;
-      const int chunk = limit < kChunk ? limit : kChunk;
+      const int chunk = limit < at_once ? limit : at_once;
       if (graph_ == nullptr || key != key_ || chunk != chunk_ || done != done_) {
         const Recording recording(*this);
         for (int i = 0; i < chunk; ++i) body();
@@ -150,7 +150,6 @@ struct CudaSpace {
     }
 
    private:
-    static constexpr int kChunk = 10;
     /// Ends also where a loop could not be started.
     class Recording {
      public:

@@ -209,7 +209,7 @@ void ExplicitSystem<Space>::advance() {
   const LeapTimes times = LeapTimes::between(last_step_, plan_.step());
   if (times.kick != times_.kick || times.drift != times_.drift) ++record_;
   times_ = times;
-  loop_.run(record_, 1, &progress_.data()->unsound, [this] { step(); });
+  loop_.run(record_, 1, 1, &progress_.data()->unsound, [this] { step(); });
   last_step_ = times_.drift;
   plan_.take();
   pose_.time = plan_.time();

@@ -81,10 +81,11 @@ struct HostSpace {
   /// Repeats a body of loops until one of them sets a flag.
   class Loop {
    public:
-    /// @param key    of what the body does; another key, another body
-    /// @param limit  times at most
+    /// @param key      of what the body does; another key, another body
+    /// @param limit    times at most
+    /// @param at_once  times that may follow each other without a look at the flag
     template <class Body>
-    void run(std::uint64_t /*key*/, int limit, const int* done, const Body& body) {
+    void run(std::uint64_t /*key*/, int limit, int /*at_once*/, const int* done, const Body& body) {
       for (int i = 0; i < limit && *done == 0; ++i) body();
     }
   };

@@ -2,6 +2,7 @@
 #include "gpu/cuda_space.cuh"
 #include "gpu/system_body.hpp"
 #include "gpu/system_host.hpp"
+#include "gpu/system_levels.hpp"
 #include "gpu/system_solve.hpp"
 #include "gpu/system_step.hpp"
 

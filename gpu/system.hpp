@@ -2,11 +2,13 @@
 
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/drivers.hpp"
+#include "core/solver/kept_levels.hpp"
 #include "gpu/blocks.hpp"
 #include "gpu/cg.hpp"
 #include "gpu/dependents.hpp"
 #include "gpu/device_state.hpp"
 #include "gpu/followers.hpp"
+#include "gpu/levels.hpp"
 #include "gpu/model_data.hpp"
 #include "gpu/operator_kernels.hpp"
 #include "gpu/part_sums.hpp"
@@ -34,7 +36,8 @@ class System {
   using Pose = DeviceState<Space>;
   using Memory = DeviceMemory<Space>;
 
-  /// Direct solves are those of conjugate gradients here, and a Cholesky preconditioner is block-Jacobi.
+  /// Direct solves are those of conjugate gradients here, and a Cholesky preconditioner is block-Jacobi. Levels of
+  /// rigid frames are made by the host; where precision is single there are none.
   System(const Model& model, const SolverSettings& settings);
 
   void begin_step(const Pose& start, double dt) { begin_step(start, dt, TimeScheme::implicit_euler, {}); }
@@ -136,7 +139,8 @@ class System {
   void make_tiles();
   /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
   bool use_tiles() const {
-    return tiles_ != nullptr && (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
+    return tiles_ != nullptr && !levels_pay_ &&
+           (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
   }
   std::uint64_t operator_key();
   template <class V>
@@ -146,7 +150,12 @@ class System {
     else
       return narrow_cg_;
   }
-  CgReport solve(const CgOptions& options);
+  bool use_levels() const { return levels_pay_ || settings_.preconditioner == Preconditioner::multigrid; }
+  CgReport solve(const CgOptions& options, bool has_material = true);
+  CgReport solve_by_blocks(const CgOptions& options);
+  CgReport solve_by_levels(const CgOptions& options, bool has_material);
+  bool make_levels(bool material);
+  bool levels_may_pay() const;
   bool limit_is_guessed() const {
     return settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations == CgOptions{}.max_iterations;
   }
@@ -216,6 +225,7 @@ class System {
     double inverse_step = 0;
     Tangent tangent = Tangent::full;
     bool extrapolated = false;
+    std::uint64_t levels = 0;
     bool operator==(const Operator&) const = default;
   } operator_;
   std::uint64_t operator_count_ = 0;  ///< operators that differed from the one before
@@ -237,6 +247,10 @@ class System {
   std::unique_ptr<Host> host_;
   bool indefinite_ = false;  ///< the last direction was the host's, and its tangent indefinite
   bool too_slow_ = false;    ///< conjugate gradients took so long that the host solves from there on
+  Levels<Space> levels_;
+  KeptLevels kept_levels_;
+  Array<Space, double> kept_rhs_;  ///< of solves that may begin again
+  bool levels_pay_ = false;        ///< an automatic preconditioner has found blocks slow
 };
 
 }  // namespace fascia::gpu

@@ -90,7 +90,7 @@ bool System<Space>::host_is_faster(int iterations) {
   if (too_slow_ || !host_may_solve()) return false;
   const double iterating = kIteration * iterations, assembling = kUnknown * model_.free_dof_count();
   if (iterating <= 2 * assembling) return false;  // nor where all is prescribed, and there is nothing to solve
-  return iterating > 2 * (assembling + kOperation * host().tangent().factor().factor_flops());
+  return iterating > 2 * (assembling + kOperation * host().tangent().order().flops);
 }
 
 template <class Space>

@@ -136,7 +136,7 @@ void System<Space>::gather_product(const kernels::ProductView<T, V>& w) {
 /// Another one wherever the loops of a product must be recorded anew.
 template <class Space>
 std::uint64_t System<Space>::operator_key() {
-  const Operator now{inverse_step_, tangent_, blocks_.elements().extrapolated()};
+  const Operator now{inverse_step_, tangent_, blocks_.elements().extrapolated(), levels_.key()};
   if (now != operator_) ++operator_count_;
   operator_ = now;
   return operator_count_;
@@ -155,8 +155,14 @@ CgReport System<Space>::solve_in_tiles(const CgOptions& options) {
   return report;
 }
 
+/// @param has_material  levels of the tangent's material part may take the place of those of an indefinite one
 template <class Space>
-CgReport System<Space>::solve(const CgOptions& options) {
+CgReport System<Space>::solve(const CgOptions& options, bool has_material) {
+  return use_levels() ? solve_by_levels(options, has_material) : solve_by_blocks(options);
+}
+
+template <class Space>
+CgReport System<Space>::solve_by_blocks(const CgOptions& options) {
   if (use_tiles()) return solve_in_tiles(options);
   return with_scalars([&]<class T, class V>() {
     const V* inverse = nullptr;
@@ -186,7 +192,7 @@ SoftestDirection System<Space>::softest() {
     return with_scalars([&]<class T, class V>() {
       std::vector<V> vector(b.begin(), b.end());
       Space::copy_in(solver<V>().rhs(), vector.data(), vector.size() * sizeof(V));
-      const CgReport cg = solve(options);
+      const CgReport cg = solve(options, false);
       Space::copy_out(vector.data(), solver<V>().solution(), vector.size() * sizeof(V));
       std::copy(vector.begin(), vector.end(), x.begin());
       const bool met = cg.status == CgStatus::negative_curvature;
@@ -231,7 +237,9 @@ DirectionReport System<Space>::direction() {
     });
   };
   const Clock::time_point start = Clock::now();
-  const CgOptions options = solve_options();
+  CgOptions options = solve_options();
+  const bool may_change = levels_may_pay();
+  if (may_change) options.max_iterations = settings_.cg.max_iterations;
   right_hand_side();
   std::optional<CgReport> exact;
   if (whole) {
@@ -239,6 +247,15 @@ DirectionReport System<Space>::direction() {
     if (!exact) right_hand_side();
   }
   CgReport cg = exact ? *exact : solve(options);
+  if (cg.status == CgStatus::limit && may_change) {
+    const int tried = cg.iterations;
+    levels_pay_ = true;
+    if (tiles_) linearize(settings_.tangent, true, taken_step());
+    options = solve_options();
+    right_hand_side();
+    cg = solve(options);
+    cg.iterations += tried;
+  }
   const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;
   if (host_is_faster(cg.iterations)) too_slow_ = true;
   if ((too_slow_ || cg.status == CgStatus::negative_curvature) && failed && host_may_solve()) {

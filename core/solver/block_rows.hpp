@@ -111,6 +111,7 @@ class FrameMatrix {
     for (std::size_t k = 0; k < columns.size(); ++k)
       act(columns[k], blocks_.block(row, static_cast<int>(k), kFrameDofs));
   }
+  const BlockRows& blocks() const { return blocks_; }
   /// y = K x
   void multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
 

@@ -2,6 +2,7 @@
 
 #include "core/solver/block_matrix.hpp"
 #include "core/solver/dof_filter.hpp"
+#include "core/solver/elimination_order.hpp"
 
 #include <memory>
 #include <span>
@@ -15,7 +16,10 @@ enum class Pivots { positive, any };
 /// each factorize() reuses it.
 class BlockCholesky {
  public:
-  BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots = Pivots::positive);
+  /// @param order  of elimination where it is known; null: is found
+  /// @throws InputError  a factor too large for its indices
+  BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots = Pivots::positive,
+                const EliminationOrder* order = nullptr);
   ~BlockCholesky();
   BlockCholesky(BlockCholesky&&) noexcept;
   BlockCholesky& operator=(BlockCholesky&&) noexcept;

@@ -1,3 +1,4 @@
+#include "core/model/errors.hpp"
 #include "core/solver/blas.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/free_matrix.hpp"
@@ -6,10 +7,64 @@
 
 #include <algorithm>
 #include <new>
+#include <vector>
 
 namespace fascia {
 
+namespace {
+
+/// Fields of a lower triangle by columns that do not depend on its values.
+cholmod_sparse lower_triangle(std::vector<int>& column_begin, std::vector<int>& row) {
+  cholmod_sparse sparse{};
+  sparse.nrow = sparse.ncol = column_begin.size() - 1;
+  sparse.nzmax = row.size();
+  sparse.p = column_begin.data();
+  sparse.i = row.data();
+  sparse.stype = -1;
+  sparse.itype = CHOLMOD_INT;
+  sparse.xtype = CHOLMOD_PATTERN;
+  sparse.dtype = CHOLMOD_DOUBLE;
+  sparse.sorted = 1;
+  sparse.packed = 1;
+  return sparse;
+}
+
+EliminationOrder order_by(NodeGraph& graph, int method) {
+  cholmod_common common{};
+  cholmod_start(&common);
+  common.print = 0;
+  common.supernodal = CHOLMOD_SIMPLICIAL;
+  common.nmethods = 1;
+  common.method[0].ordering = method;
+  cholmod_sparse sparse = lower_triangle(graph.column_begin, graph.row);
+  cholmod_factor* analysed = cholmod_analyze(&sparse, &common);
+  EliminationOrder order;
+  if (analysed != nullptr) {
+    const auto *permutation = static_cast<const int*>(analysed->Perm), *counts = static_cast<int*>(analysed->ColCount);
+    order = graph.counted({permutation, permutation + analysed->n}, {counts, counts + analysed->n});
+  }
+  const bool made = analysed != nullptr;
+  cholmod_free_factor(&analysed, &common);
+  cholmod_finish(&common);
+  if (!made) throw std::bad_alloc();
+  return order;
+}
+
+}  // namespace
+
+/// Minimum degree; where the factor fills much, nested dissection too: by the measures that CHOLMOD itself has for it,
+/// which it takes of the matrix of single degrees of freedom.
+EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilter& filter) {
+  NodeGraph graph(pattern, filter);
+  EliminationOrder order = order_by(graph, CHOLMOD_AMD);
+  const double entries = 0.5 * static_cast<double>(pattern.value_count()) * (pattern.fills_upper() ? 2 : 1);
+  if (order.flops < 500 * order.numbers || order.numbers < 5 * entries) return order;
+  EliminationOrder dissected = order_by(graph, CHOLMOD_METIS);
+  return dissected.numbers < order.numbers ? dissected : order;
+}
+
 struct BlockCholesky::Impl {
+  EliminationOrder order;
   FreeMatrix matrix;
   const DofFilter& filter;
   cholmod_common common{};
@@ -18,26 +73,26 @@ struct BlockCholesky::Impl {
   // Reused by every solve.
   cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
-  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots) : matrix(pattern, f), filter(f) {
+  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* known)
+      : order(known != nullptr ? *known : EliminationOrder::of(pattern, f)), matrix(pattern, f), filter(f) {
+    if (!order.fits())
+      throw InputError(
+          "out of memory: the factor of the direct solver would have more numbers than its indices reach; use "
+          "solver.linear = { kind = \"cg\" }");
     hold_blas_to_one_thread();
     cholmod_start(&common);
     common.print = 0;
     common.quick_return_if_not_posdef = 1;
     common.final_ll = pivots == Pivots::positive;  // LDLᵀ, its choice for small matrices, accepts negative pivots
     if (pivots == Pivots::any) common.supernodal = CHOLMOD_SIMPLICIAL;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_GIVEN;
     const auto n = static_cast<std::size_t>(matrix.size);
-    sparse.nrow = sparse.ncol = n;
-    sparse.nzmax = matrix.row.size();
-    sparse.p = matrix.column_begin.data();
-    sparse.i = matrix.row.data();
+    sparse = lower_triangle(matrix.column_begin, matrix.row);
     sparse.x = matrix.value.data();
-    sparse.stype = -1;
-    sparse.itype = CHOLMOD_INT;
     sparse.xtype = CHOLMOD_REAL;
-    sparse.dtype = CHOLMOD_DOUBLE;
-    sparse.sorted = 1;
-    sparse.packed = 1;
-    factor = cholmod_analyze(&sparse, &common);
+    std::vector<int> permutation = matrix.numbers_of(order.nodes, pattern.dofs());
+    factor = cholmod_analyze_p(&sparse, permutation.data(), nullptr, 0, &common);
     rhs = cholmod_zeros(n, 1, CHOLMOD_REAL, &common);
     if (factor == nullptr || rhs == nullptr) throw std::bad_alloc();
     if (factor->is_super != 0) take_blas_buffer();
@@ -54,8 +109,9 @@ struct BlockCholesky::Impl {
   Impl& operator=(const Impl&) = delete;
 };
 
-BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots)
-    : impl_(std::make_unique<Impl>(pattern, filter, pivots)) {}
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots,
+                             const EliminationOrder* order)
+    : impl_(std::make_unique<Impl>(pattern, filter, pivots, order)) {}
 BlockCholesky::~BlockCholesky() = default;
 BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
 BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;

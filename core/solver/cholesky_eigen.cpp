@@ -3,6 +3,8 @@
 
 #include <Eigen/SparseCholesky>
 
+#include <vector>
+
 namespace fascia {
 
 namespace {
@@ -15,9 +17,27 @@ struct Analysed : Solver {
                ? 0.0
                : static_cast<double>(this->m_matrix.outerIndexPtr()[this->m_matrix.outerSize()]);
   }
+  std::vector<int> counts() const { return {this->m_nonZerosPerCol.begin(), this->m_nonZerosPerCol.end()}; }
+  std::vector<int> order() const {
+    const auto& indices = this->m_Pinv.indices();
+    return {indices.begin(), indices.end()};
+  }
 };
 
 }  // namespace
+
+/// Minimum degree. Factors of this build order single degrees of freedom by themselves.
+EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilter& filter) {
+  const NodeGraph graph(pattern, filter);
+  const std::vector<double> ones(graph.row.size(), 1.0);
+  Analysed<Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower>> analysis;
+  analysis.analyzePattern(Eigen::Map<const Eigen::SparseMatrix<double>>(
+      graph.size(), graph.size(), static_cast<Eigen::Index>(graph.row.size()), graph.column_begin.data(),
+      graph.row.data(), ones.data()));
+  std::vector<int> counts = analysis.counts();
+  for (int& count : counts) ++count;  // the diagonal, which it leaves out
+  return graph.counted(analysis.order(), counts);
+}
 
 /// The build without SuiteSparse: slower on large models, same results to rounding.
 struct BlockCholesky::Impl {
@@ -27,10 +47,15 @@ struct BlockCholesky::Impl {
   Analysed<Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower>> llt;
   Analysed<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>> ldlt;
   bool any_pivots;
+  double flops;
   Eigen::VectorXd rhs;
 
-  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots)
-      : matrix(pattern, f), filter(f), any_pivots(pivots == Pivots::any), rhs(matrix.size) {
+  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* order)
+      : matrix(pattern, f),
+        filter(f),
+        any_pivots(pivots == Pivots::any),
+        flops(order != nullptr ? order->flops : EliminationOrder::of(pattern, f).flops),
+        rhs(matrix.size) {
     if (any_pivots)
       ldlt.analyzePattern(view());
     else
@@ -43,8 +68,9 @@ struct BlockCholesky::Impl {
   }
 };
 
-BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots)
-    : impl_(std::make_unique<Impl>(pattern, filter, pivots)) {}
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots,
+                             const EliminationOrder* order)
+    : impl_(std::make_unique<Impl>(pattern, filter, pivots, order)) {}
 BlockCholesky::~BlockCholesky() = default;
 BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
 BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
@@ -56,11 +82,7 @@ double BlockCholesky::factor_bytes() const {
   return entry * (entries + static_cast<double>(impl_->matrix.row.size())) + 3 * number * impl_->matrix.size;
 }
 
-// An estimate of a banded factor.
-double BlockCholesky::factor_flops() const {
-  const double column = 20.0 * static_cast<double>(impl_->matrix.row.size()) / std::max(1, impl_->matrix.size);
-  return column * column * impl_->matrix.size;
-}
+double BlockCholesky::factor_flops() const { return impl_->flops; }
 
 bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
   Impl& m = *impl_;

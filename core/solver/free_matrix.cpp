@@ -39,6 +39,14 @@ FreeMatrix::FreeMatrix(const BlockMatrix& pattern, const DofFilter& filter) : nu
   value.resize(row.size());
 }
 
+std::vector<int> FreeMatrix::numbers_of(const std::vector<int>& nodes, const DofLayout& dofs) const {
+  std::vector<int> numbers;
+  for (const int node : nodes)
+    for (int i = dofs.begin(node); i < dofs.begin(node) + dofs.size(node); ++i)
+      if (number[at(i)] >= 0) numbers.push_back(number[at(i)]);
+  return numbers;
+}
+
 void FreeMatrix::fill(const BlockMatrix& matrix, const DofFilter& filter, double shift, const BlockMatrix* shift_from) {
   constexpr double kLeast = 1e-3;                        // rows that nothing resists need a shift too
   constexpr std::size_t kBlock = kMostDofs * kMostDofs;  // room for the largest

@@ -18,6 +18,8 @@ struct FreeMatrix {
   FreeMatrix(const BlockMatrix& pattern, const DofFilter& filter);
   /// matrix + shift · diagonal of shift_from
   void fill(const BlockMatrix& matrix, const DofFilter& filter, double shift, const BlockMatrix* shift_from);
+  /// Those of the free degrees of freedom of nodes, one node after the other.
+  std::vector<int> numbers_of(const std::vector<int>& nodes, const DofLayout& dofs) const;
 
  private:
   template <class BeginColumn, class Entry>

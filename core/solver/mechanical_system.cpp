@@ -319,6 +319,15 @@ void MechanicalSystem::linearize_loads() {
   add_node_blocks(lin_);
 }
 
+const Multigrid* MechanicalSystem::levels(bool material) {
+  Linearization tamer;
+  Linearization& lin = material ? tamer : lin_;
+  const TakenStep* taken = has_taken_ && !material ? &taken_ : nullptr;
+  executor_.linearize(state_, history_, material ? Tangent::material : settings_.tangent, lin, !material, taken);
+  add_node_blocks(lin, !material);
+  return tangent_.levels(lin, material);
+}
+
 void MechanicalSystem::add_unsymmetric(std::span<const double> x, std::span<double> y) {
   std::vector<double> all(x.begin(), x.end()), product(x.size());
   filter_.to_global(all);

@@ -138,6 +138,9 @@ class MechanicalSystem {
   /// linearize_loads() was called last; in constraint axes.
   void add_unsymmetric(std::span<const double> x, std::span<double> y);
   void linearize_loads();
+  /// Levels of rigid frames of the tangent at the present state, for solves elsewhere; null where one of them is not
+  /// positive definite. @param material  of the tangent without all that stress does
+  const Multigrid* levels(bool material);
   /// By degrees of freedom in world axes.
   std::span<const double> last_direction() const { return direction_; }
 

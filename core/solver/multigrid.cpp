@@ -245,15 +245,18 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   return true;
 }
 
-/// Chebyshev iterations of degree 2 on D⁻¹ K, for eigenvalues between the largest and a part of it. r holds b − K x
-/// before, and no longer after.
-void Multigrid::smooth(Level& level, bool from_zero) {
-  const double high = level.largest, low = high / kRatio;
-  const double middle = 0.5 * (high + low), half = 0.5 * (high - low);
+Smoothing Smoothing::up_to(double largest) {
+  const double low = largest / kRatio, middle = 0.5 * (largest + low), half = 0.5 * (largest - low);
   const double sigma = middle / half, first = 1 / sigma, second = 1 / (2 * sigma - first);
+  return {1 / middle, second * first, 2 * second / half};
+}
+
+/// r holds b − K x before, and no longer after.
+void Multigrid::smooth(Level& level, bool from_zero) {
+  const Smoothing by = Smoothing::up_to(level.largest);
   std::vector<double>&r = level.r, &d = level.d, &z = level.z, &x = level.x;
   level.precondition(r, d);
-  vectors_.scale(1 / middle, d);
+  vectors_.scale(by.first, d);
   if (from_zero)
     std::copy(d.begin(), d.end(), x.begin());
   else
@@ -261,8 +264,8 @@ void Multigrid::smooth(Level& level, bool from_zero) {
   level.product(d, z);
   vectors_.add(-1, z, r);
   level.precondition(r, z);
-  vectors_.scale(second * first, d);
-  vectors_.add(2 * second / half, z, d);
+  vectors_.scale(by.again, d);
+  vectors_.add(by.next, z, d);
   vectors_.add(1, d, x);
 }
 
@@ -328,6 +331,19 @@ double Multigrid::precondition(std::span<const double> r, std::span<double> z) {
   cycle(0);
   std::copy(finest.x.begin(), finest.x.end(), z.begin());
   return vectors_.dot(r, z);
+}
+
+Multigrid::LevelView Multigrid::level(std::size_t depth) const {
+  const Level& l = *levels_[depth];
+  return {l.nodes, l.places.x, l.largest, l.inverse, l.matrix ? &l.matrix->blocks() : nullptr, l.P.rows() > 0 ? &l.P : nullptr};
+}
+
+std::vector<double> Multigrid::coarsest_inverse() const {
+  if (!coarsest_) return {};
+  const auto n = static_cast<Eigen::Index>(levels_.back()->dofs);
+  std::vector<double> inverse(levels_.back()->dofs * levels_.back()->dofs);
+  Eigen::Map<Eigen::MatrixXd>(inverse.data(), n, n) = coarsest_->factor.solve(Eigen::MatrixXd::Identity(n, n));
+  return inverse;
 }
 
 std::vector<int> Multigrid::level_sizes() const {

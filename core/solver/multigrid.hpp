@@ -14,6 +14,16 @@
 
 namespace fascia {
 
+/// Part of r · z at the start of a solve below which rounding alone may make it negative later on.
+inline constexpr double kCycleRounding = 1e-12;
+
+/// Chebyshev iterations of degree 2 on D⁻¹ K, for eigenvalues between the largest and a twentieth of it, from the
+/// residual r: d = first D⁻¹ r, x += d, r −= K d, x += again d + next D⁻¹ r.
+struct Smoothing {
+  double first = 0, again = 0, next = 0;
+  static Smoothing up_to(double largest);
+};
+
 /// A preconditioner whose cost grows with the number of unknowns and whose iterations hardly do: smoothed aggregation
 /// (Vanek, Mandel, Brezina 1996) in which a coarse node is a rigid frame, whatever its nodes are, so that every coarse
 /// level is a matrix of 6 × 6 blocks.
@@ -46,6 +56,21 @@ class Multigrid {
 
   /// z = M⁻¹ r; returns r · z. Calls the product of build().
   double precondition(std::span<const double> r, std::span<double> z);
+
+  /// A level as a cycle needs it, for those that run elsewhere.
+  struct LevelView {
+    int nodes = 0;
+    std::span<const Vec3d> x;           ///< where they are
+    double largest = 0;                 ///< eigenvalue of D⁻¹ K
+    std::span<const double> inverse;    ///< D⁻¹, by node
+    const BlockRows* matrix = nullptr;  ///< none of the finest
+    const BlockRows* P = nullptr;       ///< from the next coarser level; none of the coarsest
+  };
+  std::size_t level_count() const { return levels_.size(); }
+  int finest_dofs() const { return matrix_.dofs().total(); }
+  LevelView level(std::size_t depth) const;
+  /// K⁻¹ of the coarsest level, all entries; empty where its smoother has to do.
+  std::vector<double> coarsest_inverse() const;
 
   /// Nodes of each level, the finest first.
   std::vector<int> level_sizes() const;

@@ -35,7 +35,7 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   work_.resize(at(model_.dof_count()));
   assemble(lin, matrix());
   low_rank_.set(lin.low_rank, filter_);
-  if (factor().factor_flops() > most_flops) return out;
+  if (!order().fits() || order().flops > most_flops) return out;
   solving_ = &factor();
   if (!solving_->factorize(matrix()) && !definite_with_low_rank()) {
     out.kind = TangentCondition::Kind::not_definite;

@@ -19,7 +19,6 @@ constexpr int kDirectDofs = 15000;
 constexpr double kFlopsPerNonzero = 2000;
 /// A limit of CG below this is a budget that the user set, and not too small a guess of ours.
 constexpr int kEnoughForBulk = 1000;
-
 constexpr int kNodeChunk = 512;
 
 /// An indefinite tangent is shifted by this part of its material diagonal first.
@@ -54,8 +53,13 @@ BlockMatrix& TangentSolver::matrix() {
   return *matrix_;
 }
 
+const EliminationOrder& TangentSolver::order() {
+  if (!order_) order_ = EliminationOrder::of(matrix(), filter_);
+  return *order_;
+}
+
 BlockCholesky& TangentSolver::factor() {
-  if (!cholesky_) cholesky_.emplace(matrix(), filter_);
+  if (!cholesky_) cholesky_.emplace(matrix(), filter_, Pivots::positive, &order());
   return *cholesky_;
 }
 
@@ -66,15 +70,15 @@ bool TangentSolver::direct() {
   else if (filter_.free_count() <= kDirectDofs)
     direct_ = true;
   else
-    direct_ = factor().factor_flops() <
-              kFlopsPerNonzero * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
-  if (!*direct_ && settings_.preconditioner != Preconditioner::cholesky) cholesky_.reset();
+    direct_ = order().fits() && order().flops < kFlopsPerNonzero * static_cast<double>(matrix().value_count()) *
+                                                    (matrix().fills_upper() ? 2 : 1);
   return *direct_;
 }
 
 bool TangentSolver::gives_way_to_factor(long iterations) {
   const bool guessed = settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations >= kEnoughForBulk;
-  return guessed && iterations >= settings_.cg.max_iterations && factor().factor_bytes() <= kMostFactorBytes;
+  return guessed && iterations >= settings_.cg.max_iterations && order().fits() &&
+         factor().factor_bytes() <= kMostFactorBytes;
 }
 
 bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
@@ -202,7 +206,7 @@ bool TangentSolver::definite_with_low_rank() {
 
 /// L D Lᵀ of the matrix as it is; its negative pivots, none where one vanishes.
 std::optional<int> TangentSolver::factorize_any() {
-  if (!indefinite_) indefinite_.emplace(matrix(), filter_, Pivots::any);
+  if (!indefinite_) indefinite_.emplace(matrix(), filter_, Pivots::any, &order());
   if (!indefinite_->factorize(matrix())) return std::nullopt;
   return indefinite_->negative_pivots();
 }
@@ -300,12 +304,16 @@ CgReport TangentSolver::solve_by_factor(const CpuVectors::Vector& b, CpuVectors:
 }
 
 /// Blocks precondition; levels of rigid frames do from the first solve on that ends at its limit of iterations, where
-/// no factor takes over and the limit is not a budget that the user set.
+/// no factor takes over and the limit is not a budget that the user set. Where the program chose conjugate gradients
+/// itself, they do as soon as they are likely to be cheaper.
 CgReport TangentSolver::solve_by_either(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options) {
   if (levels_pay_) return solve_by_multigrid(b, x, options);
-  const CgReport tried = solve_by_blocks(b, x, options);
-  const bool budget = options.max_iterations < kEnoughForBulk;
-  if (tried.status != CgStatus::limit || budget || gives_way_to_factor(options.max_iterations)) return tried;
+  const bool budget = options.max_iterations < kEnoughForBulk, chosen = settings_.linear == LinearMethod::automatic;
+  CgOptions first = options;
+  if (chosen && !budget) first.max_iterations = kBeforeLevels;
+  const CgReport tried = solve_by_blocks(b, x, first);
+  if (tried.status != CgStatus::limit || budget) return tried;
+  if (!chosen && gives_way_to_factor(options.max_iterations)) return tried;
   levels_pay_ = true;
   CgReport cg = solve_by_multigrid(b, x, options);
   cg.iterations += tried.iterations;

@@ -4,6 +4,7 @@
 #include "core/solver/cholesky.hpp"
 #include "core/solver/dependents.hpp"
 #include "core/solver/dof_filter.hpp"
+#include "core/solver/kept_levels.hpp"
 #include "core/solver/low_rank.hpp"
 #include "core/solver/multigrid.hpp"
 #include "core/solver/settings.hpp"
@@ -36,6 +37,10 @@ using Relinearize = std::function<const Linearization&(TamerTangent)>;
 /// positive definite. Vectors are in constraint axes; of dependent nodes their entries are zero.
 class TangentSolver {
  public:
+  /// Iterations with blocks before levels take their place where the program chooses the solver itself: half of what a
+  /// solve with levels costs, which makes them (40 products with the matrix) and takes 10 to 25 cycles of 5.
+  static constexpr int kBeforeLevels = 60;
+
   TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter, const SolverSettings& settings);
 
   /// @param relinearize  gives a tamer tangent at the same state; called only where the full one fails
@@ -59,9 +64,15 @@ class TangentSolver {
   /// @param most_flops  a factor that takes more operations is left out (tangent_condition.cpp)
   TangentCondition condition(const Linearization& at, double most_flops);
 
+  /// Levels of rigid frames of a tangent, for solves elsewhere; null where one of them is not positive definite.
+  /// @param material  the tangent is without all that stress does (tangent_multigrid.cpp)
+  const Multigrid* levels(const Linearization& at, bool material);
+
   /// Cholesky is used, and not CG.
   bool direct();
   BlockMatrix& matrix();
+  /// Of a factor of the matrix, which need not be made for it.
+  const EliminationOrder& order();
   BlockCholesky& factor();
   /// A factor takes less than a tenth of the time of CG so far: its operations run several times faster than those of
   /// products, which wait for memory. (tangent_stability.cpp)
@@ -90,6 +101,7 @@ class TangentSolver {
   // tangent_multigrid.cpp
   void note_places(const Linearization& at);
   bool build_multigrid(bool material);
+  bool build_levels(bool material);
   CgReport solve_with_levels(Multigrid& levels, const CpuVectors::Vector& b, CpuVectors::Vector& x,
                              const CgOptions& options);
   CgReport solve_by_multigrid(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
@@ -124,6 +136,7 @@ class TangentSolver {
   CpuVectors vectors_;
   DependentNodes dependents_;
   std::optional<BlockMatrix> matrix_, material_matrix_;
+  std::optional<EliminationOrder> order_;
   std::optional<BlockCholesky> cholesky_, indefinite_;
   BlockCholesky* as_is_ = nullptr;    ///< what factorize_as_is() left
   int unstable_ = 0;                  ///< negative pivots that it met last
@@ -132,13 +145,11 @@ class TangentSolver {
   std::optional<bool> direct_;
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;
-  bool levels_pay_ = false;      ///< an automatic preconditioner has found blocks slow
-  bool material_first_ = false;  ///< the last tangent was indefinite
-  double levels_tolerance_ = 0;  ///< that levels_iterations_ were made for
-  double shift_ = 0;             ///< of the last factorisation that needed one
-  bool shifted_ = false;         ///< the last factor is such
+  bool levels_pay_ = false;  ///< an automatic preconditioner has found blocks slow
+  double shift_ = 0;         ///< of the last factorisation that needed one
+  bool shifted_ = false;     ///< the last factor is such
   std::optional<Multigrid> multigrid_, material_multigrid_;
-  int levels_iterations_ = 0;                 ///< that multigrid_ took when it was made; 0: not made, or of no use
+  KeptLevels kept_levels_;
   Multigrid::Places places_;                  ///< of the tangent that was assembled last
   const Relinearize* relinearize_ = nullptr;  ///< within solve()
   std::vector<double> inverse_blocks_, work_, rhs_, solution_, chunk_sums_;

@@ -23,7 +23,7 @@ bool TangentSolver::factor_is_cheap(long made) {
   if (settings_.preconditioner == Preconditioner::cholesky || filter_.free_count() <= kAlways) return true;
   const double product =
       (multigrid_ ? kCycle : 1) * 2.0 * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
-  return factor().factor_flops() <= kSpeedup * kShare * static_cast<double>(made) * product &&
+  return order().fits() && order().flops <= kSpeedup * kShare * static_cast<double>(made) * product &&
          factor().factor_bytes() <= kMostBytes;
 }
 

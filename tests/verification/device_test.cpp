@@ -172,6 +172,45 @@ TEST_P(DeviceSolution, IsThatOfTheProcessor) {
   expect_solution_of_processor(*simulation, where(), app::settings_of(simulation->scene.solver));
 }
 
+using DeviceLevels = Device;
+using DeviceChoice = Device;
+
+/// Made of the same tangent by the same code: levels take as many iterations here as there.
+TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
+  const std::optional<Simulation> simulation =
+      loaded({"solver.linear.kind=cg", "solver.linear.preconditioner=multigrid", "solver.linear.tolerance=1e-10",
+              "solver.newton.tolerance=1e-12"});
+  if (!simulation) GTEST_SKIP() << why_not;
+  ASSERT_EQ(app::not_on_gpu(*simulation), "");
+  const Simulation& s = *simulation;
+  SolverSettings settings = app::settings_of(s.scene.solver);
+  const auto [expected, on_cpu] = solve(s, Where::processor, settings);
+  const auto [got, there] = solve(s, where(), settings);
+  const double error = displacement_difference(got, expected);
+  std::printf("%-30s |du|/|u| %8.1e  Newton %3d %3d  CG %6d %6d\n", scene().c_str(), error, there.newton_iterations,
+              on_cpu.newton_iterations, there.linear_iterations, on_cpu.linear_iterations);
+  EXPECT_EQ(there.message, on_cpu.message);
+  EXPECT_EQ(there.steps, on_cpu.steps);
+  EXPECT_LE(error, kSameSolution);
+  EXPECT_NEAR(there.linear_iterations, on_cpu.linear_iterations, 0.05 * on_cpu.linear_iterations + 2);
+  settings.precision = Precision::mixed;
+  if (scene() == "shell_roof") EXPECT_LE(displacement_difference(solve(s, where(), settings).state, expected), 1e-9);
+}
+
+/// Blocks end at their limit; levels then converge, where no factor takes over.
+TEST_P(DeviceChoice, TakesLevelsWhereBlocksEndAtTheirLimit) {
+  const Simulation s = small_scene("shell_roof", {"solver.linear.kind=cg", "solver.linear.tolerance=1e-12",
+                                                  "bodies.roof.domain.cylinder.cells=[24,24]"});
+  const SolverSettings settings = app::settings_of(s.scene.solver);
+  const auto [expected, on_cpu] = solve(s, Where::processor, settings);
+  const auto [got, there] = solve(s, where(), settings);
+  std::printf("CG %d %d\n", there.linear_iterations, on_cpu.linear_iterations);
+  EXPECT_EQ(there.message, on_cpu.message);
+  EXPECT_GT(on_cpu.linear_iterations, 1000);
+  EXPECT_LE(there.linear_iterations, 1.1 * on_cpu.linear_iterations);
+  EXPECT_LE(displacement_difference(got, expected), 1e-8);
+}
+
 /// Points shared by several devices, which may be one and the same.
 class SharedSolution : public ::testing::TestWithParam<std::string> {};
 
@@ -228,8 +267,6 @@ const auto kSolutions = ::testing::Values(
     "tumbling_box", "midpoint_spin", "free_fall", "rigid_turn", "bone_plate", "riding_surface", "ligament_springs",
     "soft_cantilever_tetrahedra", "shell_spin", "struck_beam", "roll_up", "line_swing", "hanging_column", "shell_roof");
 
-using DeviceChoice = Device;
-
 /// Where all is prescribed there is nothing to iterate on, nor to factorise.
 TEST_P(DeviceChoice, OfALinearSolverIsTheProgramsOwn) {
   const std::optional<Simulation> simulation = loaded();
@@ -254,6 +291,13 @@ INSTANTIATE_TEST_SUITE_P(Scenes, DeviceChoice,
                          ::testing::Combine(::testing::Values(Where::host, Where::device),
                                             ::testing::Values("rigid_turn")),
                          name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, DeviceLevels,
+    ::testing::Combine(::testing::Values(Where::host, Where::device),
+                       ::testing::Values("soft_cantilever", "affine_cantilever", "sheet_bending", "traction_clamped",
+                                         "settling_beam", "bone_plate", "riding_surface", "ligament_springs",
+                                         "shell_roof", "soft_cantilever_tetrahedra", "roll_up", "hanging_column")),
+    name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
                          ::testing::Combine(::testing::Values(Where::host, Where::device), kSolutions), name_of);
 

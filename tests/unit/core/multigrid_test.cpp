@@ -1,7 +1,7 @@
 #include "core/solver/multigrid.hpp"
 #include "core/solver/cg.hpp"
-#include "core/solver/positive_inverse.hpp"
-#include "tests/support/models.hpp"
+#include "tests/support/shell_models.hpp"
+#include "tests/support/tangent_at_rest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,58 +13,6 @@ namespace fascia::multigrid_test {
 namespace {
 
 using namespace fascia::test;
-
-/// Everything that builds the levels of one tangent at rest.
-struct Tangent {
-  Model model;
-  ThreadPool pool;
-  DofFilter filter;
-  CpuExecutor executor;
-  BlockMatrix matrix;
-  Linearization lin;
-  std::vector<double> inverse;
-
-  Tangent(Model m, int threads)
-      : model(std::move(m)), pool(threads), filter(model), executor(model.points, pool), matrix(model.points) {
-    const State rest = State::at_rest(model);
-    std::vector<double> g(at(model.dof_count()));
-    executor.gradient(rest, {}, g);
-    executor.linearize(rest, {}, fascia::Tangent::full, lin);
-    executor.assemble(lin, matrix);
-    const DofLayout& dofs = model.points.dofs;
-    inverse.resize(dofs.block_total());
-    for (int node = 0; node < model.node_count(); ++node) {
-      const int n = dofs.size(node);
-      double* block = inverse.data() + dofs.block_begin(node);
-      filter.rotate_block(node, node, matrix.block(matrix.diagonal(node)), block);
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-          if (filter.is_fixed(at(dofs.begin(node) + i)) || filter.is_fixed(at(dofs.begin(node) + j)))
-            block[n * i + j] = i == j ? 1 : 0;
-      positive_inverse(block, n);
-    }
-  }
-
-  void multiply(std::span<const double> x, std::span<double> y) {
-    std::vector<double> global(x.begin(), x.end());
-    filter.to_global(global);
-    matrix.multiply(pool, global, y);
-    filter.to_local(y);
-    filter.clear_fixed(y);
-  }
-  bool build(Multigrid& levels) {
-    return levels.build({model.rest_position, lin.Q}, inverse,
-                        [this](std::span<const double> x, std::span<double> y) { multiply(x, y); });
-  }
-  std::vector<double> random_force(int seed) const {
-    std::mt19937 random(static_cast<unsigned>(seed));
-    std::uniform_real_distribution<double> uniform(-1, 1);
-    std::vector<double> f(at(model.dof_count()));
-    for (double& v : f) v = uniform(random);
-    filter.clear_fixed(f);
-    return f;
-  }
-};
 
 Model held_block(int n, bool affine = false, double poisson = 0.3) {
   BlockOptions o;
@@ -84,7 +32,7 @@ struct Solved {
 };
 
 Solved solve(Model model, int threads) {
-  Tangent t(std::move(model), threads);
+  TangentAtRest t(std::move(model), threads);
   Multigrid levels(t.matrix, t.filter, t.pool);
   EXPECT_TRUE(t.build(levels));
   Solved out;
@@ -127,8 +75,56 @@ TEST(MultigridTest, VerticesHaveRigidFramesAboveThem) {
   ASSERT_GE(s.sizes.size(), 2u);
 }
 
+/// A rigid motion of a free body costs nothing, K P = 0 of it, and each level hands it on to the finer one as it is.
+void expect_rigid_motions(Model model) {
+  TangentAtRest t(std::move(model), 1);
+  Multigrid levels(t.matrix, t.filter, t.pool);
+  t.build(levels);  // the coarsest is singular
+  ASSERT_GE(levels.level_count(), 2u);
+  const Vec3d U{{0.3, -0.7, 1.1}}, turn{{0.5, 0.2, -0.4}};
+  const auto motion = [&](const Vec3d& x) { return U + cross(turn, x); };
+  for (std::size_t depth = 0; depth + 1 < levels.level_count(); ++depth) {
+    const Multigrid::LevelView fine = levels.level(depth), coarse = levels.level(depth + 1);
+    double error = 0;
+    for (int i = 0; i < fine.nodes; ++i) {
+      const int n = depth == 0 ? t.matrix.dofs().size(i) : kFrameDofs;
+      std::vector<double> u(at(n), 0.0);
+      const std::span<const int> columns = fine.P->columns(i);
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        const Vec3d V = motion(coarse.x[at(columns[k])]);
+        const double rigid[] = {V[0], V[1], V[2], turn[0], turn[1], turn[2]};
+        add_block_product(fine.P->block(i, static_cast<int>(k), n), n, rigid, u.data());
+      }
+      const Vec3d expected = motion(fine.x[at(i)]);
+      for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(u[at(k)] - expected[k]));
+      if (n == 6)
+        for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(u[at(3 + k)] - turn[k]));
+      if (n == 12)  // dA = skew(Θ), by columns
+        for (int q = 0; q < 3; ++q)
+          for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(u[at(3 + 3 * q + k)] - skew(turn)(k, q)));
+    }
+    EXPECT_LE(error, 1e-9) << "level " << depth;
+  }
+}
+
+TEST(MultigridTest, HandsOnRigidMotionsAsTheyAre) {
+  BlockOptions o;
+  o.grid = {9, 8, 7};
+  o.rotation = rotation_about({{0.4, -0.9, 0.3}}, 1.1);
+  o.translation = {{0.2, 0.5, -0.3}};
+  expect_rigid_motions(std::move(build({block_spec(o)}).model));
+  o.affine = true;
+  expect_rigid_motions(std::move(build({block_spec(o)}).model));
+  PatchOptions patch;
+  patch.nu = patch.nv = 24;
+  patch.jitter = 0.2;
+  const ShellMesh mesh = patch_mesh([](double x, double y) { return Vec3d{{x, y, 0.3 * x * y}}; }, patch);
+  ShellModel shell = shell_model(mesh, {});
+  expect_rigid_motions(std::move(shell.model));
+}
+
 TEST(MultigridTest, IsSymmetricAndPositive) {
-  Tangent t(held_block(7), 2);
+  TangentAtRest t(held_block(7), 2);
   Multigrid levels(t.matrix, t.filter, t.pool);
   ASSERT_TRUE(t.build(levels));
   const std::vector<double> a = t.random_force(2), b = t.random_force(3);

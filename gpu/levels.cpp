@@ -1,0 +1,8 @@
+#include "gpu/levels_body.hpp"
+#include "gpu/space.hpp"
+
+namespace fascia::gpu {
+
+template class Levels<HostSpace>;
+
+}  // namespace fascia::gpu

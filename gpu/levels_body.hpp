@@ -1,0 +1,67 @@
+#pragma once
+
+#include "core/math/index.hpp"
+#include "gpu/levels.hpp"
+
+namespace fascia::gpu {
+
+template <class Space>
+void Levels<Space>::Rows::take(const BlockRows& rows) {
+  begin.upload(rows.begin);
+  column.upload(rows.column);
+  value_begin.upload(rows.value_begin);
+  values.upload(rows.values);
+}
+
+template <class Space>
+void Levels<Space>::Level::take_columns(const BlockRows& made, int coarse) {
+  std::vector<int> begin(at(coarse) + 1, 0), rows(made.column.size());
+  std::vector<std::size_t> blocks(made.column.size());
+  for (const int column : made.column) ++begin[at(column) + 1];
+  for (int c = 0; c < coarse; ++c) begin[at(c) + 1] += begin[at(c)];
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (int i = 0; i < made.rows(); ++i) {
+    const std::span<const int> columns = made.columns(i);
+    if (columns.empty()) continue;
+    const std::size_t size = (made.value_begin[at(i) + 1] - made.value_begin[at(i)]) / columns.size();
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const std::size_t to = at(next[at(columns[k])]++);
+      rows[to] = i;
+      blocks[to] = made.value_begin[at(i)] + k * size;
+    }
+  }
+  column_begin.upload(begin);
+  row.upload(rows);
+  block.upload(blocks);
+}
+
+template <class Space>
+void Levels<Space>::Level::take(const Multigrid::LevelView& made, const kernels::LevelNodes& of, std::size_t dofs) {
+  nodes = of;
+  by = Smoothing::up_to(made.largest > 0 ? made.largest : 1);  // not smoothed where an inverse is known
+  inverse.upload(made.inverse);
+  if (made.matrix != nullptr) K.take(*made.matrix);
+  if (made.P != nullptr) P.take(*made.P);
+  for (auto* vector : {&b, &x, &r, &d}) vector->resize(dofs);
+  if (made.matrix == nullptr) y.resize(dofs);
+}
+
+/// Arrays move where they grow, and loops that were recorded point to them.
+template <class Space>
+void Levels<Space>::take(const Multigrid& made, const NodesView& nodes) {
+  ++key_;
+  levels_.resize(made.level_count());
+  for (std::size_t depth = 0; depth < levels_.size(); ++depth) {
+    const Multigrid::LevelView level = made.level(depth);
+    kernels::LevelNodes of{level.nodes, nullptr, nullptr};
+    if (depth == 0) of = {nodes.count, nodes.dof, nodes.block};
+    std::size_t dofs = at(kFrameDofs * level.nodes);
+    if (depth == 0) dofs_ = made.finest_dofs(), dofs = at(dofs_);
+    if (!levels_[depth]) levels_[depth] = std::make_unique<Level>();
+    levels_[depth]->take(level, of, dofs);
+    if (level.P != nullptr) levels_[depth]->take_columns(*level.P, made.level(depth + 1).nodes);
+  }
+  coarsest_.upload(made.coarsest_inverse());
+}
+
+}  // namespace fascia::gpu

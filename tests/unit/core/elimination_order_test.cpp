@@ -1,0 +1,49 @@
+#include "core/solver/elimination_order.hpp"
+#include "core/solver/cholesky.hpp"
+#include "tests/support/tangent_at_rest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace fascia::elimination_order_test {
+namespace {
+
+using namespace fascia::test;
+
+Model held(Model model) {
+  hold_face(model);
+  return model;
+}
+
+/// Against what the analysis of single degrees of freedom counts.
+TEST(EliminationOrder, CountsWhatAFactorTakes) {
+  BlockOptions o;
+  o.grid = {9, 9, 9};
+  for (const bool frames : {true, false}) {
+    TangentAtRest t(held(frames ? std::move(build({block_spec(o)}).model) : vertex_block(o)), 1);
+    const EliminationOrder order = EliminationOrder::of(t.matrix, t.filter);
+    const BlockCholesky factor(t.matrix, t.filter, Pivots::positive, &order);
+    std::printf("%s: %.3g operations, of the factor %.3g; %.3g numbers\n", frames ? "frames" : "vertices", order.flops,
+                factor.factor_flops(), order.numbers);
+    EXPECT_NEAR(order.flops, factor.factor_flops(), 1e-9 * order.flops);
+    EXPECT_GE(factor.factor_bytes(), 8 * order.numbers);
+    EXPECT_LE(factor.factor_bytes(), 20 * order.numbers);
+    EXPECT_TRUE(order.fits());
+  }
+}
+
+/// Each node that has something free, once.
+TEST(EliminationOrder, TakesEveryFreeNodeOnce) {
+  TangentAtRest t(held(std::move(block().model)), 1);
+  std::vector<int> nodes = EliminationOrder::of(t.matrix, t.filter).nodes, expected;
+  std::sort(nodes.begin(), nodes.end());
+  for (int i = 0; i < t.model.node_count(); ++i)
+    if (t.filter.fixed_of(i) != 63U) expected.push_back(i);
+  EXPECT_EQ(nodes, expected);
+  EXPECT_LT(expected.size(), at(t.model.node_count()));
+}
+
+}  // namespace
+}  // namespace fascia::elimination_order_test

@@ -1,0 +1,98 @@
+#include "gpu/levels.hpp"
+
+#include "gpu/space.hpp"
+#include "tests/support/shell_models.hpp"
+#include "tests/support/tangent_at_rest.hpp"
+#include "tests/unit/gpu/host_model.hpp"
+
+#include <gtest/gtest.h>
+
+/// The cycle of a space against that of the processor.
+namespace fascia::gpu::test::levels_test {
+namespace {
+
+using namespace fascia::test;
+
+void expect_same_cycle(Model model, const char* name) {
+  TangentAtRest t(std::move(model), 1);
+  Multigrid made(t.matrix, t.filter, t.pool);
+  ASSERT_TRUE(t.build(made));
+  const HostModel host(t.model, State::at_rest(t.model));
+  Levels<HostSpace> levels;
+  levels.take(made, host.nodes());
+  const std::size_t n = at(t.model.dof_count());
+  for (const int seed : {1, 2}) {
+    const std::vector<double> r = t.random_force(seed);
+    std::vector<double> expected(n), got(n);
+    made.precondition(r, expected);
+    levels.cycle(r.data(), got.data(), [&](double* x, double* y) { t.multiply(std::span(x, n), std::span(y, n)); });
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      error = std::max(error, std::abs(got[i] - expected[i]));
+      size = std::max(size, std::abs(expected[i]));
+    }
+    std::printf("%-10s %zu levels: %.1e\n", name, made.level_count(), error / size);
+    EXPECT_LE(error, 1e-11 * size) << name;
+  }
+}
+
+/// Rigid and affine frames, vertices, shells; a coarsest level that a dense factor solves.
+TEST(LevelsTest, HaveTheProcessorsCycle) {
+  BlockOptions o;
+  for (const bool affine : {false, true}) {
+    o.affine = affine;
+    o.grid = {9, 9, 9};
+    BuiltModel built = build({block_spec(o)});
+    hold_face(built.model);
+    expect_same_cycle(std::move(built.model), affine ? "affine" : "rigid");
+  }
+  o.grid = {11, 9, 8};
+  Model vertices = vertex_block(o);
+  hold_face(vertices);
+  expect_same_cycle(std::move(vertices), "vertices");
+  PatchOptions patch;
+  patch.nu = patch.nv = 24;
+  patch.jitter = 0.2;
+  ShellModel shell = shell_model(patch_mesh([](double x, double y) { return Vec3d{{x, y, 0.3 * x * y}}; }, patch), {});
+  hold(
+      shell.model, [](const Vec3d& X) { return X[0] < 1e-6; }, "xyzXYZ");
+  expect_same_cycle(std::move(shell.model), "shell");
+}
+
+/// Eight nodes, four of them held.
+TEST(LevelsTest, HaveTheProcessorsCycleOfAFewNodes) {
+  BlockOptions o;
+  o.grid = {2, 2, 2};
+  BuiltModel built = build({block_spec(o)});
+  hold_face(built.model);
+  expect_same_cycle(std::move(built.model), "eight");
+}
+
+/// Levels that were taken before leave nothing behind.
+TEST(LevelsTest, AreTakenAgain) {
+  BlockOptions large, small;
+  large.grid = {9, 9, 9};
+  small.grid = {5, 5, 5};
+  Levels<HostSpace> levels;
+  std::vector<double> last;
+  for (const BlockOptions& o : {large, small}) {
+    BuiltModel built = build({block_spec(o)});
+    hold_face(built.model);
+    TangentAtRest t(std::move(built.model), 1);
+    Multigrid made(t.matrix, t.filter, t.pool);
+    ASSERT_TRUE(t.build(made));
+    const HostModel host(t.model, State::at_rest(t.model));
+    const std::uint64_t key = levels.key();
+    levels.take(made, host.nodes());
+    EXPECT_NE(levels.key(), key);
+    const std::size_t n = at(t.model.dof_count());
+    const std::vector<double> r = t.random_force(1);
+    std::vector<double> expected(n), got(n);
+    made.precondition(r, expected);
+    levels.cycle(r.data(), got.data(), [&](double* x, double* y) { t.multiply(std::span(x, n), std::span(y, n)); });
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(got[i], expected[i], 1e-11 * std::abs(expected[i]) + 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace fascia::gpu::test::levels_test
