@@ -171,10 +171,11 @@ struct NodeReport {
     m.to_local(i, gradient);
     for (int k = 0; k < n; ++k) {
       const double scale = k < 3 ? 1 : 1 / (length * length);
-      const bool fixed = m.is_fixed(i, k);
-      sums.v[kLoad] += load[k] * load[k] * scale;
+      const bool fixed = m.is_fixed(i, k), carried = fixed && m.constraint[i] >= 0;
+      const double left = carried ? gradient[k] + load[k] : gradient[k];
+      if (!carried) sums.v[kLoad] += load[k] * load[k] * scale;
       if (!fixed) sums.v[kInertia] += inertia[k] * inertia[k] * scale;
-      sums.v[fixed ? kReaction : kResidual] += gradient[k] * gradient[k] * scale;
+      sums.v[fixed ? kReaction : kResidual] += left * left * scale;
     }
     sums.v[kLoadEnergy] += f.node_energy[3 * i];
     sums.v[kInertiaEnergy] += f.node_energy[3 * i + 1];

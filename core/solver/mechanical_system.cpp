@@ -191,33 +191,6 @@ void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) const {
                            lin.node_blocks.data() + dofs.block_begin(i));
 }
 
-/// Squares of |v| by connected part, torques divided by the part's length, over the free or the prescribed degrees.
-void MechanicalSystem::add_squares(std::span<const double> global, std::vector<double>& free,
-                                   std::vector<double>& fixed) {
-  std::span<const double> local = global;
-  if (filter_.turns()) {
-    std::copy(global.begin(), global.end(), work_.begin());
-    filter_.to_local(work_);
-    local = work_;
-  }
-  free.assign(at(model_.points.part_count()), 0.0);
-  fixed.assign(free.size(), 0.0);
-  const DofLayout& dofs = model_.points.dofs;
-  for (int node = 0; node < model_.node_count(); ++node) {
-    const auto part = at(model_.points.node_part[at(node)]);
-    if (!filter_.holds(node) && dofs.kind(node) == FrameKind::vertex) {
-      const double* v = local.data() + dofs.begin(node);
-      free[part] += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-      continue;
-    }
-    for (int k = 0; k < dofs.size(node); ++k) {
-      const std::size_t i = at(dofs.begin(node) + k);
-      const double value = k < 3 ? local[i] : local[i] / model_.points.part_length[part];
-      (filter_.is_fixed(i) ? fixed : free)[part] += value * value;
-    }
-  }
-}
-
 Evaluation MechanicalSystem::evaluate() {
   if (known_) return *std::exchange(known_, std::nullopt);
   internal_ = executor_.gradient(state_, history_, gradient_);
@@ -227,9 +200,10 @@ Evaluation MechanicalSystem::evaluate() {
   dependents_.transfer(gradient_, dependent_forces_);
   Evaluation e;
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
-  add_squares(load_, part_squares_.load, part_squares_.held_load);
   add_squares(inertia_, part_squares_.inertia, part_squares_.unused);
   add_squares(gradient_, part_squares_.residual, part_squares_.reaction);
+  add_squares(load_, part_squares_.load, part_squares_.held_load);
+  leave_out_carried_loads();
   e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
   judge(part_forces(), model_.points.part_whole, settings_.tolerance, e);
   return e;
@@ -245,30 +219,6 @@ void MechanicalSystem::evaluate_loads() {
 /// Work of the present loads along the direction, for a step of 1 [J].
 double MechanicalSystem::load_power() const {
   return std::inner_product(load_.begin(), load_.end(), direction_.begin(), 0.0);
-}
-
-std::vector<PartForces> MechanicalSystem::part_forces() const {
-  std::vector<PartForces> parts(part_squares_.residual.size());
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const int part = static_cast<int>(p);
-    // 4: sums of a few terms of the estimated size in each entry.
-    const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
-    const double inertia_rounding = std::numeric_limits<double>::epsilon() * std::sqrt(inertia_cancelled_[p]);
-    parts[p] = {
-        .residual = part_squares_.residual[p],
-        .load = part_squares_.load[p] + part_squares_.held_load[p],
-        .inertia = part_squares_.inertia[p],
-        .reaction = part_squares_.reaction[p],
-        .tether = executor_.squared_tether_force(part),
-        .momentum = inertia_cancelled_[p],
-        .rounding = 4 * leverage * std::hypot(executor_.rounding(part), inertia_rounding, surfaces_.rounding(part))};
-    PartForces& f = parts[p];
-    if (!kept_loads_.empty()) f.load = std::max(f.load, kept_loads_[p]);
-    const double still = kAtRest * masses_[p] * executor_.motion(part) / (form_.h * form_.h);
-    f.driven = driven_[p] != 0;
-    f.adrift = form_.h > 0 && f.load == 0 && f.reaction == 0 && f.tether == 0 && f.momentum > still * still;
-  }
-  return parts;
 }
 
 DirectionReport MechanicalSystem::direction() {

@@ -185,6 +185,7 @@ class MechanicalSystem {
   void add_loads();
   void add_inertia();
   void add_squares(std::span<const double> global, std::vector<double>& free, std::vector<double>& fixed);
+  void leave_out_carried_loads();
   void add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N, const Vec3d& torque) const;
   void predict_strain(const StepMemory& memory);
   void store_strain_at(State state, StrainHistory& history);
@@ -224,6 +225,7 @@ class MechanicalSystem {
   bool has_taken_ = false;  ///< a step of Newton's method led to the present state
 
   std::vector<double> gradient_, load_, inertia_, direction_, dependent_forces_;
+  std::vector<double> carried_, uncarried_;  ///< loads that constraints carry; what is left without them
   mutable std::vector<double> work_;
   std::vector<double> inertia_cancelled_;  ///< by part: squares of what cancels in the inertia [N²]
   struct PartSquares {

@@ -10,6 +10,8 @@
 namespace fascia {
 
 /// Squares of norms of what acts on one part of a model (model/parts.hpp), torques divided by the part's length [N²].
+/// Loads on what a constraint holds are in neither `load` nor `reaction`: they go into the support, however large, and
+/// say nothing of what is left to balance.
 struct PartForces {
   double residual = 0, load = 0, inertia = 0, reaction = 0, tether = 0;
   double momentum = 0;  ///< of what cancels in the inertia: mass times motion over the step's square

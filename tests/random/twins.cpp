@@ -144,8 +144,13 @@ std::string no_twin(const Json& scene, const Frame& frame) {
       if (c["kind"] == "weld" && scene["bodies"][c["to"].get<std::string>()]["model"] != "rigid")
         return "a welded node may be as near to another frame";
   if (frame.mirrored && scene.contains("loads"))
-    for (const Json& load : scene["loads"])
+    for (const Json& load : scene["loads"]) {
       if (load.contains("total_torque")) return "a torque is spread over triangles, which are cut along one diagonal";
+      const bool turns = load.contains("pressure") || load.value("follower", false);
+      const std::string body = load.value("body", "");
+      if (turns && scene["bodies"].contains(body) && scene["bodies"][body]["model"] == "meshless")
+        return "a load that turns with faces is spread over triangles, which are cut along one diagonal";
+    }
   for (const auto& [name, body] : scene["bodies"].items()) {
     const Json& domain = body["domain"];
     if (body.contains("frames") && !body["frames"].contains("grid")) return "scattered frames are drawn along the axes";

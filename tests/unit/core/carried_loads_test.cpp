@@ -1,0 +1,62 @@
+#include "core/solver/mechanical_system.hpp"
+#include "tests/support/models.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fascia::carried_loads_test {
+namespace {
+
+using namespace fascia::test;
+
+DeadLoad load_on(int node, const Vec3d& force, const Vec3d& torque = {}) {
+  DeadLoad load;
+  load.nodes.push_back({node, force, {}, torque});
+  return load;
+}
+
+Evaluation evaluated(const Model& model, const State& state) {
+  ThreadPool pool(1);
+  MechanicalSystem system(model, pool, {});
+  system.set_factors(std::vector<double>(zero_factors(model).size(), 1.0));
+  system.begin_step(state, 0);
+  return system.evaluate();
+}
+
+/// A force into a clamp is the clamp's: it makes nothing that is left elsewhere look small.
+TEST(CarriedLoads, SayNothingOfWhatIsLeft) {
+  BuiltModel built = block();
+  Model& model = built.model;
+  hold_face(model);
+  const int held = model.constraints.front().node, free = model.node_count() - 1;
+  model.loads.push_back(load_on(free, {{0, 1, 0}}));
+  const State state = random_state(model, 1e-4, 1e-4);
+  const Evaluation without = evaluated(model, state);
+  model.loads.push_back(load_on(held, {{1e9, -2e9, 3e9}}, {{1e9, 0, 1e9}}));
+  const Evaluation with = evaluated(model, state);
+  EXPECT_NEAR(with.relative, without.relative, 1e-12 * without.relative);
+  EXPECT_NEAR(with.excess, without.excess, 1e-12 * without.excess);
+  EXPECT_NEAR(with.left_of_load, without.left_of_load, 1e-12 * without.left_of_load);
+}
+
+/// A clamp that slides along an axis carries what acts across that axis, whatever way it points.
+TEST(CarriedLoads, AreThoseInHeldDirections) {
+  BuiltModel built = block();
+  Model& model = built.model;
+  hold_face(model);
+  FrameConstraint& c = model.constraints.front();
+  c.translation_axes = rotation_about({{0.3, -0.8, 0.5}}, 0.9);
+  c.translations = 2;
+  const Vec3d across = transpose(c.translation_axes) * Vec3d{{1, 1, 0}},
+              along = transpose(c.translation_axes) * Vec3d{{0, 0, 1}};
+  const State state = random_state(model, 1e-4, 1e-4);
+  model.loads = {load_on(c.node, along)};
+  const Evaluation free = evaluated(model, state);
+  model.loads = {load_on(c.node, along + across * 1e6)};
+  const Evaluation both = evaluated(model, state);
+  EXPECT_NEAR(both.relative, free.relative, 1e-7 * free.relative);
+  model.loads = {load_on(c.node, along * 1e6)};
+  EXPECT_LT(evaluated(model, state).relative, 1e-3 * free.relative);
+}
+
+}  // namespace
+}  // namespace fascia::carried_loads_test
