@@ -18,6 +18,7 @@
 #include "app/run_result.hpp"
 #include "app/run_text.hpp"
 #include "app/simulation.hpp"
+#include "app/solver_choice.hpp"
 #include "app/solver_settings.hpp"
 #include "app/tools.hpp"
 #include "core/math/rotation.hpp"
@@ -190,6 +191,8 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
     }
   }
   progress.finish();
+  if (options.verbose && out.backend == Backend::cpu && out.run.newton_iterations > 0 && s.model.free_dof_count() > 0)
+    say("{}\n", told(system.tangent().choice()));
   out.times.solve = seconds_since(start) - output_seconds;
   out.times.processor = processor_seconds() - processor - output_processor;
   if (!not_shown.empty()) {

@@ -12,11 +12,6 @@ namespace fascia {
 
 namespace {
 
-/// Up to here a factorisation takes a few seconds at most, whatever the conditioning; CG may be 2 to 3 times faster on
-/// a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual.md).
-constexpr int kDirectDofs = 15000;
-/// Beyond: only where its work stays below that of the CG iterations that a bulky body of this size needs.
-constexpr double kFlopsPerNonzero = 2000;
 /// A limit of CG below this is a budget that the user set, and not too small a guess of ours.
 constexpr int kEnoughForBulk = 1000;
 constexpr int kNodeChunk = 512;
@@ -70,9 +65,18 @@ bool TangentSolver::direct() {
   else if (filter_.free_count() <= kDirectDofs)
     direct_ = true;
   else
-    direct_ = order().fits() && order().flops < kFlopsPerNonzero * static_cast<double>(matrix().value_count()) *
-                                                    (matrix().fills_upper() ? 2 : 1);
+    direct_ = order().fits() && flops_per_number() < kFlopsPerNumber;
   return *direct_;
+}
+
+double TangentSolver::flops_per_number() {
+  return order().flops / (static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1));
+}
+
+SolverChoice TangentSolver::choice() {
+  SolverChoice made{direct(), order().flops, order().numbers, flops_per_number(), {}};
+  if (multigrid_) made.levels = multigrid_->level_sizes();
+  return made;
 }
 
 bool TangentSolver::gives_way_to_factor(long iterations) {

@@ -28,6 +28,14 @@ struct TangentReport {
   double cg_seconds = 0;    ///< in conjugate gradients
 };
 
+/// Which solver was taken, and the counts that speak for it.
+struct SolverChoice {
+  bool direct = false;
+  double flops = 0, numbers = 0;  ///< of a factor
+  double flops_per_number = 0;    ///< of the matrix
+  std::vector<int> levels;        ///< nodes of each level of the last solve that had any, the finest first
+};
+
 /// Tangents that are positive definite where the full one is not: without the pull of tethers on turning frames, and
 /// without all that stress does.
 enum class TamerTangent { without_tethers, material };
@@ -37,6 +45,13 @@ using Relinearize = std::function<const Linearization&(TamerTangent)>;
 /// positive definite. Vectors are in constraint axes; of dependent nodes their entries are zero.
 class TangentSolver {
  public:
+  /// Up to here a factorisation takes a few seconds at most, whatever the conditioning; CG may be 2 to 3 times faster
+  /// on a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual.md).
+  static constexpr int kDirectDofs = 15000;
+  /// From so many operations of a factor for each number of the matrix on, CG is taken beyond those unknowns: those of
+  /// the iterations that a bulky body needs with blocks, or of 40 cycles with their levels, where a factor's operations
+  /// run four times as fast as those of products, which wait for memory.
+  static constexpr double kFlopsPerNumber = 2000;
   /// Iterations with blocks before levels take their place where the program chooses the solver itself: half of what a
   /// solve with levels costs, which makes them (40 products with the matrix) and takes 10 to 25 cycles of 5.
   static constexpr int kBeforeLevels = 60;
@@ -70,6 +85,7 @@ class TangentSolver {
 
   /// Cholesky is used, and not CG.
   bool direct();
+  SolverChoice choice();
   BlockMatrix& matrix();
   /// Of a factor of the matrix, which need not be made for it.
   const EliminationOrder& order();
@@ -82,6 +98,7 @@ class TangentSolver {
   bool gives_way_to_factor(long iterations);
 
  private:
+  double flops_per_number();
   static constexpr double kMostFactorBytes = 2e9;
   /// Of GMRES beside a factor, where another digit costs a product or two.
   static constexpr double kDirectTolerance = 1e-10;
