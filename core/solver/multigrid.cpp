@@ -335,7 +335,12 @@ double Multigrid::precondition(std::span<const double> r, std::span<double> z) {
 
 Multigrid::LevelView Multigrid::level(std::size_t depth) const {
   const Level& l = *levels_[depth];
-  return {l.nodes, l.places.x, l.largest, l.inverse, l.matrix ? &l.matrix->blocks() : nullptr, l.P.rows() > 0 ? &l.P : nullptr};
+  return {l.nodes,
+          l.places.x,
+          l.largest,
+          l.inverse,
+          l.matrix ? &l.matrix->blocks() : nullptr,
+          l.P.rows() > 0 ? &l.P : nullptr};
 }
 
 std::vector<double> Multigrid::coarsest_inverse() const {
