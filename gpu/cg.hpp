@@ -100,8 +100,8 @@ struct CgBegin {
   FASCIA_HD void operator()(int) const { *v.progress = fresh; }
 };
 
-/// Ends the first sum: of the right-hand side. @tparam kJudges  the preconditioner may be indefinite
-template <class V, bool kJudges>
+/// Ends the first sum: of the right-hand side. @tparam Judges  the preconditioner may be indefinite
+template <class V, bool Judges>
 struct CgStart {
   CgView<V> v;
   FASCIA_HD void operator()(const Sums<2>& total) const {
@@ -109,7 +109,7 @@ struct CgStart {
     s.rz = s.rz_start = total.v[0];
     s.rr = s.rr_start = total.v[1];
     const bool indefinite = s.rz < 0 || (s.rz == 0 && s.rr > 0);
-    if (s.rz - s.rz != 0 || (kJudges && indefinite)) s.status = CgStatus::not_finite;
+    if (s.rz - s.rz != 0 || (Judges && indefinite)) s.status = CgStatus::not_finite;
     if (s.limit <= 0) s.status = CgStatus::limit;
     s.done = !(s.rz > 0) || s.status != CgStatus::converged;
   }
