@@ -194,7 +194,8 @@ class Setup {
     if (!factorizes_) return of_levels(tangent.matrix());
     take(tangent.factor(), tangent.matrix());
     if (!load || !s_.model.loads_are_conservative())
-      beyond_ = bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any), tangent.matrix());
+      beyond_ =
+          bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any, &tangent.order()), tangent.matrix());
   }
 
   /// Levels of rigid frames, where blocks would take too many iterations: a prolongator, and what it is made from.
@@ -204,7 +205,8 @@ class Setup {
     const Solver& solver = s_.scene.solver;
     const int most =
         solver.linear == LinearKind::automatic ? TangentSolver::kBeforeLevels : solver.linear_max_iterations;
-    if (!asked && (kind != PreconditionerKind::automatic || guessed_iterations() < most)) return;
+    const bool budget = solver.linear_max_iterations < CgOptions{}.max_iterations;
+    if (!asked && (kind != PreconditionerKind::automatic || budget || guessed_iterations() < most)) return;
     const double levels = kLevels * 8 * static_cast<double>(matrix.value_count());
     to_come_.pass(2 * levels);
     to_come_.keep(levels);

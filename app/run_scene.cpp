@@ -191,10 +191,11 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
     }
   }
   progress.finish();
-  if (options.verbose && out.backend == Backend::cpu && out.run.newton_iterations > 0 && s.model.free_dof_count() > 0)
-    say("{}\n", told(system.tangent().choice()));
   out.times.solve = seconds_since(start) - output_seconds;
   out.times.processor = processor_seconds() - processor - output_processor;
+  if (options.verbose && out.backend == Backend::cpu && out.run.newton_iterations > 0 && !path &&
+      s.model.free_dof_count() > 0)
+    say("{}\n", told(system.tangent().choice()));
   if (!not_shown.empty()) {
     out.run.status = RunStatus::diverged;
     out.run.message = fmt::format("{} {:.6g}: {}; the results end before it",

@@ -5,17 +5,36 @@
 
 namespace fascia::app {
 
+namespace {
+
+std::string preconditioned_by(const SolverChoice& choice) {
+  switch (choice.preconditioner) {
+    case Preconditioner::none:
+      return "without a preconditioner";
+    case Preconditioner::jacobi:
+      return "with the diagonal";
+    case Preconditioner::cholesky:
+      return "with a factor";
+    case Preconditioner::multigrid:
+      return fmt::format("with levels of {} nodes", fmt::join(choice.levels, ", "));
+    case Preconditioner::automatic:
+    case Preconditioner::block_jacobi:
+      break;
+  }
+  return "with blocks";
+}
+
+}  // namespace
+
 std::string told(const SolverChoice& choice) {
-  std::string solver = "Cholesky";
-  if (!choice.direct)
-    solver = choice.levels.empty()
-                 ? "conjugate gradients with blocks"
-                 : fmt::format("conjugate gradients with levels of {} nodes", fmt::join(choice.levels, ", "));
-  return fmt::format(
-      "linear solver: {}; a factor {} {:.2g} operations and {:.2g} numbers, {:.0f} operations for each number of the "
-      "matrix (beyond {:.0f}, and {} unknowns, \"auto\" takes conjugate gradients)",
-      solver, choice.direct ? "takes" : "would take", choice.flops, choice.numbers, choice.flops_per_number,
-      TangentSolver::kFlopsPerNumber, TangentSolver::kDirectDofs);
+  std::string text = "linear solver: ";
+  text += choice.direct ? "Cholesky" : "conjugate gradients " + preconditioned_by(choice);
+  if (choice.flops == 0) return text;
+  return text + fmt::format(
+                    "; a factor {} {:.2g} operations and {:.2g} numbers, {:.0f} operations for each number of the "
+                    "matrix (beyond {:.0f}, and {} unknowns, \"auto\" takes conjugate gradients)",
+                    choice.direct ? "takes" : "would take", choice.flops, choice.numbers, choice.flops_per_number,
+                    TangentSolver::kFlopsPerNumber, TangentSolver::kDirectDofs);
 }
 
 }  // namespace fascia::app

@@ -21,6 +21,7 @@ struct ModelView {
   NodesView nodes;
   const FrameInertia *inertia = nullptr, *damping = nullptr;  ///< damping: none where nothing is damped
   const unsigned* fixed = nullptr;                            ///< bit k: the degree of freedom k of the node is fixed
+  const unsigned* carried = nullptr;                          ///< and a constraint holds it
   const int *turn = nullptr, *constraint = nullptr;           ///< of each node, −1: none
   const DofTurn* turns = nullptr;
   const FrameConstraint* constraints = nullptr;
@@ -60,7 +61,7 @@ class ModelData {
   Array<Space, std::size_t> block_;
   Array<Space, double> part_length_, factors_;
   Array<Space, FrameInertia> inertia_, damping_;
-  Array<Space, unsigned> fixed_;
+  Array<Space, unsigned> fixed_, carried_;
   Array<Space, DofTurn> turns_;
   Array<Space, FrameConstraint> constraints_;
   Array<Space, PrescribedMotion> motions_;
@@ -75,12 +76,13 @@ ModelData<Space>::ModelData(const Model& model, const DofFilter& filter, std::si
   const int n = model.node_count();
   std::vector<int> dof{0}, turn, constraint(at(n), -1), load_begin(at(n + 1), 0);
   std::vector<std::size_t> block;
-  std::vector<unsigned> fixed;
+  std::vector<unsigned> fixed, carried;
   std::vector<DofTurn> turns;
   for (int i = 0; i < n; ++i) {
     dof.push_back(dofs.begin(i) + dofs.size(i));
     block.push_back(dofs.block_begin(i));
     fixed.push_back(filter.fixed_of(i));
+    carried.push_back(filter.carried_of(i));
     const DofTurn* axes = filter.turn_of(i);
     turn.push_back(axes == nullptr ? -1 : static_cast<int>(turns.size()));
     if (axes != nullptr) turns.push_back(*axes);
@@ -103,6 +105,7 @@ ModelData<Space>::ModelData(const Model& model, const DofFilter& filter, std::si
   inertia_.upload(model.inertia);
   damping_.upload(model.mass_damping);
   fixed_.upload(fixed);
+  carried_.upload(carried);
   turn_.upload(turn);
   constraint_.upload(constraint);
   turns_.upload(turns);
@@ -116,6 +119,7 @@ ModelData<Space>::ModelData(const Model& model, const DofFilter& filter, std::si
   view_.inertia = inertia_.data();
   view_.damping = damping_.data();
   view_.fixed = fixed_.data();
+  view_.carried = carried_.data();
   view_.turn = turn_.data();
   view_.constraint = constraint_.data();
   view_.turns = turns_.data();

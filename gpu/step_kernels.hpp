@@ -152,7 +152,17 @@ struct AddInertiaAndLoads {
 };
 
 /// Squares that a residual is judged by, torques divided by the part's length.
-enum NodeQuantity { kLoad, kInertia, kResidual, kReaction, kLoadEnergy, kInertiaEnergy, kCancelled, kNodeQuantities };
+enum NodeQuantity {
+  kLoad,
+  kInertia,
+  kResidual,
+  kReaction,
+  kLoadEnergy,
+  kInertiaEnergy,
+  kCancelled,
+  kTurnedLoad,  ///< that constraints with axes of their own carry
+  kNodeQuantities
+};
 
 struct NodeReport {
   ModelView m;
@@ -171,9 +181,9 @@ struct NodeReport {
     m.to_local(i, gradient);
     for (int k = 0; k < n; ++k) {
       const double scale = k < 3 ? 1 : 1 / (length * length);
-      const bool fixed = m.is_fixed(i, k), carried = fixed && m.constraint[i] >= 0;
+      const bool fixed = m.is_fixed(i, k), carried = (m.carried[i] >> k & 1U) != 0;
       const double left = carried ? gradient[k] + load[k] : gradient[k];
-      if (!carried) sums.v[kLoad] += load[k] * load[k] * scale;
+      if (!carried || m.turn[i] >= 0) sums.v[carried ? kTurnedLoad : kLoad] += load[k] * load[k] * scale;
       if (!fixed) sums.v[kInertia] += inertia[k] * inertia[k] * scale;
       sums.v[fixed ? kReaction : kResidual] += left * left * scale;
     }

@@ -99,6 +99,7 @@ class Surfaces {
   /// @param direction  by degrees of freedom, the solution of a system with the linearisation
   void aim(const double* direction);
   void approach(double step);
+  std::vector<double> followed() const { return newton_.downloaded(); }
   void save() { saved_.copy_from(newton_); }
   void restore() { newton_.copy_from(saved_); }
   void finish_step() { reached_.copy_from(newton_); }

@@ -129,17 +129,17 @@ class System {
   const Mat3d* linearize_blocks(Tangent tangent, const TakenStepView& taken);
   double note_direction();
   template <class T, class V>
-  void apply_tangent(const CgView<V>& v);
+  void apply_tangent(const CgView<V>& v, bool fluids = true);
   template <class T, class V>
   void multiply(const kernels::ProductView<T, V>& w);
   template <class T, class V>
-  void gather_product(const kernels::ProductView<T, V>& w);
+  void gather_product(const kernels::ProductView<T, V>& w, bool fluids = true);
   std::string not_in_tiles() const;
   /// @throws NotShared
   void make_tiles();
   /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
   bool use_tiles() const {
-    return tiles_ != nullptr && !levels_pay_ &&
+    return tiles_ != nullptr && !(levels_pay_ && use_levels()) &&
            (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
   }
   std::uint64_t operator_key();
@@ -150,7 +150,10 @@ class System {
     else
       return narrow_cg_;
   }
-  bool use_levels() const { return levels_pay_ || settings_.preconditioner == Preconditioner::multigrid; }
+  bool use_levels() const {
+    const bool asked = settings_.preconditioner == Preconditioner::multigrid;
+    return levels_fit_ && (asked || (levels_pay_ && !kept_levels_.fail()));
+  }
   CgReport solve(const CgOptions& options, bool has_material = true);
   CgReport solve_by_blocks(const CgOptions& options);
   CgReport solve_by_levels(const CgOptions& options, bool has_material);
@@ -251,6 +254,7 @@ class System {
   KeptLevels kept_levels_;
   Array<Space, double> kept_rhs_;  ///< of solves that may begin again
   bool levels_pay_ = false;        ///< an automatic preconditioner has found blocks slow
+  bool levels_fit_ = true;         ///< into memory
 };
 
 }  // namespace fascia::gpu

@@ -236,7 +236,9 @@ Evaluation System<Space>::judge() {
         .reaction = q[kernels::kReaction],
         .tether = tethers,
         .momentum = q[kernels::kCancelled],
-        .rounding = 4 * leverage * std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled]), of_surfaces)};
+        .rounding =
+            4 * leverage *
+            std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled] + q[kernels::kTurnedLoad]), of_surfaces)};
     forces[p].driven = driven_[p] != 0;
     forces[p].adrift = step_.h > 0 && forces[p].load == 0 && forces[p].reaction == 0 && tethers == 0 &&
                        forces[p].momentum > 0 && moves(static_cast<int>(p), forces[p].momentum);

@@ -118,6 +118,7 @@ StepInProgress System<Space>::step_in_progress() const {
   out.form.w = w_.downloaded();
   out.history = strain_history();
   out.factors = factors_;
+  if (!surfaces_.empty()) out.pressures = surfaces_.followed();
   if (taken_length_ == 0) return out;
   out.taken.u = taken_u_.downloaded();
   out.taken.D = start.D;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "gpu/device.hpp"
 #include "gpu/system.hpp"
+
+#include <new>
 
 /// The part of System that preconditions conjugate gradients by levels of rigid frames, which the host makes.
 namespace fascia::gpu {
@@ -14,16 +17,27 @@ bool System<Space>::levels_may_pay() const {
          settings_.cg.max_iterations >= CgOptions{}.max_iterations;
 }
 
-/// @return  false where a level is not positive definite
+/// @return  false where a level is not positive definite, or memory ends
 template <class Space>
 bool System<Space>::make_levels(bool material) {
-  host().stand_in(step_in_progress());
-  const Multigrid* made = host().levels(material);
-  if (made == nullptr) return false;
-  levels_.take(*made, data_.view().nodes);
-  return true;
+  if (!levels_fit_) return false;
+  try {
+    host().stand_in(step_in_progress());
+    const Multigrid* made = host().levels(material);
+    if (made == nullptr) return false;
+    levels_.take(*made, data_.view().nodes);
+    return true;
+  } catch (const std::bad_alloc&) {
+    levels_fit_ = false;
+  } catch (const DeviceMemoryError&) {
+    levels_fit_ = false;
+  }
+  return false;
 }
 
+/// Fluids are in no level and in no product of the cycle, as on the processor. Levels of the material part smooth with
+/// the whole tangent on the finest level, of which there is one here: where that makes the cycle indefinite, blocks are
+/// left.
 template <class Space>
 CgReport System<Space>::solve_by_levels(const CgOptions& options, bool has_material) {
   if (settings_.precision == Precision::single) return solve_by_blocks(options);
@@ -35,7 +49,7 @@ CgReport System<Space>::solve_by_levels(const CgOptions& options, bool has_mater
     still_.set_zero();
     idle_.set_zero();  // β = 0: a product of x itself
     const auto product = [&](double* x, double* y) {
-      apply_tangent<T, double>({nullptr, nullptr, x, still_.data(), y, idle_.data()});
+      apply_tangent<T, double>({nullptr, nullptr, x, still_.data(), y, idle_.data()}, false);
     };
     return cg_.solve_with([&](const double* r, double* z) { levels_.cycle(r, z, product); }, few, operator_key(),
                           [&](const CgView<double>& v) { apply_tangent<T, double>(v); });

@@ -93,10 +93,10 @@ void System<Space>::linearize_tiles(Tangent tangent) {
   if (settings_.preconditioner != Preconditioner::none) tiles_->build_preconditioner();
 }
 
-/// v.Ap = K v.p in constraint axes, with the next direction in v.p.
+/// v.Ap = K v.p in constraint axes, with the next direction in v.p. @param fluids  with those that are enclosed
 template <class Space>
 template <class T, class V>
-void System<Space>::apply_tangent(const CgView<V>& v) {
+void System<Space>::apply_tangent(const CgView<V>& v, bool fluids) {
   const kernels::ProductView<T, V> w = product_view<T, V>();
   const int n = w.m.nodes.count;
   const kernels::FinishProduct<V> finish{w.m, v, w.y};
@@ -109,7 +109,7 @@ void System<Space>::apply_tangent(const CgView<V>& v) {
   }
   Space::for_each(n, kernels::NextDirection<double, double, V>{product_view<double, double>(), v});
   multiply(w);
-  gather_product(w);
+  gather_product(w, fluids);
   Space::template sum<1>(n, finish, kernels::TakeCurvature<V>{v});
 }
 
@@ -125,12 +125,12 @@ void System<Space>::multiply(const kernels::ProductView<T, V>& w) {
 
 template <class Space>
 template <class T, class V>
-void System<Space>::gather_product(const kernels::ProductView<T, V>& w) {
+void System<Space>::gather_product(const kernels::ProductView<T, V>& w, bool fluids) {
   const DirectionView direction = product_view<double, double>().direction();
   Space::for_each(w.m.nodes.count, kernels::GatherProduct<T, V>{w, blocks_.template view_of<T>()});
   if (!surfaces_.empty()) surfaces_.add_product(w.m.nodes, w.Q, direction, w.y);
   if (!dependents_.empty()) dependents_.transfer(w.m.nodes, w.y, nullptr);
-  if (!surfaces_.empty()) surfaces_.add_volume_product(direction.d, w.y);
+  if (!surfaces_.empty() && fluids) surfaces_.add_volume_product(direction.d, w.y);
 }
 
 /// Another one wherever the loops of a product must be recorded anew.
@@ -240,20 +240,22 @@ DirectionReport System<Space>::direction() {
   CgOptions options = solve_options();
   const bool may_change = levels_may_pay();
   if (may_change) options.max_iterations = settings_.cg.max_iterations;
-  right_hand_side();
-  std::optional<CgReport> exact;
-  if (whole) {
-    exact = solve_unsymmetric(options);
-    if (!exact) right_hand_side();
-  }
-  CgReport cg = exact ? *exact : solve(options);
+  const auto solved = [&] {
+    right_hand_side();
+    if (whole) {
+      if (const std::optional<CgReport> exact = solve_unsymmetric(options)) return *exact;
+      right_hand_side();
+    }
+    return solve(options);
+  };
+  CgReport cg = solved();
   if (cg.status == CgStatus::limit && may_change) {
     const int tried = cg.iterations;
+    const bool in_tiles = use_tiles();
     levels_pay_ = true;
-    if (tiles_) linearize(settings_.tangent, true, taken_step());
+    if (in_tiles) linearize(settings_.tangent, true);
     options = solve_options();
-    right_hand_side();
-    cg = solve(options);
+    cg = solved();
     cg.iterations += tried;
   }
   const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;

@@ -8,53 +8,49 @@
 /// The part of MechanicalSystem that sums up by connected parts what the verdict on a state is made from.
 namespace fascia {
 
-/// Squares of |v| by connected part, torques divided by the part's length, over the free or the prescribed degrees.
-void MechanicalSystem::add_squares(std::span<const double> global, std::vector<double>& free,
-                                   std::vector<double>& fixed) {
-  std::span<const double> local = global;
-  if (filter_.turns()) {
-    std::copy(global.begin(), global.end(), work_.begin());
-    filter_.to_local(work_);
-    local = work_;
-  }
-  free.assign(at(model_.points.part_count()), 0.0);
-  fixed.assign(free.size(), 0.0);
+namespace {
+
+/// In constraint axes: itself where those are the world's, else what was turned in `room`.
+std::span<const double> local_of(const DofFilter& filter, std::span<const double> global, std::vector<double>& room) {
+  if (!filter.turns()) return global;
+  room.assign(global.begin(), global.end());
+  filter.to_local(room);
+  return room;
+}
+
+}  // namespace
+
+/// Squares by connected part, torques divided by the part's length. A load on what a constraint holds goes into the
+/// support: however large, it says nothing of what the free nodes have to balance. Dependent nodes, which are held too,
+/// hand theirs on to their hosts.
+void MechanicalSystem::sum_squares() {
+  const std::span<const double> load = local_of(filter_, load_, local_[0]);
+  const std::span<const double> inertia = local_of(filter_, inertia_, local_[1]);
+  const std::span<const double> gradient = local_of(filter_, gradient_, local_[2]);
+  PartSquares& s = part_squares_;
+  for (auto* sums : {&s.load, &s.inertia, &s.residual, &s.reaction, &s.turned})
+    sums->assign(at(model_.points.part_count()), 0.0);
   const DofLayout& dofs = model_.points.dofs;
   for (int node = 0; node < model_.node_count(); ++node) {
     const auto part = at(model_.points.node_part[at(node)]);
-    if (!filter_.holds(node) && dofs.kind(node) == FrameKind::vertex) {
-      const double* v = local.data() + dofs.begin(node);
-      free[part] += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-      continue;
-    }
+    const double length = model_.points.part_length[part];
+    const unsigned fixed = filter_.holds(node) ? filter_.fixed_of(node) : 0, carried = filter_.carried_of(node);
     for (int k = 0; k < dofs.size(node); ++k) {
       const std::size_t i = at(dofs.begin(node) + k);
-      const double value = k < 3 ? local[i] : local[i] / model_.points.part_length[part];
-      (filter_.is_fixed(i) ? fixed : free)[part] += value * value;
+      const double scale = k < 3 ? 1 : 1 / (length * length);
+      const double squared_load = load[i] * load[i] * scale;
+      if (((carried >> k) & 1U) != 0) {
+        const double reaction = gradient[i] + load[i];
+        s.reaction[part] += reaction * reaction * scale;
+        if (filter_.turn_of(node) != nullptr) s.turned[part] += squared_load;
+        continue;
+      }
+      const bool held = ((fixed >> k) & 1U) != 0;
+      s.load[part] += squared_load;
+      if (!held) s.inertia[part] += inertia[i] * inertia[i] * scale;
+      (held ? s.reaction : s.residual)[part] += gradient[i] * gradient[i] * scale;
     }
   }
-}
-
-/// A load on what a constraint holds goes into the support: however large, it says nothing of what the free nodes have
-/// to balance. Dependent nodes, which are held too, hand theirs on to their hosts.
-void MechanicalSystem::leave_out_carried_loads() {
-  const std::vector<double>& held = part_squares_.held_load;
-  if (model_.constraints.empty() || std::all_of(held.begin(), held.end(), [](double square) { return square == 0; }))
-    return;
-  carried_.assign(load_.size(), 0.0);
-  std::copy(load_.begin(), load_.end(), work_.begin());
-  filter_.to_local(work_);
-  const DofLayout& dofs = model_.points.dofs;
-  for (const FrameConstraint& c : model_.constraints)
-    for (int i = dofs.begin(c.node); i < dofs.begin(c.node) + dofs.size(c.node); ++i)
-      if (filter_.is_fixed(at(i))) carried_[at(i)] = work_[at(i)];
-  filter_.to_global(carried_);
-  std::vector<double>& sum = uncarried_;
-  sum = gradient_;
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += carried_[i];
-  add_squares(sum, part_squares_.unused, part_squares_.reaction);
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = load_[i] - carried_[i];
-  add_squares(sum, part_squares_.load, part_squares_.held_load);
 }
 
 std::vector<PartForces> MechanicalSystem::part_forces() const {
@@ -63,15 +59,15 @@ std::vector<PartForces> MechanicalSystem::part_forces() const {
     const int part = static_cast<int>(p);
     // 4: sums of a few terms of the estimated size in each entry.
     const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
-    const double inertia_rounding = std::numeric_limits<double>::epsilon() * std::sqrt(inertia_cancelled_[p]);
-    parts[p] = {
-        .residual = part_squares_.residual[p],
-        .load = part_squares_.load[p] + part_squares_.held_load[p],
-        .inertia = part_squares_.inertia[p],
-        .reaction = part_squares_.reaction[p],
-        .tether = executor_.squared_tether_force(part),
-        .momentum = inertia_cancelled_[p],
-        .rounding = 4 * leverage * std::hypot(executor_.rounding(part), inertia_rounding, surfaces_.rounding(part))};
+    const double cancelled =
+        std::numeric_limits<double>::epsilon() * std::sqrt(inertia_cancelled_[p] + part_squares_.turned[p]);
+    parts[p] = {.residual = part_squares_.residual[p],
+                .load = part_squares_.load[p],
+                .inertia = part_squares_.inertia[p],
+                .reaction = part_squares_.reaction[p],
+                .tether = executor_.squared_tether_force(part),
+                .momentum = inertia_cancelled_[p],
+                .rounding = 4 * leverage * std::hypot(executor_.rounding(part), cancelled, surfaces_.rounding(part))};
     PartForces& f = parts[p];
     if (!kept_loads_.empty()) f.load = std::max(f.load, kept_loads_[p]);
     const double still = kAtRest * masses_[p] * executor_.motion(part) / (form_.h * form_.h);

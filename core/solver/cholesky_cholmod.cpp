@@ -1,4 +1,3 @@
-#include "core/model/errors.hpp"
 #include "core/solver/blas.hpp"
 #include "core/solver/cholesky.hpp"
 #include "core/solver/free_matrix.hpp"
@@ -74,11 +73,9 @@ struct BlockCholesky::Impl {
   cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
   Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* known)
-      : order(known != nullptr ? *known : EliminationOrder::of(pattern, f)), matrix(pattern, f), filter(f) {
-    if (!order.fits())
-      throw InputError(
-          "out of memory: the factor of the direct solver would have more numbers than its indices reach; use "
-          "solver.linear = { kind = \"cg\" }");
+      : order(known != nullptr ? *known : EliminationOrder::of(pattern, f)), filter(f) {
+    order.expect_to_fit();
+    matrix = FreeMatrix(pattern, f);
     hold_blas_to_one_thread();
     cholmod_start(&common);
     common.print = 0;

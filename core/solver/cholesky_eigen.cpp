@@ -47,15 +47,14 @@ struct BlockCholesky::Impl {
   Analysed<Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower>> llt;
   Analysed<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>> ldlt;
   bool any_pivots;
-  double flops;
+  double flops = 0;
   Eigen::VectorXd rhs;
 
   Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* order)
-      : matrix(pattern, f),
-        filter(f),
-        any_pivots(pivots == Pivots::any),
-        flops(order != nullptr ? order->flops : EliminationOrder::of(pattern, f).flops),
-        rhs(matrix.size) {
+      : matrix(pattern, f), filter(f), any_pivots(pivots == Pivots::any), rhs(matrix.size) {
+    const EliminationOrder counted = order != nullptr ? *order : EliminationOrder::of(pattern, f);
+    counted.expect_to_fit();
+    flops = counted.flops;
     if (any_pivots)
       ldlt.analyzePattern(view());
     else

@@ -28,6 +28,8 @@ DofFilter::DofFilter(const Model& model)
       for (int i = 0; i < 3; ++i)
         if (c.whole || (i != q && 3 - i - q < c.rotations)) fixed_[at(first + 3 + 3 * q + i)] = true;
   }
+  if (!model.constraints.empty()) carried_.assign(at(model.node_count()), 0U);
+  for (const FrameConstraint& c : model.constraints) carried_[at(c.node)] = fixed_of(c.node);
   for (const DependentNode& d : model.points.dependents) {
     assert(!fixed_[at(dofs_.begin(d.node))]);  // a rotation that stays its own may be held
     held_[at(d.node)] = 1;

@@ -32,6 +32,8 @@ class DofFilter {
   }
   /// Bit k: the degree of freedom k of a node is fixed.
   unsigned fixed_of(int node) const;
+  /// Those of them that a constraint holds; the others follow the hosts of a dependent node.
+  unsigned carried_of(int node) const { return carried_.empty() ? 0 : carried_[at(node)]; }
 
   /// The block of a row and a column in constraint axes: T_row K T_colᵀ.
   void rotate_block(int row, int column, const double* in, double* out) const;
@@ -44,7 +46,8 @@ class DofFilter {
   std::vector<int> turn_of_node_;  ///< −1: none
   std::vector<bool> fixed_;
   std::vector<std::size_t> fixed_list_;
-  std::vector<char> held_;  ///< (nodes)
+  std::vector<char> held_;         ///< (nodes)
+  std::vector<unsigned> carried_;  ///< (nodes); empty: no constraint
   int free_count_ = 0;
 };
 

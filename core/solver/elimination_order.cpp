@@ -1,12 +1,20 @@
 #include "core/solver/elimination_order.hpp"
 
 #include "core/math/index.hpp"
+#include "core/model/errors.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <numeric>
 
 namespace fascia {
+
+void EliminationOrder::expect_to_fit() const {
+  if (!fits())
+    throw InputError(
+        "out of memory: the factor of the direct solver would have more numbers than its indices reach; use "
+        "solver.linear = { kind = \"cg\" }");
+}
 
 NodeGraph::NodeGraph(const BlockMatrix& pattern, const DofFilter& filter) {
   std::vector<int> number(at(pattern.rows()), -1);

@@ -14,8 +14,11 @@ struct EliminationOrder {
   double flops = 0;        ///< of one factorisation
   double numbers = 0;      ///< in the factor
 
-  /// Indices of 32 bits, with which factors are made, reach all of its numbers.
-  bool fits() const { return numbers < 0x1.0p31; }
+  /// Indices of 32 bits, with which factors are made, reach all of its numbers, with room for the zeros of their dense
+  /// columns.
+  bool fits() const { return numbers < 0x1.0p30; }
+  /// @throws InputError  where it does not fit
+  void expect_to_fit() const;
 
   static EliminationOrder of(const BlockMatrix& pattern, const DofFilter& filter);
 };

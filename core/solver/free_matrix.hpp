@@ -15,6 +15,7 @@ struct FreeMatrix {
   std::vector<int> number;  ///< of each degree of freedom among the free ones, −1 where prescribed
   int size = 0;
 
+  FreeMatrix() = default;
   FreeMatrix(const BlockMatrix& pattern, const DofFilter& filter);
   /// matrix + shift · diagonal of shift_from
   void fill(const BlockMatrix& matrix, const DofFilter& filter, double shift, const BlockMatrix* shift_from);

@@ -41,6 +41,7 @@ class KeptLevels {
         iterations_ = report.iterations;
         tolerance_ = options.tolerance;
       }
+      if (report.status == converged) failures_ = 0;
       if (report.status == converged || report.status == limit) return counted(report);
       before += report.iterations;
       if (!has_material && report.status == negative_curvature) return counted(report);
@@ -52,12 +53,17 @@ class KeptLevels {
       before += report.iterations;
     }
     material_first_ = false;
+    ++failures_;
     return counted(blocks(options));
   }
+
+  /// Levels were of no use in one solve after another: making them again costs more than it can bring.
+  bool fail() const { return failures_ >= 2; }
 
  private:
   int iterations_ = 0;           ///< that the levels took when they were made; 0: not made, or of no use
   double tolerance_ = 0;         ///< that those were made for
+  int failures_ = 0;             ///< solves in a row that blocks had to do
   bool material_first_ = false;  ///< the last tangent was indefinite
 };
 

@@ -200,10 +200,7 @@ Evaluation MechanicalSystem::evaluate() {
   dependents_.transfer(gradient_, dependent_forces_);
   Evaluation e;
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
-  add_squares(inertia_, part_squares_.inertia, part_squares_.unused);
-  add_squares(gradient_, part_squares_.residual, part_squares_.reaction);
-  add_squares(load_, part_squares_.load, part_squares_.held_load);
-  leave_out_carried_loads();
+  sum_squares();
   e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
   judge(part_forces(), model_.points.part_whole, settings_.tolerance, e);
   return e;

@@ -29,9 +29,10 @@ struct StepInProgress {
   State start;
   State increment;  ///< since then, in u, D and turned
   StepForm form;
-  StrainHistory history;        ///< of the viscous stress
-  std::vector<double> factors;  ///< of all schedules
-  TakenStep taken;              ///< that led to the present state; without entries where none did
+  StrainHistory history;          ///< of the viscous stress
+  std::vector<double> factors;    ///< of all schedules
+  std::vector<double> pressures;  ///< of surfaces, that Newton's method follows
+  TakenStep taken;                ///< that led to the present state; without entries where none did
 };
 
 /// The equilibrium of a model in a load or time step, as Newton's method sees it: internal energy, loads, and in
@@ -131,8 +132,7 @@ class MechanicalSystem {
   /// @param earlier  the one as long before that, or empty: the strain rate is then that of the middle of the step
   void look_back(const State& state, const State& before, const State& earlier, double dt);
 
-  /// Stands where another system does within its step, for direction(). The model has no fluids, whose pressures
-  /// Newton's method follows by itself.
+  /// Stands where another system does within its step, for direction() and levels().
   void stand_in(const StepInProgress& step);
   /// y += what the tangent of loads without a potential has beside its symmetric part, of x, at the state where
   /// linearize_loads() was called last; in constraint axes.
@@ -184,8 +184,7 @@ class MechanicalSystem {
   void place_dependents_of_step();
   void add_loads();
   void add_inertia();
-  void add_squares(std::span<const double> global, std::vector<double>& free, std::vector<double>& fixed);
-  void leave_out_carried_loads();
+  void sum_squares();
   void add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N, const Vec3d& torque) const;
   void predict_strain(const StepMemory& memory);
   void store_strain_at(State state, StrainHistory& history);
@@ -225,11 +224,12 @@ class MechanicalSystem {
   bool has_taken_ = false;  ///< a step of Newton's method led to the present state
 
   std::vector<double> gradient_, load_, inertia_, direction_, dependent_forces_;
-  std::vector<double> carried_, uncarried_;  ///< loads that constraints carry; what is left without them
+  std::array<std::vector<double>, 3> local_;  ///< room for vectors in constraint axes
   mutable std::vector<double> work_;
   std::vector<double> inertia_cancelled_;  ///< by part: squares of what cancels in the inertia [N²]
   struct PartSquares {
-    std::vector<double> load, held_load, inertia, residual, reaction, unused;
+    std::vector<double> load, inertia, residual, reaction;
+    std::vector<double> turned;  ///< loads that constraints with axes of their own carry, of which rounding leaves some
   } part_squares_;
   std::vector<double> kept_loads_;  ///< by part, see keep_loads(); empty: none [N²]
   /// Displacements at the end of the last step, and the internal energy there; of implicit Euler on vertices [J].

@@ -119,8 +119,7 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
 
 void MechanicalSystem::keep_loads() {
   kept_loads_.resize(part_squares_.load.size(), 0.0);
-  for (std::size_t p = 0; p < kept_loads_.size(); ++p)
-    kept_loads_[p] = std::max(kept_loads_[p], part_squares_.load[p] + part_squares_.held_load[p]);
+  for (std::size_t p = 0; p < kept_loads_.size(); ++p) kept_loads_[p] = std::max(kept_loads_[p], part_squares_.load[p]);
 }
 
 double MechanicalSystem::steer(const PathDirections& directions, double weight, double rate) {

@@ -36,6 +36,7 @@ class SurfaceLoads {
   void begin_step();
   void aim(const Linearization& lin, std::span<const double> direction);
   void approach(double step);
+  void follow(const std::vector<double>& pressures) { newton_ = pressures; }
   void save() { saved_ = newton_; }
   void restore() { newton_ = saved_; }
   void finish_step() { reached_ = newton_; }

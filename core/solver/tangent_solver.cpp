@@ -32,6 +32,10 @@ double apply_block(const double* B, const double* x, double* y) {
   return dot;
 }
 
+double flops_per_number(const EliminationOrder& order, const BlockMatrix& matrix) {
+  return order.flops / (static_cast<double>(matrix.value_count()) * (matrix.fills_upper() ? 2 : 1));
+}
+
 }  // namespace
 
 TangentSolver::TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter,
@@ -65,24 +69,30 @@ bool TangentSolver::direct() {
   else if (filter_.free_count() <= kDirectDofs)
     direct_ = true;
   else
-    direct_ = order().fits() && flops_per_number() < kFlopsPerNumber;
+    direct_ = order().fits() && flops_per_number(order(), matrix()) < kFlopsPerNumber;
   return *direct_;
 }
 
-double TangentSolver::flops_per_number() {
-  return order().flops / (static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1));
+SolverChoice TangentSolver::choice() const {
+  SolverChoice made;
+  made.direct = direct_.value_or(true);
+  made.preconditioner = levels_pay_ && !kept_levels_.fail() ? Preconditioner::multigrid : settings_.preconditioner;
+  if (multigrid_) made.levels = multigrid_->level_sizes();
+  if (!order_) return made;
+  made.flops = order_->flops;
+  made.numbers = order_->numbers;
+  made.flops_per_number = flops_per_number(*order_, *matrix_);
+  return made;
 }
 
-SolverChoice TangentSolver::choice() {
-  SolverChoice made{direct(), order().flops, order().numbers, flops_per_number(), {}};
-  if (multigrid_) made.levels = multigrid_->level_sizes();
-  return made;
+bool TangentSolver::factor_fits() {
+  return order().fits() && sizeof(double) * order().numbers <= kMostFactorBytes &&
+         factor().factor_bytes() <= kMostFactorBytes;
 }
 
 bool TangentSolver::gives_way_to_factor(long iterations) {
   const bool guessed = settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations >= kEnoughForBulk;
-  return guessed && iterations >= settings_.cg.max_iterations && order().fits() &&
-         factor().factor_bytes() <= kMostFactorBytes;
+  return guessed && iterations >= settings_.cg.max_iterations && factor_fits();
 }
 
 bool TangentSolver::cg_is_too_slow(const TangentReport& report) {
@@ -311,12 +321,12 @@ CgReport TangentSolver::solve_by_factor(const CpuVectors::Vector& b, CpuVectors:
 /// no factor takes over and the limit is not a budget that the user set. Where the program chose conjugate gradients
 /// itself, they do as soon as they are likely to be cheaper.
 CgReport TangentSolver::solve_by_either(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options) {
-  if (levels_pay_) return solve_by_multigrid(b, x, options);
+  if (levels_pay_ && !kept_levels_.fail()) return solve_by_multigrid(b, x, options);
   const bool budget = options.max_iterations < kEnoughForBulk, chosen = settings_.linear == LinearMethod::automatic;
   CgOptions first = options;
-  if (chosen && !budget) first.max_iterations = kBeforeLevels;
+  if (chosen && !budget && !levels_pay_) first.max_iterations = kBeforeLevels;
   const CgReport tried = solve_by_blocks(b, x, first);
-  if (tried.status != CgStatus::limit || budget) return tried;
+  if (tried.status != CgStatus::limit || budget || levels_pay_) return tried;
   if (!chosen && gives_way_to_factor(options.max_iterations)) return tried;
   levels_pay_ = true;
   CgReport cg = solve_by_multigrid(b, x, options);

@@ -28,12 +28,13 @@ struct TangentReport {
   double cg_seconds = 0;    ///< in conjugate gradients
 };
 
-/// Which solver was taken, and the counts that speak for it.
+/// Which solver was taken last, and the counts that speak for it.
 struct SolverChoice {
   bool direct = false;
-  double flops = 0, numbers = 0;  ///< of a factor
-  double flops_per_number = 0;    ///< of the matrix
-  std::vector<int> levels;        ///< nodes of each level of the last solve that had any, the finest first
+  Preconditioner preconditioner = Preconditioner::automatic;  ///< of CG; automatic: blocks
+  double flops = 0, numbers = 0;                              ///< of a factor; 0: nobody asked
+  double flops_per_number = 0;                                ///< of the matrix
+  std::vector<int> levels;                                    ///< nodes of each, the finest first
 };
 
 /// Tangents that are positive definite where the full one is not: without the pull of tethers on turning frames, and
@@ -85,7 +86,7 @@ class TangentSolver {
 
   /// Cholesky is used, and not CG.
   bool direct();
-  SolverChoice choice();
+  SolverChoice choice() const;
   BlockMatrix& matrix();
   /// Of a factor of the matrix, which need not be made for it.
   const EliminationOrder& order();
@@ -98,7 +99,7 @@ class TangentSolver {
   bool gives_way_to_factor(long iterations);
 
  private:
-  double flops_per_number();
+  bool factor_fits();
   static constexpr double kMostFactorBytes = 2e9;
   /// Of GMRES beside a factor, where another digit costs a product or two.
   static constexpr double kDirectTolerance = 1e-10;

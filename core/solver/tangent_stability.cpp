@@ -18,13 +18,12 @@ constexpr double kCycle = 6;
 }  // namespace
 
 bool TangentSolver::factor_is_cheap(long made) {
-  constexpr double kSpeedup = 5, kShare = 0.1, kMostBytes = 2e9;
+  constexpr double kSpeedup = 5, kShare = 0.1;
   constexpr int kAlways = 5000;  // less than a second, whatever the shape
   if (settings_.preconditioner == Preconditioner::cholesky || filter_.free_count() <= kAlways) return true;
   const double product =
       (multigrid_ ? kCycle : 1) * 2.0 * static_cast<double>(matrix().value_count()) * (matrix().fills_upper() ? 2 : 1);
-  return order().fits() && order().flops <= kSpeedup * kShare * static_cast<double>(made) * product &&
-         factor().factor_bytes() <= kMostBytes;
+  return order().flops <= kSpeedup * kShare * static_cast<double>(made) * product && factor_fits();
 }
 
 SoftestDirection TangentSolver::softest(const Linearization& lin, long made, bool current) {

@@ -126,7 +126,7 @@ std::optional<TangentReport> TangentSolver::solve_unsymmetric(const Linearizatio
   TangentReport report;
   if (!direct()) {
     if (solve_whole(lin, rhs_, x, settings_.cg.tolerance, &report)) return report;
-    if (settings_.linear != LinearMethod::automatic || factor().factor_bytes() > kMostFactorBytes) {
+    if (settings_.linear != LinearMethod::automatic || !factor_fits()) {
       assemble(relinearize(TamerTangent::material), matrix());
       if (solve_whole(lin, rhs_, x, settings_.cg.tolerance, &report)) return report;
       return std::nullopt;

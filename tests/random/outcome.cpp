@@ -81,6 +81,10 @@ bool Outcome::says_several_ends() const {
   return false;
 }
 
+bool Outcome::doubts_its_end() const {
+  return summary.is_object() && summary.contains("doubts") && !summary["doubts"].empty();
+}
+
 double Outcome::largest(const std::string& unit) const {
   double most = 0;
   for (const auto& [name, probe] : probes)

@@ -32,6 +32,8 @@ struct Outcome {
   double residual() const;
   /// True where the program itself says that the end is not the only one, or not for sure.
   bool says_several_ends() const;
+  /// It says why another run may find another solution (`doubts`), which most do not.
+  bool doubts_its_end() const;
   /// The largest absolute value of a unit in all rows.
   double largest(const std::string& unit) const;
 };

@@ -58,5 +58,37 @@ TEST(CarriedLoads, AreThoseInHeldDirections) {
   EXPECT_LT(evaluated(model, state).relative, 1e-3 * free.relative);
 }
 
+/// Nothing acts but into a clamp whose axes are oblique: rounding of the turn must not pass for a load.
+TEST(CarriedLoads, LeaveNothingInObliqueAxes) {
+  BuiltModel built = block();
+  Model& model = built.model;
+  hold_face(model);
+  FrameConstraint& c = model.constraints.front();
+  c.translation_axes = rotation_about({{0.3, -0.8, 0.5}}, 0.9);
+  c.rotation_axes = rotation_about({{0.7, 0.2, -0.4}}, 0.6);
+  const State rest = State::at_rest(model);
+  model.loads = {load_on(c.node, {{1e3, 2e3, -1e3}}, {{10, 20, 30}})};
+  const Evaluation e = evaluated(model, rest);
+  EXPECT_EQ(e.residual, 0);
+  EXPECT_TRUE(e.converged());
+  model.loads.push_back(load_on(model.node_count() - 1, {{0, 1, 0}}));
+  EXPECT_NEAR(evaluated(model, rest).relative, 1, 1e-12);
+}
+
+/// The same of a roller: what the turn leaves in its free direction is known as rounding.
+TEST(CarriedLoads, KnowTheRoundingOfARoller) {
+  BuiltModel built = block();
+  Model& model = built.model;
+  hold_face(model);
+  FrameConstraint& c = model.constraints.front();
+  c.translation_axes = rotation_about({{0.3, -0.8, 0.5}}, 0.9);
+  c.translations = 2;
+  const Vec3d across = transpose(c.translation_axes) * Vec3d{{1, 1, 0}};
+  model.loads = {load_on(c.node, across * 1e9)};
+  const Evaluation e = evaluated(model, State::at_rest(model));
+  EXPECT_LT(e.residual, 1e-5);
+  EXPECT_TRUE(e.converged()) << e.residual << " N, " << e.excess;
+}
+
 }  // namespace
 }  // namespace fascia::carried_loads_test
