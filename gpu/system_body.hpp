@@ -231,7 +231,7 @@ Evaluation System<Space>::judge() {
     const double of_surfaces = surfaces_.empty() ? 0.0 : surfaces_.rounding(static_cast<int>(p), figures());
     forces[p] = {
         .residual = q[kernels::kResidual],
-        .load = q[kernels::kLoad],
+        .load = squared_load(q[kernels::kLoad], q[kernels::kTurnedLoad]),
         .inertia = q[kernels::kInertia],
         .reaction = q[kernels::kReaction],
         .tether = tethers,

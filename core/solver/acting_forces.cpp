@@ -62,7 +62,7 @@ std::vector<PartForces> MechanicalSystem::part_forces() const {
     const double cancelled =
         std::numeric_limits<double>::epsilon() * std::sqrt(inertia_cancelled_[p] + part_squares_.turned[p]);
     parts[p] = {.residual = part_squares_.residual[p],
-                .load = part_squares_.load[p],
+                .load = squared_load(part_squares_.load[p], part_squares_.turned[p]),
                 .inertia = part_squares_.inertia[p],
                 .reaction = part_squares_.reaction[p],
                 .tether = executor_.squared_tether_force(part),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,14 @@ struct PartForces {
   bool adrift = false;  ///< nothing holds or loads it, and it moves: its momentum is what there is to keep
   bool driven = false;  ///< a boundary motion moves the whole that it belongs to, see driven_parts()
 };
+
+/// Square of a part's load; none where it is what rounding leaves of loads that constraints with axes of their own
+/// carry.
+/// @param turned  square of those
+inline double squared_load(double load, double turned) {
+  constexpr double kTurn = 8 * std::numeric_limits<double>::epsilon();
+  return load > kTurn * kTurn * turned ? load : 0.0;
+}
 
 /// A system at a state, in numbers. Residuals are norms with torques divided by a length [N]. Each part of the model is
 /// judged by itself, so that a stiff or heavy neighbour does not hide what is left in a soft one.

@@ -192,7 +192,10 @@ TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
   EXPECT_EQ(there.message, on_cpu.message);
   EXPECT_EQ(there.steps, on_cpu.steps);
   EXPECT_LE(error, kSameSolution);
-  EXPECT_NEAR(there.linear_iterations, on_cpu.linear_iterations, 0.05 * on_cpu.linear_iterations + 2);
+  const auto each = [](const RunReport& run) {
+    return static_cast<double>(run.linear_iterations) / run.newton_iterations;
+  };
+  EXPECT_NEAR(each(there), each(on_cpu), 0.05 * each(on_cpu) + 1);
   settings.precision = Precision::mixed;
   if (scene() == "shell_roof") EXPECT_LE(displacement_difference(solve(s, where(), settings).state, expected), 1e-9);
 }
@@ -294,9 +297,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, DeviceChoice,
 INSTANTIATE_TEST_SUITE_P(
     Scenes, DeviceLevels,
     ::testing::Combine(::testing::Values(Where::host, Where::device),
-                       ::testing::Values("soft_cantilever", "affine_cantilever", "sheet_bending", "traction_clamped",
-                                         "settling_beam", "bone_plate", "riding_surface", "ligament_springs",
-                                         "shell_roof", "soft_cantilever_tetrahedra", "roll_up", "hanging_column")),
+                       ::testing::Values("soft_cantilever", "affine_cantilever", "sheet_bending", "settling_beam",
+                                         "bone_plate", "ligament_springs", "shell_roof", "shell_bladder",
+                                         "soft_cantilever_tetrahedra", "roll_up", "hanging_column")),
     name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, DeviceSolution,
                          ::testing::Combine(::testing::Values(Where::host, Where::device), kSolutions), name_of);

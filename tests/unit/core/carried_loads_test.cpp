@@ -48,14 +48,14 @@ TEST(CarriedLoads, AreThoseInHeldDirections) {
   c.translations = 2;
   const Vec3d across = transpose(c.translation_axes) * Vec3d{{1, 1, 0}},
               along = transpose(c.translation_axes) * Vec3d{{0, 0, 1}};
-  const State state = random_state(model, 1e-4, 1e-4);
+  const State state = random_state(model, 0.05, 0.05);
   model.loads = {load_on(c.node, along)};
   const Evaluation free = evaluated(model, state);
+  EXPECT_GT(free.relative, 10) << "internal forces are much larger than the load";
   model.loads = {load_on(c.node, along + across * 1e6)};
-  const Evaluation both = evaluated(model, state);
-  EXPECT_NEAR(both.relative, free.relative, 1e-7 * free.relative);
+  EXPECT_NEAR(evaluated(model, state).relative, free.relative, 1e-7 * free.relative);
   model.loads = {load_on(c.node, along * 1e6)};
-  EXPECT_LT(evaluated(model, state).relative, 1e-3 * free.relative);
+  EXPECT_NEAR(evaluated(model, state).relative, 1, 0.01) << "this load is not carried";
 }
 
 /// Nothing acts but into a clamp whose axes are oblique: rounding of the turn must not pass for a load.
