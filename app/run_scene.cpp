@@ -246,6 +246,10 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
     out.run.status = RunStatus::not_converged;
     out.run.message = "the subspace iteration did not settle; ask for fewer modes";
   }
+  if (modes.uncertainty > 1e-9)
+    out.warnings.add("rounding",
+                     fmt::format("rounding leaves {:.0e} of a frequency open: soft parts move beside stiff ones",
+                                 modes.uncertainty));
   int hollow = 0, first_hollow = 0;
   for (std::size_t m = 0; m < modes.stabilization.size(); ++m)
     if (modes.stabilization[m] > kHollow && hollow++ == 0) first_hollow = static_cast<int>(m) + 1;

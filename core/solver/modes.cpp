@@ -186,6 +186,11 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   Dense X(n, block), KX(n, block), MX(n, block);
   for (Eigen::Index i = 0; i < X.size(); ++i) X.data()[i] = 2.0 * static_cast<double>(random()) / 4294967295.0 - 1.0;
   Eigen::VectorXd values = Eigen::VectorXd::Zero(block), column;
+  // In exact arithmetic Ritz values never rise: one that did so again and again, by no more than rounding makes, has
+  // settled as far as it can.
+  constexpr int kRises = 5;
+  std::vector<int> rises(at(wanted), 0);
+  std::vector<double> swing(at(wanted), 0.0);
   Modes modes;
   modes.converged = false;
   for (modes.iterations = 0; modes.iterations < 500 && !modes.converged; ++modes.iterations) {
@@ -206,11 +211,17 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     modes.converged = true;
     for (int k = 0; k < wanted; ++k) {
       const double allowed = std::max({1e-10 * std::abs(next[k]), 1e-12 * std::abs(next[wanted - 1]), rounding});
-      modes.converged = modes.converged && (next[k] <= zero || std::abs(next[k] - values[k]) <= allowed);
+      const double change = std::abs(next[k] - values[k]);
+      if (modes.iterations > 0 && next[k] > values[k] && change <= zero) ++rises[at(k)];
+      if (rises[at(k)] > 0) swing[at(k)] = std::max(swing[at(k)], change);
+      const bool settled = next[k] <= zero || change <= allowed;
+      modes.converged = modes.converged && (settled || (rises[at(k)] >= kRises && change <= zero));
     }
     values = next;
   }
   for (int k = 0; k < wanted; ++k) {
+    if (values[k] > zero && rises[at(k)] >= kRises)
+      modes.uncertainty = std::max(modes.uncertainty, swing[at(k)] / (2 * values[k]));
     modes.frequency.push_back(values[k] <= zero ? 0.0 : std::sqrt(values[k]) / (2 * std::numbers::pi));
     std::vector<double> shape(X.col(k).data(), X.col(k).data() + n);
     problem.filter().to_global(shape);

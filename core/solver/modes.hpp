@@ -16,6 +16,8 @@ struct Modes {
   std::vector<double> stabilization;
   int iterations = 0;
   bool converged = true;
+  /// Of a frequency, the largest part that rounding leaves open: soft parts beside stiff ones. 0: less than 1e-10.
+  double uncertainty = 0;
 };
 
 /// Lowest modes of K x = ω² M x by subspace iteration with a factorised K + s M (s only for free bodies).
