@@ -9,6 +9,7 @@
 #include "app/load_scene.hpp"
 #include "app/memory.hpp"
 #include "app/messages.hpp"
+#include "app/mode_warnings.hpp"
 #include "app/picture.hpp"
 #include "app/progress.hpp"
 #include "app/readable.hpp"
@@ -228,9 +229,6 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   return out;
 }
 
-/// Stabilisation holds a hundredth of a body's own modes, and a tenth and more of those of badly coupled frames.
-constexpr double kHollow = 0.1;
-
 Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
   Outcome out;
   out.warnings = Warnings(s.scene.silenced);
@@ -246,19 +244,7 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
     out.run.status = RunStatus::not_converged;
     out.run.message = "the subspace iteration did not settle; ask for fewer modes";
   }
-  if (modes.uncertainty > 1e-9)
-    out.warnings.add("rounding",
-                     fmt::format("rounding leaves {:.0e} of a frequency open: soft parts move beside stiff ones",
-                                 modes.uncertainty));
-  int hollow = 0, first_hollow = 0;
-  for (std::size_t m = 0; m < modes.stabilization.size(); ++m)
-    if (modes.stabilization[m] > kHollow && hollow++ == 0) first_hollow = static_cast<int>(m) + 1;
-  if (hollow > 0)
-    out.warnings.add(
-        "hollow",
-        fmt::format("{} modes (the first: number {}) are motions of frames that the material hardly feels, held by "
-                    "stabilisation: they are no modes of the body; use more rigid frames, on a grid",
-                    hollow, first_hollow));
+  warn_of_modes(modes, out.warnings);
   std::vector<nlohmann::json> frequencies(s.probes.size(), nlohmann::json::array());
   double size = 0;
   for (const SimulatedBody& b : s.bodies) size = std::max(size, b.body->size());

@@ -192,6 +192,7 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
   std::vector<int> rises(at(wanted), 0);
   std::vector<double> swing(at(wanted), 0.0);
   Modes modes;
+  modes.least = std::sqrt(zero) / (2 * std::numbers::pi);
   modes.converged = false;
   for (modes.iterations = 0; modes.iterations < 500 && !modes.converged; ++modes.iterations) {
     for (int k = 0; k < block; ++k) {

@@ -18,6 +18,7 @@ struct Modes {
   bool converged = true;
   /// Of a frequency, the largest part that rounding leaves open: soft parts beside stiff ones. 0: less than 1e-10.
   double uncertainty = 0;
+  double least = 0;  ///< what is below cannot be told from a free motion, for rounding [Hz]
 };
 
 /// Lowest modes of K x = ω² M x by subspace iteration with a factorised K + s M (s only for free bodies).

@@ -74,7 +74,8 @@ bool Outcome::says_several_ends() const {
   for (const Json& warning : summary["warnings"]) {
     const std::string text = warning.dump();
     if (text.find("several solutions") != std::string::npos) return true;
-    if (text.find("of a frequency open") != std::string::npos) return true;
+    if (text.find("of a frequency open") != std::string::npos || text.find("told from 0") != std::string::npos)
+      return true;
     if (text.find("taken in parts") != std::string::npos) return true;  // another error of time
     for (const char* name : {"stability", "snap", "solver", "inverted", "resolution"})
       if (text.find(std::string("[") + name + "]") != std::string::npos) return true;

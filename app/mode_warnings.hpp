@@ -1,0 +1,11 @@
+#pragma once
+
+#include "app/warnings.hpp"
+#include "core/solver/modes.hpp"
+
+namespace fascia::app {
+
+/// What is to be said of natural modes: those that frames have and matter hardly feels, and what rounding leaves open.
+void warn_of_modes(const Modes& modes, Warnings& warnings);
+
+}  // namespace fascia::app
