@@ -10,13 +10,15 @@ namespace {
 
 /// Stabilisation holds a hundredth of a body's own modes, and a tenth and more of those of badly coupled frames.
 constexpr double kHollow = 0.1;
+/// More than this part of a frequency is worth a word.
+constexpr double kOpen = 1e-6;
 /// Zeros are free motions where what rounding hides is so far below the body's own frequencies.
 constexpr double kFarBelow = 0.01;
 
 }  // namespace
 
 void warn_of_modes(const Modes& modes, Warnings& warnings) {
-  if (modes.uncertainty > 1e-9)
+  if (modes.uncertainty > kOpen)
     warnings.add("rounding",
                  fmt::format("rounding leaves {:.0e} of a frequency open: soft parts move beside stiff ones",
                              modes.uncertainty));

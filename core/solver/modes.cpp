@@ -221,8 +221,10 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     values = next;
   }
   for (int k = 0; k < wanted; ++k) {
-    if (values[k] > zero && rises[at(k)] >= kRises)
-      modes.uncertainty = std::max(modes.uncertainty, swing[at(k)] / (2 * values[k]));
+    if (values[k] > zero) {
+      const double open = std::max(rounding, rises[at(k)] >= kRises ? swing[at(k)] : 0.0);
+      modes.uncertainty = std::max(modes.uncertainty, open / (2 * values[k]));
+    }
     modes.frequency.push_back(values[k] <= zero ? 0.0 : std::sqrt(values[k]) / (2 * std::numbers::pi));
     std::vector<double> shape(X.col(k).data(), X.col(k).data() + n);
     problem.filter().to_global(shape);
