@@ -138,8 +138,9 @@ class System {
   /// @throws NotShared
   void make_tiles();
   /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
+  /// Levels take their place for good: a fallback from levels finds no other tangent than theirs.
   bool use_tiles() const {
-    return tiles_ != nullptr && !(levels_pay_ && use_levels()) &&
+    return tiles_ != nullptr && !levels_pay_ &&
            (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
   }
   std::uint64_t operator_key();

@@ -33,20 +33,21 @@ void MechanicalSystem::sum_squares() {
   const DofLayout& dofs = model_.points.dofs;
   for (int node = 0; node < model_.node_count(); ++node) {
     const auto part = at(model_.points.node_part[at(node)]);
-    const double length = model_.points.part_length[part];
+    const double length = model_.points.part_length[part], of_torques = 1 / (length * length);
     const unsigned fixed = filter_.holds(node) ? filter_.fixed_of(node) : 0, carried = filter_.carried_of(node);
+    const bool turned = carried != 0 && filter_.turn_of(node) != nullptr;
     for (int k = 0; k < dofs.size(node); ++k) {
       const std::size_t i = at(dofs.begin(node) + k);
-      const double scale = k < 3 ? 1 : 1 / (length * length);
-      const double squared_load = load[i] * load[i] * scale;
+      const double scale = k < 3 ? 1 : of_torques;
+      const double own_load = load[i] * load[i] * scale;
       if (((carried >> k) & 1U) != 0) {
         const double reaction = gradient[i] + load[i];
         s.reaction[part] += reaction * reaction * scale;
-        if (filter_.turn_of(node) != nullptr) s.turned[part] += squared_load;
+        if (turned) s.turned[part] += own_load;
         continue;
       }
       const bool held = ((fixed >> k) & 1U) != 0;
-      s.load[part] += squared_load;
+      s.load[part] += own_load;
       if (!held) s.inertia[part] += inertia[i] * inertia[i] * scale;
       (held ? s.reaction : s.residual)[part] += gradient[i] * gradient[i] * scale;
     }

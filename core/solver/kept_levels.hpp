@@ -49,6 +49,7 @@ class KeptLevels {
     if (has_material && make(true)) {
       const CgReport report = solve(true, options);
       material_first_ = report.status == negative_curvature;
+      if (report.status != not_finite) failures_ = 0;
       if (report.status != not_finite) return counted(report);
       before += report.iterations;
     }

@@ -22,6 +22,16 @@ Evaluation evaluated(const Model& model, const State& state) {
   return system.evaluate();
 }
 
+/// A block with a face held, whose first clamp has oblique axes and slides along the third.
+BuiltModel with_oblique_roller() {
+  BuiltModel built = block();
+  hold_face(built.model);
+  FrameConstraint& c = built.model.constraints.front();
+  c.translation_axes = rotation_about({{0.3, -0.8, 0.5}}, 0.9);
+  c.translations = 2;
+  return built;
+}
+
 /// A force into a clamp is the clamp's: it makes nothing that is left elsewhere look small.
 TEST(CarriedLoads, SayNothingOfWhatIsLeft) {
   BuiltModel built = block();
@@ -40,12 +50,9 @@ TEST(CarriedLoads, SayNothingOfWhatIsLeft) {
 
 /// A clamp that slides along an axis carries what acts across that axis, whatever way it points.
 TEST(CarriedLoads, AreThoseInHeldDirections) {
-  BuiltModel built = block();
+  BuiltModel built = with_oblique_roller();
   Model& model = built.model;
-  hold_face(model);
-  FrameConstraint& c = model.constraints.front();
-  c.translation_axes = rotation_about({{0.3, -0.8, 0.5}}, 0.9);
-  c.translations = 2;
+  const FrameConstraint& c = model.constraints.front();
   const Vec3d across = transpose(c.translation_axes) * Vec3d{{1, 1, 0}},
               along = transpose(c.translation_axes) * Vec3d{{0, 0, 1}};
   const State state = random_state(model, 0.05, 0.05);
@@ -77,12 +84,9 @@ TEST(CarriedLoads, LeaveNothingInObliqueAxes) {
 
 /// The same of a roller: what the turn leaves in its free direction is known as rounding.
 TEST(CarriedLoads, KnowTheRoundingOfARoller) {
-  BuiltModel built = block();
+  BuiltModel built = with_oblique_roller();
   Model& model = built.model;
-  hold_face(model);
-  FrameConstraint& c = model.constraints.front();
-  c.translation_axes = rotation_about({{0.3, -0.8, 0.5}}, 0.9);
-  c.translations = 2;
+  const FrameConstraint& c = model.constraints.front();
   const Vec3d across = transpose(c.translation_axes) * Vec3d{{1, 1, 0}};
   model.loads = {load_on(c.node, across * 1e9)};
   const Evaluation e = evaluated(model, State::at_rest(model));
