@@ -3,6 +3,7 @@
 #include "app/completion.hpp"
 #include "app/explain/explain.hpp"
 #include "app/extremes/extremes.hpp"
+#include "app/heap.hpp"
 #include "app/list.hpp"
 #include "app/messages.hpp"
 #include "app/need/tune.hpp"
@@ -311,6 +312,7 @@ void open_standard_streams() {
 int main(int argc, char** argv) {
   open_standard_streams();
   prctl(PR_SET_NAME, "fascia");  // "exe" where hold_blas_to_one_thread() has started it again
+  keep_freed_memory();
   remember_command(argc, argv);
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // told as errors of what is written
   try {

@@ -3,6 +3,7 @@
 #include "core/model/errors.hpp"
 #include "io/files.hpp"
 #include "io/vtk_errors.hpp"
+#include "io/vtk_threads.hpp"
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -235,7 +236,9 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToZLib();
   writer->WriteToOutputStringOn();
-  if (writer->Write() == 0 || !errors.first().empty())
+  int written = 0;
+  without_vtk_threads([&] { written = writer->Write(); });
+  if (written == 0 || !errors.first().empty())
     throw FileError(fmt::format("{}: cannot be written: {}", file.string(), errors.first()));
   replace_file(file, writer->GetOutputString());
 }

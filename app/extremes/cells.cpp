@@ -46,7 +46,7 @@ std::vector<Specimen> all_rows() {
 }
 
 ExtremeCell cell_of(const Specimen& s, const std::string& axis, const std::string& value) {
-  return {row_of(s), axis, value, s.text(), s.theory(), s.young * s.section(), s.length};
+  return {row_of(s), axis, value, s.text(), s.theory(), s.young * s.section(), s.length, s.dynamic || s.held};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace fascia::app {
 
 /// How a cell ended, from the best to the worst. Up to `stopped` nobody is led astray.
 enum class CellVerdict {
-  right,        ///< converged, and the twin agrees
+  right,        ///< converged, and the twin agrees; of what nothing holds: refused, with that reason
   sensitive,    ///< converged and differs from the twin, as it does when forces change by the residual allowed
   branch,       ///< converged to another solution than the twin: it stays where it is when the tolerance is smaller
   warned,       ///< converged and differs from the twin, and the run itself warns that there may be other solutions

@@ -3,6 +3,7 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <chrono>
 
 namespace fascia {
 
@@ -16,13 +17,21 @@ int available_processors() {
 
 namespace {
 
-void end_all(std::vector<std::thread>& workers, std::mutex& mutex, bool& stop, std::condition_variable& start) {
-  {
-    const std::lock_guard lock(mutex);
-    stop = true;
-  }
-  start.notify_all();
-  for (std::thread& worker : workers) worker.join();
+/// How long a thread looks before it sleeps: some times what waking one costs, so that loops that follow one another
+/// find their threads awake, and little beside what they save where they do not.
+constexpr std::chrono::microseconds kLook{20};
+
+/// Looks until `found()`, at most kLook long, and lets other processes have their turn meanwhile; whether it was found.
+template <class Found>
+bool look(const Found& found) {
+  constexpr int kLooksBetweenTurns = 64;
+  const auto end = std::chrono::steady_clock::now() + kLook;
+  do {
+    for (int i = 0; i < kLooksBetweenTurns; ++i)
+      if (found()) return true;
+    std::this_thread::yield();
+  } while (std::chrono::steady_clock::now() < end);
+  return false;
 }
 
 }  // namespace
@@ -32,45 +41,58 @@ ThreadPool::ThreadPool(int threads) {
   try {
     for (int i = 1; i < count; ++i) workers_.emplace_back([this] { worker_loop(); });
   } catch (...) {  // no memory for another stack, or no thread left (std::system_error): those that run must end first
-    end_all(workers_, mutex_, stop_, start_);
+    end_workers();
     throw;
   }
 }
 
-ThreadPool::~ThreadPool() { end_all(workers_, mutex_, stop_, start_); }
+ThreadPool::~ThreadPool() { end_workers(); }
 
-void ThreadPool::run(int chunks, const void* work, Call call) {
-  {
-    const std::lock_guard lock(mutex_);
-    work_ = work;
-    call_ = call;
-    chunks_ = chunks;
-    next_.store(0, std::memory_order_relaxed);
-    busy_ = static_cast<int>(workers_.size());
-    ++generation_;
-  }
-  start_.notify_all();
-  take_chunks();
-  std::unique_lock lock(mutex_);
-  finished_.wait(lock, [this] { return busy_ == 0; });
+void ThreadPool::end_workers() {
+  stop_ = true;
+  ++calls_;
+  calls_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
 }
 
-void ThreadPool::take_chunks() {
-  for (int c = next_.fetch_add(1); c < chunks_; c = next_.fetch_add(1)) call_(work_, c);
+void ThreadPool::run(int chunks, const void* work, Call call) {
+  work_ = work;
+  call_ = call;
+  chunks_ = chunks;
+  done_.store(0, std::memory_order_relaxed);
+  const std::uint64_t loop = (open_.load(std::memory_order_relaxed) >> 32U) + 1;
+  open_.store(loop << 32U | static_cast<std::uint32_t>(chunks), std::memory_order_release);
+  ++calls_;
+  calls_.notify_all();
+  while (take_chunk()) {
+  }
+  const auto all_done = [&] { return done_.load(std::memory_order_acquire) == chunks; };
+  if (look(all_done)) return;
+  for (int done = done_.load(std::memory_order_acquire); done != chunks; done = done_.load(std::memory_order_acquire))
+    done_.wait(done, std::memory_order_acquire);
+}
+
+// The exchange succeeds only while the loop that it read still has that chunk to give, which therefore cannot end.
+bool ThreadPool::take_chunk() {
+  std::uint64_t open = open_.load(std::memory_order_acquire);
+  do {
+    if (static_cast<std::uint32_t>(open) == 0) return false;
+  } while (!open_.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel, std::memory_order_acquire));
+  const int chunks = chunks_;
+  call_(work_, chunks - static_cast<int>(static_cast<std::uint32_t>(open)));
+  if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == chunks) done_.notify_one();
+  return true;
 }
 
 void ThreadPool::worker_loop() {
-  int seen = 0;
+  std::uint32_t seen = 0;
   while (true) {
-    {
-      std::unique_lock lock(mutex_);
-      start_.wait(lock, [&] { return stop_ || generation_ != seen; });
-      if (stop_) return;
-      seen = generation_;
+    while (take_chunk()) {
     }
-    take_chunks();
-    const std::lock_guard lock(mutex_);
-    if (--busy_ == 0) finished_.notify_one();
+    const auto called = [&] { return calls_.load(std::memory_order_acquire) != seen; };
+    if (!look(called)) calls_.wait(seen, std::memory_order_acquire);
+    seen = calls_.load(std::memory_order_acquire);
+    if (stop_) return;
   }
 }
 

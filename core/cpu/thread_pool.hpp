@@ -1,9 +1,7 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <functional>
-#include <mutex>
+#include <cstdint>
 #include <thread>
 #include <vector>
 
@@ -13,6 +11,8 @@ namespace fascia {
 int available_processors();
 
 /// Threads that share the fixed chunks of a loop. Which thread takes a chunk varies, what a chunk computes does not.
+/// A loop waits for its chunks, not for threads: one that the system keeps from running is not waited for unless it
+/// holds a chunk. Between loops threads look for work for some microseconds, then sleep.
 class ThreadPool {
  public:
   /// @param threads  0: as many as there are processors to run on
@@ -46,17 +46,21 @@ class ThreadPool {
  private:
   using Call = void (*)(const void*, int);
   void run(int chunks, const void* work, Call call);
-  void take_chunks();
+  bool take_chunk();
+  void end_workers();
   void worker_loop();
 
   std::vector<std::thread> workers_;
-  std::mutex mutex_;
-  std::condition_variable start_, finished_;
-  int generation_ = 0, busy_ = 0, chunks_ = 0;
-  bool stop_ = false;
+  // Of the loop under way. Written while no chunk is left to take and none is being worked at; read after taking one.
   const void* work_ = nullptr;
   Call call_ = nullptr;
-  std::atomic<int> next_{0};
+  int chunks_ = 0;
+  /// Number of the loop, above, and its chunks that nobody has taken, in the lower 32 bits.
+  std::atomic<std::uint64_t> open_{0};
+  std::atomic<int> done_{0};
+  /// Counts loops, and the end: what sleeping threads wait on.
+  std::atomic<std::uint32_t> calls_{0};
+  std::atomic<bool> stop_{false};
 };
 
 }  // namespace fascia

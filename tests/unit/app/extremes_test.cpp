@@ -126,6 +126,23 @@ TEST(CellVerdicts, CountRoundingAsNone) {
   EXPECT_EQ(judge(cell, runs).verdict, CellVerdict::right);
 }
 
+/// Statics of what nothing holds: right is to say so, and to say nothing else.
+TEST(CellVerdicts, OfWhatHasNoEquilibrium) {
+  ExtremeCell cell{"row", "axis", "1", "", std::nullopt};
+  cell.has_equilibrium = false;
+  const auto of = [&](const ChildResult& run) {
+    const ChildResult none, twin = ended(kDone, 2);
+    return judge(cell, {&run, &twin, &none, &none, {1, 2, 1}}).verdict;
+  };
+  EXPECT_EQ(of(ended(kWrongInput, 1, "bodies.beam: nothing holds this body in a static solve")), CellVerdict::right);
+  EXPECT_EQ(of(ended(kWrongInput, 1, "young: too small")), CellVerdict::refused);
+  EXPECT_EQ(of(ended(kNotConverged, 1, "step 3")), CellVerdict::stopped);
+  EXPECT_EQ(of(ended(kDone, 1)), CellVerdict::wrong);
+  int without = 0;
+  for (const ExtremeCell& c : map_cells()) without += c.has_equilibrium ? 0 : 1;
+  EXPECT_EQ(without, 24);  // twelve models, two solvers
+}
+
 TEST(CellVerdicts, OfRunsThatFail) {
   const ChildResult twin = ended(kDone, 2);
   EXPECT_EQ(verdict(ended(kWrongInput, 1, "young: too small"), twin), CellVerdict::refused);
