@@ -163,6 +163,7 @@ void add_solid(Matter& matter, const SolidDomain& domain, double piece_size) {
   const std::size_t first = matter.pieces.size();
 
   if (!domain.contains) {
+    matter.pieces.reserve(first + grid.size());
     grid.for_each([&](int i, int j, int k) { add_voxel(matter, grid.place(i, j, k), kParts); });
   } else {
     std::vector<char> inside(grid.size());
@@ -170,6 +171,9 @@ void add_solid(Matter& matter, const SolidDomain& domain, double piece_size) {
         [&](int i, int j, int k) { inside[grid.number(i, j, k)] = domain.contains(grid.place(i, j, k)) ? 1 : 0; });
     const std::span<const MatterPiece> all(matter.pieces);
     const std::vector<char> cut = cut_voxels(grid, inside, all.subspan(first_surface));
+    std::size_t most = 0;
+    for (std::size_t voxel = 0; voxel < grid.size(); ++voxel) most += inside[voxel] != 0 || cut[voxel] != 0 ? 1 : 0;
+    matter.pieces.reserve(first + most);
     grid.for_each([&](int i, int j, int k) {
       const std::size_t voxel = grid.number(i, j, k);
       if (cut[voxel] == 0) {

@@ -106,6 +106,19 @@ void mend_reflection(Json& scene, const Frame& frame) {
       load["pressure"] = -load["pressure"].get<double>();
 }
 
+/// False where modes or a path are looked for, or an imperfection of either sign would do.
+bool has_step_solver(const Json& scene) {
+  const Json& solver = scene["solver"];
+  return solver.value("kind", "static") != "modes" && solver.value("control", "load") == "load" &&
+         !solver.contains("imperfection");
+}
+
+void use_solver(Json& scene, bool cg) {
+  Json& linear = scene["solver"]["linear"];
+  linear = Json::object({{"kind", cg ? "cg" : "cholesky"}});
+  if (cg) linear["max_iterations"] = 20000;
+}
+
 }  // namespace
 
 double Frame::factor(const std::string& unit) const { return app::UnitFactors{mass, length, time}.of(unit); }
@@ -198,14 +211,22 @@ Json with_texts(const Json& scene) {
 }
 
 Json with_other_solver(const Json& scene) {
-  const std::string kind = scene["solver"].value("kind", "static");
-  if (scene["solver"].contains("imperfection")) return nullptr;  // of either sign
-  if (kind == "explicit" || kind == "modes" || scene["solver"].value("control", "load") != "load") return nullptr;
-  Json twin = scene;
-  Json& linear = twin["solver"]["linear"];
+  if (scene["solver"].value("kind", "static") == "explicit" || !has_step_solver(scene)) return nullptr;
+  const Json& linear = scene["solver"]["linear"];
   const bool direct = !linear.contains("kind") || linear["kind"] != "cg";
-  linear = Json::object({{"kind", direct ? "cg" : "cholesky"}});
-  if (direct) linear["max_iterations"] = 20000;
+  Json twin = scene;
+  use_solver(twin, direct);
+  return twin;
+}
+
+Json with_other_backend(const Json& scene) {
+  if (!has_step_solver(scene)) return nullptr;
+  Json twin = scene;
+  Json& solver = twin["solver"];
+  solver["backend"] = "cuda";
+  if (solver.value("kind", "static") == "explicit") return twin;
+  if (solver["linear"].value("kind", "") != "cg") use_solver(twin, true);
+  if (solver["linear"].value("preconditioner", "") == "cholesky") solver["linear"].erase("preconditioner");
   return twin;
 }
 

@@ -34,4 +34,7 @@ Json with_texts(const Json& scene);
 /// The scene with the other linear solver; null where it solves no linear systems.
 Json with_other_solver(const Json& scene);
 
+/// The scene in the GPU's steps, by conjugate gradients; null where these do not compute it.
+Json with_other_backend(const Json& scene);
+
 }  // namespace fascia::random_scenes
