@@ -46,7 +46,9 @@ std::vector<Specimen> all_rows() {
 }
 
 ExtremeCell cell_of(const Specimen& s, const std::string& axis, const std::string& value) {
-  return {row_of(s), axis, value, s.text(), s.theory(), s.young * s.section(), s.length, s.dynamic || s.held};
+  const bool end_is_led = s.action == Action::stretch || s.action == Action::twist;
+  return {
+      row_of(s), axis, value, s.text(), s.theory(), s.young * s.section(), s.length, s.dynamic || s.held || end_is_led};
 }
 
 }  // namespace
