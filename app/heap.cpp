@@ -1,13 +1,13 @@
 #include "app/heap.hpp"
 
-#include <malloc.h>
+#include <cstdlib>
 
 namespace fascia::app {
 
 void keep_freed_memory() {
-  constexpr int kMegabyte = 1 << 20;
-  mallopt(M_MMAP_THRESHOLD, 32 * kMegabyte);  // the most that there is
-  mallopt(M_TRIM_THRESHOLD, 64 * kMegabyte);
+  constexpr std::size_t block = 4U << 20U;
+  void* volatile mapped = std::malloc(block);
+  std::free(mapped);
 }
 
 }  // namespace fascia::app
