@@ -199,4 +199,10 @@ class Finder {
 
 Mechanisms find_mechanisms(const Simulation& simulation) { return Finder(simulation).result(); }
 
+int free_motion_count(const Mechanisms& mechanisms) {
+  int count = 0;
+  for (const Assembly& a : mechanisms.assemblies) count += static_cast<int>(a.free.size()) + a.loose.count;
+  return count;
+}
+
 }  // namespace fascia::app

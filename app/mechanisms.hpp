@@ -33,4 +33,7 @@ struct Mechanisms {
 
 Mechanisms find_mechanisms(const Simulation& simulation);
 
+/// How many independent rigid motions nothing resists.
+int free_motion_count(const Mechanisms& mechanisms);
+
 }  // namespace fascia::app

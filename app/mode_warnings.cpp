@@ -12,19 +12,21 @@ namespace {
 constexpr double kHollow = 0.1;
 /// More than this part of a frequency is worth a word.
 constexpr double kOpen = 1e-6;
-/// Zeros are free motions where what rounding hides is so far below the body's own frequencies.
+/// Zeros, no more than there are free motions, are these where what rounding hides is so far below the body's own
+/// frequencies.
 constexpr double kFarBelow = 0.01;
 
 }  // namespace
 
-void warn_of_modes(const Modes& modes, Warnings& warnings) {
+void warn_of_modes(const Modes& modes, std::ptrdiff_t free_motions, Warnings& warnings) {
   if (modes.uncertainty > kOpen)
     warnings.add("rounding",
                  fmt::format("rounding leaves {:.0e} of a frequency open: soft parts move beside stiff ones",
                              modes.uncertainty));
   const auto& f = modes.frequency;
   const auto own = std::find_if(f.begin(), f.end(), [](double value) { return value > 0; });
-  if (own != f.begin() && (own == f.end() || modes.least > kFarBelow * *own))
+  const std::ptrdiff_t zeros = own - f.begin();
+  if (zeros > free_motions || (zeros > 0 && own != f.end() && modes.least > kFarBelow * *own))
     warnings.add(
         "rounding",
         fmt::format("frequencies below {:.2g} Hz cannot be told from 0, for rounding of stiff parts", modes.least));

@@ -1,4 +1,5 @@
 // Natural frequencies.
+#include "tests/support/coupled_scene.hpp"
 #include "tests/support/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -54,6 +55,27 @@ TEST(Modes, FreeMotionsAloneSettle) {
       for (int i = 0; i < count; ++i)
         EXPECT_EQ(f[static_cast<std::size_t>(i)].get<double>() == 0, i < 6) << scene << " " << i << " of " << count;
     }
+}
+
+/// Rounding of a body 1e19 times as stiff hides all frequencies of the soft one on it, which is held; the next ones are
+/// far above. Of a free body the six zeros are its motions.
+TEST(Modes, ZerosThatNoFreeMotionExplainsAreSaid) {
+  const auto body = [](const char* name, const char* young, int from) {
+    return fmt::format(
+        "[bodies.{}]\nmodel=\"hexahedra\"\ndensity=1000\nmaterial={{young={},poisson=0.3}}\n"
+        "domain={{box={{min=[{},0,0],max=[{},1,1],cells=[2,2,2]}}}}\n",
+        name, young, from, from + 1);
+  };
+  const auto told = [](const std::string& bodies, int count) {
+    const TextRun run(bodies + fmt::format("[solver]\nkind=\"modes\"\ncount={}\n", count));
+    return run.summary()["warnings"].dump().find("cannot be told from 0") != std::string::npos;
+  };
+  const std::string at_face = box({0.99, -1, -1}, {1.01, 2, 2});
+  EXPECT_TRUE(told(body("hard", "1e15", 0) + body("soft", "1e-4", 1) +
+                       coupling("join", "embed", "soft", at_face, "to=\"hard\"") +
+                       fix("hard", box({-1, -1, -1}, {0.01, 2, 2})),
+                   55));
+  EXPECT_FALSE(told(body("soft", "1e3", 0), 8));
 }
 
 }  // namespace
