@@ -3,7 +3,6 @@
 #include "app/completion.hpp"
 #include "app/explain/explain.hpp"
 #include "app/extremes/extremes.hpp"
-#include "app/heap.hpp"
 #include "app/list.hpp"
 #include "app/messages.hpp"
 #include "app/need/tune.hpp"

@@ -1,5 +1,7 @@
 #include "app/mode_warnings.hpp"
 
+#include "app/mechanisms.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,13 +14,13 @@ namespace {
 constexpr double kHollow = 0.1;
 /// More than this part of a frequency is worth a word.
 constexpr double kOpen = 1e-6;
-/// Zeros, no more than there are free motions, are these where what rounding hides is so far below the body's own
-/// frequencies.
+/// Zeros are free motions where there are no more than that of them, and what rounding hides is so far below the body's
+/// own frequencies.
 constexpr double kFarBelow = 0.01;
 
 }  // namespace
 
-void warn_of_modes(const Modes& modes, std::ptrdiff_t free_motions, Warnings& warnings) {
+void warn_of_modes(const Modes& modes, const Simulation& simulation, Warnings& warnings) {
   if (modes.uncertainty > kOpen)
     warnings.add("rounding",
                  fmt::format("rounding leaves {:.0e} of a frequency open: soft parts move beside stiff ones",
@@ -26,7 +28,8 @@ void warn_of_modes(const Modes& modes, std::ptrdiff_t free_motions, Warnings& wa
   const auto& f = modes.frequency;
   const auto own = std::find_if(f.begin(), f.end(), [](double value) { return value > 0; });
   const std::ptrdiff_t zeros = own - f.begin();
-  if (zeros > free_motions || (zeros > 0 && own != f.end() && modes.least > kFarBelow * *own))
+  const bool is_near = own != f.end() && modes.least > kFarBelow * *own;
+  if (zeros > 0 && (is_near || zeros > free_motion_count(find_mechanisms(simulation))))
     warnings.add(
         "rounding",
         fmt::format("frequencies below {:.2g} Hz cannot be told from 0, for rounding of stiff parts", modes.least));

@@ -7,6 +7,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -68,6 +70,12 @@ double left_by_limit(__rlimit_resource limit, double used) {
 }
 
 }  // namespace
+
+void keep_freed_memory() {
+  constexpr std::size_t block = 4U << 20U;
+  void* volatile mapped = std::malloc(block);
+  std::free(mapped);
+}
 
 double resident_memory() {
   malloc_trim(0);

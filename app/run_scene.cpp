@@ -7,7 +7,6 @@
 #include "app/gpu_run.hpp"
 #include "app/interruption.hpp"
 #include "app/load_scene.hpp"
-#include "app/mechanisms.hpp"
 #include "app/memory.hpp"
 #include "app/messages.hpp"
 #include "app/mode_warnings.hpp"
@@ -245,7 +244,7 @@ Outcome find_modes(const Simulation& s, ThreadPool& pool, RunResult& files) {
     out.run.status = RunStatus::not_converged;
     out.run.message = "the subspace iteration did not settle; ask for fewer modes";
   }
-  warn_of_modes(modes, free_motion_count(find_mechanisms(s)), out.warnings);
+  warn_of_modes(modes, s, out.warnings);
   std::vector<nlohmann::json> frequencies(s.probes.size(), nlohmann::json::array());
   double size = 0;
   for (const SimulatedBody& b : s.bodies) size = std::max(size, b.body->size());

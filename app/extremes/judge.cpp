@@ -132,14 +132,14 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
   outcome.status = run.status();
   outcome.reason = run.message;
   outcome.seconds = run.seconds;
-  if (!cell.has_equilibrium && run.exit_status == kDone) {
-    outcome.verdict = CellVerdict::wrong;
-    outcome.reason = "nothing holds the body, which has no equilibrium, and the run ends converged";
-    return outcome;
-  }
   if (run.exit_status != kDone) {
     const bool says_so = run.exit_status == kWrongInput && run.message.find("nothing holds") != std::string::npos;
     outcome.verdict = !cell.has_equilibrium && says_so ? CellVerdict::right : of_failure(run);
+    return outcome;
+  }
+  if (!cell.has_equilibrium) {
+    outcome.verdict = CellVerdict::wrong;
+    outcome.reason = "nothing holds the body, which has no equilibrium, and the run ends converged";
     return outcome;
   }
   const auto numbers = probes_of(run.summary);

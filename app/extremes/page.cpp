@@ -155,11 +155,8 @@ std::string html_of(const ExtremesMap& map, const std::filesystem::path& scenes)
     page.notice(sentence_of(map) + fmt::format(". {} cells are worse than in the stored map.", map.regressions.size()));
   page.paragraph(
       "A cell is right where its run converged and a twin agrees to 1e-6 in every probe: the same scene in other units "
-      "of "
-      "mass, length and time, by Cholesky, to a hundredth of the tolerance; in statics what nothing holds is right "
-      "where it "
-      "is refused for that reason. ✓ right, ✓* right but more than 10 % from "
-      "the "
+      "of mass, length and time, by Cholesky, to a hundredth of the tolerance; in statics what nothing holds is right "
+      "where it is refused for that reason. ✓ right, ✓* right but more than 10 % from the "
       "theory of slender beams (coarse or locking), ✓~ differs from the twin no more than the scene answers a "
       "disturbance of 1e-8 of its forces, ✓2 another solution of the same equations than that of the twin, W differs "
       "from the twin and warns itself that there may be other solutions, R refused before the run with a reason, "
