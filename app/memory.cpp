@@ -204,7 +204,7 @@ class Setup {
     const bool asked = kind == PreconditionerKind::multigrid;
     const Solver& solver = s_.scene.solver;
     const int most =
-        solver.linear == LinearKind::automatic ? TangentSolver::kBeforeLevels : solver.linear_max_iterations;
+        solver.linear == LinearKind::automatic ? BlocksOrLevels({}).patience() : solver.linear_max_iterations;
     const bool budget = solver.linear_max_iterations < CgOptions{}.max_iterations;
     if (!asked && (kind != PreconditionerKind::automatic || budget || guessed_iterations() < most)) return;
     const double levels = kLevels * 8 * static_cast<double>(matrix.value_count());

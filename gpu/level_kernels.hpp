@@ -20,11 +20,18 @@ struct LevelNodes {
   }
 };
 
-/// BlockRows in a space.
+/// Rows of blocks in a space: their columns are rigid frames, or on the finest level nodes of the model.
 struct BlockRowsView {
   const int *begin = nullptr, *column = nullptr;
-  const std::size_t* value_begin = nullptr;
+  const int* before = nullptr;  ///< of each block: degrees of freedom of the columns before it in its row; none: frames
+  const std::size_t* value_begin = nullptr;  ///< of each row
   const double* values = nullptr;
+
+  /// Block k, of a row of so many degrees of freedom.
+  FASCIA_HD const double* block(int row, int k, int size) const {
+    const int columns = before != nullptr ? before[k] : kFrameDofs * (k - begin[row]);
+    return values + value_begin[row] + static_cast<std::size_t>(size) * static_cast<std::size_t>(columns);
+  }
 };
 
 /// A smoother of a level: D⁻¹, and what it makes of residuals.
@@ -70,59 +77,48 @@ struct BeginSmoothing {
   }
 };
 
-/// The end of smoothing where y = K d is known.
-struct EndSmoothing {
-  Smoother smoother;
-  const double *r, *y, *d;
-  double* x;
-  FASCIA_HD void operator()(int node) const {
-    double left[kMostDofs];
-    const int first = smoother.nodes.begin(node);
-    for (int i = 0; i < smoother.nodes.size(node); ++i) left[i] = r[first + i] - y[first + i];
-    smoother.finish(node, left, d, x);
-  }
-};
-
-/// r = b − y
-struct Difference {
-  const double *b, *y;
-  double* r;
-  FASCIA_HD void operator()(int i) const { r[i] = b[i] - y[i]; }
-};
-
-/// (K x) of a rigid frame, eight of its neighbours at a time.
-struct FrameProduct {
+/// (K x) of a node, eight of its neighbours at a time. @tparam N  degrees of freedom of the largest node
+template <int N>
+struct LevelProduct {
+  LevelNodes nodes;
   BlockRowsView K;
   const double* x;
-  FASCIA_HD void operator()(int node, int lane, Sums<kFrameDofs>& sums) const {
+  FASCIA_HD void operator()(int node, int lane, Sums<N>& sums) const {
+    const int n = nodes.size(node);
     for (int k = K.begin[node] + lane; k < K.begin[node + 1]; k += kSpaceLanes) {
-      const double* block =
-          K.values + K.value_begin[node] + static_cast<std::size_t>(kFrameDofs * kFrameDofs) * (k - K.begin[node]);
-      const double* of = x + kFrameDofs * K.column[k];
-      for (int i = 0; i < kFrameDofs; ++i)
-        for (int j = 0; j < kFrameDofs; ++j) sums.v[i] += block[kFrameDofs * i + j] * of[j];
+      const int column = K.column[k], m = nodes.size(column);
+      const double *block = K.block(node, k, n), *of = x + nodes.begin(column);
+      for (int i = 0; i < N; ++i)
+        if (i < n)
+          for (int j = 0; j < m; ++j) sums.v[i] += block[m * i + j] * of[j];
     }
   }
 };
 
-/// Ends a FrameProduct of d with the end of smoothing.
-struct EndFrameSmoothing {
+/// Ends a product of d with the end of smoothing.
+template <int N>
+struct EndSmoothing {
   Smoother smoother;
   const double *r, *d;
   double* x;
-  FASCIA_HD void operator()(int node, const Sums<kFrameDofs>& Kd) const {
-    double left[kFrameDofs];
-    for (int i = 0; i < kFrameDofs; ++i) left[i] = r[kFrameDofs * node + i] - Kd.v[i];
+  FASCIA_HD void operator()(int node, const Sums<N>& Kd) const {
+    double left[N];
+    const int first = smoother.nodes.begin(node), n = smoother.nodes.size(node);
+    for (int i = 0; i < N; ++i) left[i] = i < n ? r[first + i] - Kd.v[i] : 0;
     smoother.finish(node, left, d, x);
   }
 };
 
-/// Ends a FrameProduct of x: r = b − K x.
-struct FrameDifference {
+/// Ends a product of x: r = b − K x.
+template <int N>
+struct Difference {
+  LevelNodes nodes;
   const double* b;
   double* r;
-  FASCIA_HD void operator()(int node, const Sums<kFrameDofs>& Kx) const {
-    for (int i = 0; i < kFrameDofs; ++i) r[kFrameDofs * node + i] = b[kFrameDofs * node + i] - Kx.v[i];
+  FASCIA_HD void operator()(int node, const Sums<N>& Kx) const {
+    const int first = nodes.begin(node), n = nodes.size(node);
+    for (int i = 0; i < N; ++i)
+      if (i < n) r[first + i] = b[first + i] - Kx.v[i];
   }
 };
 
@@ -157,7 +153,7 @@ struct Prolong {
   double* x;
   FASCIA_HD void operator()(int node) const {
     const int first = nodes.begin(node), n = nodes.size(node);
-    const double* block = P.values + P.value_begin[node];
+    const double* block = P.block(node, P.begin[node], n);
     for (int k = P.begin[node]; k < P.begin[node + 1]; ++k, block += n * kFrameDofs) {
       const double* of = coarse + kFrameDofs * P.column[k];
       for (int i = 0; i < n; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/solver/blocks_or_levels.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/drivers.hpp"
 #include "core/solver/kept_levels.hpp"
@@ -90,6 +91,7 @@ class System {
  private:
   /// Times the usual limit of conjugate gradients that a slender body may take.
   static constexpr int kPatience = 20;
+  BlocksOrLevels::Costs costs_of_levels() const;
 
   kernels::StepView step_view();
   kernels::ForceView force_view();
@@ -129,18 +131,18 @@ class System {
   const Mat3d* linearize_blocks(Tangent tangent, const TakenStepView& taken);
   double note_direction();
   template <class T, class V>
-  void apply_tangent(const CgView<V>& v, bool fluids = true);
+  void apply_tangent(const CgView<V>& v);
   template <class T, class V>
   void multiply(const kernels::ProductView<T, V>& w);
   template <class T, class V>
-  void gather_product(const kernels::ProductView<T, V>& w, bool fluids = true);
+  void gather_product(const kernels::ProductView<T, V>& w);
   std::string not_in_tiles() const;
   /// @throws NotShared
   void make_tiles();
   /// Tiles compute the tangent of this step. They know the strains at the start of a step, and no others.
-  /// Levels take their place for good: a fallback from levels finds no other tangent than theirs.
+  /// Levels take their place: a fallback from levels finds no other tangent than theirs.
   bool use_tiles() const {
-    return tiles_ != nullptr && !levels_pay_ &&
+    return tiles_ != nullptr && !blocks_or_levels_.levels() &&
            (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
   }
   std::uint64_t operator_key();
@@ -153,13 +155,15 @@ class System {
   }
   bool use_levels() const {
     const bool asked = settings_.preconditioner == Preconditioner::multigrid;
-    return levels_fit_ && (asked || (levels_pay_ && !kept_levels_.fail()));
+    return levels_fit_ && (asked || (blocks_or_levels_.levels() && !kept_levels_.fail()));
   }
   CgReport solve(const CgOptions& options, bool has_material = true);
   CgReport solve_by_blocks(const CgOptions& options);
   CgReport solve_by_levels(const CgOptions& options, bool has_material);
   bool make_levels(bool material);
   bool levels_may_pay() const;
+  CgOptions before_levels() const;
+  void note_cost_of_levels(int iterations, int made_before);
   bool limit_is_guessed() const {
     return settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations == CgOptions{}.max_iterations;
   }
@@ -254,7 +258,7 @@ class System {
   Levels<Space> levels_;
   KeptLevels kept_levels_;
   Array<Space, double> kept_rhs_;  ///< of solves that may begin again
-  bool levels_pay_ = false;        ///< an automatic preconditioner has found blocks slow
+  BlocksOrLevels blocks_or_levels_{costs_of_levels()};  ///< of an automatic preconditioner
   bool levels_fit_ = true;         ///< into memory
 };
 

@@ -86,9 +86,10 @@ std::optional<CgReport> System<Space>::solve_unsymmetric(const CgOptions& asked)
 /// which would make runs differ.
 template <class Space>
 bool System<Space>::host_is_faster(int iterations) {
-  constexpr double kIteration = 2e-5, kUnknown = 3e-6, kOperation = 2e-10;  // seconds each
-  if (too_slow_ || !host_may_solve()) return false;
-  const double iterating = kIteration * iterations, assembling = kUnknown * model_.free_dof_count();
+  constexpr double kInTiles = 2e-5, kIteration = 5e-5, kUnknown = 3e-6, kOperation = 2e-10;  // seconds each
+  if (too_slow_ || !host_may_solve() || use_levels()) return false;
+  const double iterating = (use_tiles() ? kInTiles : kIteration) * iterations,
+               assembling = kUnknown * model_.free_dof_count();
   if (iterating <= 2 * assembling) return false;  // nor where all is prescribed, and there is nothing to solve
   return iterating > 2 * (assembling + kOperation * host().tangent().order().flops);
 }

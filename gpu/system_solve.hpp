@@ -93,10 +93,10 @@ void System<Space>::linearize_tiles(Tangent tangent) {
   if (settings_.preconditioner != Preconditioner::none) tiles_->build_preconditioner();
 }
 
-/// v.Ap = K v.p in constraint axes, with the next direction in v.p. @param fluids  with those that are enclosed
+/// v.Ap = K v.p in constraint axes, with the next direction in v.p.
 template <class Space>
 template <class T, class V>
-void System<Space>::apply_tangent(const CgView<V>& v, bool fluids) {
+void System<Space>::apply_tangent(const CgView<V>& v) {
   const kernels::ProductView<T, V> w = product_view<T, V>();
   const int n = w.m.nodes.count;
   const kernels::FinishProduct<V> finish{w.m, v, w.y};
@@ -109,7 +109,7 @@ void System<Space>::apply_tangent(const CgView<V>& v, bool fluids) {
   }
   Space::for_each(n, kernels::NextDirection<double, double, V>{product_view<double, double>(), v});
   multiply(w);
-  gather_product(w, fluids);
+  gather_product(w);
   Space::template sum<1>(n, finish, kernels::TakeCurvature<V>{v});
 }
 
@@ -125,12 +125,12 @@ void System<Space>::multiply(const kernels::ProductView<T, V>& w) {
 
 template <class Space>
 template <class T, class V>
-void System<Space>::gather_product(const kernels::ProductView<T, V>& w, bool fluids) {
+void System<Space>::gather_product(const kernels::ProductView<T, V>& w) {
   const DirectionView direction = product_view<double, double>().direction();
   Space::for_each(w.m.nodes.count, kernels::GatherProduct<T, V>{w, blocks_.template view_of<T>()});
   if (!surfaces_.empty()) surfaces_.add_product(w.m.nodes, w.Q, direction, w.y);
   if (!dependents_.empty()) dependents_.transfer(w.m.nodes, w.y, nullptr);
-  if (!surfaces_.empty() && fluids) surfaces_.add_volume_product(direction.d, w.y);
+  if (!surfaces_.empty()) surfaces_.add_volume_product(direction.d, w.y);
 }
 
 /// Another one wherever the loops of a product must be recorded anew.
@@ -239,7 +239,8 @@ DirectionReport System<Space>::direction() {
   const Clock::time_point start = Clock::now();
   CgOptions options = solve_options();
   const bool may_change = levels_may_pay();
-  if (may_change) options.max_iterations = settings_.cg.max_iterations;
+  const int made_before = kept_levels_.made();
+  if (may_change) options = before_levels();
   const auto solved = [&] {
     right_hand_side();
     if (whole) {
@@ -252,11 +253,14 @@ DirectionReport System<Space>::direction() {
   if (cg.status == CgStatus::limit && may_change) {
     const int tried = cg.iterations;
     const bool in_tiles = use_tiles();
-    levels_pay_ = true;
+    blocks_or_levels_.turn_to_levels();
     if (in_tiles) linearize(settings_.tangent, true);
     options = solve_options();
     cg = solved();
+    note_cost_of_levels(cg.iterations, made_before);
     cg.iterations += tried;
+  } else {
+    note_cost_of_levels(cg.iterations, made_before);
   }
   const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;
   if (host_is_faster(cg.iterations)) too_slow_ = true;

@@ -5,6 +5,7 @@
 #include "core/solver/block_matrix.hpp"
 #include "core/solver/dof_filter.hpp"
 
+#include <algorithm>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -43,6 +44,11 @@ class FineRows {
 
   int rows() const { return matrix_.rows(); }
   int size(int row) const { return matrix_.dofs().size(row); }
+  int largest_size() const {
+    int largest = 0;
+    for (int row = 0; row < rows(); ++row) largest = std::max(largest, size(row));
+    return largest;
+  }
   int begin(int row) const { return matrix_.dofs().begin(row); }
   unsigned fixed(int row) const { return fixed_[at(row)]; }
 

@@ -36,6 +36,7 @@ class KeptLevels {
     iterations_ = 0;
     if (!material_first_ || !has_material) {
       CgReport report{not_finite, 0, 0, 0};
+      ++made_;
       if (make(false)) report = solve(false, options);
       if (report.status == converged && report.iterations > 0) {
         iterations_ = report.iterations;
@@ -46,6 +47,7 @@ class KeptLevels {
       before += report.iterations;
       if (!has_material && report.status == negative_curvature) return counted(report);
     }
+    if (has_material) ++made_;
     if (has_material && make(true)) {
       const CgReport report = solve(true, options);
       material_first_ = report.status == negative_curvature;
@@ -60,11 +62,14 @@ class KeptLevels {
 
   /// Levels were of no use in one solve after another: making them again costs more than it can bring.
   bool fail() const { return failures_ >= 2; }
+  /// How often levels were made.
+  int made() const { return made_; }
 
  private:
   int iterations_ = 0;           ///< that the levels took when they were made; 0: not made, or of no use
   double tolerance_ = 0;         ///< that those were made for
   int failures_ = 0;             ///< solves in a row that blocks had to do
+  int made_ = 0;
   bool material_first_ = false;  ///< the last tangent was indefinite
 };
 

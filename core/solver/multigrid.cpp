@@ -340,6 +340,7 @@ Multigrid::LevelView Multigrid::level(std::size_t depth) const {
           l.largest,
           l.inverse,
           l.matrix ? &l.matrix->blocks() : nullptr,
+          depth == 0 ? fine_.get() : nullptr,
           l.P.rows() > 0 ? &l.P : nullptr};
 }
 

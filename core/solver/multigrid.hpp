@@ -64,6 +64,7 @@ class Multigrid {
     double largest = 0;                 ///< eigenvalue of D⁻¹ K
     std::span<const double> inverse;    ///< D⁻¹, by node
     const BlockRows* matrix = nullptr;  ///< none of the finest
+    const FineRows* fine = nullptr;     ///< of the finest alone, values of the tangent as it was assembled last
     const BlockRows* P = nullptr;       ///< from the next coarser level; none of the coarsest
   };
   std::size_t level_count() const { return levels_.size(); }

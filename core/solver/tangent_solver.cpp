@@ -76,7 +76,7 @@ bool TangentSolver::direct() {
 SolverChoice TangentSolver::choice() const {
   SolverChoice made;
   made.direct = direct_.value_or(true);
-  made.preconditioner = levels_pay_ && !kept_levels_.fail() ? Preconditioner::multigrid : settings_.preconditioner;
+  made.preconditioner = levels_are_taken() ? Preconditioner::multigrid : settings_.preconditioner;
   if (multigrid_) made.levels = multigrid_->level_sizes();
   if (!order_) return made;
   made.flops = order_->flops;
@@ -321,15 +321,22 @@ CgReport TangentSolver::solve_by_factor(const CpuVectors::Vector& b, CpuVectors:
 /// no factor takes over and the limit is not a budget that the user set. Where the program chose conjugate gradients
 /// itself, they do as soon as they are likely to be cheaper.
 CgReport TangentSolver::solve_by_either(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options) {
-  if (levels_pay_ && !kept_levels_.fail()) return solve_by_multigrid(b, x, options);
+  const auto by_levels = [&] {
+    const int made = kept_levels_.made();
+    const CgReport cg = solve_by_multigrid(b, x, options);
+    blocks_or_levels_.took(cg.iterations, kept_levels_.made() - made);
+    return cg;
+  };
+  if (levels_are_taken()) return by_levels();
   const bool budget = options.max_iterations < kEnoughForBulk, chosen = settings_.linear == LinearMethod::automatic;
   CgOptions first = options;
-  if (chosen && !budget && !levels_pay_) first.max_iterations = kBeforeLevels;
+  if (chosen && !budget && !kept_levels_.fail())
+    first.max_iterations = std::min(options.max_iterations, blocks_or_levels_.patience());
   const CgReport tried = solve_by_blocks(b, x, first);
-  if (tried.status != CgStatus::limit || budget || levels_pay_) return tried;
+  if (tried.status != CgStatus::limit || budget || kept_levels_.fail()) return tried;
   if (!chosen && gives_way_to_factor(options.max_iterations)) return tried;
-  levels_pay_ = true;
-  CgReport cg = solve_by_multigrid(b, x, options);
+  blocks_or_levels_.turn_to_levels();
+  CgReport cg = by_levels();
   cg.iterations += tried.iterations;
   return cg;
 }

@@ -4,6 +4,7 @@
 #include "core/solver/cholesky.hpp"
 #include "core/solver/dependents.hpp"
 #include "core/solver/dof_filter.hpp"
+#include "core/solver/blocks_or_levels.hpp"
 #include "core/solver/kept_levels.hpp"
 #include "core/solver/low_rank.hpp"
 #include "core/solver/multigrid.hpp"
@@ -53,9 +54,6 @@ class TangentSolver {
   /// the iterations that a bulky body needs with blocks, or of 40 cycles with their levels, where a factor's operations
   /// run four times as fast as those of products, which wait for memory.
   static constexpr double kFlopsPerNumber = 2000;
-  /// Iterations with blocks before levels take their place where the program chooses the solver itself: half of what a
-  /// solve with levels costs, which makes them (40 products with the matrix) and takes 10 to 25 cycles of 5.
-  static constexpr int kBeforeLevels = 60;
 
   TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter, const SolverSettings& settings);
 
@@ -123,6 +121,7 @@ class TangentSolver {
   CgReport solve_with_levels(Multigrid& levels, const CpuVectors::Vector& b, CpuVectors::Vector& x,
                              const CgOptions& options);
   CgReport solve_by_multigrid(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
+  bool levels_are_taken() const { return blocks_or_levels_.levels() && !kept_levels_.fail(); }
   CgReport solve_by_blocks(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
   CgReport solve_by_factor(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
   CgReport solve_by_either(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options);
@@ -163,7 +162,7 @@ class TangentSolver {
   std::optional<bool> direct_;
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;
-  bool levels_pay_ = false;  ///< an automatic preconditioner has found blocks slow
+  BlocksOrLevels blocks_or_levels_{{.cycle = 5, .making = 40}};  ///< of an automatic preconditioner
   double shift_ = 0;         ///< of the last factorisation that needed one
   bool shifted_ = false;     ///< the last factor is such
   std::optional<Multigrid> multigrid_, material_multigrid_;

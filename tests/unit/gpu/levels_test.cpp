@@ -25,7 +25,7 @@ void expect_same_cycle(Model model, const char* name) {
     const std::vector<double> r = t.random_force(seed);
     std::vector<double> expected(n), got(n);
     made.precondition(r, expected);
-    levels.cycle(r.data(), got.data(), [&](double* x, double* y) { t.multiply(std::span(x, n), std::span(y, n)); });
+    levels.cycle(r.data(), got.data());
     double error = 0, size = 0;
     for (std::size_t i = 0; i < n; ++i) {
       error = std::max(error, std::abs(got[i] - expected[i]));
@@ -89,7 +89,7 @@ TEST(LevelsTest, AreTakenAgain) {
     const std::vector<double> r = t.random_force(1);
     std::vector<double> expected(n), got(n);
     made.precondition(r, expected);
-    levels.cycle(r.data(), got.data(), [&](double* x, double* y) { t.multiply(std::span(x, n), std::span(y, n)); });
+    levels.cycle(r.data(), got.data());
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(got[i], expected[i], 1e-11 * std::abs(expected[i]) + 1e-15);
   }
 }

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+
+namespace fascia {
+
+/// Chooses between blocks and levels of rigid frames as preconditioner where the user leaves it open. Iterations are
+/// counted, no clock is read, so that a run can be repeated.
+///
+/// Blocks go first, for about half as long as levels would take: whichever is right, little more than twice its time is
+/// spent. Levels that turn out far more expensive hand back to blocks, which may then take as long as those did.
+class BlocksOrLevels {
+ public:
+  /// Both in iterations with blocks.
+  struct Costs {
+    double cycle = 5;    ///< an iteration with levels
+    double making = 40;  ///< of levels
+  };
+  explicit BlocksOrLevels(const Costs& costs) : costs_(costs), patience_((costs.making + kCycles * costs.cycle) / 2) {}
+
+  bool levels() const { return levels_; }
+  /// Iterations that blocks get in a solve before levels take their place.
+  int patience() const { return static_cast<int>(std::min(patience_, 1e9)); }
+  void turn_to_levels() {
+    levels_ = true;
+    solves_ = 0;
+  }
+  /// Of a solve with levels. @param made  how often levels were made for it
+  void took(int iterations, int made) {
+    const double cost = costs_.cycle * iterations + costs_.making * made;
+    recent_ = solves_ == 0 ? cost : recent_ + (cost - recent_) / kMemory;
+    if (++solves_ < kMemory || recent_ < kTooMuch * patience_) return;
+    levels_ = false;
+    patience_ = recent_;
+  }
+
+ private:
+  static constexpr double kCycles = 16;  ///< of a solve
+  static constexpr int kMemory = 4;      ///< solves
+  static constexpr double kTooMuch = 4;
+
+  Costs costs_;
+  double patience_;
+  double recent_ = 0;  ///< cost of a solve with levels, a moving average
+  int solves_ = 0;     ///< with levels in a row
+  bool levels_ = false;
+};
+
+}  // namespace fascia
