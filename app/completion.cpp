@@ -1,6 +1,6 @@
 #include "app/completion.hpp"
 
-#include "app/scene/schema.hpp"
+#include "app/schema/schema.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,11 +1,11 @@
 #include "app/list.hpp"
 
-#include "app/probes.hpp"
-#include "app/run_scene.hpp"
+#include "app/results/probes.hpp"
+#include "app/run/run_scene.hpp"
 #include "app/scene/document.hpp"
-#include "app/scene/schema.hpp"
 #include "app/scene/units.hpp"
-#include "core/model/errors.hpp"
+#include "app/schema/schema.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/machine.hpp"
 
 #include "app/version.hpp"
-#include "core/cpu/thread_pool.hpp"
+#include "core/base/thread_pool.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 
 #include "app/compare/arrays.hpp"
 #include "app/machine.hpp"
-#include "app/messages.hpp"
-#include "app/run_scene.hpp"
-#include "core/model/errors.hpp"
+#include "app/run/messages.hpp"
+#include "app/run/run_scene.hpp"
+#include "core/base/errors.hpp"
 #include "io/digest.hpp"
 
 #include <fmt/format.h>

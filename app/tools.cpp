@@ -1,8 +1,8 @@
 #include "app/tools.hpp"
 
 #include "app/tools_tag.hpp"
-#include "core/model/errors.hpp"
-#include "gpu/loaded_module.hpp"
+#include "core/base/errors.hpp"
+#include "gpu/run/loaded_module.hpp"
 
 #include <fmt/format.h>
 

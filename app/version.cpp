@@ -1,6 +1,6 @@
 #include "app/version.hpp"
 
-#include "gpu/device_functions.hpp"
+#include "gpu/run/device_functions.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/cpu/executor.hpp"
+#include "core/executor/executor.hpp"
 #include "tests/support/shell_models.hpp"
 #include "tests/unit/fem/element_models.hpp"
 

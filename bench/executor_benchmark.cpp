@@ -1,4 +1,4 @@
-#include "core/cpu/executor.hpp"
+#include "core/executor/executor.hpp"
 #include "tests/support/models.hpp"
 
 #include <benchmark/benchmark.h>

@@ -1,11 +1,11 @@
 // Stages of the time steps of a scene: step_benchmark SCENE [--set KEY=VALUE]...
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/solver_settings.hpp"
 #include "app/scene/errors.hpp"
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "core/model/errors.hpp"
-#include "core/solver/clock.hpp"
-#include "core/solver/drivers.hpp"
+#include "core/base/clock.hpp"
+#include "core/base/errors.hpp"
+#include "core/run/drivers.hpp"
 
 #include <fmt/format.h>
 

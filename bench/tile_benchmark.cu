@@ -1,9 +1,9 @@
 #include "bench/tile_problem.hpp"
-#include "core/cpu/thread_pool.hpp"
-#include "core/solver/positive_inverse.hpp"
-#include "core/solver/vectors.hpp"
-#include "gpu/tile_memory.cuh"
-#include "gpu/tile_solver.hpp"
+#include "core/base/thread_pool.hpp"
+#include "core/linear/vectors.hpp"
+#include "core/node/positive_inverse.hpp"
+#include "gpu/tiles/tile_memory.cuh"
+#include "gpu/tiles/tile_solver.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -2,9 +2,9 @@
 
 #include "core/math/rotation.hpp"
 #include "core/physics/point_physics.hpp"
-#include "gpu/tile_points.hpp"
+#include "gpu/tiles/tile_points.hpp"
 
-#include "core/cpu/thread_pool.hpp"
+#include "core/base/thread_pool.hpp"
 
 #include <algorithm>
 #include <array>

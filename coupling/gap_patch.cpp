@@ -1,7 +1,7 @@
 #include "coupling/gap_patch.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/surface_edges.hpp"
-#include "core/math/index.hpp"
 
 #include <algorithm>
 #include <map>

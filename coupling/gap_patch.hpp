@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "coupling/gap_sides.hpp"
 
 /// The first side of a gap, joined to the second; for the files of gaps only.

@@ -1,7 +1,7 @@
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/text.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 #include "coupling/gap_sides.hpp"
 #include "coupling/rigid_body.hpp"
 

@@ -1,5 +1,5 @@
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "coupling/gap_sides.hpp"
 
 #include <algorithm>

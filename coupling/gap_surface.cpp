@@ -1,6 +1,6 @@
 #include "coupling/gap_surface.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <algorithm>
 #include <map>

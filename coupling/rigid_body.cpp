@@ -1,10 +1,10 @@
 #include "coupling/rigid_body.hpp"
 
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/text.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 
 #include <cmath>
 

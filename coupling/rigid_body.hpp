@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/body/model_body.hpp"
 #include "core/geometry/triangle_tree.hpp"
-#include "core/model/model_body.hpp"
 
 #include <memory>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "coupling/surface_body.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
-#include "core/math/index.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,9 +1,9 @@
 #include "fem/element_body.hpp"
 
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/space_order.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 #include "fem/quadrature.hpp"
 #include "fem/quality.hpp"
 

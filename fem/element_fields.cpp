@@ -1,4 +1,4 @@
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "core/math/polar.hpp"
 #include "core/physics/element_law.hpp"
 #include "fem/element_body.hpp"

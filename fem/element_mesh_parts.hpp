@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "fem/element_mesh.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "fem/element_shape.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 namespace fascia {
 namespace {

@@ -1,8 +1,8 @@
 #include "fem/from_mesh.hpp"
 
+#include "core/base/errors.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/weld.hpp"
-#include "core/model/errors.hpp"
 #include "fem/from_mesh_parts.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "fem/from_mesh_parts.hpp"
 
 namespace fascia::from_mesh_parts {

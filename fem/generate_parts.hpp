@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "fem/generate.hpp"
 
 #include <string>

@@ -1,4 +1,4 @@
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "core/math/mat3.hpp"
 #include "fem/locator.hpp"
 

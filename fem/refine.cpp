@@ -1,6 +1,6 @@
 #include "fem/refine.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "fem/element_mesh_parts.hpp"
 
 #include <algorithm>

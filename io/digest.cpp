@@ -1,6 +1,6 @@
 #include "io/digest.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <sha256.h>
 

@@ -1,6 +1,6 @@
 #include "io/directory_lock.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 #include "io/files.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <cerrno>
 #include <cstdio>

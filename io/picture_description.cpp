@@ -1,6 +1,6 @@
 #include "io/picture_description.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "io/quantity.hpp"
 

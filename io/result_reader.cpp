@@ -1,8 +1,8 @@
 #include "io/result_reader.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
-#include "io/text_numbers.hpp"
+#include "io/mesh/text_numbers.hpp"
 #include "io/vtk_errors.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "io/result_writer.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "io/vtk_errors.hpp"
 #include "io/vtk_threads.hpp"

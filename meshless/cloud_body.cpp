@@ -1,8 +1,8 @@
 #include "meshless/cloud_body.hpp"
 
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 #include "meshless/cloud_parts.hpp"
 #include "meshless/gauss.hpp"
 

@@ -1,8 +1,8 @@
 #include "core/geometry/bounds.hpp"
 #include "meshless/cloud_body.hpp"
 
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 
 #include <algorithm>
 #include <map>

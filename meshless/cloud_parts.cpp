@@ -1,8 +1,8 @@
 #include "meshless/cloud_parts.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/triangle_tree.hpp"
-#include "core/math/index.hpp"
 #include "meshless/gauss.hpp"
 
 #include <algorithm>

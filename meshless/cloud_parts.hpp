@@ -1,7 +1,7 @@
 #pragma once
 
 #include "meshless/cloud_build.hpp"
-#include "meshless/scatter.hpp"
+#include "meshless/scattered/scatter.hpp"
 
 /// Steps of scatter_cloud() and grid_cloud().
 namespace fascia {

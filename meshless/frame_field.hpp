@@ -1,7 +1,7 @@
 #pragma once
 
-#include "meshless/neighbours.hpp"
-#include "meshless/scattered_weights.hpp"
+#include "meshless/scattered/neighbours.hpp"
+#include "meshless/scattered/scattered_weights.hpp"
 
 #include <array>
 #include <functional>

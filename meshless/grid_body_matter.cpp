@@ -1,8 +1,8 @@
 #include "meshless/grid_body.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "meshless/weights.hpp"
 
 #include <algorithm>

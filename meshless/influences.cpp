@@ -1,7 +1,7 @@
 #include "meshless/influences.hpp"
 
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "meshless/cloud_parts.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/model_body.hpp"
+#include "core/body/model_body.hpp"
 #include "meshless/shared_frame.hpp"
 
 #include <span>

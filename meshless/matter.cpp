@@ -1,9 +1,9 @@
 #include "meshless/matter.hpp"
 
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "meshless/matter_parts.hpp"
-#include "meshless/point_grid.hpp"
+#include "meshless/scattered/point_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

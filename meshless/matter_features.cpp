@@ -1,4 +1,4 @@
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "meshless/matter_parts.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "core/math/index.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
-#include "core/model/errors.hpp"
 #include "meshless/matter_parts.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
 #include "core/geometry/surface_touching.hpp"
 #include "core/geometry/text.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 #include "shells/shell_mesh.hpp"
 #include "shells/surface_checks.hpp"
 

@@ -1,8 +1,8 @@
 #include "shells/generate.hpp"
 
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/primitives.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 #include "shells/generate_cap.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "shells/generate_cap.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "shells/refine.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #include "shells/shell_body.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/space_order.hpp"
-#include "core/math/index.hpp"
 #include "core/math/rotation.hpp"
 #include "shells/surface_checks.hpp"
 

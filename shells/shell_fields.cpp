@@ -1,4 +1,4 @@
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "core/physics/shell_triangle.hpp"
 #include "core/physics/von_mises.hpp"
 #include "shells/shell_body.hpp"

@@ -1,9 +1,9 @@
 #include "shells/surface_checks.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/text.hpp"
-#include "core/math/index.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
+#include "core/base/index.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/text.hpp"
-#include "core/math/index.hpp"
 #include "shells/surface_checks.hpp"
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 #include "app/bench/benchmark.hpp"
-#include "app/run_scene.hpp"
-#include "app/solver_settings.hpp"
-#include "core/model/errors.hpp"
-#include "core/solver/clock.hpp"
-#include "core/solver/drivers.hpp"
-#include "gpu/device.hpp"
-#include "gpu/run.hpp"
+#include "app/run/run_scene.hpp"
+#include "app/run/solver_settings.hpp"
+#include "core/base/clock.hpp"
+#include "core/base/errors.hpp"
+#include "core/run/drivers.hpp"
+#include "gpu/run/run.hpp"
+#include "gpu/space/device.hpp"
 
 #include <fmt/format.h>
 
@@ -74,21 +74,21 @@ StepTimes run_on_gpu(const Simulation& s, const StepPlan& plan, const std::vecto
   return std::move(watch).times(report);
 }
 
-Backend cpu(int threads) {
+BenchBackend cpu(int threads) {
   return {"cpu", threads,
           [threads](const Simulation& s, const StepPlan& plan) { return run_on_cpu(s, plan, threads); }};
 }
 
 }  // namespace
 
-std::string Backend::label() const {
+std::string BenchBackend::label() const {
   if (gpus > 1) return fmt::format("{}, {} GPUs", name, gpus);
   return threads == 0 ? name : fmt::format("{}, {} thread{}", name, threads, threads == 1 ? "" : "s");
 }
 
-std::vector<Backend> available_backends(int threads, const std::vector<int>& gpus) {
+std::vector<BenchBackend> available_backends(int threads, const std::vector<int>& gpus) {
   const int all = threads > 0 ? threads : ThreadPool(0).size();
-  std::vector<Backend> backends{cpu(1)};
+  std::vector<BenchBackend> backends{cpu(1)};
   if (all > 1) backends.push_back(cpu(all));
   std::string reason;
   const bool has_gpu = gpu::find_device(reason);
@@ -105,15 +105,15 @@ std::vector<Backend> available_backends(int threads, const std::vector<int>& gpu
   return backends;
 }
 
-std::vector<Backend> chosen_backends(const BenchOptions& options) {
+std::vector<BenchBackend> chosen_backends(const BenchOptions& options) {
   const bool many = std::any_of(options.gpus.begin(), options.gpus.end(), [](int count) { return count > 1; });
   if (options.backend == "cpu" && many)
     throw InputError("--gpus does not go with --backend cpu; leave out one of them");
   std::string reason;
   if (options.backend == "cuda" && !gpu::find_device(reason))
     throw BackendError(fmt::format("{}; leave out --backend", reason));
-  std::vector<Backend> backends = available_backends(options.threads, options.gpus);
-  std::erase_if(backends, [&](const Backend& b) { return options.backend && b.name != *options.backend; });
+  std::vector<BenchBackend> backends = available_backends(options.threads, options.gpus);
+  std::erase_if(backends, [&](const BenchBackend& b) { return options.backend && b.name != *options.backend; });
   return backends;
 }
 

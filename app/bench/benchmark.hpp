@@ -1,7 +1,7 @@
 #pragma once
 
+#include "app/assembly/simulation.hpp"
 #include "app/bench/command.hpp"
-#include "app/simulation.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -56,7 +56,7 @@ struct StepTimes {
 };
 
 /// Something that can take a scene's time steps.
-struct Backend {
+struct BenchBackend {
   std::string name;  ///< "cpu", "cuda"
   int threads = 0;   ///< of the host; 0: not a number that matters
   std::function<StepTimes(const Simulation&, const StepPlan&)> run;
@@ -67,7 +67,7 @@ struct Backend {
 
 /// The backends of this build on this machine: the processor with one thread and with `threads` (0: all), the GPU, and
 /// as many of them together as each of `gpus` says. @throws BackendError  there are not as many
-std::vector<Backend> available_backends(int threads, const std::vector<int>& gpus = {1});
+std::vector<BenchBackend> available_backends(int threads, const std::vector<int>& gpus = {1});
 
 /// One case on one backend.
 struct Measurement {
@@ -95,7 +95,7 @@ struct BenchmarkResult {
 };
 
 /// Those that the options choose. @throws BackendError  where there are none
-std::vector<Backend> chosen_backends(const BenchOptions& options);
+std::vector<BenchBackend> chosen_backends(const BenchOptions& options);
 
 /// Cases that the options choose; what is above the limit goes to `skipped`.
 /// @throws InputError  a size that the benchmark does not have
@@ -105,7 +105,7 @@ std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchO
 /// Times the cases on the backends. A case that does not fit into memory is skipped, and the result says so.
 /// @param say  is told what is being done
 BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& options,
-                               const std::vector<Backend>& backends,
+                               const std::vector<BenchBackend>& backends,
                                const std::function<void(const std::string&)>& say);
 
 }  // namespace fascia::app

@@ -1,8 +1,8 @@
 #include "app/bench/benchmark.hpp"
 #include "app/bench/report.hpp"
-#include "app/messages.hpp"
-#include "app/run_scene.hpp"
-#include "core/model/errors.hpp"
+#include "app/run/messages.hpp"
+#include "app/run/run_scene.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -18,7 +18,7 @@ std::string milliseconds(double ms) { return ms >= 100 ? fmt::format("{:.0f}", m
 
 std::string milliseconds(const std::optional<double>& ms) { return ms ? milliseconds(*ms) : "-"; }
 
-std::string label(const Measurement& m) { return Backend{m.backend, m.threads, {}, m.gpus}.label(); }
+std::string label(const Measurement& m) { return BenchBackend{m.backend, m.threads, {}, m.gpus}.label(); }
 
 /// Backends in the order of their first row.
 std::vector<std::string> labels(const BenchmarkResult& result) {

@@ -1,10 +1,10 @@
 #include "app/bench/benchmark.hpp"
-#include "app/memory.hpp"
-#include "app/process_memory.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/memory.hpp"
+#include "app/run/process_memory.hpp"
 #include "app/scene/errors.hpp"
-#include "app/scene/parse.hpp"
-#include "core/model/errors.hpp"
-#include "gpu/device.hpp"
+#include "core/base/errors.hpp"
+#include "gpu/space/device.hpp"
 
 #include <fmt/format.h>
 
@@ -54,7 +54,7 @@ Measurement describe(const BenchmarkCase& c, const Simulation& s) {
   return m;
 }
 
-Measurement measured(Measurement m, const Backend& backend, const StepTimes& t) {
+Measurement measured(Measurement m, const BenchBackend& backend, const StepTimes& t) {
   m.backend = backend.name;
   m.threads = backend.threads;
   m.gpus = backend.gpus;
@@ -120,7 +120,7 @@ std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchO
 }
 
 BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& options,
-                               const std::vector<Backend>& backends,
+                               const std::vector<BenchBackend>& backends,
                                const std::function<void(const std::string&)>& say) {
   BenchmarkResult result{benchmark.name, benchmark.title, benchmark.notes, {}, {}};
   StepPlan plan;
@@ -134,7 +134,7 @@ BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& o
       continue;
     }
     const Measurement description = describe(c, *simulation);
-    for (const Backend& backend : backends) {
+    for (const BenchBackend& backend : backends) {
       say(fmt::format("{}: {}", c.name, backend.label()));
       try {
         result.rows.push_back(measured(description, backend, backend.run(*simulation, plan)));

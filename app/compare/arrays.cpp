@@ -1,7 +1,7 @@
 #include "app/compare/arrays.hpp"
 
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "io/files.hpp"
 #include "io/result_reader.hpp"
 

@@ -1,6 +1,6 @@
 #include "app/compare/cloud_field.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "app/compare/command.hpp"
 
 #include "app/compare/report.hpp"
-#include "app/run_scene.hpp"
+#include "app/run/run_scene.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 #include "app/compare/comparison.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
 #include "app/compare/fields.hpp"
 
 #include "app/compare/arrays.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "io/quantity.hpp"
 
 #include <fmt/format.h>

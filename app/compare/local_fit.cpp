@@ -1,7 +1,7 @@
 #include "app/compare/local_fit.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
-#include "core/math/index.hpp"
 
 #include <Eigen/QR>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/math/vec3.hpp"
-#include "meshless/point_grid.hpp"
+#include "meshless/scattered/point_grid.hpp"
 
 #include <utility>
 #include <vector>

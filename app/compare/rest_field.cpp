@@ -1,8 +1,8 @@
 #include "app/compare/rest_field.hpp"
 
 #include "app/compare/cloud_field.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "fem/locator.hpp"
 #include "fem/quadrature.hpp"
 

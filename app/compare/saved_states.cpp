@@ -1,7 +1,7 @@
 #include "app/compare/saved_states.hpp"
 
 #include "app/compare/arrays.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/result_reader.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "app/compare/settings.hpp"
 
+#include "app/reader/overrides.hpp"
 #include "app/scene/diagnostics.hpp"
 #include "app/scene/document.hpp"
-#include "app/scene/overrides.hpp"
 #include "app/scene/units.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/diagnosis/failure.hpp"
-#include "app/results.hpp"
-#include "app/run_result.hpp"
-#include "core/math/index.hpp"
+#include "app/results/results.hpp"
+#include "app/results/run_result.hpp"
+#include "core/base/index.hpp"
 #include "io/result_directory.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "app/diagnosis/failure.hpp"
 
 #include "app/diagnosis/places.hpp"
-#include "core/math/index.hpp"
-#include "core/solver/dof_filter.hpp"
+#include "core/base/index.hpp"
+#include "core/node/dof_filter.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/simulation.hpp"
-#include "core/solver/drivers.hpp"
+#include "app/assembly/simulation.hpp"
+#include "core/run/drivers.hpp"
 
 #include <nlohmann/json.hpp>
 

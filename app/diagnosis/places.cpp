@@ -1,6 +1,6 @@
 #include "app/diagnosis/places.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "app/diagnosis/step_limit.hpp"
 
 #include "app/diagnosis/places.hpp"
-#include "app/readable.hpp"
-#include "core/math/index.hpp"
-#include "core/solver/explicit_dynamics.hpp"
+#include "app/plausible/readable.hpp"
+#include "core/base/index.hpp"
+#include "core/run/explicit_dynamics.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/simulation.hpp"
+#include "app/assembly/simulation.hpp"
 #include "core/solver/mechanical_system.hpp"
 
 #include <string>

@@ -1,8 +1,8 @@
 #include "app/diagnosis/thickness.hpp"
 
-#include "app/readable.hpp"
+#include "app/plausible/readable.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
-#include "core/math/index.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/model.hpp"
+#include "core/structure/model.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -2,10 +2,10 @@
 
 #include "app/estimate/measure.hpp"
 #include "app/estimate/twin_runs.hpp"
-#include "app/probes.hpp"
-#include "app/readable.hpp"
-#include "app/scene/parse.hpp"
-#include "core/solver/clock.hpp"
+#include "app/plausible/readable.hpp"
+#include "app/reader/parse.hpp"
+#include "app/results/probes.hpp"
+#include "core/base/clock.hpp"
 
 #include <fmt/format.h>
 

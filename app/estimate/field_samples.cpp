@@ -1,6 +1,6 @@
 #include "app/estimate/field_samples.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 #include "app/estimate/series.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "io/result_reader.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "app/estimate/twin_runs.hpp"
 
 #include "app/study/child_run.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "io/result_directory.hpp"
 

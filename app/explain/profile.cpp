@@ -1,7 +1,7 @@
 #include "app/explain/profile.hpp"
 
-#include "core/math/index.hpp"
-#include "core/solver/dof_filter.hpp"
+#include "core/base/index.hpp"
+#include "core/node/dof_filter.hpp"
 
 #include <algorithm>
 

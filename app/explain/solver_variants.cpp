@@ -1,7 +1,7 @@
 #include "app/estimate/resolution.hpp"
 #include "app/explain/variants.hpp"
+#include "app/reader/parse.hpp"
 #include "app/scene/errors.hpp"
-#include "app/scene/parse.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/explain/suggestions.hpp"
 
+#include "app/reader/parse.hpp"
 #include "app/scene/errors.hpp"
-#include "app/scene/parse.hpp"
 #include "app/study/tables.hpp"
 
 #include <fmt/format.h>

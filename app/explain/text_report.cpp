@@ -1,6 +1,6 @@
 #include "app/explain/report.hpp"
 #include "app/explain/turns.hpp"
-#include "app/provenance.hpp"
+#include "app/results/provenance.hpp"
 #include "app/study/tables.hpp"
 
 #include <fmt/format.h>

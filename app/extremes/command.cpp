@@ -2,13 +2,13 @@
 #include "app/extremes/map.hpp"
 #include "app/extremes/stored_map.hpp"
 #include "app/extremes/sweep.hpp"
-#include "app/interruption.hpp"
-#include "app/messages.hpp"
 #include "app/report/report_directory.hpp"
-#include "app/run_scene.hpp"
-#include "core/cpu/thread_pool.hpp"
-#include "core/model/errors.hpp"
-#include "core/solver/clock.hpp"
+#include "app/run/interruption.hpp"
+#include "app/run/messages.hpp"
+#include "app/run/run_scene.hpp"
+#include "core/base/clock.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/thread_pool.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 #include "app/extremes/judge.hpp"
 
 #include "app/extremes/twin.hpp"
-#include "app/run_scene.hpp"
+#include "app/run/run_scene.hpp"
 
 #include <fmt/format.h>
 

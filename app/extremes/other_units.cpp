@@ -1,7 +1,7 @@
 #include "app/extremes/other_units.hpp"
 
+#include "app/reader/overrides.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/overrides.hpp"
 #include "app/scene/units.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/scene/document.hpp"
-#include "app/scene/schema.hpp"
+#include "app/schema/schema.hpp"
 
 #include <functional>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "app/extremes/map.hpp"
-#include "app/provenance.hpp"
 #include "app/report/html_page.hpp"
+#include "app/results/provenance.hpp"
 #include "app/version.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/extremes/map.hpp"
 #include "app/extremes/stored_map.hpp"
 #include "app/version.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 

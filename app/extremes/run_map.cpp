@@ -1,7 +1,7 @@
 #include "app/extremes/map.hpp"
 #include "app/extremes/twin.hpp"
-#include "app/run_scene.hpp"
-#include "app/temporary_folder.hpp"
+#include "app/run/run_scene.hpp"
+#include "app/run/temporary_folder.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "app/extremes/stored_map.hpp"
 #include "app/report/csv.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 
 #include "app/extremes/other_units.hpp"
 #include "app/extremes/twin.hpp"
-#include "app/scene/overrides.hpp"
-#include "app/scene/parse.hpp"
-#include "core/model/errors.hpp"
+#include "app/reader/overrides.hpp"
+#include "app/reader/parse.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/extremes/twin.hpp"
 
+#include "app/reader/overrides.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/overrides.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "app/need/chosen.hpp"
 
+#include "app/reader/overrides.hpp"
 #include "app/scene/diagnostics.hpp"
 #include "app/scene/document.hpp"
-#include "app/scene/overrides.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "app/need/cost_model.hpp"
 
-#include "core/cpu/thread_pool.hpp"
+#include "core/base/thread_pool.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/run_scene.hpp"
+#include "app/run/run_scene.hpp"
 #include "app/scene/scene.hpp"
 
 namespace fascia::app {

@@ -1,8 +1,8 @@
 #include "app/need/open_scene.hpp"
 
-#include "app/read_files.hpp"
+#include "app/assembly/read_files.hpp"
 #include "app/scene/toml_text.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
 #include "app/need/report.hpp"
 
 #include "app/estimate/resolution.hpp"
-#include "app/probes.hpp"
-#include "app/readable.hpp"
+#include "app/plausible/readable.hpp"
+#include "app/results/probes.hpp"
 #include "app/scene/diagnostics.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "app/estimate/measure.hpp"
 #include "app/estimate/resolution.hpp"
-#include "app/scene/parse.hpp"
+#include "app/reader/parse.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 #include "app/need/simplify.hpp"
 
 #include "app/explain/variants.hpp"
-#include "app/readable.hpp"
+#include "app/plausible/readable.hpp"
 #include "app/scene/diagnostics.hpp"
 #include "app/scene/toml_text.hpp"
 

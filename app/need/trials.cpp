@@ -1,8 +1,8 @@
 #include "app/need/trials.hpp"
 
-#include "app/readable.hpp"
+#include "app/plausible/readable.hpp"
+#include "app/reader/parse.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/parse.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>

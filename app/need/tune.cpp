@@ -1,16 +1,16 @@
 #include "app/need/tune.hpp"
 
-#include "app/interruption.hpp"
 #include "app/machine.hpp"
-#include "app/messages.hpp"
 #include "app/need/kept_costs.hpp"
 #include "app/need/tune_scenes.hpp"
-#include "app/readable.hpp"
-#include "app/run_scene.hpp"
+#include "app/plausible/readable.hpp"
+#include "app/run/interruption.hpp"
+#include "app/run/messages.hpp"
+#include "app/run/run_scene.hpp"
+#include "app/run/temporary_folder.hpp"
 #include "app/study/child_run.hpp"
-#include "app/temporary_folder.hpp"
-#include "core/model/errors.hpp"
-#include "core/solver/clock.hpp"
+#include "core/base/clock.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "app/report/csv.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 

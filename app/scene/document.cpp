@@ -1,6 +1,6 @@
 #include "app/scene/document.hpp"
 
-#include "app/scene/text_checks.hpp"
+#include "app/reader/text_checks.hpp"
 
 #include <fmt/format.h>
 

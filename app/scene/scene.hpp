@@ -69,7 +69,7 @@ struct ListedFrames {
   std::vector<Vec3d> positions;  ///< [m]
   std::vector<Vec3d> rotations;  ///< rotation vectors [rad]: none, or as many as positions
 };
-/// A CSV table of positions, see io/point_table.hpp.
+/// A CSV table of positions, see io/mesh/point_table.hpp.
 struct SampleFile {
   std::filesystem::path path;  ///< already resolved against the scene's folder
 };

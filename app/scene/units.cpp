@@ -1,7 +1,7 @@
 #include "app/scene/units.hpp"
 
 #include "app/scene/diagnostics.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 #include <udunits2.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/scene/schema.hpp"
+#include "app/schema/schema.hpp"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 #include "app/study/alternatives.hpp"
 
+#include "app/reader/parse.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/parse.hpp"
 #include "app/scene/toml_text.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

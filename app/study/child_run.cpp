@@ -1,7 +1,7 @@
 #include "app/study/child_run.hpp"
 
-#include "app/provenance.hpp"
-#include "core/solver/clock.hpp"
+#include "app/results/provenance.hpp"
+#include "core/base/clock.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

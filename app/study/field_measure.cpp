@@ -2,7 +2,7 @@
 
 #include "app/compare/comparison.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "app/study/evaluation.hpp"
 #include "app/study/richardson.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/result_reader.hpp"
 
 #include <algorithm>

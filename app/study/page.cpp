@@ -6,7 +6,7 @@
 #include "app/study/machine_load.hpp"
 #include "app/study/plots.hpp"
 #include "app/study/tables.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -2,13 +2,13 @@
 
 #include "app/estimate/resolution.hpp"
 #include "app/machine.hpp"
-#include "app/probes.hpp"
-#include "app/provenance.hpp"
+#include "app/reader/parse.hpp"
+#include "app/results/probes.hpp"
+#include "app/results/provenance.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/parse.hpp"
 #include "app/scene/units.hpp"
 #include "app/study/alternatives.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/digest.hpp"
 
 #include <fmt/format.h>

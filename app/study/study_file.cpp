@@ -1,12 +1,12 @@
 #include "app/study/study_file.hpp"
 
-#include "app/scene/table_reader.hpp"
-#include "app/scene/text_checks.hpp"
+#include "app/reader/table_reader.hpp"
+#include "app/reader/text_checks.hpp"
+#include "app/reader/validate.hpp"
 #include "app/scene/toml_text.hpp"
 #include "app/scene/units.hpp"
-#include "app/scene/validate.hpp"
 #include "app/study/study_schema.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "app/verify/certificate.hpp"
 
-#include "app/provenance.hpp"
+#include "app/results/provenance.hpp"
 #include "app/version.hpp"
 #include "io/digest.hpp"
 

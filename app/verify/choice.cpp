@@ -1,7 +1,7 @@
 #include "app/verify/choice.hpp"
 
 #include "app/scene/diagnostics.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

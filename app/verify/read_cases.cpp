@@ -1,9 +1,9 @@
 #include "app/list.hpp"
-#include "app/scene/parse.hpp"
-#include "app/scene/table_reader.hpp"
-#include "app/scene/validate.hpp"
+#include "app/reader/parse.hpp"
+#include "app/reader/table_reader.hpp"
+#include "app/reader/validate.hpp"
 #include "app/verify/cases.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #include "app/verify/runs.hpp"
 
 #include "app/compare/arrays.hpp"
-#include "app/provenance.hpp"
-#include "app/run_scene.hpp"
+#include "app/reader/parse.hpp"
+#include "app/results/provenance.hpp"
+#include "app/run/run_scene.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/parse.hpp"
 #include "app/study/child_run.hpp"
 #include "io/files.hpp"
 

@@ -1,8 +1,8 @@
 #include "core/geometry/mesh_parts.hpp"
 
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/surface_parts.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 
 #include <algorithm>
 #include <cstddef>

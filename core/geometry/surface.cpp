@@ -1,7 +1,7 @@
 #include "core/geometry/surface.hpp"
 
+#include "core/base/errors.hpp"
 #include "core/geometry/surface_parts.hpp"
-#include "core/model/errors.hpp"
 
 namespace fascia {
 

@@ -1,6 +1,6 @@
 #include "core/geometry/surface_edges.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <algorithm>
 

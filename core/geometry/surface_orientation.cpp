@@ -1,9 +1,9 @@
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
 #include "core/geometry/surface_touching.hpp"
-#include "core/math/index.hpp"
 
 #include <algorithm>
 #include <array>

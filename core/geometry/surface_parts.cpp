@@ -1,9 +1,9 @@
 #include "core/geometry/surface_parts.hpp"
 
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/weld.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
 
 #include <algorithm>
 #include <cmath>

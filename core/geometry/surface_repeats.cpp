@@ -1,7 +1,7 @@
+#include "core/base/index.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
 #include "core/geometry/surface_touching.hpp"
-#include "core/math/index.hpp"
 
 #include <algorithm>
 #include <cstddef>

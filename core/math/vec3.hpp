@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/portability.hpp"
+#include "core/base/portability.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/element_block.hpp"
+#include "core/physics/element_kind.hpp"
 #include "core/physics/neo_hookean.hpp"
 
 /// Stress and stiffness of finite elements. A block K_ab (3×3) is the second derivative of a point's energy density

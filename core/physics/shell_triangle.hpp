@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/math/half_angle.hpp"
 #include "core/math/mat3.hpp"
-#include "core/physics/half_angle.hpp"
 #include "core/physics/shell_constants.hpp"
 
 /// A triangle of a shell on three frames: 12 strains and their energy, a quadratic form.

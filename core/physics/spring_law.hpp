@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/spring.hpp"
+#include "core/physics/spring.hpp"
 
 namespace fascia {
 

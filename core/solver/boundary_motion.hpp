@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/model/model.hpp"
-#include "core/solver/dof_filter.hpp"
+#include "core/node/dof_filter.hpp"
+#include "core/structure/model.hpp"
 
 #include <array>
 #include <span>

@@ -1,7 +1,7 @@
 #include "core/solver/dependents.hpp"
 
-#include "core/math/index.hpp"
-#include "core/solver/node_force.hpp"
+#include "core/base/index.hpp"
+#include "core/node/node_force.hpp"
 
 #include <algorithm>
 #include <cmath>

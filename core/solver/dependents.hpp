@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/model/model.hpp"
+#include "core/linear/block_matrix.hpp"
 #include "core/physics/point_physics.hpp"
-#include "core/solver/block_matrix.hpp"
+#include "core/structure/model.hpp"
 
 #include <span>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/cpu/executor.hpp"
-#include "core/solver/dof_filter.hpp"
+#include "core/executor/executor.hpp"
+#include "core/node/dof_filter.hpp"
 
 #include <algorithm>
 #include <span>

@@ -1,9 +1,9 @@
 #include "core/solver/mechanical_system.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
+#include "core/node/node_force.hpp"
+#include "core/node/node_load.hpp"
 #include "core/solver/boundary_motion.hpp"
-#include "core/solver/node_force.hpp"
-#include "core/solver/node_load.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "core/cpu/executor.hpp"
-#include "core/model/model.hpp"
-#include "core/physics/inertia.hpp"
+#include "core/executor/executor.hpp"
+#include "core/node/node_step.hpp"
+#include "core/node/time_scheme.hpp"
 #include "core/solver/dependents.hpp"
 #include "core/solver/newton.hpp"
-#include "core/solver/node_step.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "core/solver/tangent_solver.hpp"
-#include "core/solver/time_scheme.hpp"
+#include "core/structure/inertia.hpp"
+#include "core/structure/model.hpp"
 
 #include <optional>
 #include <span>

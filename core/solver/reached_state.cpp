@@ -1,6 +1,6 @@
-#include "core/physics/inertia.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/structure/inertia.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/linear/cg.hpp"
 #include "core/physics/point_physics.hpp"
-#include "core/solver/cg.hpp"
 
 #include <functional>
 #include <vector>

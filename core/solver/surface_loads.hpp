@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/cpu/executor.hpp"
-#include "core/model/model.hpp"
+#include "core/executor/executor.hpp"
+#include "core/structure/model.hpp"
 
 #include <span>
 #include <vector>

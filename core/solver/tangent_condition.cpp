@@ -1,9 +1,9 @@
 #include "core/solver/tangent_condition.hpp"
 
-#include "core/math/index.hpp"
-#include "core/solver/lanczos.hpp"
+#include "core/base/index.hpp"
+#include "core/linear/lanczos.hpp"
+#include "core/node/small_factor.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/small_factor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "core/solver/tangent_solver.hpp"
 
-#include "core/math/index.hpp"
-#include "core/solver/clock.hpp"
-#include "core/solver/positive_inverse.hpp"
+#include "core/base/clock.hpp"
+#include "core/base/index.hpp"
+#include "core/node/positive_inverse.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,17 @@
 #pragma once
 
-#include "core/cpu/executor.hpp"
-#include "core/solver/cholesky.hpp"
+#include "core/executor/executor.hpp"
+#include "core/levels/blocks_or_levels.hpp"
+#include "core/levels/kept_levels.hpp"
+#include "core/levels/multigrid.hpp"
+#include "core/linear/cholesky.hpp"
+#include "core/linear/vectors.hpp"
+#include "core/node/dof_filter.hpp"
 #include "core/solver/dependents.hpp"
-#include "core/solver/dof_filter.hpp"
-#include "core/solver/blocks_or_levels.hpp"
-#include "core/solver/kept_levels.hpp"
 #include "core/solver/low_rank.hpp"
-#include "core/solver/multigrid.hpp"
 #include "core/solver/settings.hpp"
 #include "core/solver/stability.hpp"
 #include "core/solver/tangent_condition.hpp"
-#include "core/solver/vectors.hpp"
 
 #include <functional>
 #include <optional>
@@ -163,8 +163,8 @@ class TangentSolver {
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;
   BlocksOrLevels blocks_or_levels_{{.cycle = 5, .making = 40}};  ///< of an automatic preconditioner
-  double shift_ = 0;         ///< of the last factorisation that needed one
-  bool shifted_ = false;     ///< the last factor is such
+  double shift_ = 0;                                             ///< of the last factorisation that needed one
+  bool shifted_ = false;                                         ///< the last factor is such
   std::optional<Multigrid> multigrid_, material_multigrid_;
   KeptLevels kept_levels_;
   Multigrid::Places places_;                  ///< of the tangent that was assembled last

@@ -1,4 +1,4 @@
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "core/solver/mechanical_system.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
+#include "core/base/index.hpp"
+#include "core/linear/gmres.hpp"
 #include "core/math/dense.hpp"
-#include "core/math/index.hpp"
-#include "core/solver/gmres.hpp"
 #include "core/solver/tangent_solver.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "core/math/rotation.hpp"
-#include "core/physics/inertia.hpp"
+#include "core/node/node_finish.hpp"
+#include "core/node/small_factor.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/node_finish.hpp"
-#include "core/solver/small_factor.hpp"
+#include "core/structure/inertia.hpp"
 
 #include <algorithm>
 

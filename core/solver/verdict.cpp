@@ -1,6 +1,6 @@
 #include "core/solver/verdict.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 namespace fascia {
 

@@ -1,6 +1,6 @@
 #include "io/picture/display.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <X11/Xlib.h>
 

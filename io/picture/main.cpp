@@ -1,8 +1,8 @@
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "io/mesh/text_numbers.hpp"
 #include "io/picture/display.hpp"
 #include "io/picture/picture.hpp"
 #include "io/quantity.hpp"
-#include "io/text_numbers.hpp"
 
 #include <CLI/CLI.hpp>
 

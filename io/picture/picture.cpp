@@ -1,6 +1,6 @@
 #include "io/picture/picture.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "io/picture/actors.hpp"
 #include "io/picture/annotations.hpp"

@@ -1,10 +1,10 @@
 #include "io/picture/results.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
+#include "io/mesh/text_numbers.hpp"
 #include "io/picture/outline.hpp"
 #include "io/picture/surface.hpp"
-#include "io/text_numbers.hpp"
 #include "io/vtk_errors.hpp"
 
 #include <vtkCellArray.h>

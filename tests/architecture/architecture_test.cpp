@@ -35,6 +35,16 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"tests", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io", "app"}},
     {"bench", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io", "app", "tests"}}};
 
+/// Rooms of a folder from the ground up: each may include those before it, none after.
+const std::map<std::string, std::vector<std::string>> kRooms = {
+    {"core",
+     {"base", "math", "geometry", "physics", "structure", "body", "node", "linear", "levels", "executor", "solver",
+      "run"}},
+    {"gpu", {"space", "tiles", "elements", "blocks", "actions", "system", "explicit", "run"}}};
+
+/// Sources and headers of a room.
+constexpr std::size_t kMostFiles = 33;
+
 struct Include {
   std::string file;    ///< who, relative to the root
   int line = 0;        ///< where
@@ -112,6 +122,34 @@ TEST(Architecture, DependenciesFormAStar) {
     if (!kMayInclude.contains(target) || target == folder) return;
     EXPECT_TRUE(kMayInclude.at(folder).contains(target)) << place(include);
   });
+}
+
+/// The second folder of core/solver/newton.hpp; of core/newton.hpp none.
+std::string room_of(const std::string& path) {
+  const std::size_t first = path.find('/'), second = path.find('/', first + 1);
+  return second == std::string::npos ? std::string() : path.substr(first + 1, second - first - 1);
+}
+
+TEST(Architecture, RoomsStandOnThoseBelow) {
+  for (const auto& [folder, rooms] : kRooms) {
+    const auto floor = [&rooms](const std::string& room) { return std::find(rooms.begin(), rooms.end(), room); };
+    for (const std::string& file : source_files()) {
+      if (first_folder(file) != folder) continue;
+      const auto own = floor(room_of(file));
+      EXPECT_TRUE(own != rooms.end()) << file << " is in no room of " << folder;
+      for (const Include& include : includes_of(file)) {
+        if (first_folder(include.target) != folder || room_of(include.target).empty()) continue;
+        EXPECT_TRUE(floor(room_of(include.target)) <= own) << place(include);
+      }
+    }
+  }
+}
+
+TEST(Architecture, RoomsHoldFewFiles) {
+  std::map<std::string, std::size_t> files;
+  for (const std::string& file : source_files())
+    if (first_folder(file) != "tests") ++files[fs::path(file).parent_path().generic_string()];
+  for (const auto& [room, count] : files) EXPECT_LE(count, kMostFiles) << room << ": make two of it";
 }
 
 TEST(Architecture, IncludesOfTheProjectArePathsFromItsRoot) {

@@ -1,8 +1,8 @@
+#include "core/base/errors.hpp"
 #include "core/geometry/surface.hpp"
-#include "core/model/errors.hpp"
-#include "io/gmsh.hpp"
-#include "io/off_reader.hpp"
-#include "io/vtk_cells.hpp"
+#include "io/gmsh/gmsh.hpp"
+#include "io/mesh/off_reader.hpp"
+#include "io/mesh/vtk_cells.hpp"
 
 #include <vtkDataSet.h>
 

@@ -1,6 +1,6 @@
+#include "app/reader/parse.hpp"
 #include "app/scene/errors.hpp"
-#include "app/scene/parse.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -17,35 +17,38 @@ namespace fs = std::filesystem;
 
 struct Feature {
   const char* name;
-  std::vector<std::string> files;  ///< "shells/": all of a folder; "core/cpu/shell_executor": what begins so
+  std::vector<std::string> files;  ///< "shells/": all of a folder; "core/executor/shell_executor": what begins so
   std::vector<std::string> doors;  ///< parts of the names of functions that ask whether there is something to do
 };
 
 const Feature kShells{
-    "shells", {"shells/", "core/cpu/shell_executor", "core/model/shell_block", "app/shell_meshes"}, {}};
+    "shells",
+    {"shells/", "core/executor/shell_executor", "core/structure/shell_block", "app/assembly/shell_meshes"},
+    {}};
 const Feature kElements{
-    "elements", {"fem/", "core/cpu/element_", "core/model/element_block", "app/element_bodies"}, {}};
+    "elements", {"fem/", "core/cpu/element_", "core/structure/element_block", "app/assembly/element_bodies"}, {}};
 const Feature kMeshless{"meshless bodies", {"meshless/"}, {}};
 const Feature kCouplings{
     "couplings",
-    {"coupling/", "core/solver/dependents", "core/cpu/spring_forces", "core/model/dependent_inertia", "app/couplings",
-     "app/carried_surface", "app/coupling_report"},
+    {"coupling/", "core/solver/dependents", "core/executor/spring_forces", "core/structure/dependent_inertia",
+     "app/actions/couplings", "app/assembly/carried_surface", "app/results/coupling_report"},
     {"DependentNodes", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "note_springs",
      "add_spring_forces", "linearize_springs", "add_couplings", "move_inertia_to_hosts", "coupling_report"}};
-const Feature kTethers{"tethers", {"app/tethers"}, {}};
+const Feature kTethers{"tethers", {"app/actions/tethers"}, {}};
 const Feature kSurfaces{"fluids and pressure",
-                        {"core/model/surface_load", "core/model/face_rule", "core/cpu/surface_tangent",
-                         "core/solver/surface_loads", "app/surface_loads"},
+                        {"core/structure/surface_load", "core/structure/face_rule", "core/executor/surface_tangent",
+                         "core/solver/surface_loads", "app/actions/surface_loads"},
                         {"SurfaceLoads", "add_fluids"}};
 const Feature kPaths{"paths and imperfections",
-                     {"core/solver/path_", "core/solver/limit_point", "app/imperfection"},
+                     {"core/solver/path_", "core/run/limit_point", "app/actions/imperfection"},
                      {"largest_rotation_in", "add_imperfection"}};
-const Feature kExplicit{"explicit dynamics", {"core/solver/explicit_", "core/solver/stable_step"}, {}};
-const Feature kModes{"modes", {"core/solver/modes"}, {}};
-const Feature kGpu{"GPU", {"gpu/", "app/gpu_run"}, {"device_functions_in_use", "device_module_exists", "module_file"}};
+const Feature kExplicit{"explicit dynamics", {"core/solver/explicit_", "core/run/stable_step"}, {}};
+const Feature kModes{"modes", {"core/run/modes"}, {}};
+const Feature kGpu{
+    "GPU", {"gpu/", "app/run/gpu_run"}, {"device_functions_in_use", "device_module_exists", "module_file"}};
 const Feature kCommands{"other commands",
                         {"app/bench/", "app/study/", "app/explain/", "app/estimate/", "app/verify/", "app/report/",
-                         "app/rerun", "app/compare", "app/list", "app/check_scene", "app/picture"},
+                         "app/rerun", "app/compare", "app/list", "app/run/check_scene", "app/results/picture"},
                         {}};
 
 /// Most instructions of the doors of all features, of the whole run.
@@ -85,7 +88,7 @@ Called read_callgrind(const fs::path& file) {
   return called;
 }
 
-/// "core/cpu/shell_executor" of core/CMakeFiles/fascia_core.dir/cpu/shell_executor.cpp.o
+/// "core/executor/shell_executor" of core/CMakeFiles/fascia_core.dir/cpu/shell_executor.cpp.o
 std::string source_of(const fs::path& object) {
   static const std::regex between(R"(/CMakeFiles/[^/]*\.dir)");
   const std::string path = std::regex_replace(fs::relative(object, build_dir()).string(), between, "");

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/cpu/executor.hpp"
-#include "core/solver/block_matrix.hpp"
+#include "core/executor/executor.hpp"
+#include "core/linear/block_matrix.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "gpu/cuda_functions.hpp"
+#include "gpu/run/cuda_functions.hpp"
 
 /// In test programs that have CUDA's part linked in: no module is looked for.
 namespace {

@@ -2,10 +2,10 @@
 
 #include "core/geometry/primitives.hpp"
 #include "core/math/rotation.hpp"
-#include "core/model/model.hpp"
-#include "core/physics/inertia.hpp"
 #include "core/physics/st_venant_kirchhoff.hpp"
-#include "core/solver/drivers.hpp"
+#include "core/run/drivers.hpp"
+#include "core/structure/inertia.hpp"
+#include "core/structure/model.hpp"
 #include "meshless/cloud_build.hpp"
 #include "meshless/grid_body.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
 #include "tests/support/cases.hpp"
 #include "tests/support/paths.hpp"
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "core/solver/drivers.hpp"
-#include "gpu/run.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/run/solver_settings.hpp"
+#include "core/run/drivers.hpp"
+#include "gpu/run/run.hpp"
 #include "tests/support/cases.hpp"
 
 #include <algorithm>

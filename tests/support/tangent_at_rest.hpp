@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/cpu/executor.hpp"
-#include "core/solver/multigrid.hpp"
-#include "core/solver/positive_inverse.hpp"
+#include "core/executor/executor.hpp"
+#include "core/levels/multigrid.hpp"
+#include "core/node/positive_inverse.hpp"
 #include "tests/support/models.hpp"
 
 #include <random>

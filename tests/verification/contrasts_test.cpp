@@ -1,9 +1,9 @@
 // Bodies of two materials whose stiffness differs by up to 2e8, drawn at random: whatever is called converged is in
 // equilibrium, and nearly all are.
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "core/solver/drivers.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/solver_settings.hpp"
+#include "core/run/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "tests/support/cases.hpp"
 

@@ -1,9 +1,9 @@
-#include "app/coupling_report.hpp"
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "gpu/device.hpp"
-#include "gpu/run.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
+#include "app/results/coupling_report.hpp"
+#include "app/run/solver_settings.hpp"
+#include "gpu/run/run.hpp"
+#include "gpu/space/device.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

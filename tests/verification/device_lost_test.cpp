@@ -1,8 +1,8 @@
-#include "app/gpu_run.hpp"
-#include "app/run_scene.hpp"
-#include "app/scene/parse.hpp"
-#include "app/solver_settings.hpp"
-#include "gpu/device.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/gpu_run.hpp"
+#include "app/run/run_scene.hpp"
+#include "app/run/solver_settings.hpp"
+#include "gpu/space/device.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/verification/break_device.hpp"
 

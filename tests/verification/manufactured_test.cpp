@@ -1,5 +1,5 @@
 // Finite elements against manufactured solutions: order of convergence of the displacement.
-#include "core/solver/drivers.hpp"
+#include "core/run/drivers.hpp"
 #include "fem/quadrature.hpp"
 #include "tests/unit/fem/element_models.hpp"
 

@@ -1,9 +1,9 @@
 // Newton's method on what is hard for it: slender bodies that turn far in one step, buckling, great stretch. Tables of
 // its residuals.
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "core/solver/drivers.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/solver_settings.hpp"
+#include "core/run/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "tests/support/paths.hpp"
 

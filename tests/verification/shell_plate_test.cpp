@@ -1,6 +1,6 @@
 // Plates of triangle shells: thin and thick, static, vibrating, and in free flight.
-#include "core/solver/explicit_dynamics.hpp"
-#include "core/solver/modes.hpp"
+#include "core/run/explicit_dynamics.hpp"
+#include "core/run/modes.hpp"
 #include "tests/support/shell_models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // Solves that start far from rest: at random, mirrored, flat, all in one place. They end where a solve from rest ends,
 // at another equilibrium, or with a reason; never with a number that is none.
+#include "app/assembly/simulation.hpp"
 #include "app/extremes/cells.hpp"
-#include "app/result_warnings.hpp"
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "core/model/errors.hpp"
+#include "app/reader/parse.hpp"
+#include "app/results/result_warnings.hpp"
+#include "app/run/solver_settings.hpp"
+#include "core/base/errors.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/solve_where.hpp"
 

@@ -1,11 +1,11 @@
 // NAFEMS LE10: a thick elliptic plate under pressure, and the stress at its inner edge from a mesh that misses the peak
 // between integration points and nodes.
-#include "app/recovery.hpp"
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "core/math/index.hpp"
-#include "core/solver/drivers.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/recovery.hpp"
+#include "app/run/solver_settings.hpp"
+#include "core/base/index.hpp"
+#include "core/run/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
 
 #include <gtest/gtest.h>

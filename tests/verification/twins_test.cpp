@@ -1,10 +1,10 @@
 // Scenes drawn at random, solved with Cholesky, with conjugate gradients and by what runs on a GPU: the same end, or a
 // status or a warning that says that there are several.
-#include "app/backend.hpp"
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "app/solver_settings.hpp"
-#include "gpu/device.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/backend.hpp"
+#include "app/run/solver_settings.hpp"
+#include "gpu/space/device.hpp"
 #include "tests/support/cases.hpp"
 #include "tests/support/solve_where.hpp"
 

@@ -1,7 +1,7 @@
 #include "app/bench/benchmark.hpp"
 #include "app/bench/report.hpp"
-#include "app/scene/parse.hpp"
-#include "core/model/errors.hpp"
+#include "app/reader/parse.hpp"
+#include "core/base/errors.hpp"
 #include "tests/support/cases.hpp"
 
 #include <gtest/gtest.h>

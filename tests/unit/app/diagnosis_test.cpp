@@ -1,11 +1,11 @@
 #include "app/diagnosis/condition.hpp"
 #include "app/diagnosis/step_limit.hpp"
 #include "app/diagnosis/thickness.hpp"
-#include "app/scene/parse.hpp"
-#include "app/solver_settings.hpp"
-#include "app/temporary_folder.hpp"
+#include "app/reader/parse.hpp"
+#include "app/run/solver_settings.hpp"
+#include "app/run/temporary_folder.hpp"
 #include "core/math/dense.hpp"
-#include "core/solver/explicit_dynamics.hpp"
+#include "core/run/explicit_dynamics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "app/explain/promise.hpp"
 #include "app/explain/report.hpp"
 #include "app/explain/suggestions.hpp"
-#include "app/scene/parse.hpp"
+#include "app/reader/parse.hpp"
 #include "core/math/rotation.hpp"
 #include "io/result_writer.hpp"
 #include "tests/support/paths.hpp"

@@ -1,10 +1,10 @@
 #include "app/extremes/map.hpp"
 #include "app/extremes/other_units.hpp"
 #include "app/extremes/twin.hpp"
+#include "app/reader/parse.hpp"
 #include "app/report/csv.hpp"
-#include "app/run_scene.hpp"
-#include "app/scene/parse.hpp"
-#include "core/model/errors.hpp"
+#include "app/run/run_scene.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "tests/support/scene_run.hpp"
 

@@ -1,5 +1,5 @@
-#include "app/run_scene.hpp"
-#include "app/temporary_folder.hpp"
+#include "app/run/run_scene.hpp"
+#include "app/run/temporary_folder.hpp"
 #include "io/result_reader.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // What a scene holds does not move at its start, whatever velocity its body has.
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
-#include "core/solver/node_force.hpp"
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
+#include "core/node/node_force.hpp"
 
 #include <gtest/gtest.h>
 

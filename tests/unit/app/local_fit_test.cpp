@@ -1,7 +1,7 @@
 // Interpolation between scattered places, as fascia compare does it in meshless bodies.
 #include "app/compare/local_fit.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "app/plausible.hpp"
-#include "app/readable.hpp"
-#include "app/scene/parse.hpp"
+#include "app/plausible/plausible.hpp"
+#include "app/plausible/readable.hpp"
+#include "app/reader/parse.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/process_memory.hpp"
+#include "app/run/process_memory.hpp"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>

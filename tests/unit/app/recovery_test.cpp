@@ -1,6 +1,6 @@
-#include "app/recovery.hpp"
-#include "app/matter.hpp"
-#include "app/scene/parse.hpp"
+#include "app/run/recovery.hpp"
+#include "app/assembly/matter.hpp"
+#include "app/reader/parse.hpp"
 
 #include <gtest/gtest.h>
 

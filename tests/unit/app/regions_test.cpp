@@ -1,4 +1,4 @@
-#include "app/regions.hpp"
+#include "app/assembly/regions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The fields of a .vtu as functions of the rest position, and the places at which two of them are compared.
 #include "app/compare/body_pair.hpp"
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "tests/unit/io/volume_samples.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "app/run_text.hpp"
+#include "app/results/run_text.hpp"
 
-#include "app/probes.hpp"
-#include "app/progress.hpp"
-#include "app/scene/schema.hpp"
+#include "app/results/probes.hpp"
+#include "app/run/progress.hpp"
+#include "app/schema/schema.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 #include "tests/unit/app/scene_text.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/scene/schema_export.hpp"
+#include "app/schema/schema_export.hpp"
 #include "tests/support/paths.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "app/shell_meshes.hpp"
+#include "app/assembly/shell_meshes.hpp"
 
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "shells/surface_checks.hpp"
 #include "tests/unit/app/scene_text.hpp"
 

@@ -1,4 +1,4 @@
-#include "app/step_seconds.hpp"
+#include "app/results/step_seconds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "app/study/richardson.hpp"
 #include "app/study/study_file.hpp"
 #include "app/study/tables.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "tests/support/paths.hpp"
 

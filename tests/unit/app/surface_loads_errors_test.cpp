@@ -1,4 +1,4 @@
-#include "app/scene/parse.hpp"
+#include "app/reader/parse.hpp"
 #include "tests/unit/app/scene_text.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // A total torque on the edge of a shell, and loads on regions that a body cannot have.
+#include "app/assembly/simulation.hpp"
+#include "app/reader/parse.hpp"
 #include "app/scene/errors.hpp"
-#include "app/scene/parse.hpp"
-#include "app/simulation.hpp"
 
 #include <gtest/gtest.h>
 

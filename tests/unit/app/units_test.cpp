@@ -1,6 +1,6 @@
 #include "app/scene/units.hpp"
 
-#include "app/scene/schema.hpp"
+#include "app/schema/schema.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "app/scene/errors.hpp"
 #include "app/verify/choice.hpp"
 #include "app/verify/report.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "tests/support/paths.hpp"
 
 #include <gtest/gtest.h>

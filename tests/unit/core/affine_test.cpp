@@ -1,7 +1,7 @@
 #include "core/math/rotation.hpp"
-#include "core/physics/inertia.hpp"
+#include "core/node/positive_inverse.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/positive_inverse.hpp"
+#include "core/structure/inertia.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

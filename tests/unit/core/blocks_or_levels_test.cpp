@@ -1,4 +1,4 @@
-#include "core/solver/blocks_or_levels.hpp"
+#include "core/levels/blocks_or_levels.hpp"
 
 #include <gtest/gtest.h>
 

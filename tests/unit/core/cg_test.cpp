@@ -1,6 +1,6 @@
 // Conjugate gradients where the matrix is indefinite.
-#include "core/solver/cg.hpp"
-#include "core/solver/vectors.hpp"
+#include "core/linear/cg.hpp"
+#include "core/linear/vectors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "core/model/body_surface.hpp"
+#include "core/body/body_surface.hpp"
+#include "core/run/explicit_dynamics.hpp"
+#include "core/run/modes.hpp"
+#include "core/run/path_following.hpp"
 #include "core/solver/dependents.hpp"
-#include "core/solver/explicit_dynamics.hpp"
-#include "core/solver/modes.hpp"
-#include "core/solver/path_following.hpp"
 #include "tests/support/dependent_models.hpp"
 
 #include <gtest/gtest.h>

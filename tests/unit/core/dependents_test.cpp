@@ -1,8 +1,8 @@
 #include "core/solver/dependents.hpp"
 
-#include "core/cpu/executor.hpp"
-#include "core/model/dependent_inertia.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/executor/executor.hpp"
+#include "core/structure/dependent_inertia.hpp"
 #include "tests/support/dependent_models.hpp"
 
 #include <gtest/gtest.h>

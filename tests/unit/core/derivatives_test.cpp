@@ -1,5 +1,5 @@
 #include "tests/support/derivatives.hpp"
-#include "core/cpu/executor.hpp"
+#include "core/executor/executor.hpp"
 #include "core/solver/mechanical_system.hpp"
 
 #include <gtest/gtest.h>

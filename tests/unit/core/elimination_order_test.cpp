@@ -1,5 +1,5 @@
-#include "core/solver/elimination_order.hpp"
-#include "core/solver/cholesky.hpp"
+#include "core/linear/elimination_order.hpp"
+#include "core/linear/cholesky.hpp"
 #include "tests/support/tangent_at_rest.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "core/solver/explicit_dynamics.hpp"
-#include "core/solver/explicit_step.hpp"
+#include "core/run/explicit_dynamics.hpp"
+#include "core/run/explicit_step.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "core/model/errors.hpp"
-#include "core/solver/explicit_dynamics.hpp"
+#include "core/base/errors.hpp"
+#include "core/run/explicit_dynamics.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

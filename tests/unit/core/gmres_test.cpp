@@ -1,5 +1,5 @@
 // GMRES of unsymmetric matrices, with preconditioners that change and with rounds that begin anew.
-#include "core/solver/gmres.hpp"
+#include "core/linear/gmres.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>

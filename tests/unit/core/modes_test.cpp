@@ -1,4 +1,4 @@
-#include "core/solver/modes.hpp"
+#include "core/run/modes.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "core/solver/path_following.hpp"
-#include "core/solver/path_measure.hpp"
+#include "core/run/path_following.hpp"
+#include "core/run/path_measure.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "core/physics/spring_law.hpp"
-#include "core/solver/explicit_dynamics.hpp"
-#include "core/solver/modes.hpp"
+#include "core/run/explicit_dynamics.hpp"
+#include "core/run/modes.hpp"
 #include "tests/support/derivatives.hpp"
 
 #include <gtest/gtest.h>

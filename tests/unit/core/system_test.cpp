@@ -1,7 +1,7 @@
-#include "core/physics/inertia.hpp"
-#include "core/solver/drivers.hpp"
+#include "core/run/drivers.hpp"
+#include "core/run/modes.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/modes.hpp"
+#include "core/structure/inertia.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "core/cpu/thread_pool.hpp"
-#include "core/solver/drivers.hpp"
+#include "core/base/thread_pool.hpp"
+#include "core/run/drivers.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // What counts as converged: the judgement of parts, and Newton's method where rounding or a detour is in its way.
-#include "core/model/parts.hpp"
 #include "core/solver/newton.hpp"
+#include "core/structure/parts.hpp"
 
 #include <gtest/gtest.h>
 

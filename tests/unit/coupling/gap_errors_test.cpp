@@ -1,5 +1,5 @@
 // What is no gap: sides without faces, bodies that overlap or touch, sides that look away, strips without a length.
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "tests/unit/coupling/gap_samples.hpp"
 
 #include <gtest/gtest.h>

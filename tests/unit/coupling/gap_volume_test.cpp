@@ -1,6 +1,6 @@
 // The space between two surfaces: volumes, closedness, what lies inside.
+#include "core/base/errors.hpp"
 #include "core/geometry/inside.hpp"
-#include "core/model/errors.hpp"
 #include "coupling/rigid_body.hpp"
 #include "tests/unit/coupling/gap_samples.hpp"
 

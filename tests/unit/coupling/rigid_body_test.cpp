@@ -1,7 +1,7 @@
 // Rigid bodies: mass and inertia against closed forms, places, free flight, refused input.
 #include "coupling/rigid_body.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "shells/generate.hpp"
 #include "tests/support/models.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/cpu/executor.hpp"
+#include "core/executor/executor.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "tests/unit/fem/element_models.hpp"
 

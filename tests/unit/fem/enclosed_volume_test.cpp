@@ -1,5 +1,5 @@
 // Newton's method with a stiff enclosed volume: its convergence, and the two linear solvers.
-#include "core/model/body_surface.hpp"
+#include "core/body/body_surface.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include "fem/locator.hpp"
 #include "fem/quality.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/unit/fem/fem_samples.hpp"
 

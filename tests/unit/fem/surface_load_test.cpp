@@ -1,5 +1,5 @@
 // Pressure on surfaces that nodes move: forces and tangents against differences, resultants, volumes.
-#include "core/model/body_surface.hpp"
+#include "core/body/body_surface.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/unit/fem/surface_models.hpp"

@@ -1,9 +1,9 @@
 // Tangents of loads without a potential: against differences of the forces, and their eigenvalues against dense ones.
-#include "core/model/body_surface.hpp"
-#include "core/solver/drivers.hpp"
+#include "core/body/body_surface.hpp"
+#include "core/node/node_force.hpp"
+#include "core/node/node_load.hpp"
+#include "core/run/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/solver/node_force.hpp"
-#include "core/solver/node_load.hpp"
 #include "tests/unit/fem/surface_models.hpp"
 
 #include <gtest/gtest.h>

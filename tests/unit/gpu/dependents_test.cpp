@@ -1,4 +1,4 @@
-#include "gpu/dependents.hpp"
+#include "gpu/blocks/dependents.hpp"
 
 #include "core/solver/dependents.hpp"
 #include "tests/support/dependent_models.hpp"

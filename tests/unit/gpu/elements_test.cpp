@@ -1,4 +1,4 @@
-#include "gpu/elements.hpp"
+#include "gpu/elements/elements.hpp"
 #include "tests/unit/fem/element_models.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 

@@ -1,6 +1,6 @@
-#include "gpu/followers.hpp"
+#include "gpu/actions/followers.hpp"
 
-#include "core/solver/node_force.hpp"
+#include "core/node/node_force.hpp"
 #include "tests/support/models.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 

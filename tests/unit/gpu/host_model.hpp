@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/cpu/executor.hpp"
-#include "gpu/space.hpp"
-#include "gpu/views.hpp"
+#include "core/executor/executor.hpp"
+#include "gpu/space/space.hpp"
+#include "gpu/space/views.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "gpu/levels.hpp"
+#include "gpu/system/levels.hpp"
 
-#include "gpu/space.hpp"
+#include "gpu/space/space.hpp"
 #include "tests/support/shell_models.hpp"
 #include "tests/support/tangent_at_rest.hpp"
 #include "tests/unit/gpu/host_model.hpp"

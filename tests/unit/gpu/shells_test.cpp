@@ -1,4 +1,4 @@
-#include "gpu/shells.hpp"
+#include "gpu/blocks/shells.hpp"
 #include "tests/support/shell_models.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 

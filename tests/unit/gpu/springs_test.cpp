@@ -1,4 +1,4 @@
-#include "gpu/springs.hpp"
+#include "gpu/blocks/springs.hpp"
 #include "core/physics/spring_law.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 

@@ -1,6 +1,6 @@
-#include "gpu/surfaces.hpp"
+#include "gpu/actions/surfaces.hpp"
 
-#include "core/model/body_surface.hpp"
+#include "core/body/body_surface.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "tests/unit/fem/surface_models.hpp"
 #include "tests/unit/gpu/host_model.hpp"

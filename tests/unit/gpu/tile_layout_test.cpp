@@ -1,4 +1,4 @@
-#include "gpu/tile_layout.hpp"
+#include "gpu/tiles/tile_layout.hpp"
 
 #include "tests/support/models.hpp"
 

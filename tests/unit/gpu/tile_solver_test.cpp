@@ -1,7 +1,7 @@
-#include "gpu/tile_solver.hpp"
+#include "gpu/tiles/tile_solver.hpp"
 
-#include "core/cpu/executor.hpp"
-#include "gpu/tile_memory.cuh"
+#include "core/executor/executor.hpp"
+#include "gpu/tiles/tile_memory.cuh"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "gpu/tile_split.hpp"
+#include "gpu/tiles/tile_split.hpp"
 
 #include "tests/support/models.hpp"
 

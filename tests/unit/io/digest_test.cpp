@@ -1,6 +1,6 @@
 #include "io/digest.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 

@@ -1,5 +1,5 @@
 #include "core/geometry/surface.hpp"
-#include "io/gmsh.hpp"
+#include "io/gmsh/gmsh.hpp"
 #include "tests/unit/io/gmsh_samples.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 

@@ -1,7 +1,7 @@
-#include "io/gmsh.hpp"
+#include "io/gmsh/gmsh.hpp"
 
 #include "core/geometry/surface.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "tests/unit/io/gmsh_samples.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 

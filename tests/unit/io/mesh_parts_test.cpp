@@ -1,7 +1,7 @@
 #include "core/geometry/mesh_parts.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/primitives.hpp"
-#include "core/math/index.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/base/errors.hpp"
 #include "core/geometry/mesh.hpp"
-#include "core/model/errors.hpp"
 
 #include <gtest/gtest.h>
 

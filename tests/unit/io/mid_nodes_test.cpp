@@ -1,6 +1,6 @@
-#include "core/math/index.hpp"
-#include "io/gmsh.hpp"
-#include "io/mesh_reader.hpp"
+#include "core/base/index.hpp"
+#include "io/gmsh/gmsh.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <vtkCell.h>

@@ -1,6 +1,6 @@
-#include "io/point_table.hpp"
+#include "io/mesh/point_table.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "io/result_directory.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/files.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 

@@ -1,6 +1,6 @@
 #include "io/result_reader.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "io/result_writer.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 #include "tests/unit/io/volume_samples.hpp"

@@ -1,4 +1,4 @@
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 #include "tests/unit/io/volume_samples.hpp"
 

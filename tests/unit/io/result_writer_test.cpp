@@ -2,7 +2,7 @@
 
 #include "core/geometry/primitives.hpp"
 #include "io/files.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <vtkCellData.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "io/result_writer.hpp"
 
 #include <array>

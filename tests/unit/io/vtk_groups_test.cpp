@@ -1,5 +1,5 @@
-#include "core/math/index.hpp"
-#include "io/mesh_reader.hpp"
+#include "core/base/index.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 namespace fascia::io::vtk_groups_test {

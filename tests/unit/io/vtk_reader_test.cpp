@@ -1,5 +1,5 @@
 #include "core/geometry/surface.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 #include "tests/unit/io/vtk_samples.hpp"
 

@@ -1,5 +1,5 @@
-#include "core/solver/drivers.hpp"
-#include "core/solver/modes.hpp"
+#include "core/run/drivers.hpp"
+#include "core/run/modes.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "core/model/errors.hpp"
-#include "core/physics/inertia.hpp"
+#include "core/base/errors.hpp"
+#include "core/structure/inertia.hpp"
 #include "meshless/cloud_parts.hpp"
 #include "tests/support/models.hpp"
 

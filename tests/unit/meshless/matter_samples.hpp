@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/base/index.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/primitives.hpp"
-#include "core/math/index.hpp"
 #include "meshless/matter.hpp"
 
 #include <memory>

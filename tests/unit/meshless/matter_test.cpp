@@ -1,6 +1,6 @@
 #include "meshless/matter.hpp"
 
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "tests/unit/meshless/matter_samples.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "meshless/neighbours.hpp"
+#include "meshless/scattered/neighbours.hpp"
 
-#include "core/math/index.hpp"
-#include "meshless/block_search.hpp"
-#include "meshless/point_grid.hpp"
+#include "core/base/index.hpp"
+#include "meshless/scattered/block_search.hpp"
+#include "meshless/scattered/point_grid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "meshless/scatter.hpp"
+#include "meshless/scattered/scatter.hpp"
 
+#include "core/base/errors.hpp"
 #include "core/geometry/triangle_tree.hpp"
-#include "core/model/errors.hpp"
-#include "meshless/neighbours.hpp"
+#include "meshless/scattered/neighbours.hpp"
 #include "tests/unit/meshless/matter_samples.hpp"
 
 #include <gtest/gtest.h>

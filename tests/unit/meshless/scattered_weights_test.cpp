@@ -1,6 +1,6 @@
-#include "meshless/scattered_weights.hpp"
+#include "meshless/scattered/scattered_weights.hpp"
 
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
 
 #include <gtest/gtest.h>

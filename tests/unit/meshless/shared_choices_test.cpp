@@ -1,4 +1,4 @@
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
 #include "tests/unit/meshless/shared_models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/math/index.hpp"
+#include "core/base/index.hpp"
 #include "shells/shell_mesh.hpp"
 #include "shells/surface_checks.hpp"
 #include "tests/unit/io/mesh_samples.hpp"

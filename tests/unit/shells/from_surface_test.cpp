@@ -1,6 +1,6 @@
+#include "core/base/index.hpp"
 #include "core/geometry/primitives.hpp"
-#include "core/math/index.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "shells/shell_mesh.hpp"
 #include "shells/surface_checks.hpp"
 #include "tests/support/paths.hpp"

@@ -1,7 +1,7 @@
 #include "shells/generate.hpp"
 
-#include "core/math/index.hpp"
-#include "core/model/errors.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "shells/surface_checks.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 

@@ -1,7 +1,7 @@
 // Shells as bodies: rigid motions, free modes, numbering, masses, places, stresses.
-#include "core/cpu/executor.hpp"
-#include "core/solver/block_matrix.hpp"
-#include "core/solver/modes.hpp"
+#include "core/executor/executor.hpp"
+#include "core/linear/block_matrix.hpp"
+#include "core/run/modes.hpp"
 #include "tests/support/shell_models.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/physics/half_angle.hpp"
+#include "core/math/half_angle.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/shell_models.hpp"
 

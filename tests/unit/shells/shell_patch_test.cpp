@@ -1,5 +1,5 @@
 // Patch tests: states that every mesh must reproduce.
-#include "core/cpu/executor.hpp"
+#include "core/executor/executor.hpp"
 #include "tests/support/shell_models.hpp"
 
 #include <gtest/gtest.h>

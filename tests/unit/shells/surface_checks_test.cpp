@@ -1,7 +1,7 @@
 #include "shells/surface_checks.hpp"
 
+#include "core/base/index.hpp"
 #include "core/geometry/primitives.hpp"
-#include "core/math/index.hpp"
 #include "shells/generate.hpp"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,214 @@
+#include "app/reader/readers.hpp"
+#include "app/schema/schema.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fascia::app {
+namespace {
+
+Material find_material(const Value& name, const std::string& path, const Materials& materials,
+                       Diagnostics& diagnostics) {
+  const std::string& wanted = *name.as_string();
+  if (const auto found = materials.find(wanted); found != materials.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [key, material] : materials) known.push_back(key);
+  diagnostics.add(name.position, path, unknown_name("material", wanted, known));
+  return {};
+}
+
+Material material_from(const Value& value, const std::string& path, const Materials& materials,
+                       Diagnostics& diagnostics) {
+  if (value.as_string()) return find_material(value, path, materials, diagnostics);
+  return read_material(TableReader(&value, path, diagnostics));
+}
+
+std::vector<MaterialUse> read_material_list(const TableReader& body, const Materials& materials) {
+  std::vector<MaterialUse> uses;
+  for (const TableReader& part : read_choices(body, "material")) {
+    MaterialUse use{read_region(part, "where"), {}};
+    if (const Value* material = part.value("use"))
+      use.material = material_from(*material, part.path_of("use"), materials, body.diagnostics());
+    uses.push_back(std::move(use));
+  }
+  return uses;
+}
+
+std::vector<MaterialUse> read_material_uses(const TableReader& body, const Materials& materials) {
+  const Value* value = body.value("material");
+  if (!value) return {};
+  if (value->as_array()) return read_material_list(body, materials);
+  const Place place = body.place("material");
+  return {{{place, AllRegion{}}, material_from(*value, place.key, materials, body.diagnostics())}};
+}
+
+InitialMotion read_initial(const TableReader& initial) {
+  return {initial.vector("velocity").value_or(Vec3d{}), initial.vector("angular_velocity").value_or(Vec3d{}),
+          initial.vector("about")};
+}
+
+Fluid read_fluid(const TableReader& table) {
+  Fluid fluid;
+  fluid.place = table.place();
+  fluid.pressure = table.number("pressure");
+  fluid.bulk_modulus = table.number("bulk_modulus");
+  fluid.volume = table.number("volume");
+  fluid.density = table.number("density").value_or(0);
+  fluid.schedule = read_schedule(table);
+  if (!table.has("bulk_modulus")) table.refuse({"volume"}, "is used only beside bulk_modulus");
+  return fluid;
+}
+
+Transform read_transform(const TableReader& transform) {
+  Transform result;
+  const TableReader rotate = transform.table("rotate");
+  result.translate = transform.vector("translate").value_or(result.translate);
+  result.axis = rotate.direction("axis").value_or(result.axis);
+  result.angle = rotate.number("angle").value_or(result.angle);
+  result.scale = transform.number("scale").value_or(result.scale);
+  return result;
+}
+
+void read_lame(const TableReader& table, Material& material) {
+  const TableReader lame = table.table("lame");
+  const auto lambda = lame.number("lambda"), mu = lame.number("mu");
+  if (!lambda || !mu) return;
+  material.lambda = *lambda;
+  material.mu = *mu;
+  if (!(3 * *lambda + 2 * *mu > 0))
+    lame.error("lambda", fmt::format("{} Pa gives no stable material; must be above -2/3 mu, {:.6g} Pa", *lambda,
+                                     -2.0 / 3.0 * *mu));
+}
+
+void read_young(const TableReader& table, Material& material) {
+  const auto young = table.number("young"), poisson = table.number("poisson");
+  if (!young || !poisson) return;
+  material.lambda = *young * *poisson / ((1 + *poisson) * (1 - 2 * *poisson));
+  material.mu = *young / (2 * (1 + *poisson));
+  if (!std::isfinite(material.lambda) || !std::isfinite(material.mu) || !(material.mu > 0))
+    table.error("young", fmt::format("{} Pa with Poisson's ratio {} gives no finite stiffness; must be less extreme",
+                                     *young, *poisson));
+}
+
+std::optional<BodyModel> read_model(const TableReader& body) {
+  const auto word = body.text("model");
+  if (!word) return std::nullopt;
+  for (const BodyModel model :
+       {BodyModel::tetrahedra, BodyModel::hexahedra, BodyModel::shell, BodyModel::rigid, BodyModel::surface})
+    if (*word == app::word(model)) return model;
+  return BodyModel::meshless;
+}
+
+/// Thin bodies: their laws hold for a vanishing stress through the thickness or across the section.
+void check_thin_laws(const TableReader& table, const Body& body) {
+  const std::optional<Extent> extent = read_extent(table);
+  if (!extent || *extent == Extent::solid) return;
+  for (std::size_t i = 0; i < body.materials.size(); ++i)
+    if (body.materials[i].material.law == MaterialLaw::neo_hookean)
+      table.diagnostics().add(place_of_material(table, i),
+                              "has the law \"neo-hookean\", which thin bodies do not take; must be of the law "
+                              "\"st-venant-kirchhoff\"");
+}
+
+void read_meshless(const TableReader& table, const std::vector<std::string>& bodies,
+                   const std::filesystem::path& folder, Body& body) {
+  refuse_element_keys(table);
+  if (!table.has("frames") && !body.under_need)
+    table.error("frames", "is missing; must be " + in_words(frames_schema()) + kNeedWouldChoose);
+  read_section(table, body);
+  read_discretisation(table, bodies, folder, body);
+  check_thin_laws(table, body);
+}
+
+/// What a body is made of.
+void check_matter(const TableReader& table, const Body& body) {
+  if (!is_carrier(body)) {
+    table.refuse({"inertia"}, unused_by(body.model));
+    if (!table.has("material")) table.error("material", "is missing; must be " + in_words(body_material_schema()));
+  }
+  const bool weighs = body.model != BodyModel::surface;
+  const bool of_inertia = body.model == BodyModel::rigid && table.has("inertia");  // asks for a mass by itself
+  if (weighs && !of_inertia && !table.has("mass") && !table.has("density"))
+    table.error("mass or density is missing; give exactly one");
+}
+
+/// The keys of the body's model.
+void read_model_keys(const TableReader& table, const std::vector<std::string>& bodies,
+                     const std::filesystem::path& folder, Body& body) {
+  if (is_carrier(body)) return read_carrier(table, body);
+  if (is_shell(body)) return read_shell(table, body);
+  if (is_mesh_model(body)) return read_elements(table, body);
+  read_meshless(table, bodies, folder, body);
+}
+
+}  // namespace
+
+Place place_of_material(const TableReader& body, std::size_t use) {
+  const Value* value = body.value("material");
+  return value && value->as_array() ? body.tables("material")[use].place("use") : body.place("material");
+}
+
+Material read_material(const TableReader& table) {
+  Material material;
+  material.place = table.place();
+  if (table.text("law") == "neo-hookean") material.law = MaterialLaw::neo_hookean;
+  if (table.has("young")) {
+    if (!table.has("poisson"))
+      table.error("poisson", "is missing beside young; must be a number above -1 and below 0.5");
+    read_young(table, material);
+  } else if (table.has("lame")) {
+    table.refuse({"poisson"}, "is not used beside lame");
+    read_lame(table, material);
+  }
+  const TableReader damping = table.table("damping");
+  material.mass_damping = damping.number("mass").value_or(0);
+  material.stiffness_damping = damping.number("stiffness").value_or(0);
+  return material;
+}
+
+Materials read_materials(const TableReader& scene) {
+  Materials materials;
+  for (const TableReader& table : scene.tables("materials")) {
+    Material material = read_material(table);
+    material.name = table.name();
+    materials.emplace(table.name(), std::move(material));
+  }
+  return materials;
+}
+
+std::vector<TableReader> read_choices(const TableReader& table, std::string_view key) {
+  std::vector<TableReader> choices = table.tables(key);
+  for (std::size_t i = 0; i + 1 < choices.size(); ++i)
+    if (!choices[i].has("where"))
+      choices[i].error("has no where, so that no later entry can match; must be the last one");
+  return choices;
+}
+
+Body read_body(const TableReader& table, const Materials& materials, const std::vector<std::string>& bodies,
+               const std::filesystem::path& folder, bool under_need) {
+  Body body;
+  body.place = table.place();
+  body.name = table.name();
+  body.under_need = under_need;
+  body.domain_place = table.place("domain");
+  body.domain = read_domain(table, bodies, folder);
+  body.transform = read_transform(table.table("transform"));
+  if (const auto* file = std::get_if<FileDomain>(&body.domain)) body.transform.scale *= file->unit;
+  body.materials = read_material_uses(table, materials);
+  body.mass = table.number("mass");
+  body.density = table.number("density");
+  const std::optional<BodyModel> model = read_model(table);
+  body.frames_place = body.points_place = body.weights_place = body.place;
+  body.cells_place = body.domain_place;
+  body.model = model.value_or(BodyModel::meshless);
+  if (model) {
+    read_model_keys(table, bodies, folder, body);
+    check_matter(table, body);
+  }
+  body.initial = read_initial(table.table("initial"));
+  if (table.has("fluid")) body.fluid = read_fluid(table.table("fluid"));
+  return body;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,360 @@
+#include "app/results/probes.hpp"
+
+#include "app/assembly/matter.hpp"
+#include "core/base/index.hpp"
+#include "core/math/rotation.hpp"
+#include "core/structure/inertia.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace fascia::app {
+
+namespace {
+
+enum class Shape { scalar, vector, matrix };
+
+struct QuantityInfo {
+  Quantity quantity;
+  const char* name;
+  const char* unit;
+  Shape shape;
+};
+
+constexpr QuantityInfo kQuantities[] = {
+    {Quantity::displacement, "displacement", "m", Shape::vector},
+    {Quantity::position, "position", "m", Shape::vector},
+    {Quantity::rotation, "rotation", "rad", Shape::vector},
+    {Quantity::velocity, "velocity", "m/s", Shape::vector},
+    {Quantity::strain, "strain", "1", Shape::matrix},
+    {Quantity::stress, "stress", "Pa", Shape::matrix},
+    {Quantity::force, "force", "N", Shape::vector},
+    {Quantity::moment, "moment", "N m", Shape::vector},
+    {Quantity::volume, "volume", "m3", Shape::scalar},
+    {Quantity::mass, "mass", "kg", Shape::scalar},
+    {Quantity::energy, "energy", "J", Shape::scalar},
+    {Quantity::kinetic_energy, "kinetic_energy", "J", Shape::scalar},
+    {Quantity::total_energy, "total_energy", "J", Shape::scalar},
+    {Quantity::momentum, "momentum", "kg m/s", Shape::vector},
+    {Quantity::angular_momentum, "angular_momentum", "kg m2/s", Shape::vector},
+    {Quantity::max_displacement, "max_displacement", "m", Shape::scalar},
+    {Quantity::mean_displacement, "mean_displacement", "m", Shape::vector},
+    {Quantity::frequency, "frequency", "Hz", Shape::scalar},
+    {Quantity::fluid_volume, "fluid_volume", "m3", Shape::scalar},
+    {Quantity::fluid_pressure, "fluid_pressure", "Pa", Shape::scalar},
+};
+
+const QuantityInfo& info(Quantity q) {
+  return *std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                       [&](const QuantityInfo& i) { return i.quantity == q; });
+}
+
+void push(std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); }
+void push(std::vector<double>& out, const Mat3d& m) {
+  for (int i = 0; i < 3; ++i) push(out, m.row(i));
+}
+
+/// Strains and stresses of bodies in one state, each made when it is first asked for.
+using TensorFields = std::map<int, TensorField>;
+
+void push_point_value(std::vector<double>& out, const ResolvedProbe& probe, const SimulatedBody& owner,
+                      const ProbePoint& p, const State& state, TensorFields& fields) {
+  const ModelBody& body = *owner.body;
+  const FieldValue f = field_at(p.field, state);
+  switch (probe.probe->quantity) {
+    case Quantity::displacement:
+      push(out, f.u);
+      break;
+    case Quantity::position:
+      push(out, p.X + f.u);
+      break;
+    case Quantity::rotation:
+      push(out, rotation_vector(polar_increment(owner.vertices ? f.H : f.D)));
+      break;
+    case Quantity::velocity: {
+      Vec3d v;
+      for (std::size_t k = 0; k < p.field.nodes.size(); ++k)
+        v += state.v[at(p.field.nodes[k])] * p.field.influences[k].w +
+             state.Q_dot[at(p.field.nodes[k])] * p.field.influences[k].b;
+      push(out, v);
+      break;
+    }
+    case Quantity::strain:
+      push(out, body.strain_at(p.field, state));
+      break;
+    default: {
+      TensorField& tensors = fields[probe.body];
+      if (!tensors) tensors = body.tensor_field(state);
+      push(out, tensors(p.field, p.nearest).stress);
+      break;
+    }
+  }
+}
+
+/// Deformed volume: Σ v det F over the integration points of a body (or all).
+double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  double volume = 0;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
+    const ModelBody& body = *s.bodies[b].body;
+    for (std::size_t q = 0; q < body.points().size(); ++q) {
+      const Mat3d H = field_at(body.attach_point(q), state).H;
+      volume += body.points()[q].volume * determinant(Mat3d::identity() + H);
+    }
+  }
+  return volume;
+}
+
+struct Energies {
+  double elastic = 0, stabilization = 0, kinetic = 0, potential = 0;
+};
+
+/// Groups of points that tether the material of a body, or of all.
+std::set<int> tether_groups(const Simulation& s, int body) {
+  std::set<int> groups;
+  for (const TetheredMaterial& m : s.tethered)
+    if (body < 0 || m.body == body) groups.insert(s.model.tethers[at(m.tether)].group);
+  return groups;
+}
+
+Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
+  Energies e;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
+    const ModelBody& body = *s.bodies[b].body;
+    for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
+      e.elastic += snap.system->executor().group_elastic()[at(g)];
+      e.stabilization += snap.system->executor().group_stabilization()[at(g)];
+    }
+    for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
+      e.elastic += snap.system->executor().block_elastic(block);
+    for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
+      e.elastic += snap.system->executor().shell_elastic(shell);
+  }
+  for (const int group : tether_groups(s, probe.body))
+    e.stabilization += snap.system->executor().group_stabilization()[at(group)];
+  const std::vector<Spring>& springs = s.model.points.springs;
+  for (std::size_t k = 0; k < springs.size(); ++k)
+    if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), springs[k].node))
+      e.elastic += snap.system->executor().spring_energy(static_cast<int>(k));
+  for (const int i : probe.nodes)
+    e.kinetic += 0.5 * inertia_product(s.model.inertia[at(i)], snap.state->v[at(i)], snap.state->Q_dot[at(i)]);
+  const std::vector<double> factors = s.factors(snap.state->time);
+  std::vector<char> chosen(at(s.model.node_count()), 0);
+  for (const int i : probe.nodes) chosen[at(i)] = 1;
+  for (const DeadLoad& load : s.model.loads)
+    for (const NodeLoad& n : load.nodes)
+      if (chosen[at(n.node)] != 0)
+        e.potential -= factors[at(load.schedule)] *
+                       (dot(n.force, snap.state->u[at(n.node)]) + contract(n.couple, snap.state->D[at(n.node)]));
+  SurfaceForces forces;
+  for (const SurfaceLoad& load : s.model.surfaces) {
+    if (chosen[at(load.shares[0].node)] == 0) continue;
+    evaluate(load, *snap.state, factors, forces);
+    e.potential += forces.energy;
+  }
+  return e;
+}
+
+Momentum momentum(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  Momentum sum;
+  for (const int i : probe.nodes) {
+    const Momentum m = momentum_of(s.model.inertia[at(i)], s.model.rest_position[at(i)] + state.u[at(i)],
+                                   Mat3d::identity() + state.D[at(i)], state.v[at(i)], state.Q_dot[at(i)], probe.about);
+    sum.linear += m.linear;
+    sum.angular += m.angular;
+  }
+  return sum;
+}
+
+/// Force and moment that supports (or, where nothing is held, loads) exert on the nodes.
+void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap, Vec3d& force, Vec3d& moment) {
+  std::vector<char> chosen(at(s.model.node_count()), 0);
+  for (const int i : probe.nodes) chosen[at(i)] = 1;
+  const auto add = [&](int node, const Vec3d& f, const Vec3d& torque) {
+    const Vec3d x = s.model.rest_position[at(node)] + snap.state->u[at(node)];
+    force += f;
+    moment += torque + cross(x - probe.about, f);
+  };
+  bool held = false;
+  std::vector<double> held_forces(snap.system->gradient().begin(), snap.system->gradient().end());
+  const DofFilter& filter = snap.system->filter();
+  filter.to_local(held_forces);
+  filter.keep_fixed(held_forces);
+  filter.to_global(held_forces);
+  for (const FrameConstraint& c : s.model.constraints) {
+    if (chosen[at(c.node)] == 0) continue;
+    held = true;
+    Vec3d f, t;
+    const double* g = held_forces.data() + s.model.points.dofs.begin(c.node);
+    for (int k = 0; k < 3; ++k) f[k] = g[k];
+    const Mat3d A = Mat3d::identity() + snap.state->D[at(c.node)];
+    if (s.model.kind(c.node) == FrameKind::rigid)
+      for (int k = 0; k < 3; ++k) t[k] = g[3 + k];
+    else if (s.model.kind(c.node) == FrameKind::affine)
+      t = axl(A * transpose(frame_variation(FrameKind::affine, g + 3, A)));
+    add(c.node, f, t);
+  }
+  for (const int t : probe.tethered) {
+    const TetheredMaterial& m = s.tethered[at(t)];
+    held = true;
+    const Tether& tether = s.model.tethers[at(m.tether)];
+    const Vec3d f = snap.system->executor().tether_force(tether, *snap.state), u = field_at(m.field, *snap.state).u;
+    const bool turn = squared_norm(tether.arm) > 0;  // a couple
+    if (!turn) force += f;
+    moment += turn ? cross(tether.arm + u, f) : cross(tether.X + u - probe.about, f);
+  }
+  if (held) return;
+  const std::vector<double> factors = s.factors(snap.state->time);
+  for (std::size_t l = 0; l < s.model.loads.size(); ++l) {
+    if (static_cast<int>(l) == s.gravity_load) continue;
+    const DeadLoad& load = s.model.loads[l];
+    for (const NodeLoad& n : load.nodes) {
+      if (chosen[at(n.node)] == 0) continue;
+      const Mat3d Q = Mat3d::identity() + snap.state->D[at(n.node)];
+      const double factor = factors[at(load.schedule)];
+      add(n.node, n.force * factor, (axl(Q * transpose(n.couple)) + n.torque) * factor);
+    }
+  }
+  for (const FollowerLoad& load : s.model.followers)
+    for_each_share(load, *snap.state, factors[at(load.schedule)],
+                   [&](int node, const Vec3d& f, const Mat3d& couple, const Vec3d& torque) {
+                     if (chosen[at(node)] == 0) return;
+                     const Mat3d Q = Mat3d::identity() + snap.state->D[at(node)];
+                     add(node, f, axl(Q * transpose(couple)) + torque);
+                   });
+  SurfaceForces forces;
+  for (const SurfaceLoad& load : s.model.surfaces) {
+    evaluate(load, *snap.state, factors, forces);
+    for (int v = 0; v < load.vertex_count(); ++v)
+      for (const SurfaceShare& share : load.shares_of(v)) {
+        if (chosen[at(share.node)] == 0) continue;
+        const Mat3d Q = Mat3d::identity() + snap.state->D[at(share.node)];
+        add(share.node, forces.force[at(v)] * share.w, cross(Q * share.b, forces.force[at(v)]));
+      }
+  }
+}
+
+std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap,
+                              TensorFields& fields) {
+  std::vector<double> out;
+  const Quantity q = probe.probe->quantity;
+  const State& state = *snap.state;
+  if (!probe.points.empty()) {
+    for (const ProbePoint& p : probe.points) push_point_value(out, probe, s.bodies[at(probe.body)], p, state, fields);
+    return out;
+  }
+  switch (q) {
+    case Quantity::force:
+    case Quantity::moment: {
+      Vec3d force, moment;
+      support_force(s, probe, snap, force, moment);
+      push(out, q == Quantity::force ? force : moment);
+      break;
+    }
+    case Quantity::volume:
+      out.push_back(deformed_volume(s, probe, state));
+      break;
+    case Quantity::mass: {
+      double mass = 0;  // of nodes, or of whole bodies: nodes that bodies share carry the mass of both
+      for (const int i : probe.nodes) mass += probe.probe->where ? s.model.inertia[at(i)].mass : 0.0;
+      for (std::size_t b = 0; b < s.bodies.size() && !probe.probe->where; ++b)
+        if (probe.body < 0 || static_cast<std::size_t>(probe.body) == b) mass += s.bodies[b].body->mass();
+      out.push_back(mass);
+      break;
+    }
+    case Quantity::energy:
+      out.push_back(energies(s, probe, snap).elastic);
+      break;
+    case Quantity::kinetic_energy:
+      out.push_back(energies(s, probe, snap).kinetic);
+      break;
+    case Quantity::total_energy: {
+      const Energies e = energies(s, probe, snap);
+      out.push_back(e.elastic + e.stabilization + e.kinetic + e.potential);
+      break;
+    }
+    case Quantity::momentum:
+      push(out, momentum(s, probe, state).linear);
+      break;
+    case Quantity::angular_momentum:
+      push(out, momentum(s, probe, state).angular);
+      break;
+    case Quantity::max_displacement:
+      out.push_back(displacement_of_matter(s, probe, state).largest());
+      break;
+    case Quantity::mean_displacement:
+      push(out, displacement_of_matter(s, probe, state).mean());
+      break;
+    case Quantity::fluid_volume:
+      out.push_back(fluid_state(s, probe.fluid, state).volume);
+      break;
+    case Quantity::fluid_pressure:
+      out.push_back(fluid_state(s, probe.fluid, state).pressure);
+      break;
+    default:
+      out.push_back(snap.frequency);
+      break;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> probe_values(const Simulation& s, const Snapshot& snap) {
+  TensorFields fields;
+  std::vector<std::vector<double>> values;
+  for (const ResolvedProbe& probe : s.probes) values.push_back(values_of(s, probe, snap, fields));
+  return values;
+}
+
+std::string probe_unit(Quantity quantity) { return info(quantity).unit; }
+std::string unit_of_quantity(std::string_view name) {
+  return std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                      [&](const QuantityInfo& i) { return i.name == name; })
+      ->unit;
+}
+std::string quantity_name(Quantity quantity) { return info(quantity).name; }
+
+nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values) {
+  const Shape shape = info(probe.probe->quantity).shape;
+  const std::size_t size = shape == Shape::scalar ? 1 : shape == Shape::vector ? 3 : 9;
+  const auto one = [&](std::size_t i) -> nlohmann::json {
+    if (shape == Shape::scalar) return values[i];
+    nlohmann::json rows = nlohmann::json::array();
+    for (std::size_t k = 0; k < size; k += 3) {
+      nlohmann::json row = {values[i + k], values[i + k + 1], values[i + k + 2]};
+      if (shape == Shape::vector) return row;
+      rows.push_back(row);
+    }
+    return rows;
+  };
+  const bool list = probe.probe->at_is_list || values.size() > size;
+  if (!list) return one(0);
+  nlohmann::json all = nlohmann::json::array();
+  for (std::size_t i = 0; i < values.size(); i += size) all.push_back(one(i));
+  return all;
+}
+
+std::vector<std::string> probe_columns(const ResolvedProbe& probe) {
+  const Shape shape = info(probe.probe->quantity).shape;
+  const char* axes[3] = {"x", "y", "z"};
+  std::vector<std::string> parts;
+  if (shape == Shape::scalar) parts = {""};
+  if (shape == Shape::vector)
+    for (const char* a : axes) parts.push_back(std::string(".") + a);
+  if (shape == Shape::matrix)
+    for (const char* a : axes)
+      for (const char* b : axes) parts.push_back(std::string(".") + a + b);
+  std::vector<std::string> columns;
+  const std::size_t points = std::max<std::size_t>(1, probe.points.size());
+  for (std::size_t i = 0; i < points; ++i)
+    for (const std::string& part : parts)
+      columns.push_back(probe.probe->name + (probe.probe->at_is_list ? "[" + std::to_string(i) + "]" : "") + part);
+  return columns;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,258 @@
+#include "app/results/results.hpp"
+
+#include "core/base/clock.hpp"
+#include "core/base/errors.hpp"
+#include "core/base/index.hpp"
+#include "core/math/rotation.hpp"
+#include "core/physics/von_mises.hpp"
+#include "io/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <type_traits>
+
+namespace fascia::app {
+
+namespace {
+
+/// What the fields of a .vtu are made of, at one point.
+struct PointValue {
+  Vec3d rest{}, u{}, rotation{};
+  Mat3d axes = Mat3d::identity();
+};
+
+/// Means over the points of each cell, weighted with volume.
+std::vector<PointTensors> cell_means(const ModelBody& body, std::vector<PointTensors> points) {
+  std::vector<PointTensors> cells(body.cells().nodes.size() / at(body.cells().nodes_per_cell));
+  if (cells.size() == points.size()) return points;
+  std::vector<double> volume(cells.size());
+  for (std::size_t q = 0; q < points.size(); ++q) volume[at(body.points()[q].cell)] += body.points()[q].volume;
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const std::size_t cell = at(body.points()[q].cell);
+    add_share(cells[cell], points[q], body.points()[q].volume / volume[cell]);
+  }
+  return cells;
+}
+
+/// Collects arrays of values of one place each.
+class FieldWriter {
+ public:
+  FieldWriter(std::vector<io::FieldArray>& fields, std::size_t count) : fields_(fields), count_(count) {}
+
+  /// @param value  of a place: a number, a vector, or a matrix by rows
+  template <class Value>
+  void add(const std::string& name, const Value& value) {
+    using T = decltype(value(std::size_t{0}));
+    io::FieldArray array{name, std::is_same_v<T, double> ? 1 : std::is_same_v<T, Vec3d> ? 3 : 9, {}};
+    array.values.reserve(count_ * at(array.components));
+    for (std::size_t i = 0; i < count_; ++i) push(array.values, value(i));
+    fields_.push_back(std::move(array));
+  }
+
+  /// One of the fields that follow from tensors; false for another name.
+  bool add_tensor_field(const std::string& name, const std::vector<PointTensors>& t) {
+    if (name == "strain") add(name, [&](std::size_t i) { return t[i].strain; });
+    if (name == "stress") add(name, [&](std::size_t i) { return t[i].stress; });
+    if (name == "von_mises") add(name, [&](std::size_t i) { return von_mises(t[i].stress); });
+    if (name == "energy_density") add(name, [&](std::size_t i) { return t[i].energy_density; });
+    return name == "strain" || name == "stress" || name == "von_mises" || name == "energy_density";
+  }
+
+ private:
+  static void push(std::vector<double>& out, double v) { out.push_back(v); }
+  static void push(std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); }
+  static void push(std::vector<double>& out, const Mat3d& m) {
+    for (int i = 0; i < 3; ++i) push(out, m.row(i));
+  }
+
+  std::vector<io::FieldArray>& fields_;
+  std::size_t count_;
+};
+
+void set_units(std::vector<io::FieldArray>& fields) {
+  for (io::FieldArray& field : fields)
+    if (const std::string unit = io::name_of_field(field.name).unit; unit != "1") field.unit = unit;
+}
+
+}  // namespace
+
+ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path directory, std::string name,
+                         std::string provenance)
+    : simulation_(simulation),
+      directory_(std::move(directory)),
+      name_(std::move(name)),
+      provenance_(std::move(provenance)),
+      last_(simulation.probes.size()),
+      recovery_(simulation.bodies.size()) {
+  for (const SimulatedBody& b : simulation.bodies) {
+    surface_.emplace_back();
+    if (b.groups() != nullptr) continue;  // a mesh is written as it is
+    for (std::size_t i = 0; i < b.body->surface().points.size(); ++i)
+      surface_.back().push_back(b.body->attach_surface(i));
+  }
+}
+
+void ResultFiles::open() {
+  std::string head = "time";
+  for (const ResolvedProbe& p : simulation_.probes)
+    for (const std::string& column : probe_columns(p)) head += "," + column;
+  head += tells_time_step() ? ",time_step\n" : "\n";
+  csv_.emplace(directory_ / "probes.csv", head);
+}
+
+void ResultFiles::add_probes(double time, const Snapshot& snap) {
+  std::string row = fmt::format("{}", time);
+  last_ = probe_values(simulation_, snap);
+  for (const std::vector<double>& values : last_)
+    for (const double value : values) row += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
+  if (tells_time_step()) row += fmt::format(",{:.17g}", snap.time_step);
+  csv_->append(row + "\n");
+}
+
+bool ResultFiles::tells_time_step() const { return simulation_.scene.solver.time_step_automatic; }
+
+/// What is recovered at the nodes is smooth, which the field's own gradient is not across the faces of cells.
+ResultFiles::BodyTensors ResultFiles::tensors(const SimulatedBody& b, const State& state) {
+  std::optional<NodalRecovery>& recovery = recovery_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
+  if (!recovery) recovery.emplace(b);
+  std::vector<PointTensors> points = b.body->tensors(state);
+  std::vector<PointTensors> nodes = recovery->at_nodes(points);
+  return {std::move(points), std::move(nodes)};
+}
+
+/// Cells on the nodes, with tensors by cell and recovered at the nodes.
+io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& state) {
+  const ModelBody& body = *b.body;
+  const auto first = at(body.first_node());
+  io::VisualMesh mesh;
+  for (std::size_t i = 0; i < b.nodes.size(); ++i) mesh.points.push_back(b.nodes[i] + state.u[first + i]);
+  const BodyCells& cells = body.cells();
+  mesh.volumes.push_back({cells.type, cells.nodes_per_cell > node_count(cells.type), cells.nodes});
+  const std::vector<std::string>& names = simulation_.scene.output.fields;
+  FieldWriter of_nodes(mesh.point_fields, b.nodes.size());
+  of_nodes.add("rest_position", [&](std::size_t i) { return b.nodes[i]; });
+  const bool tensor_fields = std::any_of(
+      names.begin(), names.end(), [](const std::string& name) { return name != "displacement" && name != "rotation"; });
+  BodyTensors t = tensor_fields ? tensors(b, state) : BodyTensors{};
+  const std::vector<PointTensors> means =
+      tensor_fields ? cell_means(body, std::move(t.points)) : std::vector<PointTensors>{};
+  FieldWriter of_cells(mesh.cell_fields, means.size());
+  std::vector<BodyField> fields = tensor_fields ? body.own_fields(state) : std::vector<BodyField>{};
+  for (const std::string& name : names) {
+    if (name == "displacement") of_nodes.add(name, [&](std::size_t i) { return state.u[first + i]; });
+    if (name == "rotation" && !b.vertices)
+      of_nodes.add(name, [&](std::size_t i) { return rotation_vector(state.D[first + i]); });
+    const bool own = std::any_of(fields.begin(), fields.end(), [&](const BodyField& f) { return f.name == name; });
+    if (tensor_fields && !own && of_nodes.add_tensor_field(name, t.nodes)) of_cells.add_tensor_field(name, means);
+  }
+  const auto wanted = [&](const std::string& field) {
+    return std::find(names.begin(), names.end(), field == "to_outer_face" ? "director" : field) != names.end();
+  };
+  for (BodyField& f : fields) {
+    if (!wanted(f.name)) continue;
+    (f.of_cells ? mesh.cell_fields : mesh.point_fields).push_back({f.name, f.components, std::move(f.values)});
+  }
+  return mesh;
+}
+
+/// The surface or lines that a meshless body carries, its frames and its points.
+io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) {
+  if (b.groups() != nullptr) return visual_mesh(b, state);
+  const ModelBody& body = *b.body;
+  const BodyTensors t = tensors(b, state);
+  const std::vector<Attachment>& surface = surface_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
+  std::vector<PointValue> values;
+  std::vector<PointTensors> tensors_of_values;
+  const auto add_field_value = [&](const Vec3d& X, const Attachment& a, const PointTensors& tensors_there) {
+    const FieldValue f = field_at(a, state);
+    const Mat3d D = polar_increment(f.D);
+    values.push_back({X, f.u, rotation_vector(D), Mat3d::identity() + D});
+    tensors_of_values.push_back(tensors_there);
+  };
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    PointTensors mean;
+    for (std::size_t k = 0; k < surface[i].nodes.size(); ++k)
+      add_share(mean, t.nodes[b.index_of(surface[i].nodes[k])], surface[i].influences[k].w);
+    add_field_value(body.surface().points[i], surface[i], mean);
+  }
+  for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+    const std::size_t node = at(b.node_ids[i]);
+    const Mat3d turn =
+        simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node] : polar_increment(state.D[node]);
+    values.push_back({b.nodes[i], state.u[node], rotation_vector(turn),
+                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node]});
+    tensors_of_values.push_back(t.nodes[i]);
+  }
+  for (std::size_t q = 0; q < body.points().size(); ++q)
+    add_field_value(body.points()[q].X, body.attach_point(q), t.points[q]);
+  io::VisualMesh mesh;
+  for (const PointValue& v : values) mesh.points.push_back(v.rest + v.u);
+  mesh.triangles = body.surface().triangles;
+  mesh.lines = body.segments();
+  mesh.part.assign(mesh.triangles.size() + mesh.lines.size(), 0);
+  for (std::size_t i = surface.size(); i < values.size(); ++i) {
+    mesh.vertices.push_back(static_cast<int>(i));
+    mesh.part.push_back(i < surface.size() + b.nodes.size() ? 1 : 2);
+  }
+  FieldWriter fields(mesh.point_fields, values.size());
+  fields.add("rest_position", [&](std::size_t i) { return values[i].rest; });
+  for (const std::string& name : simulation_.scene.output.fields) {
+    if (name == "displacement") fields.add(name, [&](std::size_t i) { return values[i].u; });
+    if (name == "rotation") {
+      fields.add(name, [&](std::size_t i) { return values[i].rotation; });
+      for (int a = 0; a < 3; ++a)
+        fields.add(std::string("axis_") + "xyz"[a], [&, a](std::size_t i) { return values[i].axes.column(a); });
+    }
+    fields.add_tensor_field(name, tensors_of_values);
+  }
+  return mesh;
+}
+
+std::string state_file(const SimulatedBody& body, std::size_t state) {
+  return fmt::format("{}_{:05d}.vtu", body.name, state);
+}
+
+io::VisualMesh ResultFiles::state_mesh(const SimulatedBody& body, const State& state, double time) {
+  io::VisualMesh mesh = visual(body, state);
+  set_units(mesh.point_fields);
+  set_units(mesh.cell_fields);
+  mesh.time = time;
+  mesh.provenance = provenance_;
+  return mesh;
+}
+
+void ResultFiles::add_state(double time, const State& state) {
+  const Clock::time_point start = Clock::now();
+  std::vector<std::string> files;
+  try {
+    for (const SimulatedBody& body : simulation_.bodies) {
+      files.push_back(state_file(body, times_.size()));
+      io::write_vtu(directory_ / files.back(), state_mesh(body, state, time));
+    }
+  } catch (const std::exception&) {  // the bodies that are there are no whole state
+    std::error_code ignored;
+    for (const std::string& file : files) std::filesystem::remove(directory_ / file, ignored);
+    throw;
+  }
+  if (!collection_) collection_.emplace(directory_ / (name_ + ".pvd"));
+  for (std::size_t b = 0; b < files.size(); ++b) collection_->add(time, simulation_.bodies[b].name, files[b]);
+  times_.push_back(state.time);
+  seconds_ += seconds_since(start);
+}
+
+double ResultFiles::estimated_size(const State& state) {
+  constexpr double kPacked = 0.5;  // of the provenance: compressed, in base 64
+  double size = kPacked * static_cast<double>(provenance_.size() * simulation_.bodies.size());
+  for (const SimulatedBody& body : simulation_.bodies) size += io::estimated_size(visual(body, state));
+  return size;
+}
+
+void ResultFiles::synchronise() const {
+  csv_->synchronise();
+  if (collection_) collection_->synchronise();
+}
+
+}  // namespace fascia::app

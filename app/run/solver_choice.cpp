@@ -1,0 +1,40 @@
+#include "app/run/solver_choice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace fascia::app {
+
+namespace {
+
+std::string preconditioned_by(const SolverChoice& choice) {
+  switch (choice.preconditioner) {
+    case Preconditioner::none:
+      return "without a preconditioner";
+    case Preconditioner::jacobi:
+      return "with the diagonal";
+    case Preconditioner::cholesky:
+      return "with a factor";
+    case Preconditioner::multigrid:
+      return fmt::format("with levels of {} nodes", fmt::join(choice.levels, ", "));
+    case Preconditioner::automatic:
+    case Preconditioner::block_jacobi:
+      break;
+  }
+  return "with blocks";
+}
+
+}  // namespace
+
+std::string told(const SolverChoice& choice) {
+  std::string text = "linear solver: ";
+  text += choice.direct ? "Cholesky" : "conjugate gradients " + preconditioned_by(choice);
+  if (choice.flops == 0) return text;
+  return text + fmt::format(
+                    "; a factor {} {:.2g} operations and {:.2g} numbers, {:.0f} operations for each number of the "
+                    "matrix (beyond {:.0f}, and {} unknowns, \"auto\" takes conjugate gradients)",
+                    choice.direct ? "takes" : "would take", choice.flops, choice.numbers, choice.flops_per_number,
+                    TangentSolver::kFlopsPerNumber, TangentSolver::kDirectDofs);
+}
+
+}  // namespace fascia::app

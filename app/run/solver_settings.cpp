@@ -1,0 +1,66 @@
+#include "app/run/solver_settings.hpp"
+
+#include "app/assembly/simulation.hpp"
+
+namespace fascia::app {
+
+SolverSettings settings_of(const Solver& solver) {
+  SolverSettings s;
+  s.max_iterations = solver.newton_max_iterations;
+  s.tolerance = solver.newton_tolerance;
+  s.proceed_on_limit = solver.on_limit == OnLimit::proceed;
+  s.linear = solver.linear == LinearKind::cg         ? LinearMethod::cg
+             : solver.linear == LinearKind::cholesky ? LinearMethod::cholesky
+                                                     : LinearMethod::automatic;
+  switch (solver.preconditioner) {
+    case PreconditionerKind::automatic:
+      s.preconditioner = Preconditioner::automatic;
+      break;
+    case PreconditionerKind::none:
+      s.preconditioner = Preconditioner::none;
+      break;
+    case PreconditionerKind::jacobi:
+      s.preconditioner = Preconditioner::jacobi;
+      break;
+    case PreconditionerKind::block_jacobi:
+      s.preconditioner = Preconditioner::block_jacobi;
+      break;
+    case PreconditionerKind::multigrid:
+      s.preconditioner = Preconditioner::multigrid;
+      break;
+    case PreconditionerKind::cholesky:
+      s.preconditioner = Preconditioner::cholesky;
+      break;
+  }
+  s.cg.max_iterations = solver.linear_max_iterations;
+  s.cg.tolerance = solver.linear_tolerance;
+  if (solver.precision == "mixed") s.precision = Precision::mixed;
+  if (solver.precision == "single") s.precision = Precision::single;
+  s.tangent = solver.full_tangent ? Tangent::full : Tangent::material;
+  return s;
+}
+
+DynamicsSettings dynamics_of(const Solver& solver) {
+  return {scheme_of(solver.kind), solver.time_step, solver.steps, solver.duration.value_or(0)};
+}
+
+ExplicitSettings explicit_of(const Scene& scene, const std::function<bool(const StepInfo&)>& observed) {
+  const Solver& solver = scene.solver;
+  const double every = saving_time(scene.output);
+  return {solver.time_step, solver.steps, observed, solver.duration.value_or(0), solver.time_step_automatic, every};
+}
+
+TimeScheme scheme_of(SolverKind kind) {
+  switch (kind) {
+    case SolverKind::bdf2:
+      return TimeScheme::bdf2;
+    case SolverKind::newmark:
+      return TimeScheme::newmark;
+    case SolverKind::midpoint:
+      return TimeScheme::midpoint;
+    default:
+      return TimeScheme::implicit_euler;
+  }
+}
+
+}  // namespace fascia::app

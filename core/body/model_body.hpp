@@ -1,0 +1,175 @@
+#pragma once
+
+#include "core/geometry/mesh.hpp"
+#include "core/physics/point_law.hpp"
+#include "core/structure/model.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fascia {
+
+/// Material of a point.
+struct PointMaterialSpec {
+  double lambda = 0, mu = 0;                       ///< [Pa]
+  double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
+  bool neo_hookean = false;                        ///< St Venant-Kirchhoff otherwise
+};
+
+/// Where a material point is attached: the nodes that move it.
+struct Attachment {
+  std::vector<int> nodes;  ///< of the model, ascending
+  std::vector<Influence> influences;
+  int cell = -1;  ///< of a frame grid, or the element
+};
+
+/// Displacement, rotation and displacement gradient of the field at an attachment.
+struct FieldValue {
+  Vec3d u{};
+  Mat3d D{}, H{};  ///< blended rotation − I, F − I
+};
+FieldValue field_at(const Attachment& attachment, const State& state);
+
+/// An integration point with what it weighs, for results.
+struct BodyPoint {
+  Vec3d X{};          ///< [m]
+  double volume = 0;  ///< [m³]
+  double lambda = 0, mu = 0;
+  Vec3d middle{};  ///< its place on the middle of a sheet or line; X in a solid [m]
+  Law law = Law::solid;
+  bool transverse = false;  ///< as in PointRule
+  int axes = -1;            ///< of a thin law: index into ModelBody::axes()
+  int cell = -1;            ///< of BodyCells
+};
+
+/// Strain (Green-Lagrange), stress (Cauchy) and energy density at a point.
+struct PointTensors {
+  Mat3d strain{}, stress{};   ///< [-], [Pa]
+  double energy_density = 0;  ///< [J/m³]
+};
+
+/// Strain and stress of a body in one state, with the arguments of ModelBody::tensors_at.
+using TensorField = std::function<PointTensors(const Attachment& place, std::size_t nearest)>;
+
+/// A quadrature point of a face of the surface.
+struct FacePoint {
+  Vec3d X{};
+  double area = 0;  ///< its part of the face [m²]
+  Attachment attachment;
+  std::vector<int> nodes;  ///< of the face, by points of the surface
+};
+
+/// A named set of a body's nodes and cells, from the groups of a mesh.
+struct BodyGroup {
+  std::string name;
+  int number = 0, dimension = 0;
+  std::vector<int> nodes, cells;  ///< of the body, ascending
+};
+
+/// A field of results that only some bodies have: values by node or by cell.
+struct BodyField {
+  std::string name;
+  bool of_cells = false;
+  int components = 1;
+  std::vector<double> values;
+};
+
+/// Cells that a body carries: nodes of the body, corners first.
+struct BodyCells {
+  CellType type = CellType::tetrahedron;
+  int nodes_per_cell = 4;
+  std::vector<int> nodes;
+};
+
+/// A body in a model. Its own nodes are a contiguous range, its groups of points and blocks of elements too; nodes of
+/// other bodies may move it as well.
+class ModelBody {
+ public:
+  virtual ~ModelBody() = default;
+
+  int first_node() const { return first_node_; }
+  int node_count() const { return node_count_; }
+  /// Nodes of other bodies that are frames of this one too, ascending.
+  const std::vector<int>& shared_nodes() const { return shared_; }
+  const std::vector<BodyPoint>& points() const { return points_; }
+  /// Rest axes of thin points: columns, tangents first.
+  const std::vector<Mat3d>& axes() const { return axes_; }
+  double volume() const { return volume_; }
+  double mass() const { return mass_; }
+  double size() const { return size_; }                     ///< diagonal of the bounding box [m]
+  const TriangleMesh& surface() const { return surface_; }  ///< at rest; of a sheet its middle
+  /// Pairs of points of the surface mesh that a line runs between.
+  const std::vector<std::array<int, 2>>& segments() const { return segments_; }
+  const std::vector<std::string>& messages() const { return messages_; }  ///< what a user should mind
+  const std::vector<std::string>& choices() const { return choices_; }    ///< what was chosen for it, and why
+  int first_group = 0, group_count = 0;  ///< in the model's point set; set by who closes the set
+  int first_block = 0, block_count = 0;  ///< of elements, likewise
+  int first_shell = 0, shell_count = 0;  ///< blocks of shells, likewise
+  const std::vector<BodyGroup>& groups() const { return groups_; }
+  const BodyCells& cells() const { return cells_; }
+  /// Weight of each node over its mass, where a static load of gravity is not shared as the mass is; else empty [kg].
+  const std::vector<double>& weights() const { return weights_; }
+
+  /// What a scene calls it: "meshless", "tetrahedra", "hexahedra", "shell".
+  virtual std::string model_name() const { return "meshless"; }
+  /// λ is integrated at one point a cell.
+  virtual bool selective() const { return false; }
+  /// A node's weight is 1 at its own place: holding the nodes holds the material there.
+  virtual bool interpolates() const { return true; }
+  /// The nodes that move the material at a rest position.
+  virtual Attachment attach(const Vec3d& X) const = 0;
+  /// The same for an integration point, exactly as the mechanics see it.
+  virtual Attachment attach_point(std::size_t point) const = 0;
+  /// The same at the point whose volumetric strain stands for X's cell (selective integration).
+  virtual Attachment attach_volumetric(const Attachment& at) const { return at; }
+  /// The nodes that move a point of the surface.
+  virtual Attachment attach_surface(std::size_t point) const { return attach(surface_.points[point]); }
+  /// Faces of the surface by its points: corners counter-clockwise seen from outside, then the middle nodes of edges 01
+  /// 12 .. of quadratic ones. Here its triangles.
+  virtual std::vector<std::vector<int>> faces() const;
+  /// Quadrature points of all faces: here three a triangle, exact for weights of degree two.
+  virtual std::vector<FacePoint> face_points() const;
+  /// At each integration point.
+  virtual std::vector<PointTensors> tensors(const State& state) const;
+  /// At any place. @param nearest  index of the integration point whose material counts there
+  virtual PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const;
+  /// The same at many places of one state: what they share is computed once, when this is called. Body and state must
+  /// outlive what it returns.
+  virtual TensorField tensor_field(const State& state) const;
+  /// Green-Lagrange strain at any place.
+  virtual Mat3d strain_at(const Attachment& place, const State& state) const;
+  /// What only this kind of body shows in results.
+  virtual std::vector<BodyField> own_fields(const State& /*state*/) const { return {}; }
+  /// Nodes on the outside: 1 (one entry a node of the body, then one for each of shared_nodes(), always 1).
+  virtual std::vector<char> nodes_on_boundary() const = 0;
+  /// Distance from X to the body [m]; 0 inside.
+  virtual double distance(const Vec3d& X) const = 0;
+  /// The mesh's own number of a cell. @param cell  BodyPoint::cell, at least 0
+  virtual std::int64_t cell_number(int cell) const { return cell; }
+  /// One line on how the weights do in this body; empty where there is nothing to say.
+  virtual std::string quality() const { return ""; }
+
+ protected:
+  ModelBody() = default;
+  ModelBody(const ModelBody&) = default;
+  ModelBody(ModelBody&&) = default;
+  ModelBody& operator=(const ModelBody&) = default;
+  ModelBody& operator=(ModelBody&&) = default;
+
+  double volume_ = 0, mass_ = 0, size_ = 0;
+  int first_node_ = 0, node_count_ = 0;
+  std::vector<int> shared_;
+  std::vector<BodyPoint> points_;
+  std::vector<Mat3d> axes_;
+  TriangleMesh surface_;
+  std::vector<std::array<int, 2>> segments_;
+  std::vector<std::string> messages_, choices_;
+  std::vector<BodyGroup> groups_;
+  BodyCells cells_;
+  std::vector<double> weights_;
+};
+
+}  // namespace fascia

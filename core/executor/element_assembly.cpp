@@ -1,0 +1,165 @@
+#include "core/base/errors.hpp"
+#include "core/executor/element_batch.hpp"
+#include "core/linear/block_matrix.hpp"
+#include "core/math/transpose_lanes.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace fascia {
+
+using namespace kernels;
+
+namespace {
+
+/// Blocks of node pairs (a, b ≤ a) of an element, in this order.
+constexpr int pair_count(int nodes) { return nodes * (nodes + 1) / 2; }
+
+/// Adds the stiffness of a batch, by columns: each unit motion gives the forces on the nodes that come after.
+template <ElementLaw L, int N>
+void add_columns(BatchTangent<L, N>& tangent, const ElementBlock& block, int batch, int half, Mat3<Lanes>* K) {
+  const int n = nodes_of<N>(block), points = tangent.points.count();
+  Mat3<Lanes> dF[BatchPoints<N>::kPoints], dP[BatchPoints<N>::kPoints];
+  for (int b = 0; b < n; ++b) {
+    for (int j = 0; j < 3; ++j) {
+      for (int q = 0; q < points; ++q) {
+        dF[q] = {};
+        const Vec3<Lanes> g = gradient(block.gradient_of(batch, q), b, half);
+        for (int k = 0; k < 3; ++k) dF[q](j, k) = g[k];
+      }
+      tangent.differential(dF, dP);
+      for (int a = b; a < n; ++a) {
+        Vec3<Lanes> column;
+        for (int q = 0; q < points; ++q)
+          column += dP[q] * gradient(block.gradient_of(batch, q), a, half) * tangent.points.v(q);
+        for (int i = 0; i < 3; ++i) K[pair_count(a) + b](i, j) += column[i];
+      }
+    }
+  }
+}
+
+/// The same by the closed form of each law.
+template <ElementLaw L, int N>
+void add_blocks(const BatchTangent<L, N>& tangent, const ElementBlock& block, int batch, int half, bool full,
+                Mat3<Lanes>* K) {
+  const int n = nodes_of<N>(block);
+  for (int q = 0; q < tangent.points.count(); ++q) {
+    const ElasticPoint<L, Lanes>& point = tangent.point(q);
+    const ElementStiffness<L, Lanes> stiffness(point, tangent.m, tangent.lambda(), full);
+    const Mat3<Lanes> F_inverse_transposed = transpose(point.F_inverse);
+    const Lanes v = tangent.points.v(q);
+    Vec3<Lanes> g[kRoom<N>], f[kRoom<N>], h[kRoom<N>];
+    for (int a = 0; a < n; ++a) {
+      g[a] = gradient(block.gradient_of(batch, q), a, half);
+      if constexpr (L != ElementLaw::linear) f[a] = point.F * g[a];
+      if constexpr (L == ElementLaw::neo_hookean) h[a] = F_inverse_transposed * g[a];
+    }
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b <= a; ++b)
+        K[pair_count(a) + b] += stiffness.block(g[a], g[b], f[a], f[b], h[a], h[b], block.damped) * v;
+  }
+}
+
+/// Adds the blocks of a batch's pair of nodes to where each lane has its own.
+/// @param transposed  above the diagonal
+void add_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, bool transposed, double* values) {
+  Lanes entry[9];
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) entry[3 * r + c] = transposed ? K(c, r) : K(r, c);
+  for (int first = 0; first + kBatchWidth <= 9; first += kBatchWidth) {
+    Lanes part[kBatchWidth];
+    for (int k = 0; k < kBatchWidth; ++k) part[k] = entry[first + k];
+    transpose_lanes(part);
+    for (int lane = 0; lane < kBatchWidth; ++lane) {
+      double* out = values + slot[lane] + first;
+      for (int k = 0; k < kBatchWidth; ++k) out[k] += part[lane].v[k];
+    }
+  }
+  for (int lane = 0; lane < kBatchWidth; ++lane) values[slot[lane] + 8] += entry[8].v[lane];
+}
+
+/// The same where rows of blocks are `stride` apart, since some of their nodes turn too.
+void add_wide_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, const std::uint8_t* stride, bool transposed,
+                   double* values) {
+  for (int lane = 0; lane < kBatchWidth; ++lane)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) values[slot[lane] + stride[lane] * r + c] += (transposed ? K(c, r) : K(r, c)).v[lane];
+}
+
+}  // namespace
+
+/// K has room for the pairs of the largest element only where it must: a linear tetrahedron's stay in registers' reach.
+template <ElementLaw L, int N>
+[[gnu::flatten]] void ElementExecutor::assemble_patch(const At& state, int patch, BlockMatrix& matrix) {
+  gather_patch(state.u, patch, slot_u_);
+  const auto first = at(block_.patch_begin[at(patch)]);
+  const auto nodes = block_.nodes_of_patch(patch);
+  const int n = nodes_of<N>(block_), pairs = pair_count(n);
+  for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
+    for (int half = 0; half < kBatches; ++half) {
+      Vec3<Lanes> u[kRoom<N>];
+      gather<N>(block_, batch, half, slot_u_.data() + first, u);
+      const Lanes pressure = block_.averaged ? mean_pressure(block_, batch, half, nodes, node_pressure_) : Lanes(0);
+      BatchTangent<L, N> tangent(block_, batch, half, u, state, pressure);
+      Mat3<Lanes> K[pair_count(kRoom<N>)];
+      const bool by_columns = L == ElementLaw::corotational || block_.penalised;
+      if constexpr (L != ElementLaw::corotational) {
+        if (!by_columns) add_blocks(tangent, block_, batch, half, state.tangent == Tangent::full, K);
+      }
+      if (by_columns) add_columns(tangent, block_, batch, half, K);
+      const std::size_t first_pair = at(batch) * at(pairs) * kElementLanes + half * kBatchWidth;
+      const std::uint32_t* slot = pair_slot_.data() + first_pair;
+      for (int pair = 0; pair < pairs; ++pair) {
+        const std::uint8_t* stride =
+            pair_stride_.empty() ? nullptr : pair_stride_.data() + first_pair + pair * kElementLanes;
+        if (stride == nullptr ||
+            std::all_of(stride, stride + kBatchWidth, [](std::uint8_t length) { return length == 3; }))
+          add_pair(K[pair], slot + pair * kElementLanes, matrix.fills_upper(), matrix.values());
+        else
+          add_wide_pair(K[pair], slot + pair * kElementLanes, stride, matrix.fills_upper(), matrix.values());
+      }
+    }
+  }
+}
+
+void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
+  const int pairs = pair_count(block_.nodes);
+  if (matrix.value_count() > std::numeric_limits<std::uint32_t>::max())
+    throw InputError("the matrix has more than 4e9 entries; use fewer elements");
+  pair_slot_.resize(at(block_.batch_count()) * at(pairs) * kElementLanes);
+  const auto turns = [&](int node) { return matrix.dofs().kind(node) != FrameKind::vertex; };
+  if (std::any_of(block_.patch_node.begin(), block_.patch_node.end(), turns)) pair_stride_.resize(pair_slot_.size());
+  for (int patch = 0; patch < block_.patch_count(); ++patch) {
+    const auto nodes = block_.nodes_of_patch(patch);
+    for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
+      for (int lane = 0; lane < kElementLanes; ++lane) {
+        for (int a = 0; a < block_.nodes; ++a) {
+          for (int b = 0; b <= a; ++b) {
+            const int i = nodes[block_.local_of(batch)[a * kElementLanes + lane]];
+            const int j = nodes[block_.local_of(batch)[b * kElementLanes + lane]];
+            const int index = matrix.fills_upper() ? matrix.find(j, i) : matrix.find(i, j);
+            const std::size_t place = (at(batch) * at(pairs) + at(pair_count(a) + b)) * kElementLanes + at(lane);
+            pair_slot_[place] = static_cast<std::uint32_t>(matrix.block(index) - matrix.values());
+            if (!pair_stride_.empty())
+              pair_stride_[place] = static_cast<std::uint8_t>(matrix.dofs().size(matrix.fills_upper() ? i : j));
+          }
+        }
+      }
+    }
+  }
+}
+
+void ElementExecutor::assemble(const At& state, BlockMatrix& matrix) {
+  if (pair_slot_.empty()) find_pair_slots(matrix);
+  if (block_.averaged) average(state);
+  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
+    for (std::size_t c = 0; c + 1 < block_.color_begin.size(); ++c) {
+      const int first = block_.color_begin[c];
+      pool_.for_ranges(block_.color_begin[c + 1] - first, 1,
+                       [&](int i, int) { assemble_patch<L, N>(state, block_.color_patch[at(first + i)], matrix); });
+    }
+  });
+  if (block_.averaged) assemble_average(state, matrix);
+}
+
+}  // namespace fascia

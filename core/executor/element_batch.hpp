@@ -1,0 +1,86 @@
+#pragma once
+
+#include "core/executor/element_kernels.hpp"
+
+namespace fascia::kernels {
+
+/// The tangent of a batch of elements at a state, ready for directions.
+template <ElementLaw L, int N>
+class BatchTangent {
+ public:
+  static constexpr int kPoints = BatchPoints<N>::kPoints;
+  static constexpr bool kTurns = L == ElementLaw::corotational;
+
+  BatchPoints<N> points;
+  ElementMaterial<Lanes> m;
+
+  /// @param pressure  λ θ averaged about the nodes; used where the block is averaged
+  BatchTangent(const ElementBlock& block, int batch, int half, const Vec3<Lanes>* u, const ElementExecutor::At& state,
+               const Lanes& pressure)
+      : points(block, batch, half, u),
+        m(element_material(block, batch, half, state.inverse_step)),
+        full_(state.tangent == Tangent::full),
+        lambda_(block.averaged ? Lanes(0) : m.lambda),
+        element_(points.mean(points.H), points.safe_volume(), full_) {
+    for (int q = 0; q < points.count(); ++q) {
+      const Mat3<Lanes> old = old_strain(block, state.E, batch, q, half);
+      if constexpr (kTurns) {
+        sigma_[q] = element_.stress(element_.strain(points.H[q]), m, old, block.damped);
+        element_.add_point(points.H[q], sigma_[q], points.v(q));
+      } else {
+        const Lanes p = block.averaged ? pressure : m.lambda * volumetric_strain<L>(points.H[q]);
+        point_[q] = ElasticPoint<L, Lanes>(points.H[q], m, p, old, block.damped);
+        if (!state.S.empty())
+          point_[q].set_stress(symmetric_matrix(state.S.data() + symmetric_row(block, batch, q), 0, half));
+      }
+    }
+    if constexpr (kTurns) element_.close();
+  }
+
+  const ElasticPoint<L, Lanes>& point(int q) const { return point_[q]; }
+  const Lanes& lambda() const { return lambda_; }
+
+  /// dP of each point for its dF; without what node averages add.
+  void differential(const Mat3<Lanes>* dF, Mat3<Lanes>* dP) {
+    if constexpr (kTurns) {
+      element_.begin_direction(points.mean(dF));
+      Mat3<Lanes> dsigma[kPoints];
+      for (int q = 0; q < points.count(); ++q) {
+        const Mat3<Lanes> dA = element_.relative_differential(points.H[q], dF[q]);
+        dsigma[q] = element_.stress_differential(dA, m);
+        element_.add_direction(points.H[q], sigma_[q], dA, dsigma[q], points.v(q));
+      }
+      element_.close_direction();
+      for (int q = 0; q < points.count(); ++q) dP[q] = element_.differential(sigma_[q], dsigma[q]);
+    } else {
+      for (int q = 0; q < points.count(); ++q) dP[q] = point_[q].differential(dF[q], m, lambda_, full_);
+    }
+    if (points.block.penalised) add_penalty(dF, dP);
+  }
+
+ private:
+  struct Nothing {
+    Nothing(const Mat3<Lanes>&, const Lanes&, bool) {}
+  };
+
+  void add_penalty(const Mat3<Lanes>* dF, Mat3<Lanes>* dP) const {
+    const Lanes s = points.swelling;
+    Lanes ds;
+    for (int q = 0; q < points.count(); ++q)
+      ds += points.v(q) * contract(cofactor(Mat3<Lanes>::identity() + points.H[q]), dF[q]);
+    ds = ds / points.safe_volume();
+    for (int q = 0; q < points.count(); ++q) {
+      const Mat3<Lanes> F = Mat3<Lanes>::identity() + points.H[q];
+      dP[q] += cofactor(F) * (Lanes(2) * m.penalty * abs(s) * ds);
+      if (full_) dP[q] += cofactor_differential(F, dF[q]) * (m.penalty * s * abs(s));
+    }
+  }
+
+  bool full_;
+  Lanes lambda_;
+  std::conditional_t<kTurns, CorotationalElement<Lanes>, Nothing> element_;
+  Mat3<Lanes> sigma_[kTurns ? kPoints : 1];
+  ElasticPoint<L, Lanes> point_[kTurns ? 1 : kPoints];
+};
+
+}  // namespace fascia::kernels

@@ -1,0 +1,139 @@
+#pragma once
+
+#include "core/executor/executor.hpp"
+#include "core/math/batch.hpp"
+
+#include <type_traits>
+
+/// Loads of a batch of lanes from the arrays of a point set.
+namespace fascia::kernels {
+
+inline constexpr int kBatches = kGroupSize / kBatchWidth;
+
+inline Lanes row(const double* base, int r, int batch) {
+  return Lanes::load(base + r * kGroupSize + batch * kBatchWidth);
+}
+
+inline Mat3<Lanes> matrix(const double* base, int first_row, int batch) {
+  Mat3<Lanes> m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = row(base, first_row + 3 * i + j, batch);
+  return m;
+}
+
+inline void store(double* base, int r, int batch, const Lanes& value) {
+  value.store(base + r * kGroupSize + batch * kBatchWidth);
+}
+
+inline void store_matrix(double* base, int first_row, int batch, const Mat3<Lanes>& m) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) store(base, first_row + 3 * i + j, batch, m(i, j));
+}
+
+inline constexpr int kSymmetric[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+
+inline Mat3<Lanes> symmetric_matrix(const double* base, int first_row, int batch) {
+  Mat3<Lanes> m;
+  for (int k = 0; k < 6; ++k) {
+    const Lanes value = row(base, first_row + k, batch);
+    m(kSymmetric[k][0], kSymmetric[k][1]) = value;
+    m(kSymmetric[k][1], kSymmetric[k][0]) = value;
+  }
+  return m;
+}
+
+inline void store_symmetric(double* base, int first_row, int batch, const Mat3<Lanes>& m) {
+  for (int k = 0; k < 6; ++k) store(base, first_row + k, batch, m(kSymmetric[k][0], kSymmetric[k][1]));
+}
+
+template <PointKind::Matter>
+struct MaterialOf {
+  using Type = SolidMaterial<Lanes>;
+};
+template <>
+struct MaterialOf<PointKind::Matter::neo_hookean> {
+  using Type = NeoHookeanMaterial<Lanes>;
+};
+template <>
+struct MaterialOf<PointKind::Matter::thin> {
+  using Type = ThinMaterial<Lanes>;
+};
+
+/// @param targets  of tethers: (groups with axes × 3 × 8) [m]
+template <PointKind Kind>
+inline auto material(const PointSet& set, int group, int batch, double inverse_step,
+                     const AlignedVector<double>& targets) {
+  const double* base = set.material_of_group(group);
+  typename MaterialOf<Kind.matter>::Type m;
+  m.volume = row(base, kVolume, batch);
+  m.lambda = row(base, kLambda, batch);
+  m.mu = row(base, kMu, batch);
+  m.stabilization = row(base, kStabilization, batch);
+  m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(inverse_step);
+  if constexpr (Kind.matter == PointKind::Matter::thin) {
+    const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];
+    const auto index = static_cast<std::size_t>(rule.axes);
+    m.law = rule.rule.law;
+    m.transverse = rule.rule.transverse;
+    m.axes = matrix(set.axes.data() + index * 9 * kGroupSize, 0, batch);
+    if (m.law == Law::tether)
+      for (int k = 0; k < 3; ++k) m.target[k] = row(targets.data() + index * 3 * kGroupSize, k, batch);
+  }
+  return m;
+}
+
+template <class Vector>
+Vec3<Lanes> broadcast(const Vector& a) {
+  return {{Lanes(a[0]), Lanes(a[1]), Lanes(a[2])}};
+}
+
+inline Mat3d stored_matrix(const double* rows) {
+  Mat3d m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = rows[3 * i + j];
+  return m;
+}
+
+inline Mat3<Lanes> broadcast(const Mat3d& a) {
+  Mat3<Lanes> m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = Lanes(a(i, j));
+  return m;
+}
+
+/// H += u gᵀ + D B and, where blended rotations matter, Dbar += w D of one slot; u and D may be a direction (dx, [dr]×
+/// Q).
+template <bool Blend>
+inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const Mat3<Lanes>& D,
+                     PointMotion<Lanes>& x) {
+  const Lanes w = row(shape, 0, batch);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      x.H(i, j) += u[i] * row(shape, 1 + j, batch) + D(i, 0) * row(shape, 4 + j, batch) +
+                   D(i, 1) * row(shape, 7 + j, batch) + D(i, 2) * row(shape, 10 + j, batch);
+      if constexpr (Blend) x.Dbar(i, j) += w * D(i, j);
+    }
+  }
+}
+
+/// Σ over lanes of v P g (3) and v (P Bᵀ + w Y) (9) of one slot; P and Y already carry v.
+template <bool Blend>
+inline void slot_sums(const double* shape, const Mat3<Lanes> (&P)[kBatches], const Mat3<Lanes> (&Y)[kBatches],
+                      double* out) {
+  for (int i = 0; i < 3; ++i) {
+    Lanes force;
+    for (int b = 0; b < kBatches; ++b)
+      for (int k = 0; k < 3; ++k) force += P[b](i, k) * row(shape, 1 + k, b);
+    out[i] = lane_sum(force);
+    for (int j = 0; j < 3; ++j) {
+      Lanes sum;
+      for (int b = 0; b < kBatches; ++b) {
+        for (int k = 0; k < 3; ++k) sum += P[b](i, k) * row(shape, 4 + 3 * j + k, b);
+        if constexpr (Blend) sum += row(shape, 0, b) * Y[b](i, j);
+      }
+      out[3 + 3 * i + j] = lane_sum(sum);
+    }
+  }
+}
+
+}  // namespace fascia::kernels

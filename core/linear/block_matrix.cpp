@@ -1,0 +1,236 @@
+#include "core/linear/block_matrix.hpp"
+
+#include "core/base/index.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace fascia {
+
+namespace {
+
+/// Elements around each node of a block.
+struct ElementsAround {
+  int nodes;                       ///< of an element
+  std::vector<int> element;        ///< (elements × nodes)
+  std::vector<int> begin, around;  ///< (nodes of the model + 1), elements of each
+
+  ElementsAround(const ElementBlock& block, int model_nodes) : nodes(block.nodes) {
+    element.reserve(at(block.count) * at(nodes));
+    block.for_each_element([&](std::span<const int> e) { element.insert(element.end(), e.begin(), e.end()); });
+    count(model_nodes);
+  }
+  ElementsAround(const ShellBlock& shell, int model_nodes) : nodes(3) {
+    for (int e = 0; e < shell.count; ++e)
+      for (const int node : shell.element(e)) element.push_back(node);
+    count(model_nodes);
+  }
+
+  void count(int model_nodes) {
+    begin.assign(at(model_nodes) + 1, 0);
+    for (const int node : element) ++begin[at(node) + 1];
+    for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    around.resize(element.size());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (std::size_t k = 0; k < element.size(); ++k) around[at(next[at(element[k])]++)] = static_cast<int>(k) / nodes;
+  }
+
+  /// Calls act for each node of the elements around a node, some more than once.
+  template <class Act>
+  void for_each_neighbour(int node, const Act& act) const {
+    for (int k = begin[at(node)]; k < begin[at(node + 1)]; ++k)
+      for (int a = 0; a < nodes; ++a) act(element[at(around[at(k)] * nodes + a)]);
+  }
+};
+
+}  // namespace
+
+BlockMatrix::BlockMatrix(const PointSet& set) : dofs_(set.dofs) {
+  find_pattern(set);
+  if (!set.dependents.empty()) add_blocks_of_hosts(set);
+  uniform_ = rows() > 0 && dofs_.size(0) <= 6 && set.dependents.empty() ? dofs_.size(0) : 0;
+  for (int node = 0; node < rows(); ++node)
+    if (dofs_.size(node) != uniform_) uniform_ = 0;
+  std::size_t next = 0;
+  for (int row = 0; row < rows(); ++row) {
+    for (const int column : columns(row)) {
+      value_begin_.push_back(next);
+      if (uniform_ == 0 || column >= row) next += at(dofs_.size(row)) * at(dofs_.size(column));
+    }
+  }
+  value_begin_.push_back(next);
+  values_.assign(next + 2, 0.0);  // two more: rows of three are read four at a time, rows of six eight
+  if (uniform_ > 0)
+    size_chunks();
+  else
+    find_mirrors();
+}
+
+void BlockMatrix::find_mirrors() {
+  mirror_.assign(column_.size(), -1);
+  std::vector<int> reached(row_begin_.begin(), row_begin_.end() - 1);
+  for (int row = 0; row < rows(); ++row)  // ascending rows meet the blocks above the diagonal in their order
+    for (int k = row_begin(row); k < diagonal(row); ++k) {
+      int& upper = reached[at(column_[at(k)])];
+      upper = std::max(upper, diagonal(column_[at(k)]) + 1);
+      mirror_[at(k)] = upper++;
+    }
+}
+
+void BlockMatrix::find_pattern(const PointSet& set) {
+  std::vector<int> group_of_slot(at(set.slot_count()));
+  for (int group = 0; group < set.group_count(); ++group)
+    std::fill(group_of_slot.begin() + set.slot_begin[at(group)], group_of_slot.begin() + set.slot_begin[at(group + 1)],
+              group);
+  std::vector<ElementsAround> around;
+  for (const ElementBlock& block : set.blocks) around.emplace_back(block, set.node_count());
+  for (const ShellBlock& shell : set.shells) around.emplace_back(shell, set.node_count());
+  std::vector<int> last_seen(at(set.node_count()), -1);
+  for (int row = 0; row < set.node_count(); ++row) {
+    const std::size_t begin = column_.size();
+    const auto add = [&](int column) {
+      if (last_seen[at(column)] == row) return;
+      last_seen[at(column)] = row;
+      column_.push_back(column);
+    };
+    add(row);
+    for (int k = set.node_slot_begin[at(row)]; k < set.node_slot_begin[at(row + 1)]; ++k)
+      for (const int column : set.nodes(group_of_slot[at(set.node_slot[at(k)])])) add(column);
+    for (std::size_t b = 0; b < around.size(); ++b) {
+      const std::size_t known = column_.size();
+      around[b].for_each_neighbour(row, add);
+      if (b >= set.blocks.size() || !set.blocks[b].averaged) continue;
+      const std::vector<int> near(column_.begin() + static_cast<std::ptrdiff_t>(known), column_.end());
+      around[b].for_each_neighbour(row, add);
+      for (const int column : near) around[b].for_each_neighbour(column, add);
+    }
+    std::sort(column_.begin() + static_cast<std::ptrdiff_t>(begin), column_.end());
+    row_begin_.push_back(static_cast<int>(column_.size()));
+    diagonal_.push_back(find(row, row));
+  }
+}
+
+namespace {
+
+/// Blocks beside a pattern, by rows; each row is cleared of repetitions when it has doubled.
+class MoreBlocks {
+ public:
+  explicit MoreBlocks(int rows) : columns_(at(rows)), known_(at(rows), 0) {}
+  void add(int a, int b) {
+    add_column(a, b);
+    if (a != b) add_column(b, a);
+  }
+  const std::vector<int>& sorted(int row) {
+    std::vector<int>& columns = columns_[at(row)];
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    known_[at(row)] = columns.size();
+    return columns;
+  }
+
+ private:
+  void add_column(int row, int column) {
+    columns_[at(row)].push_back(column);
+    if (columns_[at(row)].size() > 2 * known_[at(row)] + 64) sorted(row);
+  }
+  std::vector<std::vector<int>> columns_;
+  std::vector<std::size_t> known_;
+};
+
+}  // namespace
+
+/// As elimination does: hosts have blocks with each other and with all with which their dependent node has any. Those
+/// that are gone by then, because all of them depends, bring none.
+void BlockMatrix::add_blocks_of_hosts(const PointSet& set) {
+  MoreBlocks more(rows());
+  std::vector<char> gone(at(rows()), 0);
+  std::vector<int> near;
+  for (auto d = set.dependents.rbegin(); d != set.dependents.rend(); ++d) {
+    gone[at(d->node)] = dependent_dofs(*d, dofs_) == dofs_.size(d->node) ? 1 : 0;
+    const std::span<const int> known = columns(d->node);
+    near.assign(known.begin(), known.end());
+    const std::vector<int>& added = more.sorted(d->node);
+    near.insert(near.end(), added.begin(), added.end());
+    near.insert(near.end(), d->hosts.begin(), d->hosts.end());
+    for (const int node : near) {
+      if (gone[at(node)] != 0) continue;
+      for (const int host : d->hosts) more.add(host, node);
+    }
+  }
+  std::vector<int> columns_of_all, begin{0};
+  for (int row = 0; row < rows(); ++row) {
+    const std::span<const int> known = columns(row);
+    const std::vector<int>& added = more.sorted(row);
+    std::set_union(known.begin(), known.end(), added.begin(), added.end(), std::back_inserter(columns_of_all));
+    begin.push_back(static_cast<int>(columns_of_all.size()));
+  }
+  column_ = std::move(columns_of_all);
+  row_begin_ = std::move(begin);
+  for (int row = 0; row < rows(); ++row) diagonal_[at(row)] = find(row, row);
+}
+
+std::span<const int> BlockMatrix::columns(int row) const {
+  const auto begin = static_cast<std::size_t>(row_begin(row)), end = static_cast<std::size_t>(row_begin(row + 1));
+  return std::span(column_).subspan(begin, end - begin);
+}
+
+int BlockMatrix::find(int row, int column) const {
+  const auto begin = column_.begin() + row_begin(row), end = column_.begin() + row_begin(row + 1);
+  return static_cast<int>(std::lower_bound(begin, end, column) - column_.begin());
+}
+
+void BlockMatrix::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
+
+void BlockMatrix::mirror_lower() {
+  if (uniform_ > 0) return;
+  for (int row = 0; row < rows(); ++row) {
+    for (int k = row_begin(row); k < diagonal(row); ++k) {
+      const int n = dofs_.size(row), m = dofs_.size(column_[at(k)]);
+      const double* lower = block(k);
+      double* upper = block(mirror_[at(k)]);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < m; ++j) upper[n * j + i] = lower[m * i + j];
+    }
+  }
+}
+
+namespace {
+
+/// y += B x of a block whose size is known to the compiler.
+template <int N, int M>
+void add_product(const double* b, const double* x, double* y) {
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < M; ++j) y[i] += b[M * i + j] * x[j];
+}
+
+}  // namespace
+
+void BlockMatrix::multiply_row(int row, std::span<const double> x, std::span<double> y) const {
+  double sum[kMostDofs] = {};
+  const int n = dofs_.size(row);
+  for (int k = row_begin(row); k < row_begin(row + 1); ++k) {
+    const int column = column_[at(k)], m = dofs_.size(column);
+    const double *xc = x.data() + dofs_.begin(column), *b = block(k);
+    if (n == 6 && m == 6)
+      add_product<6, 6>(b, xc, sum);
+    else if (n == 3 && m == 3)
+      add_product<3, 3>(b, xc, sum);
+    else if (n == 12 && m == 12)
+      add_product<12, 12>(b, xc, sum);
+    else
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < m; ++j) sum[i] += b[m * i + j] * xc[j];
+  }
+  std::copy(sum, sum + n, y.data() + dofs_.begin(row));
+}
+
+void BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  if (uniform_ == 3) return multiply_upper<3>(pool, x, y);
+  if (uniform_ == 6) return multiply_upper<6>(pool, x, y);
+  pool.for_ranges(rows(), 64, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) multiply_row(row, x, y);
+  });
+}
+
+}  // namespace fascia

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "core/linear/block_matrix.hpp"
+#include "core/linear/elimination_order.hpp"
+#include "core/node/dof_filter.hpp"
+
+#include <memory>
+#include <span>
+
+namespace fascia {
+
+/// What pivots a factorisation accepts: L Lᵀ needs positive ones; L D Lᵀ, without pivoting, takes any but zero.
+enum class Pivots { positive, any };
+
+/// Cholesky factorisation of a block matrix restricted to its free degrees of freedom. The pattern is analysed once;
+/// each factorize() reuses it.
+class BlockCholesky {
+ public:
+  /// @param order  of elimination where it is known; null: is found
+  /// @throws InputError  a factor too large for its indices
+  BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots = Pivots::positive,
+                const EliminationOrder* order = nullptr);
+  ~BlockCholesky();
+  BlockCholesky(BlockCholesky&&) noexcept;
+  BlockCholesky& operator=(BlockCholesky&&) noexcept;
+
+  double factor_flops() const;  ///< of one factorisation, as analysed
+  double factor_bytes() const;
+
+  /// False where the matrix is not positive definite; of Pivots::any, where a pivot vanishes.
+  /// @param shift  added to the diagonal, relative to the diagonal of `shift_from`: K + shift · diag
+  bool factorize(const BlockMatrix& matrix, double shift = 0, const BlockMatrix* shift_from = nullptr);
+
+  /// Of the last factorisation: by Sylvester's law the number of the matrix's negative eigenvalues.
+  int negative_pivots() const;
+
+  /// Solves in constraint axes; prescribed entries of `x` are set to zero.
+  void solve(std::span<const double> b, std::span<double> x) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fascia

@@ -1,0 +1,161 @@
+#include "core/linear/blas.hpp"
+#include "core/linear/cholesky.hpp"
+#include "core/linear/free_matrix.hpp"
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <new>
+#include <vector>
+
+namespace fascia {
+
+namespace {
+
+/// Fields of a lower triangle by columns that do not depend on its values.
+cholmod_sparse lower_triangle(std::vector<int>& column_begin, std::vector<int>& row) {
+  cholmod_sparse sparse{};
+  sparse.nrow = sparse.ncol = column_begin.size() - 1;
+  sparse.nzmax = row.size();
+  sparse.p = column_begin.data();
+  sparse.i = row.data();
+  sparse.stype = -1;
+  sparse.itype = CHOLMOD_INT;
+  sparse.xtype = CHOLMOD_PATTERN;
+  sparse.dtype = CHOLMOD_DOUBLE;
+  sparse.sorted = 1;
+  sparse.packed = 1;
+  return sparse;
+}
+
+EliminationOrder order_by(NodeGraph& graph, int method) {
+  cholmod_common common{};
+  cholmod_start(&common);
+  common.print = 0;
+  common.supernodal = CHOLMOD_SIMPLICIAL;
+  common.nmethods = 1;
+  common.method[0].ordering = method;
+  cholmod_sparse sparse = lower_triangle(graph.column_begin, graph.row);
+  cholmod_factor* analysed = cholmod_analyze(&sparse, &common);
+  EliminationOrder order;
+  if (analysed != nullptr) {
+    const auto *permutation = static_cast<const int*>(analysed->Perm), *counts = static_cast<int*>(analysed->ColCount);
+    order = graph.counted({permutation, permutation + analysed->n}, {counts, counts + analysed->n});
+  }
+  const bool made = analysed != nullptr;
+  cholmod_free_factor(&analysed, &common);
+  cholmod_finish(&common);
+  if (!made) throw std::bad_alloc();
+  return order;
+}
+
+}  // namespace
+
+/// Minimum degree; where the factor fills much, nested dissection too: by the measures that CHOLMOD itself has for it,
+/// which it takes of the matrix of single degrees of freedom.
+EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilter& filter) {
+  NodeGraph graph(pattern, filter);
+  EliminationOrder order = order_by(graph, CHOLMOD_AMD);
+  const double entries = 0.5 * static_cast<double>(pattern.value_count()) * (pattern.fills_upper() ? 2 : 1);
+  if (order.flops < 500 * order.numbers || order.numbers < 5 * entries) return order;
+  EliminationOrder dissected = order_by(graph, CHOLMOD_METIS);
+  return dissected.numbers < order.numbers ? dissected : order;
+}
+
+struct BlockCholesky::Impl {
+  EliminationOrder order;
+  FreeMatrix matrix;
+  const DofFilter& filter;
+  cholmod_common common{};
+  cholmod_sparse sparse{};
+  cholmod_factor* factor = nullptr;
+  // Reused by every solve.
+  cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
+
+  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* known)
+      : order(known != nullptr ? *known : EliminationOrder::of(pattern, f)), filter(f) {
+    order.expect_to_fit();
+    matrix = FreeMatrix(pattern, f);
+    hold_blas_to_one_thread();
+    cholmod_start(&common);
+    common.print = 0;
+    common.quick_return_if_not_posdef = 1;
+    common.final_ll = pivots == Pivots::positive;  // LDLᵀ, its choice for small matrices, accepts negative pivots
+    if (pivots == Pivots::any) common.supernodal = CHOLMOD_SIMPLICIAL;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_GIVEN;
+    const auto n = static_cast<std::size_t>(matrix.size);
+    sparse = lower_triangle(matrix.column_begin, matrix.row);
+    sparse.x = matrix.value.data();
+    sparse.xtype = CHOLMOD_REAL;
+    std::vector<int> permutation = matrix.numbers_of(order.nodes, pattern.dofs());
+    factor = cholmod_analyze_p(&sparse, permutation.data(), nullptr, 0, &common);
+    rhs = cholmod_zeros(n, 1, CHOLMOD_REAL, &common);
+    if (factor == nullptr || rhs == nullptr) throw std::bad_alloc();
+    if (factor->is_super != 0) take_blas_buffer();
+  }
+  ~Impl() {
+    cholmod_free_dense(&rhs, &common);
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&work_y, &common);
+    cholmod_free_dense(&work_e, &common);
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+};
+
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots,
+                             const EliminationOrder* order)
+    : impl_(std::make_unique<Impl>(pattern, filter, pivots, order)) {}
+BlockCholesky::~BlockCholesky() = default;
+BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
+BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;
+
+double BlockCholesky::factor_flops() const { return impl_->common.fl; }
+
+/// The peak of a factorisation, beside what the analysis has left: CHOLMOD holds the matrix in its own order then,
+/// and once more while it orders it (cholmod_factorize_p). Supernodes are dense, of which one is updated at a time;
+/// else columns have room to grow, by Common->grow1 and grow2.
+double BlockCholesky::factor_bytes() const {
+  const cholmod_factor& L = *impl_->factor;
+  const cholmod_common& c = impl_->common;
+  constexpr double number = sizeof(double), entry = sizeof(int) + sizeof(double);
+  const auto n = static_cast<double>(L.n);
+  const double matrix = entry * static_cast<double>(impl_->matrix.row.size()) + sizeof(int) * n;
+  if (L.is_super == 0) return entry * (c.grow1 * c.lnz + static_cast<double>(c.grow2) * n) + matrix + 4 * number * n;
+  return number * (static_cast<double>(L.xsize) + 4 * n) + matrix +
+         std::max(matrix, number * static_cast<double>(L.maxcsize));
+}
+
+bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
+  Impl& m = *impl_;
+  m.matrix.fill(matrix, m.filter, shift, shift_from);
+  cholmod_factorize(&m.sparse, m.factor, &m.common);
+  if (m.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  return m.common.status == CHOLMOD_OK && m.factor->minor == m.factor->n;
+}
+
+int BlockCholesky::negative_pivots() const {
+  const cholmod_factor& L = *impl_->factor;
+  if (L.is_ll != 0) return 0;
+  const auto* begin = static_cast<const int*>(L.p);
+  const auto* value = static_cast<const double*>(L.x);  // D stands first in each column
+  int count = 0;
+  for (std::size_t j = 0; j < L.n; ++j) count += value[begin[j]] < 0 ? 1 : 0;
+  return count;
+}
+
+void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const {
+  Impl& m = *impl_;
+  auto* rhs = static_cast<double*>(m.rhs->x);
+  for (std::size_t i = 0; i < b.size(); ++i)
+    if (m.matrix.number[i] >= 0) rhs[m.matrix.number[i]] = b[i];
+  if (cholmod_solve2(CHOLMOD_A, m.factor, m.rhs, nullptr, &m.solution, nullptr, &m.work_y, &m.work_e, &m.common) == 0)
+    throw std::bad_alloc();
+  const auto* solution = static_cast<const double*>(m.solution->x);
+  for (std::size_t i = 0; i < b.size(); ++i) x[i] = m.matrix.number[i] >= 0 ? solution[m.matrix.number[i]] : 0.0;
+}
+
+}  // namespace fascia

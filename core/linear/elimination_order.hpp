@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/linear/block_matrix.hpp"
+#include "core/node/dof_filter.hpp"
+
+#include <vector>
+
+namespace fascia {
+
+/// In which order a Cholesky factorisation eliminates the nodes of a matrix, and what the factor takes: found on the
+/// graph of nodes, which has a small part of the matrix's entries.
+struct EliminationOrder {
+  std::vector<int> nodes;  ///< those that have free degrees of freedom
+  double flops = 0;        ///< of one factorisation
+  double numbers = 0;      ///< in the factor
+
+  /// Indices of 32 bits, with which factors are made, reach all of its numbers, with room for the zeros of their dense
+  /// columns.
+  bool fits() const { return numbers < 0x1.0p30; }
+  /// @throws InputError  where it does not fit
+  void expect_to_fit() const;
+
+  static EliminationOrder of(const BlockMatrix& pattern, const DofFilter& filter);
+};
+
+/// The lower triangle, by columns, of the graph of those nodes of a matrix that have free degrees of freedom.
+struct NodeGraph {
+  std::vector<int> node, free;  ///< of each column, and how many degrees of freedom of it are free
+  std::vector<int> column_begin, row;
+
+  NodeGraph(const BlockMatrix& pattern, const DofFilter& filter);
+  int size() const { return static_cast<int>(node.size()); }
+  /// @param order   columns in the order in which they are eliminated
+  /// @param counts  nodes in each column of the factor in that order, the diagonal among them
+  EliminationOrder counted(const std::vector<int>& order, const std::vector<int>& counts) const;
+};
+
+}  // namespace fascia

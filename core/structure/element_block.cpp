@@ -1,0 +1,109 @@
+#include "core/structure/element_block.hpp"
+
+#include "core/base/coloring.hpp"
+#include "core/base/index.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+namespace fascia {
+
+namespace {
+
+/// Elements of a patch: its nodes' displacements and forces stay in the first cache.
+constexpr int kPatchElements = 256;
+
+/// Places of an element's nodes in ascending order of the nodes: blocks of pairs then all lie on one side of the
+/// diagonal.
+std::vector<int> ascending(const ElementBlockSpec& spec, std::size_t e) {
+  std::vector<int> order(at(spec.nodes));
+  std::iota(order.begin(), order.end(), 0);
+  const int* node = spec.node.data() + e * at(spec.nodes);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return node[a] < node[b]; });
+  return order;
+}
+
+void fill_batch(const ElementBlockSpec& spec, int batch, ElementBlock& block) {
+  const int elements = block.count;
+  for (int lane = 0; lane < kElementLanes; ++lane) {
+    const int own = batch * kElementLanes + lane;
+    const bool used = own < elements;
+    const auto e = at(std::min(own, elements - 1));
+    const std::vector<int> order = ascending(spec, e);
+    for (int q = 0; q < spec.points; ++q) {
+      const std::size_t point = e * at(spec.points) + at(q), place = at(batch * spec.points + q);
+      block.volume[place * kElementLanes + at(lane)] = used ? spec.volume[point] : 0.0;
+      for (int a = 0; a < spec.nodes; ++a)
+        for (int k = 0; k < 3; ++k)
+          block.gradient[((place * at(spec.nodes) + at(a)) * 3 + at(k)) * kElementLanes + at(lane)] =
+              spec.gradient[point * at(spec.nodes) + at(order[at(a)])][k];
+    }
+    const ElementMaterialSpec m = used ? spec.material[e] : ElementMaterialSpec{};
+    double* rows = block.material.data() + at(batch) * 4 * kElementLanes + at(lane);
+    rows[0] = m.lambda;
+    rows[1 * kElementLanes] = m.mu;
+    rows[2 * kElementLanes] = m.stiffness_damping;
+    rows[3 * kElementLanes] = m.penalty;
+    block.penalised = block.penalised || m.penalty > 0;
+    block.damped = block.damped || m.stiffness_damping > 0;
+  }
+}
+
+void number_patch(const ElementBlockSpec& spec, int first_batch, int last_batch, ElementBlock& block) {
+  std::unordered_map<int, std::uint16_t> number;
+  for (int batch = first_batch; batch < last_batch; ++batch) {
+    for (int lane = 0; lane < kElementLanes; ++lane) {
+      const auto e = at(std::min(batch * kElementLanes + lane, block.count - 1));
+      const std::vector<int> order = ascending(spec, e);
+      for (int a = 0; a < spec.nodes; ++a) {
+        const int node = spec.node[e * at(spec.nodes) + at(order[at(a)])];
+        const auto [entry, fresh] = number.try_emplace(node, static_cast<std::uint16_t>(number.size()));
+        if (fresh) block.patch_node.push_back(node);
+        block.local[at((batch * spec.nodes + a) * kElementLanes + lane)] = entry->second;
+      }
+    }
+  }
+  block.patch_batch.push_back(last_batch);
+  block.patch_begin.push_back(block.slot_count());
+}
+
+}  // namespace
+
+ElementBlock make_element_block(const ElementBlockSpec& spec) {
+  ElementBlock block;
+  block.law = spec.law;
+  block.averaged = spec.averaged;
+  block.nodes = spec.nodes;
+  block.points = spec.points;
+  block.length = spec.length;
+  block.count = static_cast<int>(spec.material.size());
+  const auto batches = at(block.batch_count());
+  block.gradient.resize(batches * at(spec.points) * at(spec.nodes) * 3 * kElementLanes);
+  block.volume.resize(batches * at(spec.points) * kElementLanes);
+  block.material.resize(batches * 4 * kElementLanes);
+  block.local.resize(batches * at(spec.nodes) * kElementLanes);
+  const int batches_a_patch = std::max(1, kPatchElements / kElementLanes);
+  for (int batch = 0; batch < block.batch_count(); ++batch) fill_batch(spec, batch, block);
+  for (int batch = 0; batch < block.batch_count(); batch += batches_a_patch)
+    number_patch(spec, batch, std::min(batch + batches_a_patch, block.batch_count()), block);
+  return block;
+}
+
+void finish_element_block(ElementBlock& block, int nodes_of_model) {
+  block.node_slot_begin.assign(at(nodes_of_model) + 1, 0);
+  for (const int node : block.patch_node) ++block.node_slot_begin[at(node) + 1];
+  for (std::size_t i = 1; i < block.node_slot_begin.size(); ++i)
+    block.node_slot_begin[i] += block.node_slot_begin[i - 1];
+  block.node_slot.resize(block.patch_node.size());
+  std::vector<int> next(block.node_slot_begin.begin(), block.node_slot_begin.end() - 1);
+  for (int slot = 0; slot < block.slot_count(); ++slot)
+    block.node_slot[at(next[at(block.patch_node[at(slot)])]++)] = slot;
+  Coloring colors =
+      color_items(block.patch_count(), nodes_of_model, [&](int patch) { return block.nodes_of_patch(patch); });
+  block.color_begin = std::move(colors.begin);
+  block.color_patch = std::move(colors.item);
+}
+
+}  // namespace fascia

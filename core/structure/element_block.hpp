@@ -1,0 +1,114 @@
+#pragma once
+
+#include "core/base/aligned.hpp"
+#include "core/math/mat3.hpp"
+#include "core/physics/element_kind.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Elements that are computed together, one a lane.
+inline constexpr int kElementLanes = 8;
+
+/// Constants of an element's material.
+struct ElementMaterialSpec {
+  double lambda = 0, mu = 0;     ///< [Pa]
+  double stiffness_damping = 0;  ///< β [s]
+  double penalty = 0;            ///< κ of the volume penalty [Pa]
+};
+
+/// Elements of one kind as a builder describes them. Elements see the
+/// displacements of their nodes alone.
+struct ElementBlockSpec {
+  ElementLaw law = ElementLaw::st_venant_kirchhoff;
+  bool averaged = false;                      ///< the volumetric strain is averaged about nodes (one-point elements)
+  int nodes = 4, points = 1;                  ///< of an element
+  std::vector<int> node;                      ///< of the model (elements × nodes)
+  std::vector<Vec3d> gradient;                ///< ∇N at rest (elements × points × nodes) [1/m]
+  std::vector<double> volume;                 ///< (elements × points) [m³]
+  std::vector<ElementMaterialSpec> material;  ///< (elements)
+  double length = 1;                          ///< mean length of the edges [m]
+};
+
+/// The same in batches of eight elements (array of structures of arrays). Unused lanes repeat the last element with
+/// volume 0 and without material; an element's nodes are in ascending order. Batches are bundled in patches of a few
+/// hundred elements, whose nodes have numbers of their own: a patch sums its forces on them before the nodes gather the
+/// sums of their patches.
+struct ElementBlock {
+  ElementLaw law = ElementLaw::st_venant_kirchhoff;
+  bool averaged = false, penalised = false, damped = false;
+  int nodes = 4, points = 1, count = 0;
+  double length = 1;
+
+  AlignedVector<double> gradient;  ///< (batches × points × nodes × 3 × 8)
+  AlignedVector<double> volume;    ///< (batches × points × 8)
+  AlignedVector<double> material;  ///< (batches × 4 × 8): λ, μ, β, κ
+
+  std::vector<int> patch_batch{0};               ///< (patches + 1)
+  std::vector<int> patch_begin{0};               ///< (patches + 1): slots, each a node of a patch
+  std::vector<int> patch_node;                   ///< (slots)
+  std::vector<std::uint16_t> local;              ///< (batches × nodes × 8): the node's number in its patch
+  std::vector<int> node_slot_begin, node_slot;   ///< slots of each node of the model, ascending
+  std::vector<int> color_begin{0}, color_patch;  ///< patches of one colour share no node
+
+  /// Its tangent takes extrapolated stresses (core/physics/point_physics.hpp): that of a law with large strain, where
+  /// the stress is each point's own.
+  bool extrapolates() const {
+    return !averaged && (law == ElementLaw::st_venant_kirchhoff || law == ElementLaw::neo_hookean);
+  }
+  int batch_count() const { return (count + kElementLanes - 1) / kElementLanes; }
+  int patch_count() const { return static_cast<int>(patch_batch.size()) - 1; }
+  int slot_count() const { return static_cast<int>(patch_node.size()); }
+  /// Nodes of the model that a patch has, in its own order.
+  std::span<const int> nodes_of_patch(int patch) const {
+    const auto begin = static_cast<std::size_t>(patch_begin[static_cast<std::size_t>(patch)]);
+    const auto end = static_cast<std::size_t>(patch_begin[static_cast<std::size_t>(patch) + 1]);
+    return std::span(patch_node).subspan(begin, end - begin);
+  }
+  const double* gradient_of(int batch, int point) const {
+    return gradient.data() +
+           (static_cast<std::size_t>(batch) * static_cast<std::size_t>(points) + static_cast<std::size_t>(point)) *
+               static_cast<std::size_t>(nodes) * 3 * kElementLanes;
+  }
+  const double* volume_of(int batch, int point) const {
+    return volume.data() +
+           (static_cast<std::size_t>(batch) * static_cast<std::size_t>(points) + static_cast<std::size_t>(point)) *
+               kElementLanes;
+  }
+  const double* material_of(int batch) const {
+    return material.data() + static_cast<std::size_t>(batch) * 4 * kElementLanes;
+  }
+  const std::uint16_t* local_of(int batch) const {
+    return local.data() + static_cast<std::size_t>(batch) * static_cast<std::size_t>(nodes) * kElementLanes;
+  }
+  /// Calls act(nodes of the element, by number of the model, ascending) for each element, in their order.
+  template <class Act>
+  void for_each_element(const Act& act) const;
+};
+
+/// Elements that lie near each other should follow each other.
+ElementBlock make_element_block(const ElementBlockSpec& spec);
+
+/// Closes a block once all nodes of the model are known: incidence and colours.
+void finish_element_block(ElementBlock& block, int nodes_of_model);
+
+template <class Act>
+void ElementBlock::for_each_element(const Act& act) const {
+  std::vector<int> element(static_cast<std::size_t>(nodes));
+  for (int patch = 0; patch < patch_count(); ++patch) {
+    const std::span<const int> patch_nodes = nodes_of_patch(patch);
+    for (int batch = patch_batch[static_cast<std::size_t>(patch)];
+         batch < patch_batch[static_cast<std::size_t>(patch) + 1]; ++batch) {
+      for (int lane = 0; lane < kElementLanes && batch * kElementLanes + lane < count; ++lane) {
+        for (int a = 0; a < nodes; ++a)
+          element[static_cast<std::size_t>(a)] = patch_nodes[local_of(batch)[a * kElementLanes + lane]];
+        act(std::span<const int>(element));
+      }
+    }
+  }
+}
+
+}  // namespace fascia

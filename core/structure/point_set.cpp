@@ -1,0 +1,139 @@
+#include "core/structure/point_set.hpp"
+
+#include "core/base/coloring.hpp"
+#include "core/base/index.hpp"
+#include "core/structure/parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fascia {
+
+void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
+                                 const PointRule& rule) {
+  for (std::size_t first = 0; first < points.size(); first += kGroupSize)
+    add_group(nodes, points.subspan(first, std::min<std::size_t>(kGroupSize, points.size() - first)), length, rule);
+}
+
+void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const PointSample> points, double length,
+                                const PointRule& rule) {
+  const std::size_t first_shape = set_.shape.size(), first_material = set_.material.size();
+  set_.shape.resize(first_shape + nodes.size() * 13 * kGroupSize);
+  set_.material.resize(first_material + 6 * kGroupSize);
+  for (std::size_t lane = 0; lane < kGroupSize; ++lane) {
+    const bool used = lane < points.size();
+    const PointSample& p = points[std::min(lane, points.size() - 1)];
+    double squared_gradient = 0;
+    for (std::size_t slot = 0; slot < nodes.size(); ++slot) {
+      const Influence& influence = p.influences[slot];
+      double* row = set_.shape.data() + first_shape + slot * 13 * kGroupSize + lane;
+      row[0] = influence.w;
+      for (std::size_t k = 0; k < 3; ++k) row[(1 + k) * kGroupSize] = influence.g[static_cast<int>(k)];
+      for (std::size_t k = 0; k < 9; ++k)
+        row[(4 + k) * kGroupSize] = influence.B(static_cast<int>(k / 3), static_cast<int>(k % 3));
+      squared_gradient += squared_norm(influence.g) + contract(influence.B, influence.B) / (length * length);
+    }
+    double* material = set_.material.data() + first_material + lane;
+    material[kVolume * kGroupSize] = used ? p.volume : 0.0;
+    material[kLambda * kGroupSize] = p.lambda;
+    material[kMu * kGroupSize] = p.mu;
+    material[kStabilization * kGroupSize] = p.stabilization;
+    material[kStiffnessDamping * kGroupSize] = p.stiffness_damping;
+    material[kGradientNorm * kGroupSize] = std::sqrt(squared_gradient);
+    set_.damped = set_.damped || p.stiffness_damping > 0;
+    set_.lane_point.push_back(used ? set_.point_count++ : -1);
+  }
+  add_rule(points, length, rule);
+  set_.slot_node.insert(set_.slot_node.end(), nodes.begin(), nodes.end());
+  set_.slot_begin.push_back(set_.slot_count());
+}
+
+void PointSetBuilder::add_rule(std::span<const PointSample> points, double length, PointRule rule) {
+  if (std::none_of(points.begin(), points.end(), [](const PointSample& p) { return p.stabilization > 0; }))
+    rule.stabilization = Stabilization::none;
+  GroupRule group{rule, -1};
+  if (!is_solid(rule.law)) {
+    const std::size_t first = set_.axes.size();
+    group.axes = static_cast<int>(first / (9 * kGroupSize));
+    set_.axes.resize(first + 9 * kGroupSize);
+    for (std::size_t lane = 0; lane < kGroupSize; ++lane)
+      for (std::size_t k = 0; k < 9; ++k)
+        set_.axes[first + k * kGroupSize + lane] =
+            points[std::min(lane, points.size() - 1)].axes(static_cast<int>(k / 3), static_cast<int>(k % 3));
+  }
+  set_.rule.push_back(group);
+  group_length_.push_back(length);
+}
+
+void PointSetBuilder::add_shell(ShellBlock shell) {
+  set_.damped = set_.damped || shell.damped;
+  set_.shells.push_back(std::move(shell));
+}
+
+void PointSetBuilder::add_elements(ElementBlock block) {
+  set_.damped = set_.damped || block.damped;
+  set_.blocks.push_back(std::move(block));
+}
+
+namespace {
+
+void transpose_incidence(PointSet& set) {
+  std::vector<int>& begin = set.node_slot_begin;
+  begin.assign(static_cast<std::size_t>(set.node_count()) + 1, 0);
+  for (const int node : set.slot_node) ++begin[static_cast<std::size_t>(node) + 1];
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+  set.node_slot.resize(set.slot_node.size());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (int slot = 0; slot < set.slot_count(); ++slot) {
+    const auto node = static_cast<std::size_t>(set.slot_node[static_cast<std::size_t>(slot)]);
+    set.node_slot[static_cast<std::size_t>(next[node]++)] = slot;
+  }
+}
+
+/// Puts each dependent node behind those of its hosts that depend on others.
+void sort_dependents(PointSet& set) {
+  if (set.dependents.empty()) return;
+  std::vector<int> index(at(set.node_count()), -1);
+  for (std::size_t k = 0; k < set.dependents.size(); ++k) index[at(set.dependents[k].node)] = static_cast<int>(k);
+  std::vector<int> sorted, waiting;
+  std::vector<std::size_t> next(set.dependents.size(), 0);  // host to look at
+  std::vector<char> placed(set.dependents.size(), 0);
+  for (std::size_t first = 0; first < set.dependents.size(); ++first) {
+    waiting.assign(1, static_cast<int>(first));
+    while (!waiting.empty()) {
+      const std::size_t k = at(waiting.back());
+      const std::vector<int>& hosts = set.dependents[k].hosts;
+      if (placed[k] != 0) {
+        waiting.pop_back();
+      } else if (next[k] < hosts.size()) {
+        const int host = index[at(hosts[next[k]++])];
+        if (host >= 0) waiting.push_back(host);
+      } else {
+        placed[k] = 1;
+        sorted.push_back(static_cast<int>(k));
+      }
+    }
+  }
+  std::vector<DependentNode> dependents;
+  dependents.reserve(sorted.size());
+  for (const int k : sorted) dependents.push_back(std::move(set.dependents[at(k)]));
+  set.dependents = std::move(dependents);
+}
+
+}  // namespace
+
+PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
+  set_.dofs = DofLayout(std::move(frames));
+  transpose_incidence(set_);
+  sort_dependents(set_);
+  find_parts(set_, group_length_, joints_);
+  Coloring colors = color_items(set_.group_count(), set_.node_count(), [&](int group) { return set_.nodes(group); });
+  set_.color_begin = std::move(colors.begin);
+  set_.color_group = std::move(colors.item);
+  for (ElementBlock& block : set_.blocks) finish_element_block(block, set_.node_count());
+  for (ShellBlock& shell : set_.shells) finish_shell_block(shell, set_.node_count());
+  return std::move(set_);
+}
+
+}  // namespace fascia

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "core/base/aligned.hpp"
+#include "core/math/mat3.hpp"
+#include "core/physics/shell_constants.hpp"
+#include "core/structure/element_block.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// A triangle of a shell as a builder describes it.
+struct ShellElementSpec {
+  std::array<int, 3> node{};       ///< rigid frames of the model
+  Mat3d axes = Mat3d::identity();  ///< T₀: columns in the plane, then the normal
+  ShellConstants<double> constants{};
+  double stiffness_damping = 0;  ///< β [s]
+};
+
+/// Triangles of shells in batches of eight, one a lane (array of structures of arrays). Unused lanes repeat the last
+/// triangle without stiffness; a triangle's nodes are in ascending order.
+struct ShellBlock {
+  int count = 0;
+  double length = 1;  ///< mean length of the edges [m]
+  bool damped = false;
+  std::vector<int> node;            ///< (batches × 3 × 8)
+  AlignedVector<double> constants;  ///< (batches × kRows × 8)
+
+  std::vector<int> node_slot_begin, node_slot;   ///< of each node of the model: 3 · triangle + corner, ascending
+  std::vector<int> color_begin{0}, color_batch;  ///< batches of one colour share no node
+
+  /// Rows of `constants`.
+  static constexpr int kGradients = 0, kAxes = 6, kMembrane = 15, kBending = kMembrane + kPacked6,
+                       kDamping = kBending + kPacked6, kRows = kDamping + 1;
+
+  int batch_count() const { return (count + kElementLanes - 1) / kElementLanes; }
+  const double* constants_of(int batch) const {
+    return constants.data() + static_cast<std::size_t>(batch) * kRows * kElementLanes;
+  }
+  const int* nodes_of(int batch) const { return node.data() + static_cast<std::size_t>(batch) * 3 * kElementLanes; }
+  std::array<int, 3> element(int e) const {
+    const int* n = nodes_of(e / kElementLanes) + e % kElementLanes;
+    return {n[0], n[kElementLanes], n[2 * kElementLanes]};
+  }
+};
+
+ShellBlock make_shell_block(std::span<const ShellElementSpec> elements, double length);
+
+/// Fills slots by node and colours. @param nodes_of_model  their number
+void finish_shell_block(ShellBlock& block, int nodes_of_model);
+
+}  // namespace fascia

@@ -1,0 +1,8 @@
+#include "gpu/actions/followers_body.hpp"
+#include "gpu/space/space.hpp"
+
+namespace fascia::gpu {
+
+template class Followers<HostSpace>;
+
+}  // namespace fascia::gpu

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "gpu/blocks/points.hpp"
+#include "gpu/blocks/shells.hpp"
+#include "gpu/blocks/springs.hpp"
+#include "gpu/elements/elements.hpp"
+#include "gpu/space/part_sums.hpp"
+
+#include <vector>
+
+namespace fascia::gpu {
+
+/// What a node gathers from all blocks, of a scalar T.
+template <class T>
+struct BlocksOf {
+  PointsOf<T> points;
+  ElementsOf<T> elements;
+  ShellsOf<T> shells;
+  SpringsView springs;
+  bool has_points = false, has_elements = false, has_shells = false, has_springs = false;
+
+  /// Of all but springs, whose tangent is in the nodes' own blocks.
+  FASCIA_HD void add_sums(int node, NodeSums& sums) const {
+    if (has_points) points.add_sums(node, sums);
+    if (has_elements) elements.add_sums(node, sums);
+    if (has_shells) shells.add_sums(node, sums);
+  }
+};
+
+using BlocksView = BlocksOf<double>;
+
+/// Everything elastic of a model: blocks of one interface, each with its own strains in one array.
+template <class Space>
+class Blocks {
+ public:
+  explicit Blocks(const PointSet& set, Precision precision = Precision::full);
+
+  BlocksView view() const { return view_of<double>(); }
+  /// After a product: with the scalar of products.
+  template <class T>
+  BlocksOf<T> view_of() const;
+  Points<Space>& points() { return points_; }
+  const Elements<Space>& elements() const { return elements_; }
+  /// As CpuExecutor has them: points, elements, shells.
+  std::size_t strain_size() const { return points_.strain_size() + elements_.strain_size() + shells_.strain_size(); }
+  /// Numbers that sum_quantities() writes.
+  std::size_t report_size() const { return sums_.size() * at(parts_) * kQuantities; }
+
+  void forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history, const double* part_motion);
+  /// All but springs, whose tangent is in the nodes' own blocks.
+  void linearize(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken);
+  void add_spring_blocks(const NodesView& nodes, const PoseView& pose, Tangent tangent, double* node_blocks) {
+    if (!springs_.empty()) springs_.add_blocks(nodes, pose, tangent, node_blocks);
+  }
+  /// @tparam T  of the precision
+  template <class T, class V>
+  void product(const DirectionOf<T, V>& direction);
+  void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
+  void store_strain(const PoseView& pose, double* E);
+
+  /// Quantities of each part (kinds of blocks × parts × kQuantities) of the last forces with them.
+  void sum_quantities(double* out);
+
+ private:
+  struct Summed {
+    PartSums<Space> by_part;
+    const double* quantities;
+  };
+  template <class Kind>
+  void sum_kind(const Kind& kind, const PointSet& set);
+  /// Strains of elements and of shells. @param offset  before theirs
+  static HistoryView part_of(const HistoryView& all, std::size_t offset) {
+    return {all.E == nullptr ? nullptr : all.E + offset, all.inverse_step};
+  }
+  std::size_t elements_begin() const { return points_.strain_size(); }
+  std::size_t shells_begin() const { return points_.strain_size() + elements_.strain_size(); }
+
+  Points<Space> points_;
+  Elements<Space> elements_;
+  Shells<Space> shells_;
+  Springs<Space> springs_;
+  std::vector<Summed> sums_;  ///< of the kinds that the model has
+  int parts_;
+};
+
+}  // namespace fascia::gpu

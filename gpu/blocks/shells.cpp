@@ -1,0 +1,11 @@
+#include "gpu/blocks/shells_body.hpp"
+#include "gpu/space/space.hpp"
+
+namespace fascia::gpu {
+
+template class Shells<HostSpace>;
+template void Shells<HostSpace>::product(const DirectionOf<double, double>&);
+template void Shells<HostSpace>::product(const DirectionOf<float, double>&);
+template void Shells<HostSpace>::product(const DirectionOf<float, float>&);
+
+}  // namespace fascia::gpu

@@ -1,0 +1,11 @@
+#include "gpu/elements/elements_body.hpp"
+#include "gpu/space/space.hpp"
+
+namespace fascia::gpu {
+
+template class Elements<HostSpace>;
+template void Elements<HostSpace>::product(const DirectionOf<double, double>&);
+template void Elements<HostSpace>::product(const DirectionOf<float, double>&);
+template void Elements<HostSpace>::product(const DirectionOf<float, float>&);
+
+}  // namespace fascia::gpu

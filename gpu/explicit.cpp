@@ -1,8 +1,0 @@
-#include "gpu/explicit_body.hpp"
-#include "gpu/space.hpp"
-
-namespace fascia::gpu {
-
-template class ExplicitSystem<HostSpace>;
-
-}  // namespace fascia::gpu

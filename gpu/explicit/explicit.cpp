@@ -1,0 +1,8 @@
+#include "gpu/explicit/explicit_body.hpp"
+#include "gpu/space/space.hpp"
+
+namespace fascia::gpu {
+
+template class ExplicitSystem<HostSpace>;
+
+}  // namespace fascia::gpu

@@ -1,8 +1,0 @@
-#include "gpu/cuda_space.cuh"
-#include "gpu/levels_body.hpp"
-
-namespace fascia::gpu {
-
-template class Levels<CudaSpace>;
-
-}  // namespace fascia::gpu

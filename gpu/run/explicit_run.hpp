@@ -1,0 +1,124 @@
+#pragma once
+
+#include "core/base/clock.hpp"
+#include "core/run/explicit_dynamics.hpp"
+#include "gpu/explicit/explicit.hpp"
+#include "gpu/run/run.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+/// The body of explicit runs, for the files that instantiate it.
+namespace fascia::gpu {
+
+/// A step whose velocities were reported.
+template <class Space>
+class ReachedExplicitStep : public DeviceStep {
+ public:
+  /// @param dt  of the step that led there [s]
+  ReachedExplicitStep(ExplicitSystem<Space>& system, State& state, double dt)
+      : system_(system), state_(state), dt_(dt) {}
+  InternalEnergy energy() const override { return system_.energy(); }
+  const State& state() override {
+    if (fetched_) return state_;
+    State fetched = state_;
+    system_.pose().download(fetched);
+    state_ = std::move(fetched);
+    fetched_ = true;
+    return state_;
+  }
+  void show(MechanicalSystem& host, std::span<const double> factors) override {
+    host.set_factors(factors);
+    host.look_at(state(), dt_);
+    const std::vector<PoseMotion> accelerations = system_.held_accelerations();
+    host.add_support_inertia([&](int node) { return accelerations[at(system_.constraint_of(node))]; });
+  }
+
+ private:
+  ExplicitSystem<Space>& system_;
+  State& state_;
+  double dt_;
+  bool fetched_ = false;
+};
+
+/// As run_explicit() of the host. Whether the motion is sound is looked at every so many steps, and where the state is
+/// seen or kept; the space remembers the step at which it was not.
+template <class Space>
+RunReport run_explicit_in(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& solver,
+                          const ExplicitSettings& settings, const DeviceObserver& observe) {
+  constexpr int kLookEvery = 50;
+  static_assert(kExplicitKeepEvery % kLookEvery == 0);
+  ExplicitSystem<Space> system(model, state, ExplicitPlan(settings, state.time), factors);
+  const ExplicitPlan& plan = system.plan();
+  RunReport run;
+  if (plan.automatic()) system.save();
+  DeviceState<Space> good = system.pose();
+  int good_step = 0, retries = 0;
+  std::vector<double> ends;  // of the steps since the motion was looked at
+  Clock::time_point start = Clock::now();
+  while (!plan.done()) {
+    const double dt = plan.step();
+    system.advance();
+    const int step = plan.taken();
+    const double time = plan.time();
+    ends.push_back(time);
+    const StepInfo info{step, time, plan.progress(), {}, seconds_since(start), dt};
+    start = Clock::now();
+    const bool last = plan.done();
+    const bool seen = last || (observe && (!settings.observed || settings.observed(info)));
+    const bool looks = plan.asks() || (seen && plan.automatic());
+    if (looks) {
+      const double stable = system.progress().unsound == 0 ? system.stable_step() : 0;
+      if (plan.overruns(stable) && !plan.collapsed() && retries < kExplicitRetries) {
+        system.restore(stable > 0 ? kStableMargin * stable : 0.5 * plan.limit());
+        ends.clear();
+        ++retries;
+        continue;
+      }
+      if (stable > 0) system.adopt(stable);
+    }
+    run.steps = step;
+    run.time = time;
+    const bool kept = plan.automatic() ? looks : seen || step % kExplicitKeepEvery == 0;
+    if (kept) system.report_velocities();
+    if (!kept && step % kLookEvery != 0 && !plan.collapsed()) continue;
+    const auto progress = system.progress();
+    const bool sound = progress.unsound == 0 && !(kept && !std::isfinite(progress.motion));
+    if (!sound && plan.automatic() && retries < kExplicitRetries) {
+      system.restore(0.5 * plan.limit());
+      ends.clear();
+      ++retries;
+      continue;
+    }
+    if (!sound || plan.collapsed()) {
+      const int failed = progress.unsound > 0 ? progress.unsound : step;
+      system.pose().download(state);
+      run.failed = std::make_shared<FailedState>(FailedState{state, {}, step});
+      good.download(state);
+      ThreadPool pool(0);
+      MechanicalSystem host(model, pool, solver);
+      run.status = RunStatus::diverged;
+      run.message = explicit_divergence(host, state, failed, ends[ends.size() - 1 - at(step - failed)], plan);
+      run.time = state.time;
+      run.steps = good_step;
+      return run;
+    }
+    ends.clear();
+    if (kept) good = system.pose();
+    if (kept) good_step = step;
+    if (kept && plan.automatic()) system.save();
+    if (kept) retries = 0;
+    if (!seen || !observe) continue;
+    ReachedExplicitStep<Space> reached(system, state, dt);
+    if (!observe(info, reached)) {
+      if (!last) run.status = RunStatus::interrupted;
+      break;
+    }
+    start = Clock::now();  // what the observer took is not the step's
+  }
+  system.pose().download(state);
+  return run;
+}
+
+}  // namespace fascia::gpu

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "core/run/explicit_dynamics.hpp"
+
+#include <functional>
+#include <memory>
+
+/// Runs of whole scenes on the device, for those who know nothing of spaces.
+namespace fascia::gpu {
+
+/// A step that a run on the device has reached. What is asked for is copied to the host.
+class DeviceStep {
+ public:
+  virtual ~DeviceStep() = default;
+  virtual InternalEnergy energy() const = 0;
+  virtual const State& state() = 0;
+  /// Makes a system of the host stand there, as after the same step of its own. @param factors  of the step's end
+  virtual void show(MechanicalSystem& host, std::span<const double> factors) = 0;
+};
+
+/// Called after each accepted step; returns false to stop.
+using DeviceObserver = std::function<bool(const StepInfo&, DeviceStep&)>;
+
+/// run_statics() and run_implicit() with everything on the device. The state that was reached is copied back, also
+/// where a step did not converge; where an error was thrown, it is the last one that was looked at.
+/// @throws NoDevice, DeviceMemoryError, DeviceLost, NotShared
+RunReport run_statics(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                      const StaticsSettings& statics, const DeviceObserver& observe);
+RunReport run_implicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                       const DynamicsSettings& dynamics, const DeviceObserver& observe);
+
+/// run_explicit() with everything on the device. Steps are queued: whether the motion is sound is looked at every few
+/// of them, so that `observed` may be asked of steps after the one that is not, and the seconds of a step are what the
+/// host waited for.
+/// @throws InputError  where a node has no inertia; and as above
+RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
+                       const ExplicitSettings& dynamics, const DeviceObserver& observe);
+
+/// What a model has at a state, for comparisons.
+struct DeviceEvaluation {
+  Evaluation judged;
+  InternalEnergy energy;
+  std::vector<double> gradient;  ///< as MechanicalSystem::gradient()
+  std::vector<double> product;   ///< of the tangent with a direction
+};
+
+/// At rest loads of these factors, without inertia. @param direction  by degrees of freedom, in world axes
+DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
+                          const SolverSettings& settings, std::span<const double> direction);
+
+/// The same in the space of the host: slow, and for tests of what the device computes.
+RunReport run_statics_on_host(const Model& model, State& state, const FactorFunction& factors,
+                              const SolverSettings& settings, const StaticsSettings& statics,
+                              const DeviceObserver& observe);
+RunReport run_implicit_on_host(const Model& model, State& state, const FactorFunction& factors,
+                               const SolverSettings& settings, const DynamicsSettings& dynamics,
+                               const DeviceObserver& observe);
+RunReport run_explicit_on_host(const Model& model, State& state, const FactorFunction& factors,
+                               const SolverSettings& settings, const ExplicitSettings& dynamics,
+                               const DeviceObserver& observe);
+DeviceEvaluation evaluate_on_host(const Model& model, const State& state, std::span<const double> factors,
+                                  const SolverSettings& settings, std::span<const double> direction);
+
+}  // namespace fascia::gpu

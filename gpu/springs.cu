@@ -1,8 +1,0 @@
-#include "gpu/cuda_space.cuh"
-#include "gpu/springs_body.hpp"
-
-namespace fascia::gpu {
-
-template class Springs<CudaSpace>;
-
-}  // namespace fascia::gpu

@@ -1,0 +1,8 @@
+#include "gpu/space/space.hpp"
+#include "gpu/system/levels_body.hpp"
+
+namespace fascia::gpu {
+
+template class Levels<HostSpace>;
+
+}  // namespace fascia::gpu

@@ -1,0 +1,303 @@
+#pragma once
+
+#include "gpu/space/device.hpp"
+#include "gpu/system/boundary_kernels.hpp"
+#include "gpu/system/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+/// The bodies of System, for the files that instantiate it: a step as Newton's method sees it. Its start and end are in
+/// system_step.hpp, its linear solves in system_solve.hpp.
+namespace fascia::gpu {
+
+template <class Space>
+System<Space>::System(const Model& model, const SolverSettings& settings)
+    : model_(model),
+      settings_(settings),
+      filter_(model),
+      data_(model, filter_, zero_factors(model).size()),
+      blocks_(model.points, settings.precision),
+      dependents_(model.points),
+      followers_(model),
+      surfaces_(model),
+      node_parts_(model.points.node_part, model.points.part_count()),
+      cg_(settings.precision == Precision::single ? 0 : at(model.dof_count())),
+      narrow_cg_(settings.precision == Precision::single ? at(model.dof_count()) : 0),
+      conservative_(model.loads_are_conservative()),
+      extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
+      turning_(model.has_frames()),
+      damped_(model.points.damped),
+      motions_(motion_sizes(model)),
+      masses_(part_masses(model)),
+      driven_(driven_parts(model)) {
+  const auto n = at(model.node_count()), dofs = at(model.dof_count()), parts = at(model.points.part_count());
+  const std::size_t frames = turning_ ? n : 0;
+  for (auto* array : {&du_, &saved_du_, &u_}) array->resize(n);
+  for (auto* array : {&Ds_, &saved_Ds_, &D_, &L_, &dA_}) array->resize(frames);
+  Q_.resize(n);
+  dx_.resize(n);
+  q_.resize(n);
+  w_.resize(n);
+  for (auto* array : {&turned_, &saved_turned_}) array->resize(3 * model.constraints.size());
+  for (auto* array : {&gradient_, &load_, &inertia_, &world_d_, &world_y_, &direction_, &prescribed_}) {
+    array->resize(dofs);
+    array->set_zero();
+  }
+  node_energy_.resize(3 * n);
+  dependent_forces_.resize(6 * model.points.dependents.size());
+  for (auto* array : {&part_motion_, &start_motion_}) {
+    array->resize(parts);
+    array->set_zero();
+  }
+  if (!model.tethers.empty()) tether_L_.resize(n);
+  tethers_.upload(model.tethers);
+  report_.resize(parts * kernels::kNodeQuantities + blocks_.report_size() + surfaces_.figure_count() + 3);
+  report_.set_zero();
+  report_values_.resize(report_.size());
+  node_blocks_.resize(model.points.dofs.block_total());
+  inverse_.resize(node_blocks_.size());
+  if (settings.precision != Precision::full) narrow_dA_.resize(frames);
+  if (settings.precision == Precision::single) {
+    narrow_blocks_.resize(node_blocks_.size());
+    narrow_inverse_.resize(node_blocks_.size());
+    narrow_d_.resize(dofs);
+    narrow_dx_.resize(n);
+  }
+  slope_.resize(3);
+  spin_.resize(1);
+  spin_.set_zero();
+  idle_.resize(1);
+  factors_ = reached_factors_ = zero_factors(model);
+  data_.set_factors(factors_);
+  if constexpr (Space::kHasTiles) make_tiles();
+}
+
+/// Why tiles do not compute the model, whatever its points are; empty where they may. They hold solids of rigid frames
+/// that move by themselves, in world axes, and vectors of 64 bits.
+template <class Space>
+std::string System<Space>::not_in_tiles() const {
+  const Preconditioner kind = settings_.preconditioner;
+  if (std::string refusal = not_for_tiles(model_.points); !refusal.empty()) return refusal;
+  if (settings_.precision == Precision::single) return "precision is single";
+  if (kind != Preconditioner::automatic && kind != Preconditioner::block_jacobi && kind != Preconditioner::none)
+    return "the preconditioner is not block-Jacobi";
+  if (filter_.turns()) return "a constraint has axes of its own";
+  if (!dependents_.empty()) return "the model has nodes that depend on others";
+  if (!surfaces_.empty()) return "a load acts on a surface that moves";
+  if (!model_.tethers.empty()) return "a boundary is held by springs";
+  return "";
+}
+
+template <class Space>
+void System<Space>::make_tiles() {
+  const bool shared = settings_.devices.size() > 1;
+  std::string refusal = not_in_tiles();
+  TilePointsResult points;
+  if (refusal.empty()) {
+    points = tile_points(model_.points, model_.rest_position);
+    refusal = points.refusal;
+  }
+  if (refusal.empty()) {
+    TileSolverSettings settings;
+    if (settings_.precision == Precision::mixed) settings.constants = TileConstants::float32;
+    settings.devices = settings_.devices;
+    ThreadPool pool(0);
+    try {
+      tiles_ = TileSolver::make(points.points, settings, pool);
+      if (!tiles_) refusal = "a point has too many frames, or this build has no tiles (they need CUDA 13)";
+    } catch (const DeviceMemoryError&) {
+      if (shared) throw;  // otherwise groups of points need less
+    }
+  }
+  if (shared && !tiles_) throw NotShared("several GPUs share meshless solids alone, and " + refusal);
+  if (!tiles_) return;
+  for (int i = 0; i < model_.node_count(); ++i) held_.push_back(static_cast<std::uint8_t>(filter_.fixed_of(i)));
+  tiles_->set_held(held_);
+  if (settings_.preconditioner == Preconditioner::none) tiles_->clear_preconditioner();
+}
+
+template <class Space>
+kernels::StepView System<Space>::step_view() {
+  return {data_.view(), step_,      start_.u.data(), start_.v.data(), start_.D.data(), start_.Q_dot.data(), du_.data(),
+          u_.data(),    Ds_.data(), D_.data(),       q_.data(),       w_.data(),       turned_.data(),      turning_};
+}
+
+template <class Space>
+kernels::ForceView System<Space>::force_view() {
+  return {gradient_.data(), load_.data(), inertia_.data(), node_energy_.data(), L_.data(), tether_L_.data()};
+}
+
+template <class Space>
+void System<Space>::rebuild_state() {
+  known_.reset();
+  Space::for_each(model_.node_count(), kernels::RebuildState{step_view()});
+  place_dependents();
+}
+
+/// In the present state, and their increments by those of their hosts, which keep the digits of small steps.
+template <class Space>
+void System<Space>::place_dependents() {
+  if (dependents_.empty()) return;
+  dependents_.place_increments(du_.data(), Ds_.data(), start_.D.data());
+  dependents_.place(u_.data(), D_.data());
+  dependents_.turn(D_.data());
+}
+
+/// Everything that acts on the nodes, into gradient_, load_ and inertia_.
+template <class Space>
+void System<Space>::evaluate_forces() {
+  const NodesView& nodes = data_.view().nodes;
+  double* motion = part_motion_.data();
+  node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, motion);
+  Space::for_each(model_.points.part_count(), kernels::AtLeast{start_motion_.data(), motion});
+  blocks_.forces(nodes, pose(), history(), motion);
+  const kernels::ForceView f = force_view();
+  Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f});
+  add_other_loads();
+  Space::for_each(model_.dof_count(), kernels::AddInertiaAndLoads{f});
+  if (!dependents_.empty()) dependents_.transfer(nodes, gradient_.data(), dependent_forces_.data());
+}
+
+/// Loads that are not of one node alone.
+template <class Space>
+void System<Space>::add_other_loads() {
+  const ModelView& m = data_.view();
+  if (!followers_.empty()) followers_.add_forces(m.nodes, pose(), m.factors, load_.data());
+  if (surfaces_.empty()) return;
+  surfaces_.add_forces(m.nodes, pose(), m.factors, load_.data());
+  Space::copy(report_.data() + report_.size() - 3 - surfaces_.figure_count(), surfaces_.figures(),
+              surfaces_.figure_count() * sizeof(double));
+}
+
+/// What the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
+template <class Space>
+void System<Space>::find_prescribed() {
+  double* out = report_.data() + report_.size() - 3;
+  Space::for_each(static_cast<int>(model_.constraints.size()),
+                  kernels::FindPrescribed{step_view(), prescribed_.data()});
+  Space::template sum<0, 3>(model_.node_count(), kernels::PrescribedLeft{step_view(), prescribed_.data()},
+                            kernels::StoreSums<0, 3>{out});
+}
+
+template <class Space>
+Evaluation System<Space>::evaluate() {
+  if (known_) return *std::exchange(known_, std::nullopt);
+  evaluate_forces();
+  node_parts_.template sum<kernels::kNodeQuantities>(kernels::NodeReport{data_.view(), force_view()}, report_.data());
+  blocks_.sum_quantities(report_.data() + at(model_.points.part_count()) * kernels::kNodeQuantities);
+  if (!model_.constraints.empty()) find_prescribed();
+  report_.download(report_values_);
+  return judge();
+}
+
+/// Whether a part's momentum over the step's square is more than rounding of its displacement makes.
+template <class Space>
+bool System<Space>::moves(int part, double squared_momentum) const {
+  double motion = 0;
+  Space::copy_out(&motion, part_motion_.data() + part, sizeof motion);
+  const double still = kAtRest * masses_[at(part)] * motion / (step_.h * step_.h);
+  return squared_momentum > still * still;
+}
+
+/// From the numbers of an evaluation, as MechanicalSystem::evaluate().
+template <class Space>
+Evaluation System<Space>::judge() {
+  const std::size_t parts = at(model_.points.part_count());
+  const double* nodes = report_values_.data();
+  const double* blocks = nodes + parts * kernels::kNodeQuantities;
+  const std::size_t block_kinds = blocks_.report_size() / (parts * kQuantities);
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  Evaluation e;
+  internal_ = {};
+  load_energy_ = inertia_energy_ = 0;
+  std::vector<PartForces> forces(parts);
+  for (std::size_t p = 0; p < parts; ++p) {
+    const double* q = nodes + p * kernels::kNodeQuantities;
+    double rounding = 0, tethers = 0;
+    for (std::size_t b = 0; b < block_kinds; ++b) {
+      const double* own = blocks + (b * parts + p) * kQuantities;
+      internal_.elastic += own[kElastic];
+      internal_.stabilization += own[kStabilizing];
+      internal_.viscous += own[kViscous];
+      rounding += own[kRounding];
+      tethers += own[kTether];
+    }
+    load_energy_ += q[kernels::kLoadEnergy];
+    inertia_energy_ += q[kernels::kInertiaEnergy];
+    const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
+    // 4: sums of a few terms of the estimated size in each entry.
+    const double of_surfaces = surfaces_.empty() ? 0.0 : surfaces_.rounding(static_cast<int>(p), figures());
+    forces[p] = {
+        .residual = q[kernels::kResidual],
+        .load = squared_load(q[kernels::kLoad], q[kernels::kTurnedLoad]),
+        .inertia = q[kernels::kInertia],
+        .reaction = q[kernels::kReaction],
+        .tether = tethers,
+        .momentum = q[kernels::kCancelled],
+        .rounding =
+            4 * leverage *
+            std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled] + q[kernels::kTurnedLoad]), of_surfaces)};
+    forces[p].driven = driven_[p] != 0;
+    forces[p].adrift = step_.h > 0 && forces[p].load == 0 && forces[p].reaction == 0 && tethers == 0 &&
+                       forces[p].momentum > 0 && moves(static_cast<int>(p), forces[p].momentum);
+  }
+  if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
+  e.energy = internal_.total() + load_energy_ + inertia_energy_;
+  e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
+  fascia::judge(forces, model_.points.part_whole, settings_.tolerance, e);
+  prescribed_left_ = false;
+  if (model_.constraints.empty()) return e;
+  const double* left = report_values_.data() + report_values_.size() - 3;
+  prescribed_left_ = left[1] > 1e-14 * std::max(left[0], motions_.displacement) || left[2] > 1e-14 * motions_.angle;
+  return e;
+}
+
+/// Potentials of loads and inertia at the present state, where the internal energy is known.
+template <class Space>
+void System<Space>::evaluate_loads() {
+  Space::for_each(model_.node_count(), kernels::NodeForces{step_view(), BlocksView{}, force_view()});
+  add_other_loads();
+  node_parts_.template sum<kernels::kNodeQuantities>(kernels::NodeReport{data_.view(), force_view()}, report_.data());
+  report_.download(report_values_);
+  load_energy_ = inertia_energy_ = 0;
+  for (std::size_t p = 0; p < at(model_.points.part_count()); ++p) {
+    load_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kLoadEnergy];
+    inertia_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kInertiaEnergy];
+  }
+  if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
+}
+
+template <class Space>
+void System<Space>::apply(double step) {
+  known_.reset();
+  if (extrapolates_ && !use_tiles()) {
+    taken_u_.copy_from(u_);
+    taken_D_.copy_from(D_);
+    taken_length_ = step;
+  }
+  if (!surfaces_.empty()) surfaces_.approach(step);
+  Space::for_each(model_.node_count(), kernels::Advance{step_view(), direction_.data(), step});
+  place_dependents();
+}
+
+template <class Space>
+void System<Space>::save() {
+  saved_du_.copy_from(du_);
+  saved_Ds_.copy_from(Ds_);
+  saved_turned_.copy_from(turned_);
+  if (!surfaces_.empty()) surfaces_.save();
+}
+
+template <class Space>
+void System<Space>::restore() {
+  taken_length_ = 0;
+  du_.copy_from(saved_du_);
+  Ds_.copy_from(saved_Ds_);
+  turned_.copy_from(saved_turned_);
+  if (!surfaces_.empty()) surfaces_.restore();
+  rebuild_state();
+}
+
+}  // namespace fascia::gpu

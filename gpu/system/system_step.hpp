@@ -1,0 +1,257 @@
+#pragma once
+
+#include "core/solver/boundary_motion.hpp"
+#include "gpu/system/boundary_kernels.hpp"
+#include "gpu/system/system.hpp"
+
+/// The start and the end of a step of System.
+namespace fascia::gpu {
+
+template <class Space>
+void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, const Memory& memory) {
+  start_ = start;
+  if (start_.turned.size() != turned_.size()) {  // a state made before the constraints has none
+    start_.turned.resize(turned_.size());
+    start_.turned.set_zero();
+  }
+  if (!dependents_.empty()) {
+    dependents_.place(start_.u.data(), start_.D.data());
+    dependents_.place_rates(start_.v.data(), start_.Q_dot.data());
+  }
+  du_.set_zero();
+  Ds_.set_zero();
+  turned_.copy_from(start_.turned);
+  taken_length_ = 0;
+  indefinite_ = false;
+  if (!surfaces_.empty()) surfaces_.begin_step();
+  step_ = StepConstants::of(scheme, dt, memory.step);
+  inverse_step_ = 0;
+  if (dt > 0) {
+    Space::for_each(model_.node_count(), kernels::Predict{step_view(), memory.motion.data(), memory.velocity.data(),
+                                                          memory.acceleration.data()});
+    if (damped_) predict_strain(memory);
+  } else {
+    q_.set_zero();
+    w_.set_zero();
+  }
+  rebuild_state();
+  node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, start_motion_.data());
+}
+
+template <class Space>
+void System<Space>::predict_strain(const Memory& memory) {
+  inverse_step_ = 1 / step_.h;
+  for (auto* E : {&E_, &start_E_, &ahead_E_, &behind_E_})
+    if (E == &E_ || step_.scheme != TimeScheme::implicit_euler) E->resize(blocks_.strain_size());
+  blocks_.store_strain({start_.u.data(), start_.D.data()}, E_.data());
+  if (use_tiles()) tiles_->store_strain(start_.u.data()->v, &(*start_.D.data())(0, 0));
+  if (step_.scheme == TimeScheme::implicit_euler) return;
+  start_E_.copy_from(E_);
+  double* E = E_.data();
+  const int count = static_cast<int>(E_.size());
+  if (step_.scheme == TimeScheme::bdf2) {
+    Space::for_each(count, kernels::Extrapolate{E, memory.E.data(), step_.memory_factor()});
+    return;
+  }
+  moved_u_.resize(u_.size());
+  moved_D_.resize(D_.size());
+  for (const double sign : {1.0, -1.0}) {
+    Space::for_each(model_.node_count(),
+                    kernels::MoveByVelocity{step_view(), sign * step_.h, moved_u_.data(), moved_D_.data()});
+    if (!dependents_.empty()) dependents_.place(moved_u_.data(), moved_D_.data());
+    blocks_.store_strain({moved_u_.data(), moved_D_.data()}, sign > 0 ? ahead_E_.data() : behind_E_.data());
+  }
+  Space::for_each(
+      count, kernels::StrainAlongVelocity{E, ahead_E_.data(), behind_E_.data(), step_.scheme == TimeScheme::newmark});
+}
+
+template <class Space>
+void System<Space>::set_factors(std::span<const double> factors) {
+  known_.reset();
+  note_stretches();
+  if (std::equal(factors.begin(), factors.end(), factors_.begin(), factors_.end()) && factors_are_placed_) return;
+  factors_.assign(factors.begin(), factors.end());
+  factors_are_placed_ = true;
+  data_.set_factors(factors_);
+  place_tethers();
+}
+
+template <class Space>
+void System<Space>::place_tethers() {
+  if (model_.tethers.empty()) return;
+  std::vector<double> targets(blocks_.points().targets().size());
+  fascia::place_tethers(model_, factors_, targets);
+  blocks_.points().targets().upload(targets);
+}
+
+/// The strain energy of vertices is what the step before left.
+template <class Space>
+double System<Space>::energy_at_start() {
+  const bool same = reached_ && start_.step != 0 && reached_->first == start_.step;
+  if (!same) return evaluate().energy;
+  evaluate_loads();
+  return reached_->second + load_energy_ + inertia_energy_;
+}
+
+template <class Space>
+void System<Space>::start_from_prediction() {
+  const double at_old_state = energy_at_start();
+  save();
+  Space::for_each(model_.node_count(), kernels::PredictIncrement{step_view()});
+  rebuild_state();
+  const Evaluation predicted = evaluate();
+  if (predicted.energy < at_old_state)
+    known_ = predicted;  // Newton asks for it next
+  else
+    restore();
+}
+
+template <class Space>
+typename System<Space>::Pose System<Space>::finish_step(double end_time, Memory& memory) {
+  reached_factors_ = factors_;
+  if (!surfaces_.empty()) surfaces_.finish_step();
+  const bool remembers = step_.h > 0 && step_.scheme != TimeScheme::implicit_euler;
+  const bool same_step = memory.step == step_.step && memory.motion.size() == u_.size();
+  Pose end;
+  end.u.resize(u_.size());
+  end.v.resize(u_.size());
+  end.D.resize(D_.size());
+  end.Q_dot.resize(D_.size());
+  end.turned.copy_from(turned_);
+  end.time = end_time;
+  end.step = ++steps_;
+  if (remembers) {
+    before_.swap(memory.motion);
+    memory.motion.resize(u_.size());
+    memory.velocity.resize(u_.size());
+    if (step_.scheme == TimeScheme::newmark) memory.acceleration.resize(u_.size());
+  }
+  const PoseMotion* before = remembers && same_step ? before_.data() : nullptr;
+  const int n = model_.node_count();
+  if (solves_for_middle() && step_.h > 0) {
+    end.turned.copy_from(start_.turned);
+    Space::for_each(n, kernels::FinishMiddle{step_view(), end.u.data(), end.v.data(), end.D.data(), end.Q_dot.data(),
+                                             memory.motion.data(), memory.velocity.data(), end.turned.data()});
+    Space::for_each(n, kernels::FinishHeld{step_view(), end.u.data(), end.v.data(), end.D.data(), end.Q_dot.data(),
+                                           memory.motion.data(), before, end.turned.data()});
+  } else {
+    PoseMotion* a = step_.scheme == TimeScheme::newmark ? memory.acceleration.data() : nullptr;
+    Space::for_each(n, kernels::FinishStep{step_view(), end.u.data(), end.v.data(), end.D.data(), end.Q_dot.data(),
+                                           memory.motion.data(), memory.velocity.data(), a, before, remembers});
+  }
+  if (!dependents_.empty()) {
+    dependents_.place(end.u.data(), end.D.data());
+    dependents_.place_rates(end.v.data(), end.Q_dot.data());
+  }
+  reached_.reset();
+  if (step_.scheme == TimeScheme::implicit_euler && !turning_ && !damped_ && model_.tethers.empty())
+    reached_ = {end.step, internal_.total()};
+  if (!remembers) return end;
+  memory.step = step_.step;
+  if (damped_) memory.E.copy_from(start_E_);
+  return end;
+}
+
+template <class Space>
+void System<Space>::start_acceleration(const Pose& start, double dt, Memory& memory) {
+  memory.acceleration.resize(u_.size());
+  memory.acceleration.set_zero();
+  begin_step(start, dt, TimeScheme::newmark, memory);
+  // Nothing has moved yet, see MechanicalSystem: E + h dE/dt becomes E − h dE/dt.
+  if (damped_) Space::for_each(static_cast<int>(E_.size()), kernels::Extrapolate{E_.data(), start_E_.data(), -2});
+  step_.h = 0;  // forces without inertia
+  evaluate_forces();
+  Space::for_each(model_.node_count(), kernels::ForceOfAcceleration{step_view(), force_view(), world_y_.data()});
+  if (!dependents_.empty()) dependents_.transfer(data_.view().nodes, world_y_.data(), nullptr);
+  Space::for_each(model_.node_count(),
+                  kernels::StartAcceleration{step_view(), world_y_.data(), memory.acceleration.data()});
+}
+
+template <class Space>
+void System<Space>::look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt) {
+  begin_step(state, 0);
+  if (damped_) follow_strain(before, earlier, dt);
+  evaluate();
+  internal_.viscous = 0;
+  if (!middles_.empty()) stretch_tethers(state.time);
+  Space::for_each(static_cast<int>(model_.constraints.size()),
+                  kernels::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
+                                          before.Q_dot.data(), 1 / dt, gradient_.data()});
+}
+
+/// Before the factors of the end take the place of those of the middle.
+template <class Space>
+void System<Space>::note_stretches() {
+  if (tethers_.empty() || !solves_for_middle() || step_.h <= 0) return;
+  Array<Space, Vec3d>& stretch = middles_.at_middle(start_.time + step_.reach);
+  stretch.resize(tethers_.size());
+  Points<Space>& points = blocks_.points();
+  Space::for_each(static_cast<int>(tethers_.size()), kernels::NoteStretches{tethers_.data(), points.view(), pose(),
+                                                                            points.targets().data(), stretch.data()});
+}
+
+/// Evaluates forces again, with tethers that pull as in the middles of steps.
+template <class Space>
+void System<Space>::stretch_tethers(double time) {
+  Points<Space>& points = blocks_.points();
+  const std::array<double, 3> w = middles_.weights(time);
+  const auto& s = middles_.stretch;
+  Space::for_each(static_cast<int>(tethers_.size()), kernels::StretchTethers{tethers_.data(),
+                                                                             points.view(),
+                                                                             pose(),
+                                                                             {s[0].data(), s[1].data(), s[2].data()},
+                                                                             {w[0], w[1], w[2]},
+                                                                             points.targets().data()});
+  factors_are_placed_ = false;
+  evaluate_forces();
+}
+
+template <class Space>
+std::vector<double> System<Space>::tether_targets() {
+  return tethers_.empty() ? std::vector<double>{} : blocks_.points().targets().downloaded();
+}
+
+/// Ê of the strain rate at the end of a step, from the strains of three states.
+template <class Space>
+void System<Space>::follow_strain(const Pose& before, const Pose& earlier, double dt) {
+  const bool second = !earlier.u.empty();
+  E_.resize(blocks_.strain_size());
+  blocks_.store_strain(pose(), E_.data());
+  store_strain_at(before, behind_E_);
+  if (second) store_strain_at(earlier, ahead_E_);
+  Space::for_each(static_cast<int>(E_.size()),
+                  kernels::StrainFromSteps{E_.data(), behind_E_.data(), second ? ahead_E_.data() : nullptr});
+  inverse_step_ = 1 / dt;
+}
+
+/// @param pose  whose dependent nodes may not be placed yet
+template <class Space>
+void System<Space>::store_strain_at(const Pose& pose, Array<Space, double>& E) {
+  E.resize(blocks_.strain_size());
+  if (dependents_.empty()) return blocks_.store_strain({pose.u.data(), pose.D.data()}, E.data());
+  moved_u_.copy_from(pose.u);
+  moved_D_.copy_from(pose.D);
+  dependents_.place(moved_u_.data(), moved_D_.data());
+  blocks_.store_strain({moved_u_.data(), moved_D_.data()}, E.data());
+}
+
+template <class Space>
+StrainHistory System<Space>::strain_history() const {
+  StrainHistory out;
+  if (!damped_ || inverse_step_ == 0) return out;
+  out.inverse_step = inverse_step_;
+  out.E.resize(E_.size());
+  E_.download(out.E);
+  return out;
+}
+
+template <class Space>
+double System<Space>::prescribed_rotation() {
+  if (std::all_of(model_.motions.begin(), model_.motions.end(), [](const PrescribedMotion& m) { return m.angle == 0; }))
+    return 0;
+  std::vector<std::array<double, 3>> turned(model_.constraints.size());
+  if (!turned.empty()) turned_.download(std::span(turned[0].data(), turned_.size()));
+  return fascia::prescribed_rotation(model_, turned, factors_, reached_factors_);
+}
+
+}  // namespace fascia::gpu

@@ -1,0 +1,107 @@
+#include "io/mesh/vtk_reader.hpp"
+
+#include "core/base/errors.hpp"
+#include "io/files.hpp"
+#include "io/mesh/isolated.hpp"
+#include "io/mesh/obj_reader.hpp"
+#include "io/mesh/off_reader.hpp"
+#include "io/mesh/stl_reader.hpp"
+#include "io/mesh/vtk_cells.hpp"
+#include "io/vtk_errors.hpp"
+
+#include <vtkDataSetReader.h>
+#include <vtkErrorCode.h>
+#include <vtkPLYReader.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <exception>
+#include <fstream>
+#include <regex>
+
+namespace fascia::io {
+namespace {
+
+[[noreturn]] void fail(const std::string& file, const std::string& ending, const std::string& reason) {
+  throw InputError(file + ": is no readable " + ending + " mesh" + (reason.empty() ? "" : " (" + reason + ")") +
+                   "; it may be cut off or of another format: write it again");
+}
+
+/// Any array of the file may number the groups.
+void configure(vtkDataSetReader& reader) {
+  reader.ReadAllScalarsOn();
+  reader.ReadAllFieldsOn();
+}
+void configure(vtkAlgorithm&) {}
+
+template <class Reader>
+vtkSmartPointer<vtkDataSet> read_with(const std::string& file) {
+  const auto reader = vtkSmartPointer<Reader>::New();
+  configure(*reader);
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  if (reader->GetErrorCode() != vtkErrorCode::NoError) return nullptr;
+  return vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+}
+
+vtkSmartPointer<vtkDataSet> read_data(const std::string& file, const std::string& ending) {
+  if (ending == ".vtk") return read_with<vtkDataSetReader>(file);
+  if (ending == ".vtu") return read_with<vtkXMLUnstructuredGridReader>(file);
+  if (ending == ".vtp") return read_with<vtkXMLPolyDataReader>(file);
+  return read_with<vtkPLYReader>(file);
+}
+
+/// Files of VTK's XML formats are often called .vtk; what they hold says which of them they are.
+std::string true_ending(const std::filesystem::path& path, const std::string& ending) {
+  if (ending != ".vtk") return ending;
+  constexpr std::size_t longest = 2000;
+  std::string start(longest, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(start.data(), static_cast<std::streamsize>(longest));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  if (start.starts_with("\xEF\xBB\xBF")) start.erase(0, 3);  // a byte order mark
+  std::smatch type;
+  static const std::regex kRoot(R"(<VTKFile[^>]*\btype\s*=\s*["'](\w+)["'])");
+  if (!start.starts_with('<') || !std::regex_search(start, type, kRoot)) return ending;
+  if (type[1] == "UnstructuredGrid") return ".vtu";
+  return type[1] == "PolyData" ? ".vtp" : ending;
+}
+
+Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mid_nodes) {
+  VtkErrors errors;
+  try {
+    const vtkSmartPointer<vtkDataSet> data = read_data(file, ending);
+    if (!data || !errors.first().empty()) fail(file, ending, errors.first());
+    if (!vtkPolyData::SafeDownCast(data) && !vtkUnstructuredGrid::SafeDownCast(data))
+      fail(file, ending, "must hold an unstructured grid or polygonal data");
+    return mesh_of_vtk(*data, file, 0, 0, mid_nodes);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& e) {
+    fail(file, ending, e.what());
+  }
+}
+
+}  // namespace
+
+Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending, MidNodes mid_nodes) {
+  const std::string file = path.string();
+  if (ending == ".obj" || ending == ".stl" || ending == ".off") {
+    VtkErrors silence;
+    const auto parse = ending == ".obj" ? parse_obj : ending == ".stl" ? parse_stl : parse_off;
+    const int first = ending == ".off" ? 0 : 1;  // the number that the format gives its first vertex
+    std::vector<std::string> messages;
+    Mesh mesh = mesh_of_vtk(*parse(read_file(path), file, messages), file, first, first, mid_nodes);
+    mesh.messages = std::move(messages);
+    return mesh;
+  }
+  const std::string kind = true_ending(path, ending);
+  Mesh mesh = read_isolated(file, [&] { return read_by_vtk(file, kind, mid_nodes); });
+  if (kind != ending) mesh.messages.push_back(file + ": holds XML, which is a " + kind + " file, and was read as one");
+  return mesh;
+}
+
+}  // namespace fascia::io

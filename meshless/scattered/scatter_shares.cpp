@@ -1,0 +1,93 @@
+#include "core/base/errors.hpp"
+#include "meshless/scattered/scatter_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace fascia {
+
+OwnerSearch::OwnerSearch(const Matter& matter, std::span<const SamplePlace> samples) : samples_(samples) {
+  const std::array<double, 4> measure = measures(matter);
+  std::array<int, 4> count{};
+  for (const SamplePlace& s : samples) ++count[at(s.dimension)];
+  const auto spacing = [&](int d) { return std::pow(measure[at(d)] / count[at(d)], 1.0 / d); };
+  for (int d = 1; d < 3; ++d) {
+    OneDimension& one = dimension_[at(d)];
+    if (count[at(d)] == 0 || !(measure[at(d)] > 0)) continue;
+    one.spacing = spacing(d);
+    one.grid = PointGrid(one.spacing);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].dimension == 3) {
+      solid_sample_.push_back(static_cast<int>(i));
+      solid_place_.push_back(samples[i].x);
+      continue;
+    }
+    OneDimension& one = dimension_[at(samples[i].dimension)];
+    if (!(one.spacing > 0)) continue;
+    one.grid.insert(samples[i].x);
+    one.sample.push_back(static_cast<int>(i));
+  }
+  if (count[3] > 0 && measure[3] > 0) solid_.emplace(solid_place_, spacing(3));
+}
+
+int OwnerSearch::owner(const MatterPiece& piece, const Vec3d& x) {
+  if (piece.dimension == 3) return solid_ ? solid_sample_[at(solid_->nearest(x))] : -1;
+  const OneDimension& one = dimension_[at(piece.dimension)];
+  if (one.sample.empty()) return -1;
+  const double reach = 2 * one.spacing;
+  int found = one.grid.nearest(x, reach, [&](int k) { return alike(samples_[at(one.sample[at(k)])], piece); });
+  const bool near = found >= 0 && norm(samples_[at(one.sample[at(found)])].x - x) <= reach;
+  if (!near) found = one.grid.nearest(x, INFINITY, [](int) { return true; });
+  return one.sample[at(found)];
+}
+
+namespace {
+
+void give(Share& share, const Vec3d& x, double volume) {
+  share.centroid += x * volume;
+  share.volume += volume;
+}
+
+/// Divides a line's piece between the owners of its ends, at the plane halfway between them.
+void divide(const MatterPiece& piece, OwnerSearch& search, std::span<const SamplePlace> samples,
+            std::vector<Share>& shares) {
+  const Vec3d half = piece.axes.column(0) * (0.5 * piece.measure);
+  const Vec3d from = piece.x - half, to = piece.x + half;
+  const int i = search.owner(piece, from), j = search.owner(piece, to);
+  const auto excess = [&](const Vec3d& x) {
+    return squared_norm(x - samples[at(i)].x) - squared_norm(x - samples[at(j)].x);
+  };
+  const double slope = i == j ? 0 : excess(to) - excess(from);
+  const double u = slope > 0 ? std::clamp(-excess(from) / slope, 0.0, 1.0) : 1;
+  give(shares[at(i)], from + half * u, piece.volume * u);
+  give(shares[at(j)], to - half * (1 - u), piece.volume * (1 - u));
+}
+
+}  // namespace
+
+std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePlace> samples) {
+  OwnerSearch search(matter, samples);
+  std::vector<Share> shares(samples.size());
+  for (std::size_t p = 0; p < matter.pieces.size(); ++p) {
+    const MatterPiece& piece = matter.pieces[p];
+    if (!(piece.volume > 0)) continue;
+    const int i = search.owner(piece);
+    if (i < 0) {
+      static constexpr std::array<const char*, 4> kNames{"", "line", "sheet", "solid"};
+      throw InputError("no point lies in the " + std::string(kNames[at(piece.dimension)]) +
+                       " part of the domain; it needs at least one");
+    }
+    shares[at(i)].pieces.push_back(static_cast<int>(p));
+    if (piece.dimension == 1)
+      divide(piece, search, samples, shares);
+    else
+      give(shares[at(i)], piece.x, piece.volume);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    shares[i].centroid = shares[i].volume > 0 ? shares[i].centroid * (1 / shares[i].volume) : samples[i].x;
+  return shares;
+}
+
+}  // namespace fascia
