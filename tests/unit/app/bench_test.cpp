@@ -27,7 +27,7 @@ std::vector<BenchmarkCase> of_setting(const Benchmark& b, const std::string& set
 }
 
 /// A backend that takes `ms` for each step and remembers what it was asked.
-Backend pretended(std::string name, int threads, double ms, std::vector<StepPlan>* asked = nullptr) {
+BenchBackend pretended(std::string name, int threads, double ms, std::vector<StepPlan>* asked = nullptr) {
   return {std::move(name), threads, [=](const Simulation&, const StepPlan& plan) {
             if (asked) asked->push_back(plan);
             return StepTimes{{3 * ms, ms, 2 * ms}, {ms, ms / 2, ms / 4}, 60, 1e-3, ""};
@@ -211,7 +211,7 @@ TEST(BenchTimes, WhatDoesNotFitIsSaidAndNotTried) {
 }
 
 TEST(BenchBackends, OneThreadThenAsManyAsAskedFor) {
-  const std::vector<Backend> backends = available_backends(3);
+  const std::vector<BenchBackend> backends = available_backends(3);
   ASSERT_GE(backends.size(), 2u);
   EXPECT_EQ(backends[0].label(), "cpu, 1 thread");
   EXPECT_EQ(backends[1].label(), "cpu, 3 threads");
