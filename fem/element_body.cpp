@@ -65,11 +65,11 @@ std::string ElementBody::model_name() const {
   return family_of(mesh().shape) == ElementFamily::tetrahedra ? "tetrahedra" : "hexahedra";
 }
 
-ElementLaw ElementBody::law(int element) const {
-  if (formulation_ == ElementFormulation::linear) return ElementLaw::linear;
-  if (formulation_ == ElementFormulation::corotational) return ElementLaw::corotational;
+Law ElementBody::law(int element) const {
+  if (formulation_ == ElementFormulation::linear) return Law::linear;
+  if (formulation_ == ElementFormulation::corotational) return Law::corotational;
   const std::size_t first = at(element) * (points_.size() / mesh().size());
-  return points_[first].law == Law::neo_hookean ? ElementLaw::neo_hookean : ElementLaw::st_venant_kirchhoff;
+  return points_[first].law;
 }
 
 void ElementBody::choose_formulation(const ElementBodySpec& spec) {
@@ -123,7 +123,7 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
       point.volume = v;
       point.lambda = m.lambda;
       point.mu = m.mu;
-      point.law = m.neo_hookean ? Law::neo_hookean : Law::solid;
+      point.law = m.law;
       point.cell = static_cast<int>(e);
       points_.push_back(point);
       volume_ += v;

@@ -51,7 +51,7 @@ class ElementBody final : public ModelBody {
   std::string quality() const override { return quality_; }
   std::int64_t cell_number(int cell) const override { return mesh().element_number[static_cast<std::size_t>(cell)]; }
 
-  ElementLaw law(int element) const;
+  Law law(int element) const;
   bool averaged() const { return averaged_; }
 
  private:

@@ -68,13 +68,13 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
   if (!averaged_) return {};
   const std::size_t n = mesh().nodes.size();
   std::vector<Averaged> result(mesh().size());
-  for (const Law law : {Law::solid, Law::neo_hookean}) {
+  for (const Law law : kSolidLaws) {
     std::vector<double> theta(n), volume(n);
     std::vector<LambdaMean> lambda(n);
     for (std::size_t e = 0; e < mesh().size(); ++e) {
       if (points_[e].law != law) continue;
       const Mat3d H = field_at(attach_point(e), state).H;
-      const double strain = law == Law::neo_hookean ? NeoHookean<double>::log_volume(H) : trace(green_strain(H));
+      const double strain = with_solid_law(law, [&]<Law L>() { return SolidLaw<L, double>::volumetric_strain(H); });
       for (const int node : mesh().element(e)) {
         theta[at(node)] += strain * points_[e].volume;
         volume[at(node)] += points_[e].volume;
@@ -111,19 +111,13 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const St
     t.energy_density = law.energy_density(strain);
   } else {
     const Mat3d F = Mat3d::identity() + H;
-    Mat3d S;
-    if (p.law == Law::neo_hookean) {
-      const NeoHookean<double> neo{p.lambda, p.mu};
-      const double swelling = NeoHookean<double>::log_volume(H);
-      S = neo.second_piola(t.strain, NeoHookean<double>::inverse_right_cauchy_green(H),
-                           averaged ? averaged->pressure : p.lambda * swelling);
-      t.energy_density =
-          averaged ? p.mu * NeoHookean<double>::distortion(H) + averaged->energy_density : neo.energy_density(H);
-    } else {
-      S = t.strain * (2 * p.mu) + Mat3d::diagonal(averaged ? averaged->pressure : p.lambda * trace(t.strain));
-      t.energy_density =
-          averaged ? p.mu * contract(t.strain, t.strain) + averaged->energy_density : law.energy_density(t.strain);
-    }
+    const Mat3d S = with_solid_law(p.law, [&]<Law L>() {
+      using Solid = SolidLaw<L, double>;
+      const Solid solid{p.lambda, p.mu};
+      t.energy_density = averaged ? solid.shear_energy(H) + averaged->energy_density : energy_density(solid, H);
+      const double pressure = averaged ? averaged->pressure : p.lambda * Solid::volumetric_strain(H);
+      return solid.second_piola(typename Solid::At(H), t.strain, pressure);
+    });
     t.stress = times_transpose(F * S, F) * (1 / determinant(F));
   }
   t.stress += Mat3d::diagonal(pull);

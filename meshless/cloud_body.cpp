@@ -50,12 +50,12 @@ void CloudBody::split_points(const CloudSpec& spec) {
     const PointMaterialSpec m = spec.material(p.place.X);
     const auto add = [&](const Vec3d& offset, double part, Law law) {
       point_places_.push_back({place, offset});
-      const int axes = is_solid(law) ? -1 : static_cast<int>(axes_.size());
+      const int axes = is_thin(law) ? static_cast<int>(axes_.size()) : -1;
       points_.push_back({p.place.X + offset, p.volume * part, m.lambda, m.mu, p.place.X, law, spec.affine, axes});
       if (axes >= 0) axes_.push_back(T);
     };
     if (p.place.dimension == 3 || spec.through == 1) {
-      add({}, 1, m.neo_hookean ? Law::neo_hookean : Law::solid);
+      add({}, 1, m.law);
     } else if (p.place.dimension == 2) {
       for (const GaussPoint& g : gauss_legendre(spec.through > 0 ? spec.through : 2))
         add(T.column(2) * ((g.x - 0.5) * p.extent), g.weight, Law::sheet);
@@ -116,7 +116,7 @@ void CloudBody::check_points(const CloudSpec& spec, const Model& model) const {
   }
   dofs += at(3 * turned);
   if (6 * points_.size() >= dofs) return;
-  const bool thin = !is_solid(points_[0].law);
+  const bool thin = is_thin(points_[0].law);
   throw InputError(std::to_string(points_.size()) + " integration points cannot hold " + std::to_string(node_count_) +
                        (spec.affine ? " affine" : "") + " frames" +
                        (turned > 0 ? " and the rotations of " + std::to_string(turned) + " shared vertices" : "") +

@@ -67,7 +67,8 @@ void CloudBody::add_middle_ties(const CloudSpec& spec, const std::vector<Scatter
     const Attachment a = attach_place(places_[p], weights[p], {});
     const double mu = spec.material(places_[p].X).mu;
     const PointSample tie{places_[p].X, spec.points[p].volume, 0, 0, spec.stabilization * mu, 0, a.influences, {}};
-    builder.add_points(a.nodes, std::span(&tie, 1), spec.spacing, {Law::solid, Stabilization::affine, true});
+    builder.add_points(a.nodes, std::span(&tie, 1), spec.spacing,
+                       {Law::st_venant_kirchhoff, Stabilization::affine, true});
   }
 }
 

@@ -16,8 +16,6 @@ namespace {
 /// Above this Poisson ratio full integration locks (docs/manual.md, "Nearly incompressible tissue").
 constexpr double kSelectivePoisson = 0.45 + 1e-9;  // rounding of λ and μ must not decide about 0.45 itself
 
-Law law_of(const PointMaterialSpec& m) { return m.neo_hookean ? Law::neo_hookean : Law::solid; }
-
 }  // namespace
 
 void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& samples, const Model& model,
@@ -58,7 +56,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
   // Points that share their frames, in the order of the cells (and tetrahedra).
   std::map<std::tuple<int, std::array<int, 3>, Law>, std::vector<std::size_t>> groups;
   for (std::size_t q = 0; q < samples.size(); ++q)
-    groups[{cells_[at(samples[q].cell)].owner, samples[q].tetrahedron, law_of(materials[q])}].push_back(q);
+    groups[{cells_[at(samples[q].cell)].owner, samples[q].tetrahedron, materials[q].law}].push_back(q);
   for (const auto& [key, members] : groups) {
     std::vector<PointSample> points;
     std::vector<int> nodes;
@@ -69,7 +67,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       const PointMaterialSpec& m = materials[q];
       const Vec3d X = to_world(s.x);
       const double stabilization = stabilization_of(m, a);
-      points_.push_back({X, s.volume, m.lambda, m.mu, X, law_of(m)});
+      points_.push_back({X, s.volume, m.lambda, m.mu, X, m.law});
       point_cells_.push_back({a.cell, s.tetrahedron});
       points.push_back({X,
                         s.volume,

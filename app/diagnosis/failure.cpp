@@ -109,7 +109,7 @@ class Search {
         loads[q] += shares_[at(a.nodes[k])] * std::abs(a.influences[k].w);
         lost = lost || lost_[at(a.nodes[k])] != 0;
       }
-      const bool solid = is_solid(b.body->points()[q].law);
+      const bool solid = !is_thin(b.body->points()[q].law);
       const double J = determinant(Mat3d::identity() + field_at(a, found_.state).H);
       m.volume.push_back(lost || !std::isfinite(J) ? 0.0 : J);
       if ((solid || lost) && (worst_.body < 0 || m.volume[q] < least())) worst_ = {index, q};
@@ -128,7 +128,7 @@ class Search {
     const double much = kMuch * load_[at(most_.body)][most_.point];
     for (std::size_t b = 0; b < found_.marks.size(); ++b)
       for (std::size_t q = 0; q < found_.marks[b].suspect.size(); ++q) {
-        const bool solid = is_solid(s_.bodies[b].body->points()[q].law);
+        const bool solid = !is_thin(s_.bodies[b].body->points()[q].law);
         const double J = found_.marks[b].volume[q];
         const bool suspect = crushed_ ? (solid && J <= limit) || J == 0 : load_[b][q] >= much && much > 0;
         found_.marks[b].suspect[q] = suspect ? 1 : 0;
@@ -172,7 +172,7 @@ class Search {
     const Material* material = material_of(body, p);
     const std::string name = material == nullptr || material->name.empty() ? "" : "materials." + material->name + ".";
     const bool whole = body.formulation == Formulation::large_strain;
-    if (crushed_ && p.law == Law::solid && whole && material != nullptr)
+    if (crushed_ && p.law == Law::st_venant_kirchhoff && whole && material != nullptr)
       return fmt::format("; {}law = \"neo-hookean\" resists that", name);
     if (crushed_ && !whole)
       return fmt::format("; bodies.{}: leave formulation out, and use law = \"neo-hookean\"", body.name);

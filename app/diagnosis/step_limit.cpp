@@ -93,7 +93,7 @@ class Search {
       double kinetic = 0;
       for (std::size_t k = 0; k < a.nodes.size(); ++k) kinetic += a.influences[k].w * limit_.kinetic[at(a.nodes[k])];
       if (kinetic > moved_.energy) moved_ = {index, q, kinetic};
-      if (!is_solid(p.law)) continue;
+      if (is_thin(p.law)) continue;
       const Mat3d H = field_at(a, state_).H, E = (H + transpose(H)) * 0.5;
       const double energy = p.volume * (0.5 * p.lambda * trace(E) * trace(E) + p.mu * contract(E, E));
       if (energy > strained_.energy) strained_ = {index, q, energy};

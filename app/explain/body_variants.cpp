@@ -1,5 +1,6 @@
 #include "app/estimate/resolution.hpp"
 #include "app/explain/variants.hpp"
+#include "app/scene/laws.hpp"
 #include "app/scene/toml_text.hpp"
 
 #include <fmt/format.h>
@@ -129,7 +130,7 @@ class BodyVariants {
   /// The law that one of large strain becomes where a formulation takes none; empty where that cannot be said in one
   /// line.
   std::vector<std::string> linear_law() const {
-    const auto large = [](const MaterialUse& use) { return use.material.law == MaterialLaw::neo_hookean; };
+    const auto large = [](const MaterialUse& use) { return is_of_large_strain(use.material.law); };
     if (std::none_of(body_.materials.begin(), body_.materials.end(), large) || body_.materials.size() != 1) return {};
     const Material& m = body_.materials[0].material;
     std::string text = fmt::format("{}.material={{ young = {}, poisson = {}", path_, m.young(), m.poisson());

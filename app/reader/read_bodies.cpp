@@ -1,4 +1,5 @@
 #include "app/reader/readers.hpp"
+#include "app/scene/laws.hpp"
 #include "app/schema/schema.hpp"
 
 #include <fmt/format.h>
@@ -105,10 +106,11 @@ void check_thin_laws(const TableReader& table, const Body& body) {
   const std::optional<Extent> extent = read_extent(table);
   if (!extent || *extent == Extent::solid) return;
   for (std::size_t i = 0; i < body.materials.size(); ++i)
-    if (body.materials[i].material.law == MaterialLaw::neo_hookean)
-      table.diagnostics().add(place_of_material(table, i),
-                              "has the law \"neo-hookean\", which thin bodies do not take; must be of the law "
-                              "\"st-venant-kirchhoff\"");
+    if (const Law law = body.materials[i].material.law; is_of_large_strain(law))
+      table.diagnostics().add(
+          place_of_material(table, i),
+          fmt::format("has the law \"{}\", which thin bodies do not take; must be of the law \"{}\"", word(law),
+                      kMaterialLaws[0].word));
 }
 
 void read_meshless(const TableReader& table, const std::vector<std::string>& bodies,
@@ -152,7 +154,7 @@ Place place_of_material(const TableReader& body, std::size_t use) {
 Material read_material(const TableReader& table) {
   Material material;
   material.place = table.place();
-  if (table.text("law") == "neo-hookean") material.law = MaterialLaw::neo_hookean;
+  if (const auto law = table.text("law")) material.law = material_law(*law);
   if (table.has("young")) {
     if (!table.has("poisson"))
       table.error("poisson", "is missing beside young; must be a number above -1 and below 0.5");

@@ -1,4 +1,5 @@
 #include "app/reader/readers.hpp"
+#include "app/scene/laws.hpp"
 #include "app/schema/schema.hpp"
 
 #include <fmt/format.h>
@@ -64,11 +65,12 @@ void read_formulation(const TableReader& table, Body& body) {
   if (formulation == "st-venant-kirchhoff") return;
   body.formulation = formulation == "linear" ? Formulation::linear : Formulation::corotational;
   for (std::size_t i = 0; i < body.materials.size(); ++i)
-    if (body.materials[i].material.law == MaterialLaw::neo_hookean)
-      table.diagnostics().add(place_of_material(table, i),
-                              fmt::format("has the law \"neo-hookean\", which formulation = \"{}\" does not take; must "
-                                          "be of the law \"st-venant-kirchhoff\", or change the formulation",
-                                          formulation));
+    if (const Law law = body.materials[i].material.law; is_of_large_strain(law))
+      table.diagnostics().add(
+          place_of_material(table, i),
+          fmt::format("has the law \"{}\", which formulation = \"{}\" does not take; must be of the "
+                      "law \"{}\", or change the formulation",
+                      word(law), formulation, kMaterialLaws[0].word));
 }
 
 void read_locking(const TableReader& table, Body& body) {

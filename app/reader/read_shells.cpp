@@ -1,4 +1,5 @@
 #include "app/reader/readers.hpp"
+#include "app/scene/laws.hpp"
 #include "app/schema/schema.hpp"
 
 #include <fmt/format.h>
@@ -87,10 +88,10 @@ void read_shell(const TableReader& table, Body& body) {
   if (!table.has("thickness"))
     table.error("thickness", "is missing for model = \"shell\"; must be a length in m above 0, or a list by region");
   for (std::size_t i = 0; i < body.materials.size(); ++i)
-    if (body.materials[i].material.law == MaterialLaw::neo_hookean)
+    if (const Law law = body.materials[i].material.law; is_of_large_strain(law))
       table.diagnostics().add(place_of_material(table, i),
-                              "has the law \"neo-hookean\", which shells do not take; must be of the law "
-                              "\"st-venant-kirchhoff\"");
+                              fmt::format("has the law \"{}\", which shells do not take; must be of the law \"{}\"",
+                                          word(law), kMaterialLaws[0].word));
 }
 
 void refuse_shell_keys(const TableReader& table) {

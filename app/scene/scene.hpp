@@ -4,6 +4,7 @@
 #include "app/scene/profile.hpp"
 #include "app/scene/region.hpp"
 #include "core/math/mat3.hpp"
+#include "core/physics/law.hpp"
 
 #include <array>
 #include <filesystem>
@@ -29,13 +30,10 @@ struct StatedNeed {
 };
 
 // ------------------------------------------------------------------------------------------------ bodies
-/// Elastic law of large strain.
-enum class MaterialLaw { st_venant_kirchhoff, neo_hookean };
-
 struct Material {
   Place place;
   std::string name;  ///< empty for an inline table
-  MaterialLaw law = MaterialLaw::st_venant_kirchhoff;
+  Law law = Law::st_venant_kirchhoff;
   double lambda = 0, mu = 0;                       ///< [Pa]
   double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
   double poisson() const { return lambda / (2 * (lambda + mu)); }

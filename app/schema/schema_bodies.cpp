@@ -1,3 +1,4 @@
+#include "app/scene/laws.hpp"
 #include "app/schema/schema.hpp"
 
 namespace fascia::app {
@@ -113,25 +114,21 @@ Shape body_material_schema() {
 }
 
 const Shape& material_schema() {
-  static const Shape material = table(
-      {key("law",
-           choice({{"st-venant-kirchhoff", "Linear between Green-Lagrange strain and second Piola-Kirchhoff stress."},
-                   {"neo-hookean",
-                    "Compressible: stiffens as it is compressed to nothing. Not for thin meshless bodies, nor "
-                    "`formulation = \"corotational\"` or `\"linear\"`."}}),
-           "Elastic law.")
-           .defaults("\"st-venant-kirchhoff\""),
-       key("young", number("Pa", above(0)), "Young's modulus."),
-       key("poisson", number("1", inside(-1, 0.5)), "Poisson's ratio; goes with `young`."),
-       key("lame",
-           table({key("lambda", number("Pa"), "First parameter; 3 lambda + 2 mu > 0.").needed(),
-                  key("mu", number("Pa", above(0)), "Shear modulus.").needed()}),
-           "Lamé's parameters."),
-       key("damping",
-           table({key("mass", number("1/s", at_least(0)), "On velocities.").defaults("0"),
-                  key("stiffness", number("s", at_least(0)), "On the rate of strain.").defaults("0")}),
-           "Viscous damping.")},
-      {{{"young", "lame"}}});
+  std::vector<Choice> laws;
+  for (const LawWord& law : kMaterialLaws) laws.push_back({law.word, law.meaning});
+  static const Shape material =
+      table({key("law", choice(laws), "Elastic law.").defaults("\"st-venant-kirchhoff\""),
+             key("young", number("Pa", above(0)), "Young's modulus."),
+             key("poisson", number("1", inside(-1, 0.5)), "Poisson's ratio; goes with `young`."),
+             key("lame",
+                 table({key("lambda", number("Pa"), "First parameter; 3 lambda + 2 mu > 0.").needed(),
+                        key("mu", number("Pa", above(0)), "Shear modulus.").needed()}),
+                 "Lamé's parameters."),
+             key("damping",
+                 table({key("mass", number("1/s", at_least(0)), "On velocities.").defaults("0"),
+                        key("stiffness", number("s", at_least(0)), "On the rate of strain.").defaults("0")}),
+                 "Viscous damping.")},
+            {{{"young", "lame"}}});
   return material;
 }
 

@@ -24,18 +24,15 @@ Mat3d cauchy(const Mat3d& F, const Mat3d& S) { return times_transpose(F * S, F) 
 /// @param Hv  where the volumetric strain is taken; H without selective integration
 PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, const Mat3d& H, const Mat3d& Hv) {
   const Mat3d E = green_strain(H), F = Mat3d::identity() + H, Fv = Mat3d::identity() + Hv;
-  if (!is_solid(p.law)) {
+  if (is_thin(p.law)) {
     const ThinMaterial<double> m = stress_material(p, axes[at(p.axes)]);
     return {E, cauchy(F, second_piola(m, E)), energy_density(m, E)};
   }
-  if (p.law == Law::neo_hookean) {
-    const NeoHookean<double> shear{0, p.mu}, volume{p.lambda, 0};
-    return {E, cauchy(F, shear.second_piola(H)) + cauchy(Fv, volume.second_piola(Hv)),
-            shear.energy_density(H) + volume.energy_density(Hv)};
-  }
-  const double dilatation = trace(green_strain(Hv));
-  return {E, cauchy(F, E * (2 * p.mu)) + cauchy(Fv, Mat3d::diagonal(p.lambda * dilatation)),
-          0.5 * p.lambda * dilatation * dilatation + p.mu * contract(E, E)};
+  return with_solid_law(p.law, [&]<Law L>() -> PointTensors {
+    const SolidLaw<L, double> shear{0, p.mu}, volume{p.lambda, 0};
+    return {E, cauchy(F, second_piola(shear, H)) + cauchy(Fv, second_piola(volume, Hv)),
+            energy_density(shear, H) + energy_density(volume, Hv)};
+  });
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace fascia {
 struct PointMaterialSpec {
   double lambda = 0, mu = 0;                       ///< [Pa]
   double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
-  bool neo_hookean = false;                        ///< St Venant-Kirchhoff otherwise
+  Law law = Law::st_venant_kirchhoff;              ///< of solids
 };
 
 /// Where a material point is attached: the nodes that move it.
@@ -39,7 +39,7 @@ struct BodyPoint {
   double volume = 0;  ///< [m³]
   double lambda = 0, mu = 0;
   Vec3d middle{};  ///< its place on the middle of a sheet or line; X in a solid [m]
-  Law law = Law::solid;
+  Law law = Law::st_venant_kirchhoff;
   bool transverse = false;  ///< as in PointRule
   int axes = -1;            ///< of a thin law: index into ModelBody::axes()
   int cell = -1;            ///< of BodyCells

@@ -16,7 +16,7 @@ namespace {
 constexpr int pair_count(int nodes) { return nodes * (nodes + 1) / 2; }
 
 /// Adds the stiffness of a batch, by columns: each unit motion gives the forces on the nodes that come after.
-template <ElementLaw L, int N>
+template <Law L, int N>
 void add_columns(BatchTangent<L, N>& tangent, const ElementBlock& block, int batch, int half, Mat3<Lanes>* K) {
   const int n = nodes_of<N>(block), points = tangent.points.count();
   Mat3<Lanes> dF[BatchPoints<N>::kPoints], dP[BatchPoints<N>::kPoints];
@@ -38,25 +38,19 @@ void add_columns(BatchTangent<L, N>& tangent, const ElementBlock& block, int bat
   }
 }
 
-/// The same by the closed form of each law.
-template <ElementLaw L, int N>
+/// The same by the closed form of a law.
+template <Law L, int N>
 void add_blocks(const BatchTangent<L, N>& tangent, const ElementBlock& block, int batch, int half, bool full,
                 Mat3<Lanes>* K) {
   const int n = nodes_of<N>(block);
   for (int q = 0; q < tangent.points.count(); ++q) {
     const ElasticPoint<L, Lanes>& point = tangent.point(q);
-    const ElementStiffness<L, Lanes> stiffness(point, tangent.m, tangent.lambda(), full);
-    const Mat3<Lanes> F_inverse_transposed = transpose(point.F_inverse);
+    const ElementStiffness<L, Lanes> stiffness(point, tangent.m, tangent.lambda(), full, block.damped);
     const Lanes v = tangent.points.v(q);
-    Vec3<Lanes> g[kRoom<N>], f[kRoom<N>], h[kRoom<N>];
-    for (int a = 0; a < n; ++a) {
-      g[a] = gradient(block.gradient_of(batch, q), a, half);
-      if constexpr (L != ElementLaw::linear) f[a] = point.F * g[a];
-      if constexpr (L == ElementLaw::neo_hookean) h[a] = F_inverse_transposed * g[a];
-    }
+    typename ElementStiffness<L, Lanes>::Node node[kRoom<N>];
+    for (int a = 0; a < n; ++a) node[a] = stiffness.node(gradient(block.gradient_of(batch, q), a, half));
     for (int a = 0; a < n; ++a)
-      for (int b = 0; b <= a; ++b)
-        K[pair_count(a) + b] += stiffness.block(g[a], g[b], f[a], f[b], h[a], h[b], block.damped) * v;
+      for (int b = 0; b <= a; ++b) K[pair_count(a) + b] += stiffness.block(node[a], node[b]) * v;
   }
 }
 
@@ -89,7 +83,7 @@ void add_wide_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, const std::u
 }  // namespace
 
 /// K has room for the pairs of the largest element only where it must: a linear tetrahedron's stay in registers' reach.
-template <ElementLaw L, int N>
+template <Law L, int N>
 [[gnu::flatten]] void ElementExecutor::assemble_patch(const At& state, int patch, BlockMatrix& matrix) {
   gather_patch(state.u, patch, slot_u_);
   const auto first = at(block_.patch_begin[at(patch)]);
@@ -102,8 +96,9 @@ template <ElementLaw L, int N>
       const Lanes pressure = block_.averaged ? mean_pressure(block_, batch, half, nodes, node_pressure_) : Lanes(0);
       BatchTangent<L, N> tangent(block_, batch, half, u, state, pressure);
       Mat3<Lanes> K[pair_count(kRoom<N>)];
-      const bool by_columns = L == ElementLaw::corotational || block_.penalised;
-      if constexpr (L != ElementLaw::corotational) {
+      constexpr bool kClosed = ElementStiffness<L, Lanes>::kClosed;
+      const bool by_columns = !kClosed || block_.penalised;
+      if constexpr (kClosed) {
         if (!by_columns) add_blocks(tangent, block_, batch, half, state.tangent == Tangent::full, K);
       }
       if (by_columns) add_columns(tangent, block_, batch, half, K);
@@ -152,7 +147,7 @@ void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
 void ElementExecutor::assemble(const At& state, BlockMatrix& matrix) {
   if (pair_slot_.empty()) find_pair_slots(matrix);
   if (block_.averaged) average(state);
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     for (std::size_t c = 0; c + 1 < block_.color_begin.size(); ++c) {
       const int first = block_.color_begin[c];
       pool_.for_ranges(block_.color_begin[c + 1] - first, 1,

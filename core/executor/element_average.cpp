@@ -65,19 +65,20 @@ void ElementExecutor::average_of(const At& state, std::span<const Vec3d> dx, std
 }
 
 void ElementExecutor::average(const At& state) {
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
-    if constexpr (N == 4 && L != ElementLaw::corotational)
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
+    if constexpr (N == 4 && L != Law::corotational)
       average_of(state, {}, node_pressure_,
-                 [](const Mat3<Lanes>& H, const Mat3<Lanes>&) { return volumetric_strain<L>(H); });
+                 [](const Mat3<Lanes>& H, const Mat3<Lanes>&) { return SolidLaw<L, Lanes>::volumetric_strain(H); });
   });
 }
 
 void ElementExecutor::average_direction(const At& state, std::span<const Vec3d> dx) {
   average(state);
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
-    if constexpr (N == 4 && L != ElementLaw::corotational)
-      average_of(state, dx, node_theta_,
-                 [](const Mat3<Lanes>& H, const Mat3<Lanes>& dH) { return contract(volumetric_gradient<L>(H), dH); });
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
+    if constexpr (N == 4 && L != Law::corotational)
+      average_of(state, dx, node_theta_, [](const Mat3<Lanes>& H, const Mat3<Lanes>& dH) {
+        return contract(SolidLaw<L, Lanes>::volumetric_gradient(H), dH);
+      });
   });
 }
 
@@ -91,8 +92,8 @@ double ElementExecutor::average_energy() const {
 /// Σ λ_a V_a G_a G_aᵀ with G_a = ∂θ_a/∂x, which reaches all nodes of the elements around a.
 void ElementExecutor::assemble_average(const At& state, BlockMatrix& matrix) {
   std::vector<Vec3d> element_gradient(at(block_.count) * 4);  // V/4 ∂θ/∂x of each element
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
-    if constexpr (N == 4 && L != ElementLaw::corotational) {
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
+    if constexpr (N == 4 && L != Law::corotational) {
       for (int patch = 0; patch < block_.patch_count(); ++patch) {
         gather_patch(state.u, patch, slot_u_);
         for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
@@ -100,8 +101,9 @@ void ElementExecutor::assemble_average(const At& state, BlockMatrix& matrix) {
             Vec3<Lanes> u[4];
             gather<4>(block_, batch, half, slot_u_.data() + at(block_.patch_begin[at(patch)]), u);
             const double* g = block_.gradient_of(batch, 0);
-            const Mat3<Lanes> slope = volumetric_gradient<L>(displacement_gradient<4>(block_, g, half, u)) *
-                                      (row(block_.volume_of(batch, 0), 0, half) * Lanes(0.25));
+            const Mat3<Lanes> slope =
+                SolidLaw<L, Lanes>::volumetric_gradient(displacement_gradient<4>(block_, g, half, u)) *
+                (row(block_.volume_of(batch, 0), 0, half) * Lanes(0.25));
             for (int a = 0; a < 4; ++a) {
               const Vec3<Lanes> part = slope * gradient(g, a, half);
               for (int lane = 0; lane < kBatchWidth; ++lane) {

@@ -5,11 +5,11 @@
 namespace fascia::kernels {
 
 /// The tangent of a batch of elements at a state, ready for directions.
-template <ElementLaw L, int N>
+template <Law L, int N>
 class BatchTangent {
  public:
   static constexpr int kPoints = BatchPoints<N>::kPoints;
-  static constexpr bool kTurns = L == ElementLaw::corotational;
+  static constexpr bool kTurns = L == Law::corotational;
 
   BatchPoints<N> points;
   ElementMaterial<Lanes> m;
@@ -28,7 +28,7 @@ class BatchTangent {
         sigma_[q] = element_.stress(element_.strain(points.H[q]), m, old, block.damped);
         element_.add_point(points.H[q], sigma_[q], points.v(q));
       } else {
-        const Lanes p = block.averaged ? pressure : m.lambda * volumetric_strain<L>(points.H[q]);
+        const Lanes p = block.averaged ? pressure : m.lambda * SolidLaw<L, Lanes>::volumetric_strain(points.H[q]);
         point_[q] = ElasticPoint<L, Lanes>(points.H[q], m, p, old, block.damped);
         if (!state.S.empty())
           point_[q].set_stress(symmetric_matrix(state.S.data() + symmetric_row(block, batch, q), 0, half));

@@ -61,17 +61,17 @@ class ElementExecutor {
   struct PatchSums {
     double elastic = 0, viscous = 0, rounding = 0;
   };
-  template <ElementLaw L, int N>
+  template <Law L, int N>
   void forces_of_patch(const At& state, int patch, std::span<const double> part_motion);
-  template <ElementLaw L, int N>
+  template <Law L, int N>
   void product_of_patch(const At& state, int patch, std::span<const Vec3d> dx);
-  template <ElementLaw L, int N>
+  template <Law L, int N>
   void assemble_patch(const At& state, int patch, BlockMatrix& matrix);
-  template <ElementLaw L, int N>
+  template <Law L, int N>
   void strain_of_patch(int patch, std::span<double> E) const;
   template <int N>
   double spin_of_patch(int patch) const;
-  template <ElementLaw L, int N>
+  template <Law L, int N>
   void extrapolate_patch(const At& start, int patch, std::span<double> S) const;
   void gather_patch(std::span<const Vec3d> values, int patch, std::vector<Vec3d>& out) const;
   void find_pair_slots(const BlockMatrix& matrix);

@@ -68,7 +68,7 @@ Lanes rounding_of(const Mat3<Lanes>& H, const Mat3<Lanes>& P, const ElementMater
 
 }  // namespace
 
-template <ElementLaw L, int N>
+template <Law L, int N>
 [[gnu::flatten]] void ElementExecutor::forces_of_patch(const At& state, int patch,
                                                        std::span<const double> part_motion) {
   const bool energies = !part_motion.empty();
@@ -110,7 +110,7 @@ template <ElementLaw L, int N>
       const auto with_penalty = [&](int q, const Mat3<Lanes>& P) {
         return block_.penalised ? P + cofactor(Mat3<Lanes>::identity() + points.H[q]) * pull : P;
       };
-      if constexpr (L == ElementLaw::corotational) {
+      if constexpr (L == Law::corotational) {
         CorotationalElement<Lanes> element(points.mean(points.H), points.safe_volume(), true);
         Mat3<Lanes> sigma[BatchPoints<N>::kPoints];
         for (int q = 0; q < points.count(); ++q) {
@@ -129,13 +129,14 @@ template <ElementLaw L, int N>
           if (block_.averaged) {
             p = mean_pressure(block_, batch, half, nodes, node_pressure_);
           } else {
-            theta = volumetric_strain<L>(H);
+            theta = SolidLaw<L, Lanes>::volumetric_strain(H);
             p = m.lambda * theta;
           }
           const ElasticPoint<L, Lanes> point(H, m, p, old, block_.damped);
           add(q, with_penalty(q, point.first_piola()));
           if (energies)
-            energy(q, shear_energy<L>(H, m.mu) + Lanes(0.5) * m.lambda * theta * theta, element_strain<L>(H) - old);
+            energy(q, SolidLaw<L, Lanes>{m.lambda, m.mu}.shear_energy(H) + Lanes(0.5) * m.lambda * theta * theta,
+                   SolidLaw<L, Lanes>::strain(H) - old);
         }
       }
       scatter<N>(block_, batch, half, f, slot_sum_.data() + first);
@@ -149,7 +150,7 @@ template <ElementLaw L, int N>
 
 void ElementExecutor::compute_forces(const At& state, bool energies, std::span<const double> part_motion) {
   if (block_.averaged) average(state);
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
       forces_of_patch<L, N>(state, patch, energies ? part_motion : std::span<const double>{});
     });
@@ -170,7 +171,7 @@ void ElementExecutor::add_rounding(std::span<double> squares_of_parts) const {
     squares_of_parts[at(lane_part_[lane])] += lane_rounding_[lane];
 }
 
-template <ElementLaw L, int N>
+template <Law L, int N>
 void ElementExecutor::strain_of_patch(int patch, std::span<double> E) const {
   const auto first = at(block_.patch_begin[at(patch)]);
   for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
@@ -180,11 +181,11 @@ void ElementExecutor::strain_of_patch(int patch, std::span<double> E) const {
       const BatchPoints<N> points(block_, batch, half, u);
       for (int q = 0; q < points.count(); ++q) {
         double* out = E.data() + symmetric_row(block_, batch, q);
-        if constexpr (L == ElementLaw::corotational) {
+        if constexpr (L == Law::corotational) {
           const CorotationalElement<Lanes> element(points.mean(points.H), points.safe_volume(), true);
           store_symmetric(out, 0, half, element.strain(points.H[q]));
         } else {
-          store_symmetric(out, 0, half, element_strain<L>(points.H[q]));
+          store_symmetric(out, 0, half, SolidLaw<L, Lanes>::strain(points.H[q]));
         }
       }
     }
@@ -192,7 +193,7 @@ void ElementExecutor::strain_of_patch(int patch, std::span<double> E) const {
 }
 
 void ElementExecutor::store_strain(std::span<const Vec3d> u, std::span<double> E) {
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
       gather_patch(u, patch, slot_u_);
       strain_of_patch<L, N>(patch, E);

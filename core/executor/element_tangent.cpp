@@ -7,7 +7,7 @@ namespace fascia {
 
 using namespace kernels;
 
-template <ElementLaw L, int N>
+template <Law L, int N>
 [[gnu::flatten]] void ElementExecutor::product_of_patch(const At& state, int patch, std::span<const Vec3d> dx) {
   gather_patch(state.u, patch, slot_u_);
   gather_patch(dx, patch, slot_d_);
@@ -27,7 +27,8 @@ template <ElementLaw L, int N>
       tangent.differential(dH, dP);
       if (block_.averaged) {
         const Lanes dp = mean_pressure(block_, batch, half, nodes, node_theta_);
-        if constexpr (L != ElementLaw::corotational) dP[0] += volumetric_gradient<L>(tangent.points.H[0]) * dp;
+        if constexpr (L != Law::corotational)
+          dP[0] += SolidLaw<L, Lanes>::volumetric_gradient(tangent.points.H[0]) * dp;
       }
       for (int q = 0; q < tangent.points.count(); ++q) {
         const Mat3<Lanes> force = dP[q] * tangent.points.v(q);
@@ -39,7 +40,7 @@ template <ElementLaw L, int N>
   }
 }
 
-template <ElementLaw L, int N>
+template <Law L, int N>
 void ElementExecutor::extrapolate_patch(const At& start, int patch, std::span<double> S) const {
   const auto first = at(block_.patch_begin[at(patch)]);
   for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
@@ -59,8 +60,8 @@ void ElementExecutor::extrapolate_patch(const At& start, int patch, std::span<do
 
 void ElementExecutor::extrapolate(const At& start, std::span<const Vec3d> dx, std::span<double> S) {
   slot_d_.resize(slot_u_.size());
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
-    if constexpr (L == ElementLaw::st_venant_kirchhoff || L == ElementLaw::neo_hookean)
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
+    if constexpr (is_of_points(L))
       pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
         gather_patch(start.u, patch, slot_u_);
         gather_patch(dx, patch, slot_d_);
@@ -88,7 +89,7 @@ double ElementExecutor::spin_of_patch(int patch) const {
 }
 
 double ElementExecutor::largest_spin(std::span<const Vec3d> dx) {
-  if (block_.law == ElementLaw::linear) return 0;
+  if (block_.law == Law::linear) return 0;
   slot_d_.resize(slot_u_.size());
   patch_spin_.resize(at(block_.patch_count()));
   pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
@@ -103,7 +104,7 @@ double ElementExecutor::largest_spin(std::span<const Vec3d> dx) {
 void ElementExecutor::compute_product(const At& state, std::span<const Vec3d> dx) {
   slot_d_.resize(slot_u_.size());
   if (block_.averaged) average_direction(state, dx);
-  with_element_kind(block_.law, block_.nodes, [&]<ElementLaw L, int N>() {
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) { product_of_patch<L, N>(state, patch, dx); });
   });
 }

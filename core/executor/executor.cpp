@@ -177,7 +177,7 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
 void CpuExecutor::sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient) {
   pool_.for_ranges(set_.group_count(), kGroupGrain, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
-      with_kind(group, [&](auto kind) { gradient_of_group<kind.value>(state, history, group, all); });
+      with_kind(rule_of(group), [&]<PointKind Kind>() { gradient_of_group<Kind>(state, history, group, all); });
   });
   for (std::size_t b = 0; b < elements_.size(); ++b)
     elements_[b].compute_forces({state.u, strain_of_block(history.E, b), history.inverse_step}, all, part_motion_);

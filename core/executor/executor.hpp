@@ -160,8 +160,7 @@ class CpuExecutor {
   template <PointKind Kind>
   void assemble_group(const Linearization& at, int group, Entries entries, BlockMatrix& matrix) const;
   /// Calls act with the kind of a group as a constant.
-  template <class Act>
-  void with_kind(int group, const Act& act) const;
+  const PointRule& rule_of(int group) const { return set_.rule[static_cast<std::size_t>(group)].rule; }
 
   const PointSet& set_;
   ThreadPool& pool_;
@@ -180,36 +179,5 @@ class CpuExecutor {
   std::vector<Mat3d> tether_L_;       ///< the part of tethers; empty where there are none
   AlignedVector<double> directions_;  ///< (nodes × 12): dx (3), dA (9)
 };
-
-namespace kernels {
-
-template <PointKind Kind>
-struct Constant {
-  static constexpr PointKind value = Kind;
-};
-
-}  // namespace kernels
-
-template <class Act>
-void CpuExecutor::with_kind(int group, const Act& act) const {
-  using Matter = PointKind::Matter;
-  const auto with_law = [&]<Matter M>() {
-    switch (set_.rule[static_cast<std::size_t>(group)].rule.stabilization) {
-      case Stabilization::none:
-        return act(kernels::Constant<PointKind{Stabilization::none, M}>{});
-      case Stabilization::drilling:
-        return act(kernels::Constant<PointKind{Stabilization::drilling, M}>{});
-      case Stabilization::affine:
-        return act(kernels::Constant<PointKind{Stabilization::affine, M}>{});
-    }
-  };
-  const Law law = set_.rule[static_cast<std::size_t>(group)].rule.law;
-  if (law == Law::solid)
-    with_law.template operator()<Matter::solid>();
-  else if (law == Law::neo_hookean)
-    with_law.template operator()<Matter::neo_hookean>();
-  else
-    with_law.template operator()<Matter::thin>();
-}
 
 }  // namespace fascia

@@ -64,7 +64,7 @@ void CpuExecutor::linearize_points(const State& state, const StrainHistory& hist
   }
   pool_.for_ranges(set_.group_count(), 32, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
-      with_kind(group, [&](auto kind) { linearize_group<kind.value>(state, history, group, taken, out); });
+      with_kind(rule_of(group), [&]<PointKind Kind>() { linearize_group<Kind>(state, history, group, taken, out); });
   });
   if (taken == nullptr) return;
   extrapolated_L_.resize(at(set_.node_count()));

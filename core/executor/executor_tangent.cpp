@@ -95,7 +95,7 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
   if (set_.group_count() > 0) spread_direction(x, lin.Q);
   pool_.for_ranges(set_.group_count(), 32, [&](int begin, int end) {
     for (int group = begin; group < end; ++group)
-      with_kind(group, [&](auto kind) { multiply_group<kind.value>(lin, group); });
+      with_kind(rule_of(group), [&]<PointKind Kind>() { multiply_group<Kind>(lin, group); });
   });
   if (!elements_.empty()) {
     const std::span<const Vec3d> dx = translations(x);
@@ -231,7 +231,7 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out, En
     pool_.for_ranges(set_.color_begin[c + 1] - first, 8, [&](int begin, int end) {
       for (int i = first + begin; i < first + end; ++i) {
         const int group = set_.color_group[at(i)];
-        with_kind(group, [&](auto kind) { assemble_group<kind.value>(lin, group, entries, matrix_out); });
+        with_kind(rule_of(group), [&]<PointKind Kind>() { assemble_group<Kind>(lin, group, entries, matrix_out); });
       }
     });
   }

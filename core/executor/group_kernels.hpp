@@ -46,31 +46,18 @@ inline void store_symmetric(double* base, int first_row, int batch, const Mat3<L
   for (int k = 0; k < 6; ++k) store(base, first_row + k, batch, m(kSymmetric[k][0], kSymmetric[k][1]));
 }
 
-template <PointKind::Matter>
-struct MaterialOf {
-  using Type = SolidMaterial<Lanes>;
-};
-template <>
-struct MaterialOf<PointKind::Matter::neo_hookean> {
-  using Type = NeoHookeanMaterial<Lanes>;
-};
-template <>
-struct MaterialOf<PointKind::Matter::thin> {
-  using Type = ThinMaterial<Lanes>;
-};
-
 /// @param targets  of tethers: (groups with axes × 3 × 8) [m]
 template <PointKind Kind>
 inline auto material(const PointSet& set, int group, int batch, double inverse_step,
                      const AlignedVector<double>& targets) {
   const double* base = set.material_of_group(group);
-  typename MaterialOf<Kind.matter>::Type m;
+  MaterialOf<Kind.law, Lanes> m;
   m.volume = row(base, kVolume, batch);
   m.lambda = row(base, kLambda, batch);
   m.mu = row(base, kMu, batch);
   m.stabilization = row(base, kStabilization, batch);
   m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(inverse_step);
-  if constexpr (Kind.matter == PointKind::Matter::thin) {
+  if constexpr (is_thin(Kind.law)) {
     const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];
     const auto index = static_cast<std::size_t>(rule.axes);
     m.law = rule.rule.law;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "core/physics/element_kind.hpp"
-#include "core/physics/neo_hookean.hpp"
+#include "core/physics/solid_law.hpp"
 
 /// Stress and stiffness of finite elements. A block K_ab (3×3) is the second derivative of a point's energy density
 /// with respect to the positions of nodes a and b, F = I + Σ u_a g_aᵀ; the co-rotational law, whose rotation belongs to
@@ -33,108 +32,65 @@ struct ElementMaterial {
   T penalty;     ///< of the cell's volume [Pa]
 };
 
-/// Calls act.operator()<L, N>() for a law and a number of nodes; N is 4 or, of others, 0.
+/// Calls act.operator()<L, N>() for a law of elements and a number of nodes; N is 4 or, of others, 0.
 template <class Act>
-void with_element_kind(ElementLaw law, int nodes, const Act& act) {
-  const auto with_law = [&]<int N>() {
-    switch (law) {
-      case ElementLaw::linear:
-        return act.template operator()<ElementLaw::linear, N>();
-      case ElementLaw::corotational:
-        return act.template operator()<ElementLaw::corotational, N>();
-      case ElementLaw::st_venant_kirchhoff:
-        return act.template operator()<ElementLaw::st_venant_kirchhoff, N>();
-      case ElementLaw::neo_hookean:
-        return act.template operator()<ElementLaw::neo_hookean, N>();
-    }
+void with_element_kind(Law law, int nodes, const Act& act) {
+  const auto with_law = [&]<Law L>() {
+    if (nodes == 4)
+      act.template operator()<L, 4>();
+    else
+      act.template operator()<L, 0>();
   };
-  if (nodes == 4)
-    with_law.template operator()<4>();
-  else
-    with_law.template operator()<0>();
-}
-
-/// Strain that the law and its damping see: small strain, or Green-Lagrange.
-template <ElementLaw L, class T>
-FASCIA_HD Mat3<T> element_strain(const Mat3<T>& H) {
-  if constexpr (L == ElementLaw::linear) return sym(H);
-  return green_strain(H);
-}
-
-/// Volumetric strain θ, on which λ θ²/2 depends: tr ε, tr E or ln J.
-template <ElementLaw L, class T>
-FASCIA_HD T volumetric_strain(const Mat3<T>& H) {
-  if constexpr (L == ElementLaw::neo_hookean) return NeoHookean<T>::log_volume(H);
-  return trace(element_strain<L>(H));
-}
-
-/// ∂θ/∂F
-template <ElementLaw L, class T>
-FASCIA_HD Mat3<T> volumetric_gradient(const Mat3<T>& H) {
-  if constexpr (L == ElementLaw::linear) return Mat3<T>::identity();
-  const Mat3<T> F = Mat3<T>::identity() + H;
-  if constexpr (L == ElementLaw::neo_hookean) return transpose(inverse(F));
-  return F;
-}
-
-/// ψ without λ θ²/2 [J/m³].
-template <ElementLaw L, class T>
-FASCIA_HD T shear_energy(const Mat3<T>& H, const T& mu) {
-  if constexpr (L == ElementLaw::neo_hookean) return mu * NeoHookean<T>::distortion(H);
-  const Mat3<T> E = element_strain<L>(H);
-  return mu * contract(E, E);
+  if (law == Law::corotational) return with_law.template operator()<Law::corotational>();
+  if (law == Law::linear) return with_law.template operator()<Law::linear>();
+  with_solid_law(law, with_law);
 }
 
 /// State of a point from which stress and stiffness follow.
-template <ElementLaw L, class T>
+template <Law L, class T>
 struct ElasticPoint {
+  using Solid = SolidLaw<L, T>;
   Mat3<T> H, F;
   Mat3<T> S;          ///< second Piola-Kirchhoff stress, elastic [Pa]
   Mat3<T> S_viscous;  ///< [Pa]
-  Mat3<T> F_inverse;  ///< neo-Hookean only
-  T p;                ///< λ θ, or its average about nodes [Pa]
+  typename Solid::At at;
+  T p;  ///< λ θ, or its average about nodes [Pa]
 
   ElasticPoint() = default;
   FASCIA_HD ElasticPoint(const Mat3<T>& H_now, const ElementMaterial<T>& m, const T& pressure, const Mat3<T>& E_old,
                          bool damped)
-      : H(H_now), F(Mat3<T>::identity() + H_now), p(pressure) {
-    const Mat3<T> E = element_strain<L>(H);
-    if constexpr (L == ElementLaw::neo_hookean) {
-      F_inverse = inverse(F);
-      S = NeoHookean<T>{m.lambda, m.mu}.second_piola(E, times_transpose(F_inverse, F_inverse), p);
-    } else {
-      S = E * (T(2) * m.mu) + Mat3<T>::diagonal(p);
-    }
+      : H(H_now), F(Mat3<T>::identity() + H_now), at(H_now), p(pressure) {
+    const Mat3<T> E = Solid::strain(H);
+    S = Solid{m.lambda, m.mu}.second_piola(at, E, p);
     if (damped) S_viscous = StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(E - E_old) * m.viscosity;
   }
 
   FASCIA_HD Mat3<T> first_piola() const {
     const Mat3<T> total = S + S_viscous;
-    if constexpr (L == ElementLaw::linear) return total;
-    return total + H * total;
+    if constexpr (Solid::kSmall)
+      return total;
+    else
+      return total + H * total;
   }
 
   /// dS for dF, elastic and viscous; `lambda` 0 where p is an average.
   FASCIA_HD Mat3<T> stress_differential(const Mat3<T>& dF, const ElementMaterial<T>& m, const T& lambda,
                                         bool full) const {
-    const Mat3<T> dE = L == ElementLaw::linear ? sym(dF) : sym(transpose_times(F, dF));
-    const Mat3<T> viscous = StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity;
-    if constexpr (L == ElementLaw::neo_hookean) {
-      const Mat3<T> C_inverse = times_transpose(F_inverse, F_inverse);
-      return viscous + C_inverse * dE * C_inverse * (T(2) * shear(m, full)) +
-             C_inverse * (lambda * contract(C_inverse, dE));
-    } else {
-      return viscous + StVenantKirchhoff<T>{lambda, m.mu}.second_piola(dE);
-    }
+    const Mat3<T> dE = Solid::kSmall ? sym(dF) : sym(transpose_times(F, dF));
+    return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity +
+           Solid{lambda, m.mu}.second_piola_differential(at, p, dE, full);
   }
 
   /// dP for dF; `lambda` 0 where p is an average.
   FASCIA_HD Mat3<T> differential(const Mat3<T>& dF, const ElementMaterial<T>& m, const T& lambda, bool full) const {
     const Mat3<T> dS = stress_differential(dF, m, lambda, full);
-    if constexpr (L == ElementLaw::linear) return dS;
-    Mat3<T> dP = F * dS;
-    if (full) dP += dF * (S + S_viscous);
-    return dP;
+    if constexpr (Solid::kSmall) {
+      return dS;
+    } else {
+      Mat3<T> dP = F * dS;
+      if (full) dP += dF * (S + S_viscous);
+      return dP;
+    }
   }
 
   /// Total stress after a step dF, to first order: of the geometric part of the next tangent (point_physics.hpp).
@@ -146,55 +102,92 @@ struct ElasticPoint {
     S = total;
     S_viscous = {};
   }
-
-  /// μ − p of the neo-Hookean law; its material tangent takes no negative one.
-  FASCIA_HD T shear(const ElementMaterial<T>& m, bool full) const {
-    const T value = m.mu - p;
-    return full ? value : where_positive(value, value, T(0));
-  }
 };
 
-/// Stiffness blocks of a point: what of them depends on one node only is computed once a node.
-template <ElementLaw L, class T>
-class ElementStiffness {
+/// Stiffness blocks of a point in closed form: what of them depends on one node only is computed once a node. A law may
+/// do without; its blocks are then made from unit motions.
+template <Law L, class T>
+struct ElementStiffness {
+  static constexpr bool kClosed = false;
+};
+
+template <class T>
+class ElementStiffness<Law::linear, T> {
  public:
-  FASCIA_HD ElementStiffness(const ElasticPoint<L, T>& point, const ElementMaterial<T>& m, const T& lambda, bool full)
-      : m_(m), full_(full) {
-    const T one(1);
-    if constexpr (L == ElementLaw::neo_hookean) {
-      first_ = lambda;
-      shear_ = point.shear(m, full);
-      viscous_lambda_ = m.lambda * m.viscosity;
-      viscous_mu_ = m.mu * m.viscosity;
-    } else {
-      first_ = lambda + m.lambda * m.viscosity;
-      shear_ = m.mu * (one + m.viscosity);
-    }
-    if (full) S_ = point.S + point.S_viscous;
-    if constexpr (L != ElementLaw::linear) left_ = times_transpose(point.F, point.F);
+  static constexpr bool kClosed = true;
+  struct Node {
+    Vec3<T> g;  ///< gradient of its shape function
+  };
+  FASCIA_HD ElementStiffness(const ElasticPoint<Law::linear, T>&, const ElementMaterial<T>& m, const T& lambda,
+                             bool /*full*/, bool /*damped*/)
+      : lambda_(lambda + m.lambda * m.viscosity), mu_(m.mu * (T(1) + m.viscosity)) {}
+  FASCIA_HD Node node(const Vec3<T>& g) const { return {g}; }
+  FASCIA_HD Mat3<T> block(const Node& a, const Node& b) const {
+    return outer(a.g, b.g) * lambda_ + outer(b.g, a.g) * mu_ + Mat3<T>::diagonal(dot(a.g, b.g) * mu_);
   }
 
-  /// K_ab of gradients g and their images F g; for the neo-Hookean law h = F⁻ᵀ g too.
-  FASCIA_HD Mat3<T> block(const Vec3<T>& ga, const Vec3<T>& gb, const Vec3<T>& fa, const Vec3<T>& fb, const Vec3<T>& ha,
-                          const Vec3<T>& hb, bool damped) const {
-    const T geometric = dot(ga, S_ * gb), gg = dot(ga, gb);
-    Mat3<T> K;
-    if constexpr (L == ElementLaw::linear) {
-      K = outer(ga, gb) * first_ + outer(gb, ga) * shear_ + Mat3<T>::diagonal(gg * shear_);
-    } else if constexpr (L == ElementLaw::neo_hookean) {
-      K = outer(ha, hb) * first_ + outer(hb, ha) * shear_ + Mat3<T>::diagonal(geometric + dot(ha, hb) * shear_);
-      if (damped) K += outer(fa, fb) * viscous_lambda_ + outer(fb, fa) * viscous_mu_ + left_ * (gg * viscous_mu_);
-    } else {
-      K = outer(fa, fb) * first_ + outer(fb, fa) * shear_ + left_ * (gg * shear_) + Mat3<T>::diagonal(geometric);
-    }
+ private:
+  T lambda_, mu_;
+};
+
+template <class T>
+class ElementStiffness<Law::st_venant_kirchhoff, T> {
+ public:
+  static constexpr bool kClosed = true;
+  struct Node {
+    Vec3<T> g, f;  ///< f = F g
+  };
+  FASCIA_HD ElementStiffness(const ElasticPoint<Law::st_venant_kirchhoff, T>& point, const ElementMaterial<T>& m,
+                             const T& lambda, bool full, bool /*damped*/)
+      : lambda_(lambda + m.lambda * m.viscosity),
+        mu_(m.mu * (T(1) + m.viscosity)),
+        F_(point.F),
+        left_(times_transpose(point.F, point.F)) {
+    if (full) S_ = point.S + point.S_viscous;
+  }
+  FASCIA_HD Node node(const Vec3<T>& g) const { return {g, F_ * g}; }
+  FASCIA_HD Mat3<T> block(const Node& a, const Node& b) const {
+    const T geometric = dot(a.g, S_ * b.g), gg = dot(a.g, b.g);
+    return outer(a.f, b.f) * lambda_ + outer(b.f, a.f) * mu_ + left_ * (gg * mu_) + Mat3<T>::diagonal(geometric);
+  }
+
+ private:
+  T lambda_, mu_;
+  Mat3<T> F_, left_, S_;
+};
+
+template <class T>
+class ElementStiffness<Law::neo_hookean, T> {
+ public:
+  static constexpr bool kClosed = true;
+  struct Node {
+    Vec3<T> g, f, h;  ///< f = F g, h = F⁻ᵀ g
+  };
+  FASCIA_HD ElementStiffness(const ElasticPoint<Law::neo_hookean, T>& point, const ElementMaterial<T>& m,
+                             const T& lambda, bool full, bool damped)
+      : lambda_(lambda),
+        shear_(NeoHookean<T>{lambda, m.mu}.shear(point.p, full)),
+        viscous_lambda_(m.lambda * m.viscosity),
+        viscous_mu_(m.mu * m.viscosity),
+        damped_(damped),
+        F_(point.F),
+        F_inverse_transposed_(transpose(point.at.F_inverse)),
+        left_(times_transpose(point.F, point.F)) {
+    if (full) S_ = point.S + point.S_viscous;
+  }
+  FASCIA_HD Node node(const Vec3<T>& g) const { return {g, F_ * g, F_inverse_transposed_ * g}; }
+  FASCIA_HD Mat3<T> block(const Node& a, const Node& b) const {
+    const T geometric = dot(a.g, S_ * b.g), gg = dot(a.g, b.g);
+    Mat3<T> K =
+        outer(a.h, b.h) * lambda_ + outer(b.h, a.h) * shear_ + Mat3<T>::diagonal(geometric + dot(a.h, b.h) * shear_);
+    if (damped_) K += outer(a.f, b.f) * viscous_lambda_ + outer(b.f, a.f) * viscous_mu_ + left_ * (gg * viscous_mu_);
     return K;
   }
 
  private:
-  ElementMaterial<T> m_;
-  bool full_;
-  T first_{}, shear_{}, viscous_lambda_{}, viscous_mu_{};
-  Mat3<T> S_, left_;
+  T lambda_, shear_, viscous_lambda_, viscous_mu_;
+  bool damped_;
+  Mat3<T> F_, F_inverse_transposed_, left_, S_;
 };
 
 }  // namespace fascia

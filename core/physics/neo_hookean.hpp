@@ -30,26 +30,13 @@ FASCIA_HD constexpr Mat3<T> cofactor_differential(const Mat3<T>& F, const Mat3<T
 /// Not finite where J ≤ 0: no finite load turns it inside out.
 template <class T>
 struct NeoHookean {
+  static constexpr bool kSmall = false;
   T lambda, mu;  ///< [Pa]
 
   /// ln J
   FASCIA_HD static T log_volume(const Mat3<T>& H) {
     using std::log1p;
     return log1p(volume_change(H));
-  }
-  FASCIA_HD static Mat3<T> inverse_right_cauchy_green(const Mat3<T>& H) {
-    const Mat3<T> F_inverse = inverse(Mat3<T>::identity() + H);
-    return times_transpose(F_inverse, F_inverse);
-  }
-
-  /// S = μ (I − C⁻¹) + λ ln J C⁻¹  [Pa]
-  FASCIA_HD Mat3<T> second_piola(const Mat3<T>& H) const {
-    const Mat3<T> C_inverse = inverse_right_cauchy_green(H);
-    return second_piola(green_strain(H), C_inverse, lambda * log_volume(H));
-  }
-  /// The same with a pressure-like p in the place of λ ln J.
-  FASCIA_HD Mat3<T> second_piola(const Mat3<T>& E, const Mat3<T>& C_inverse, const T& p) const {
-    return (C_inverse * E) * (T(2) * mu) + C_inverse * p;
   }
   /// tr E − ln J, which is zero to the square of rounding for rotations: ln J = ln det(I + 2E)/2 from the same E. Not
   /// finite where J ≤ 0.
@@ -59,16 +46,32 @@ struct NeoHookean {
     const T change = volume_change(H);
     return trace(E) - where_positive(change + T(1), T(0.5) * log1p(volume_change(E * T(2))), log1p(change));
   }
-  /// ψ [J/m³]
-  FASCIA_HD T energy_density(const Mat3<T>& H) const {
-    const T l = log_volume(H);
-    return mu * distortion(H) + T(0.5) * lambda * l * l;
+
+  // As a law of solids (solid_law.hpp): θ = ln J.
+  struct At {
+    Mat3<T> F_inverse;
+    FASCIA_HD explicit At(const Mat3<T>& H) : F_inverse(inverse(Mat3<T>::identity() + H)) {}
+    At() = default;
+    FASCIA_HD Mat3<T> C_inverse() const { return times_transpose(F_inverse, F_inverse); }
+  };
+  FASCIA_HD static Mat3<T> strain(const Mat3<T>& H) { return green_strain(H); }
+  FASCIA_HD static T volumetric_strain(const Mat3<T>& H) { return log_volume(H); }
+  FASCIA_HD static Mat3<T> volumetric_gradient(const Mat3<T>& H) { return transpose(inverse(Mat3<T>::identity() + H)); }
+  FASCIA_HD T shear_energy(const Mat3<T>& H) const { return mu * distortion(H); }
+  /// S = μ (I − C⁻¹) + p C⁻¹  [Pa]
+  FASCIA_HD Mat3<T> second_piola(const At& at, const Mat3<T>& E, const T& p) const {
+    const Mat3<T> C_inverse = at.C_inverse();
+    return (C_inverse * E) * (T(2) * mu) + C_inverse * p;
   }
-  /// dS = 2 (μ − λ ln J) C⁻¹ dE C⁻¹ + λ (C⁻¹ : dE) C⁻¹  [Pa]
-  FASCIA_HD Mat3<T> second_piola_differential(const Mat3<T>& H, const Mat3<T>& dE) const {
-    const Mat3<T> C_inverse = inverse_right_cauchy_green(H);
-    return C_inverse * dE * C_inverse * (T(2) * (mu - lambda * log_volume(H))) +
-           C_inverse * (lambda * contract(C_inverse, dE));
+  /// dS = 2 (μ − p) C⁻¹ dE C⁻¹ + λ (C⁻¹ : dE) C⁻¹  [Pa]
+  FASCIA_HD Mat3<T> second_piola_differential(const At& at, const T& p, const Mat3<T>& dE, bool full) const {
+    const Mat3<T> C_inverse = at.C_inverse();
+    return C_inverse * dE * C_inverse * (T(2) * shear(p, full)) + C_inverse * (lambda * contract(C_inverse, dE));
+  }
+  /// μ − p; the material tangent takes no negative one.
+  FASCIA_HD T shear(const T& p, bool full) const {
+    const T value = mu - p;
+    return full ? value : where_positive(value, value, T(0));
   }
 };
 

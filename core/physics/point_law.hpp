@@ -1,8 +1,9 @@
 #pragma once
 
-#include "core/physics/neo_hookean.hpp"
 #include "core/physics/point_rule.hpp"
-#include "core/physics/st_venant_kirchhoff.hpp"
+#include "core/physics/solid_law.hpp"
+
+#include <type_traits>
 
 /// Elastic laws of points: a solid's, and those of points that stand for a slice through a sheet or along a line, whose
 /// stress has no component across (docs/notation.md).
@@ -12,27 +13,32 @@ namespace fascia {
 inline constexpr double kSheetShear = 5.0 / 6.0;
 
 template <class T>
-struct SolidMaterial {
+struct PointMaterial {
   T volume, lambda, mu;  ///< [m³], [Pa], [Pa]; of thin laws see thin_lame()
   T stabilization;       ///< γ [Pa]
   T viscosity;           ///< κ = β/dt [-]: viscous stress κ C : (E − E_old)
 };
 
-/// Of a neo-Hookean solid.
-template <class T>
-struct NeoHookeanMaterial : SolidMaterial<T> {};
+template <Law L, class T>
+struct SolidMaterial : PointMaterial<T> {
+  FASCIA_HD SolidLaw<L, T> law() const { return {this->lambda, this->mu}; }
+};
 
 /// Of a sheet, a line or a tether. A type of its own, so that solids do not ask at every point which law they have.
 template <class T>
-struct ThinMaterial : SolidMaterial<T> {
+struct ThinMaterial : PointMaterial<T> {
   Law law = Law::sheet;
   bool transverse = false;  ///< as in PointRule
   Mat3<T> axes;             ///< columns: tangents first; tether: stiffness [N/m]
   Vec3<T> target;           ///< tether: where to [m]
 };
 
+/// Type of a material whose law the compiler knows.
+template <Law L, class T>
+using MaterialOf = std::conditional_t<is_thin(L), ThinMaterial<T>, SolidMaterial<L, T>>;
+
 template <class T>
-FASCIA_HD constexpr bool is_tether(const SolidMaterial<T>&) {
+FASCIA_HD constexpr bool is_tether(const PointMaterial<T>&) {
   return false;
 }
 template <class T>
@@ -72,34 +78,39 @@ FASCIA_HD Mat3<T> second_piola(const ThinMaterial<T>& m, const Mat3<T>& E) {
 
 /// S of a strain [Pa]; linear, so it also maps dE to dS. Viscous stress is of this form whatever the law.
 template <class T>
-FASCIA_HD Mat3<T> second_piola(const SolidMaterial<T>& m, const Mat3<T>& E) {
+FASCIA_HD Mat3<T> second_piola(const PointMaterial<T>& m, const Mat3<T>& E) {
   return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(E);
 }
 
 /// Elastic and viscous S at H, whose strain is E  [Pa].
-template <class T, template <class> class Material>
-FASCIA_HD Mat3<T> stress(const Material<T>& m, const Mat3<T>&, const Mat3<T>& E, const Mat3<T>& E_old) {
+template <class T>
+FASCIA_HD Mat3<T> stress(const ThinMaterial<T>& m, const Mat3<T>&, const Mat3<T>& E, const Mat3<T>& E_old) {
   return second_piola(m, E + (E - E_old) * m.viscosity);
 }
-template <class T>
-FASCIA_HD Mat3<T> stress(const NeoHookeanMaterial<T>& m, const Mat3<T>& H, const Mat3<T>& E, const Mat3<T>& E_old) {
-  return NeoHookean<T>{m.lambda, m.mu}.second_piola(H) + second_piola(m, (E - E_old) * m.viscosity);
+template <Law L, class T>
+FASCIA_HD Mat3<T> stress(const SolidMaterial<L, T>& m, const Mat3<T>& H, const Mat3<T>& E, const Mat3<T>& E_old) {
+  if constexpr (L == Law::st_venant_kirchhoff)  // linear in the strain: one product for both
+    return second_piola(m, E + (E - E_old) * m.viscosity);
+  else
+    return second_piola(m.law(), H) + second_piola(m, (E - E_old) * m.viscosity);
 }
 
 /// Elastic and viscous dS of dE at H  [Pa].
-template <class T, template <class> class Material>
-FASCIA_HD Mat3<T> stress_differential(const Material<T>& m, const Mat3<T>&, const Mat3<T>& dE) {
+template <class T>
+FASCIA_HD Mat3<T> stress_differential(const ThinMaterial<T>& m, const Mat3<T>&, const Mat3<T>& dE) {
   return second_piola(m, dE) * (T(1) + m.viscosity);
 }
-template <class T>
-FASCIA_HD Mat3<T> stress_differential(const NeoHookeanMaterial<T>& m, const Mat3<T>& H, const Mat3<T>& dE) {
-  return NeoHookean<T>{m.lambda, m.mu}.second_piola_differential(H, dE) +
-         StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity;
+template <Law L, class T>
+FASCIA_HD Mat3<T> stress_differential(const SolidMaterial<L, T>& m, const Mat3<T>& H, const Mat3<T>& dE) {
+  if constexpr (L == Law::st_venant_kirchhoff)
+    return second_piola(m, dE) * (T(1) + m.viscosity);
+  else
+    return second_piola_differential(m.law(), H, dE) + second_piola(m, dE) * m.viscosity;
 }
 
-/// ψ = E : S(E) / 2  [J/m³]
+/// ψ = E : S(E) / 2  [J/m³]; of viscous stress too.
 template <class T>
-FASCIA_HD T energy_density(const SolidMaterial<T>& m, const Mat3<T>& E) {
+FASCIA_HD T energy_density(const PointMaterial<T>& m, const Mat3<T>& E) {
   return StVenantKirchhoff<T>{m.lambda, m.mu}.energy_density(E);
 }
 template <class T>
@@ -108,13 +119,16 @@ FASCIA_HD T energy_density(const ThinMaterial<T>& m, const Mat3<T>& E) {
 }
 
 /// Elastic ψ at H, whose strain is E  [J/m³].
-template <class T, template <class> class Material>
-FASCIA_HD T elastic_energy(const Material<T>& m, const Mat3<T>&, const Mat3<T>& E) {
+template <class T>
+FASCIA_HD T elastic_energy(const ThinMaterial<T>& m, const Mat3<T>&, const Mat3<T>& E) {
   return energy_density(m, E);
 }
-template <class T>
-FASCIA_HD T elastic_energy(const NeoHookeanMaterial<T>& m, const Mat3<T>& H, const Mat3<T>&) {
-  return NeoHookean<T>{m.lambda, m.mu}.energy_density(H);
+template <Law L, class T>
+FASCIA_HD T elastic_energy(const SolidMaterial<L, T>& m, const Mat3<T>& H, const Mat3<T>& E) {
+  if constexpr (L == Law::st_venant_kirchhoff)
+    return energy_density(m, E);
+  else
+    return energy_density(m.law(), H);
 }
 
 }  // namespace fascia

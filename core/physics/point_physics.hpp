@@ -12,6 +12,25 @@
 ///   rotation-rotation tangent of a rigid frame = sym(L) − tr(L) I.
 namespace fascia {
 
+/// Calls act.operator()<Kind>() for a rule.
+template <class Act>
+FASCIA_HD void with_kind(const PointRule& rule, const Act& act) {
+  const auto with_law = [&]<Law L>() {
+    switch (rule.stabilization) {
+      case Stabilization::none:
+        return act.template operator()<PointKind{Stabilization::none, L}>();
+      case Stabilization::drilling:
+        return act.template operator()<PointKind{Stabilization::drilling, L}>();
+      case Stabilization::affine:
+        return act.template operator()<PointKind{Stabilization::affine, L}>();
+    }
+  };
+  if (is_thin(rule.law))
+    with_law.template operator()<Law::sheet>();
+  else
+    with_solid_law(rule.law, with_law);
+}
+
 /// Displacement gradient H = F − I and blended rotation increment Dbar = Σ w (Q − I). Of a tether, H's first column is
 /// the displacement of the point.
 template <class T>
@@ -60,8 +79,8 @@ FASCIA_HD Mat3<T> tether_stress(const ThinMaterial<T>& material, const Vec3<T>& 
 /// These stresses of a point at a state. A tether's tangent has none.
 ///
 /// @param E_old  strain at the start of the time step, used where material.viscosity is not zero
-template <Stabilization Tie, class T, template <class> class Material>
-FASCIA_HD TangentStress<T> tangent_stress(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
+template <Stabilization Tie, class T, class Material>
+FASCIA_HD TangentStress<T> tangent_stress(const PointMotion<T>& x, const Material& material, const Mat3<T>& E_old) {
   TangentStress<T> r{stress(material, x.H, green_strain(x.H), E_old), {}};
   if constexpr (Tie == Stabilization::drilling) r.drilling = drilling_axis(drilling_motion(x), material.stabilization);
   return r;
@@ -72,9 +91,9 @@ FASCIA_HD TangentStress<T> tangent_stress(const PointMotion<T>& x, const Materia
 /// tangent, would make it too stiff or indefinite (Magisano, Leonetti and Garcea 2017: mixed integration points;
 /// docs/decisions/extrapolated_stress.md). Where steps are small it is the stress at the end, to the square of the
 /// step.
-template <Stabilization Tie, class T, template <class> class Material>
+template <Stabilization Tie, class T, class Material>
 FASCIA_HD TangentStress<T> extrapolated_stress(const PointMotion<T>& start, const PointMotion<T>& step,
-                                               const Material<T>& material, const Mat3<T>& E_old) {
+                                               const Material& material, const Mat3<T>& E_old) {
   TangentStress<T> r = tangent_stress<Tie>(start, material, E_old);
   r.S += stress_differential(material, start.H, sym(step.H + transpose_times(start.H, step.H)));
   if constexpr (Tie == Stabilization::drilling)
@@ -83,8 +102,8 @@ FASCIA_HD TangentStress<T> extrapolated_stress(const PointMotion<T>& start, cons
 }
 
 /// P and Y of a point with given stresses.
-template <Stabilization Tie, class T, template <class> class Material>
-FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>& material, const TangentStress<T>& s) {
+template <Stabilization Tie, class T, class Material>
+FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material& material, const TangentStress<T>& s) {
   PointStress<T> r;
   r.S = s.S;
   r.P = r.S + x.H * r.S;
@@ -102,9 +121,9 @@ FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>
 }
 
 /// Stress of a point at a state.
-template <Stabilization Tie, class T, template <class> class Material>
-FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
-  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
+template <Stabilization Tie, class T, class Material>
+FASCIA_HD PointStress<T> point_stress(const PointMotion<T>& x, const Material& material, const Mat3<T>& E_old) {
+  if constexpr (std::is_same_v<Material, ThinMaterial<T>>) {
     if (material.law == Law::tether) {
       PointStress<T> r;
       r.P = tether_stress(material, x.H.column(0) - material.target);
@@ -121,10 +140,10 @@ struct PointEnergy {
   T elastic{}, stabilization{}, viscous{};
 };
 
-template <Stabilization Tie, class T, template <class> class Material>
-FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const Material<T>& material, const Mat3<T>& E_old) {
+template <Stabilization Tie, class T, class Material>
+FASCIA_HD PointEnergy<T> point_energy(const PointMotion<T>& x, const Material& material, const Mat3<T>& E_old) {
   PointEnergy<T> r;
-  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
+  if constexpr (std::is_same_v<Material, ThinMaterial<T>>) {
     if (material.law == Law::tether) {
       const Vec3<T> stretch = x.H.column(0) - material.target;
       r.stabilization = material.volume * T(0.5) * dot(stretch, material.axes * stretch);
@@ -158,12 +177,12 @@ struct PointStressDifferential {
 ///
 /// @param s  the stresses of the geometric part: tangent_stress(), or extrapolated
 /// @param d  direction
-template <Stabilization Tie, class T, template <class> class Material>
+template <Stabilization Tie, class T, class Material>
 FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion<T>& x, const TangentStress<T>& s,
-                                                               const Material<T>& material, Tangent tangent,
+                                                               const Material& material, Tangent tangent,
                                                                const PointMotion<T>& d) {
   PointStressDifferential<T> r;
-  if constexpr (std::is_same_v<Material<T>, ThinMaterial<T>>) {
+  if constexpr (std::is_same_v<Material, ThinMaterial<T>>) {
     if (material.law == Law::tether) {
       r.dP = tether_stress(material, d.H.column(0));
       return r;

@@ -21,6 +21,7 @@ FASCIA_HD constexpr Mat3<T> green_strain(const Mat3<T>& H) {
 /// St Venant-Kirchhoff: ψ = λ/2 (tr E)² + μ E:E  [J/m³].
 template <class T>
 struct StVenantKirchhoff {
+  static constexpr bool kSmall = false;
   T lambda, mu;  ///< [Pa]
 
   /// Second Piola-Kirchhoff stress S = λ tr(E) I + 2μ E  [Pa]; linear, so it also maps dE to dS.
@@ -31,6 +32,25 @@ struct StVenantKirchhoff {
   FASCIA_HD constexpr T energy_density(const Mat3<T>& E) const {
     const T t = trace(E);
     return T(0.5) * lambda * t * t + mu * contract(E, E);
+  }
+
+  // As a law of solids (solid_law.hpp): θ = tr E.
+  struct At {
+    FASCIA_HD explicit At(const Mat3<T>&) {}
+    At() = default;
+  };
+  FASCIA_HD static Mat3<T> strain(const Mat3<T>& H) { return green_strain(H); }
+  FASCIA_HD static T volumetric_strain(const Mat3<T>& H) { return trace(green_strain(H)); }
+  FASCIA_HD static Mat3<T> volumetric_gradient(const Mat3<T>& H) { return Mat3<T>::identity() + H; }
+  FASCIA_HD T shear_energy(const Mat3<T>& H) const {
+    const Mat3<T> E = green_strain(H);
+    return mu * contract(E, E);
+  }
+  FASCIA_HD Mat3<T> second_piola(const At&, const Mat3<T>& E, const T& p) const {
+    return E * (T(2) * mu) + Mat3<T>::diagonal(p);
+  }
+  FASCIA_HD Mat3<T> second_piola_differential(const At&, const T&, const Mat3<T>& dE, bool /*full*/) const {
+    return second_piola(dE);
   }
 };
 

@@ -2,7 +2,7 @@
 
 #include "core/base/aligned.hpp"
 #include "core/math/mat3.hpp"
-#include "core/physics/element_kind.hpp"
+#include "core/physics/law.hpp"
 
 #include <cstdint>
 #include <span>
@@ -23,7 +23,7 @@ struct ElementMaterialSpec {
 /// Elements of one kind as a builder describes them. Elements see the
 /// displacements of their nodes alone.
 struct ElementBlockSpec {
-  ElementLaw law = ElementLaw::st_venant_kirchhoff;
+  Law law = Law::st_venant_kirchhoff;
   bool averaged = false;                      ///< the volumetric strain is averaged about nodes (one-point elements)
   int nodes = 4, points = 1;                  ///< of an element
   std::vector<int> node;                      ///< of the model (elements × nodes)
@@ -38,7 +38,7 @@ struct ElementBlockSpec {
 /// hundred elements, whose nodes have numbers of their own: a patch sums its forces on them before the nodes gather the
 /// sums of their patches.
 struct ElementBlock {
-  ElementLaw law = ElementLaw::st_venant_kirchhoff;
+  Law law = Law::st_venant_kirchhoff;
   bool averaged = false, penalised = false, damped = false;
   int nodes = 4, points = 1, count = 0;
   double length = 1;
@@ -56,9 +56,7 @@ struct ElementBlock {
 
   /// Its tangent takes extrapolated stresses (core/physics/point_physics.hpp): that of a law with large strain, where
   /// the stress is each point's own.
-  bool extrapolates() const {
-    return !averaged && (law == ElementLaw::st_venant_kirchhoff || law == ElementLaw::neo_hookean);
-  }
+  bool extrapolates() const { return !averaged && is_of_points(law); }
   int batch_count() const { return (count + kElementLanes - 1) / kElementLanes; }
   int patch_count() const { return static_cast<int>(patch_batch.size()) - 1; }
   int slot_count() const { return static_cast<int>(patch_node.size()); }

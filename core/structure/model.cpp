@@ -31,7 +31,7 @@ bool Model::is_linear() const {
   return !has_frames() && points.point_count == 0 && points.springs.empty() && points.dependents.empty() &&
          followers.empty() && surfaces.empty() &&
          std::all_of(points.blocks.begin(), points.blocks.end(),
-                     [](const ElementBlock& block) { return block.law == ElementLaw::linear; });
+                     [](const ElementBlock& block) { return block.law == Law::linear; });
 }
 
 bool Model::loads_are_conservative() const {

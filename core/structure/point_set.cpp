@@ -53,7 +53,7 @@ void PointSetBuilder::add_rule(std::span<const PointSample> points, double lengt
   if (std::none_of(points.begin(), points.end(), [](const PointSample& p) { return p.stabilization > 0; }))
     rule.stabilization = Stabilization::none;
   GroupRule group{rule, -1};
-  if (!is_solid(rule.law)) {
+  if (is_thin(rule.law)) {
     const std::size_t first = set_.axes.size();
     group.axes = static_cast<int>(first / (9 * kGroupSize));
     set_.axes.resize(first + 9 * kGroupSize);

@@ -7,29 +7,16 @@
 /// One point of a group at a time, in the layout of core/executor/group_kernels.hpp.
 namespace fascia::gpu::kernels {
 
-template <PointKind::Matter, class T>
-struct MaterialOf {
-  using Type = SolidMaterial<T>;
-};
-template <class T>
-struct MaterialOf<PointKind::Matter::neo_hookean, T> {
-  using Type = NeoHookeanMaterial<T>;
-};
-template <class T>
-struct MaterialOf<PointKind::Matter::thin, T> {
-  using Type = ThinMaterial<T>;
-};
-
-template <PointKind::Matter Matter, class T>
+template <Law L, class T>
 FASCIA_HD auto material(const PointsOf<T>& set, int group, int lane, double inverse_step) {
   const T* base = set.material + static_cast<std::size_t>(group) * 6 * kGroupSize;
-  typename MaterialOf<Matter, T>::Type m;
+  MaterialOf<L, T> m;
   m.volume = row(base, kVolume, lane);
   m.lambda = row(base, kLambda, lane);
   m.mu = row(base, kMu, lane);
   m.stabilization = row(base, kStabilization, lane);
   m.viscosity = row(base, kStiffnessDamping, lane) * static_cast<T>(inverse_step);
-  if constexpr (Matter == PointKind::Matter::thin) {
+  if constexpr (is_thin(L)) {
     const GroupRule& rule = set.rule[group];
     const auto index = static_cast<std::size_t>(rule.axes);
     m.law = rule.rule.law;
@@ -151,33 +138,10 @@ FASCIA_HD void add_slot_column(const PointsOf<T>& set, int slot, FrameKind kind,
   const int group = set.slot_group[slot];
   const T *rows = linearized_rows(set, group), *shape = shape_of(set, slot);
   for (int lane = 0; lane < kGroupSize; ++lane) {
-    const auto m = material<Kind.matter>(set, group, lane, inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, inverse_step);
     const PointMotion<T> unit = unit_motion<kBlend>(kind, k, shape, lane, rounded<T>(Q));
     const auto d = differential_of<Kind>(rows, lane, m, tangent, unit);
     add_column<kBlend>(kind, shape, lane, Q, d.dP * m.volume, d.dY * m.volume, column);
-  }
-}
-
-/// Calls act.operator()<Kind>() for a rule.
-template <class Act>
-FASCIA_HD void with_kind(const PointRule& rule, const Act& act) {
-  using Matter = PointKind::Matter;
-  const Matter matter = rule.law == Law::solid         ? Matter::solid
-                        : rule.law == Law::neo_hookean ? Matter::neo_hookean
-                                                       : Matter::thin;
-  switch (rule.stabilization) {
-    case Stabilization::none:
-      if (matter == Matter::solid) return act.template operator()<PointKind{Stabilization::none, Matter::solid}>();
-      if (matter == Matter::thin) return act.template operator()<PointKind{Stabilization::none, Matter::thin}>();
-      return act.template operator()<PointKind{Stabilization::none, Matter::neo_hookean}>();
-    case Stabilization::drilling:
-      if (matter == Matter::solid) return act.template operator()<PointKind{Stabilization::drilling, Matter::solid}>();
-      if (matter == Matter::thin) return act.template operator()<PointKind{Stabilization::drilling, Matter::thin}>();
-      return act.template operator()<PointKind{Stabilization::drilling, Matter::neo_hookean}>();
-    case Stabilization::affine:
-      if (matter == Matter::solid) return act.template operator()<PointKind{Stabilization::affine, Matter::solid}>();
-      if (matter == Matter::thin) return act.template operator()<PointKind{Stabilization::affine, Matter::thin}>();
-      return act.template operator()<PointKind{Stabilization::affine, Matter::neo_hookean}>();
   }
 }
 

@@ -23,10 +23,10 @@ Points<Space>::Points(const PointSet& set, Precision precision) : is_narrow_(pre
     std::fill(slot_group.begin() + set.slot_begin[at(g)], slot_group.begin() + set.slot_begin[at(g + 1)], g);
     const PointRule& rule = set.rule[at(g)].rule;
     blends[at(g)] = rule.stabilization != Stabilization::none;
-    kernels::with_kind(rule, [&]<PointKind Kind>() {
+    with_kind(rule, [&]<PointKind Kind>() {
       std::size_t k = 0;
       while (k < kinds_.size() &&
-             (kinds_[k].kind.matter != Kind.matter || kinds_[k].kind.stabilization != Kind.stabilization))
+             (kinds_[k].kind.law != Kind.law || kinds_[k].kind.stabilization != Kind.stabilization))
         ++k;
       if (k == kinds_.size()) {
         kinds_.push_back({Kind, {}});
@@ -69,13 +69,9 @@ template <class Space>
 template <class Act>
 void Points<Space>::for_kinds(const Act& act) {
   for (Kind& k : kinds_)
-    kernels::with_kind(PointRule{k.kind.matter == PointKind::Matter::solid         ? Law::solid
-                                 : k.kind.matter == PointKind::Matter::neo_hookean ? Law::neo_hookean
-                                                                                   : Law::sheet,
-                                 k.kind.stabilization, false},
-                       [&]<PointKind K>() {
-                         act.template operator()<K>(k.groups.data(), static_cast<int>(k.groups.size()) * kGroupSize);
-                       });
+    with_kind({k.kind.law, k.kind.stabilization, false}, [&]<PointKind K>() {
+      act.template operator()<K>(k.groups.data(), static_cast<int>(k.groups.size()) * kGroupSize);
+    });
 }
 
 namespace kernels {
@@ -119,7 +115,7 @@ struct PointForces {
     constexpr bool kBlend = Kind.stabilization != Stabilization::none;
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<double> x = motion_of<kBlend>(set, group, lane, pose.u, pose.D);
-    const auto m = material<Kind.matter>(set, group, lane, history.inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, history.inverse_step);
     const Mat3d E_old = old_strain(history, group, lane);
     const PointStress<double> stress = point_stress<Kind.stabilization>(x, m, E_old);
     const Mat3d P = stress.P * m.volume;
@@ -151,7 +147,7 @@ struct PointLinearization {
   FASCIA_HD void operator()(int i) const {
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<double> x = motion_of<true>(set, group, lane, pose.u, pose.D);
-    const auto m = material<Kind.matter>(set, group, lane, history.inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, history.inverse_step);
     const Mat3d E_old = old_strain(history, group, lane);
     TangentStress<double> stress;
     if (!is_tether(m)) stress = stress_of(x, m, group, lane, E_old);
@@ -191,7 +187,7 @@ struct PointProduct {
     constexpr bool kBlend = Kind.stabilization != Stabilization::none;
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<T> d = motion_of<kBlend>(set, group, lane, direction.dx, direction.dA);
-    const auto m = material<Kind.matter>(set, group, lane, inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, inverse_step);
     const auto r = differential_of<Kind>(linearized_rows(set, group), lane, m, tangent, d);
     store_stress(set, group, lane, r.dP * m.volume, r.dY * m.volume);
   }

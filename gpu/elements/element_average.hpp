@@ -6,7 +6,7 @@
 namespace fascia::gpu::kernels {
 
 /// V θ/4 of each element, or its derivative along dx.
-template <ElementLaw L, class T, class V>
+template <Law L, class T, class V>
 struct ThetaPass {
   ElementBlockOf<T> block;
   const Vec3d* u;
@@ -15,8 +15,8 @@ struct ThetaPass {
   FASCIA_HD void operator()(int e) const {
     const ElementPoints<4, T> x(block, e, {});
     const Mat3<T> H = x.gradient_of_nodes(u);
-    const T theta =
-        dx == nullptr ? volumetric_strain<L>(H) : contract(volumetric_gradient<L>(H), x.gradient_of_nodes(dx));
+    const T theta = dx == nullptr ? SolidLaw<L, T>::volumetric_strain(H)
+                                  : contract(SolidLaw<L, T>::volumetric_gradient(H), x.gradient_of_nodes(dx));
     block.theta[e] = theta * x.v(0) * T(0.25);
   }
 };
@@ -36,14 +36,14 @@ struct NodeAveragePass {
 };
 
 /// V/4 ∂θ/∂x of each corner.
-template <ElementLaw L, class T>
+template <Law L, class T>
 struct ThetaGradientPass {
   ElementBlockOf<T> block;
   const Vec3d* u;
 
   FASCIA_HD void operator()(int e) const {
     const ElementPoints<4, T> x(block, e, {});
-    x.store_forces(volumetric_gradient<L>(x.gradient_of_nodes(u)) * (x.v(0) * T(0.25)));
+    x.store_forces(SolidLaw<L, T>::volumetric_gradient(x.gradient_of_nodes(u)) * (x.v(0) * T(0.25)));
   }
 };
 

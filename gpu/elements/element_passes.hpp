@@ -65,7 +65,7 @@ FASCIA_HD inline double rounding_of(const Mat3d& H, const Mat3d& P, const Elemen
 }
 
 /// One thread has a whole element, or one of its points where these do not need each other.
-template <ElementLaw L, int N, class T>
+template <Law L, int N, class T>
 struct ElementPass {
   ElementBlockOf<T> block;
   HistoryView history;
@@ -73,7 +73,7 @@ struct ElementPass {
 
   /// @param whole  even where points do not need each other
   ElementPass(const ElementBlockOf<T>& b, const HistoryView& past, bool whole)
-      : block(b), history(past), split(N == 0 && !whole && L != ElementLaw::corotational && !b.penalised) {}
+      : block(b), history(past), split(N == 0 && !whole && L != Law::corotational && !b.penalised) {}
   FASCIA_HD int count() const { return block.lanes() * (split ? block.points : 1); }
   /// @param u  displacements of the model's nodes, H  of points: used where the element has one point, or several
   FASCIA_HD ElementPoints<N, T> points_of(int i, const Vec3d* u, const T* H) const {
@@ -91,10 +91,10 @@ struct ElementPass {
 };
 
 /// The rotation of an element's mean. @param kept  that of the linearisation
-template <ElementLaw L, int N, class T>
+template <Law L, int N, class T>
 FASCIA_HD ElementTurn<T> turn_of(const ElementPoints<N, T>& x, bool kept) {
   ElementTurn<T> turn;
-  if constexpr (L == ElementLaw::corotational) {
+  if constexpr (L == Law::corotational) {
     turn.H = mean_gradient(x);
     if (!kept) {
       turn.D = rounded<T>(nearest_rotation_increment(rounded<double>(turn.H)));
@@ -112,7 +112,7 @@ FASCIA_HD ElementTurn<T> turn_of(const ElementPoints<N, T>& x, bool kept) {
   return turn;
 }
 
-template <ElementLaw L, int N>
+template <Law L, int N>
 struct ForcesPass : ElementPass<L, N, double> {
   using ElementPass<L, N, double>::block;
   using ElementPass<L, N, double>::history;
@@ -164,7 +164,7 @@ struct ForcesPass : ElementPass<L, N, double> {
 };
 
 /// Keeps rotations and mean pressures.
-template <ElementLaw L, int N, class T>
+template <Law L, int N, class T>
 struct LinearizePass : ElementPass<L, N, T> {
   using ElementPass<L, N, T>::block;
   const Vec3d* u;
@@ -172,7 +172,7 @@ struct LinearizePass : ElementPass<L, N, T> {
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, T> x = this->points_of(i, u, block.H);
     if (block.averaged) block.pressure[i] = mean_of_nodes(block, x.batch, x.lane);
-    if constexpr (L == ElementLaw::corotational) {
+    if constexpr (L == Law::corotational) {
       const Mat3<T> D = turn_of<L>(x, false).D;
       T* rows = block.turn + at(x.batch) * 6 * kLanes;
       for (int k = 0; k < 2; ++k)
@@ -182,7 +182,7 @@ struct LinearizePass : ElementPass<L, N, T> {
 };
 
 /// Where a point is computed alone, the gradient of dx needs no pass of its own.
-template <ElementLaw L, int N, class T, class V, bool Plain>
+template <Law L, int N, class T, class V, bool Plain>
 struct ProductPass : ElementPass<L, N, T> {
   using ElementPass<L, N, T>::block;
   using ElementPass<L, N, T>::history;
@@ -198,8 +198,8 @@ struct ProductPass : ElementPass<L, N, T> {
       const Mat3<T> dF = x.gradient_of_nodes(dx);
       element.begin_direction([&](int) { return dF; });
       Mat3<T> dP = element.differential(0, dF);
-      if constexpr (L != ElementLaw::corotational)
-        if (block.averaged) dP += volumetric_gradient<L>(x.H(0)) * mean_of_nodes(block, x.batch, x.lane);
+      if constexpr (L != Law::corotational)
+        if (block.averaged) dP += SolidLaw<L, T>::volumetric_gradient(x.H(0)) * mean_of_nodes(block, x.batch, x.lane);
       x.store_forces(dP * x.v(0));
     } else {
       const auto dF = [&](int q) {
@@ -215,7 +215,7 @@ struct ProductPass : ElementPass<L, N, T> {
 };
 
 /// Force on a node for a unit motion of its own along `axis`: a thread for each corner of an element.
-template <ElementLaw L, int N, class T>
+template <Law L, int N, class T>
 struct DiagonalPass : ElementPass<L, N, T> {
   using ElementPass<L, N, T>::block;
   using ElementPass<L, N, T>::history;
@@ -244,7 +244,7 @@ struct DiagonalPass : ElementPass<L, N, T> {
 };
 
 /// Stresses extrapolated along a step. Of several points, H at its start is in points_buffer.
-template <ElementLaw L, int N>
+template <Law L, int N>
 struct ExtrapolationPass : ElementPass<L, N, double> {
   using ElementPass<L, N, double>::block;
   using ElementPass<L, N, double>::history;
@@ -275,7 +275,7 @@ struct SpinPass {
   }
 };
 
-template <ElementLaw L, int N>
+template <Law L, int N>
 struct StrainPass : ElementPass<L, N, double> {
   using ElementPass<L, N, double>::block;
   const Vec3d* u;

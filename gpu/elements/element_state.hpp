@@ -30,11 +30,11 @@ FASCIA_HD Mat3<T> mean_gradient(const ElementPoints<N, T>& x) {
 
 /// An element at a state, ready for stresses and, after begin_direction(), for their differentials. Neither has what
 /// averages about nodes add. Plain: known to have neither penalty nor damping, which spares registers.
-template <ElementLaw L, int N, class T, bool Plain = false>
+template <Law L, int N, class T, bool Plain = false>
 class ElementAt {
  public:
   using Points = ElementPoints<N, T>;
-  static constexpr bool kTurns = L == ElementLaw::corotational;
+  static constexpr bool kTurns = L == Law::corotational;
 
   /// @param points  all of the element's, or any where its law is that of each point alone
   /// @param pressure  λ θ averaged about the nodes; used where the block is averaged
@@ -74,8 +74,8 @@ class ElementAt {
     if constexpr (kTurns) {
       return StVenantKirchhoff<T>{m_.lambda, m_.mu}.energy_density(strain(q));
     } else {
-      const T theta = block_.averaged ? T(0) : volumetric_strain<L>(x_.H(q));
-      return shear_energy<L>(x_.H(q), m_.mu) + T(0.5) * m_.lambda * theta * theta;
+      const T theta = block_.averaged ? T(0) : SolidLaw<L, T>::volumetric_strain(x_.H(q));
+      return SolidLaw<L, T>{m_.lambda, m_.mu}.shear_energy(x_.H(q)) + T(0.5) * m_.lambda * theta * theta;
     }
   }
   FASCIA_HD T viscous_density(int q) const {
@@ -94,7 +94,7 @@ class ElementAt {
     if constexpr (kTurns)
       return element_.strain(x_.H(q));
     else
-      return element_strain<L>(x_.H(q));
+      return SolidLaw<L, T>::strain(x_.H(q));
   }
 
   /// @param dF  dF(q) of each point
@@ -154,7 +154,8 @@ class ElementAt {
   FASCIA_HD Mat3<T> sigma(int q) const { return element_.stress(strain(q), m_, old(q), damped()); }
   FASCIA_HD ElasticPoint<L, T> point(int q) const {
     const Mat3<T> H = x_.H(q);
-    ElasticPoint<L, T> p(H, m_, block_.averaged ? pressure_ : m_.lambda * volumetric_strain<L>(H), old(q), damped());
+    ElasticPoint<L, T> p(H, m_, block_.averaged ? pressure_ : m_.lambda * SolidLaw<L, T>::volumetric_strain(H), old(q),
+                         damped());
     if (x_.history.S != nullptr) p.set_stress(x_.stress(q));
     return p;
   }

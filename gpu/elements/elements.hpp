@@ -17,7 +17,7 @@ namespace fascia::gpu {
 /// keeps it in registers.
 template <class T>
 struct ElementBlockOf {
-  ElementLaw law = ElementLaw::linear;
+  Law law = Law::linear;
   bool averaged = false, penalised = false, damped = false;
   int nodes = 4, points = 1, count = 0, batches = 0;
   const T *gradient = nullptr, *volume = nullptr, *material = nullptr;

@@ -32,8 +32,8 @@ HistoryView Elements<Space>::history_of(const Block& block, const double* E, dou
 template <class Space>
 template <class T, class V>
 void Elements<Space>::average(const ElementBlockOf<T>& view, const Vec3d* u, const Vec3<V>* dx) {
-  with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
-    if constexpr (N == 4 && L != ElementLaw::corotational)
+  with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
+    if constexpr (N == 4 && L != Law::corotational)
       Space::for_each(view.lanes(), kernels::ThetaPass<L, T, V>{view, u, dx});
   });
   Space::for_each(nodes_, kernels::NodeAveragePass<T>{view});
@@ -46,7 +46,7 @@ void Elements<Space>::forces(const NodesView& nodes, const PoseView& pose, const
     const ElementBlockView& view = block.view();
     if (view.averaged) average<double, double>(view, pose.u, nullptr);
     if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
-    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
       run<Space>(
           kernels::ForcesPass<L, N>{{view, history_of(block, history.E, history.inverse_step), part_motion != nullptr},
                                     nodes,
@@ -80,8 +80,8 @@ void Elements<Space>::extrapolate(const TakenStepView& taken) {
     const ElementBlockView& view = block.view();
     if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, taken.start.u, view.points_buffer});
     const HistoryView past = history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
-    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
-      if constexpr (L == ElementLaw::st_venant_kirchhoff || L == ElementLaw::neo_hookean)
+    with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
+      if constexpr (is_of_points(L))
         run<Space>(kernels::ExtrapolationPass<L, N>{{view, past, false}, taken, S_.data() + block.strain_begin});
     });
   }
@@ -91,7 +91,7 @@ template <class Space>
 void Elements<Space>::largest_spin(const Vec3d* dx, double* out) const {
   Space::set_zero(out, sizeof(double));
   for (const Block& block : blocks_) {
-    if (block.view().law == ElementLaw::linear) continue;
+    if (block.view().law == Law::linear) continue;
     const kernels::SpinPass pass{block.view(), dx};
     Space::template sum<0, 1>(pass.count(), pass, kernels::KeepLargest{out});
   }
@@ -104,8 +104,8 @@ void Elements<Space>::linearize_as() {
     const ElementBlockOf<T>& view = block.template view_of<T>();
     if (view.averaged) average<T, double>(view, u_.data(), nullptr);
     if (!view.one_point()) run<Space>(kernels::GradientPass<T, double>{view, u_.data(), view.H});
-    if (!view.averaged && view.law != ElementLaw::corotational) continue;
-    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
+    if (!view.averaged && view.law != Law::corotational) continue;
+    with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
       run<Space>(kernels::LinearizePass<L, N, T>{{view, {}, true}, u_.data()});
     });
   }
@@ -117,7 +117,7 @@ void Elements<Space>::product(const DirectionOf<T, V>& direction) {
   for (Block& block : blocks_) {
     const ElementBlockOf<T>& view = block.template view_of<T>();
     if (view.averaged) average<T, V>(view, u_.data(), direction.dx);
-    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
       const kernels::ElementPass<L, N, T> pass(view, kept_history(block), false);
       if (N == 0 && !pass.split) run<Space>(kernels::GradientPass<T, V>{view, direction.dx, view.points_buffer});
       const bool full = tangent_ == Tangent::full;
@@ -141,7 +141,7 @@ template <class T>
 void Elements<Space>::add_diagonal_as(const NodesView& nodes, double* blocks) {
   for (int axis = 0; axis < 3; ++axis) {
     for (Block& block : blocks_)
-      with_element_kind(block.view().law, block.view().nodes, [&]<ElementLaw L, int N>() {
+      with_element_kind(block.view().law, block.view().nodes, [&]<Law L, int N>() {
         run<Space>(kernels::DiagonalPass<L, N, T>{
             {block.template view_of<T>(), kept_history(block), true}, u_.data(), tangent_ == Tangent::full, axis});
       });
@@ -150,8 +150,8 @@ void Elements<Space>::add_diagonal_as(const NodesView& nodes, double* blocks) {
   for (Block& block : blocks_) {
     const ElementBlockOf<T>& view = block.template view_of<T>();
     if (!view.averaged) continue;
-    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
-      if constexpr (N == 4 && L != ElementLaw::corotational)
+    with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
+      if constexpr (N == 4 && L != Law::corotational)
         Space::for_each(view.lanes(), kernels::ThetaGradientPass<L, T>{view, u_.data()});
     });
     Space::for_each(nodes_, kernels::AverageDiagonalPass<T>{view, nodes, blocks});
@@ -163,7 +163,7 @@ void Elements<Space>::store_strain(const PoseView& pose, double* E) {
   for (Block& block : blocks_) {
     const ElementBlockView& view = block.view();
     if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
-    with_element_kind(view.law, view.nodes, [&]<ElementLaw L, int N>() {
+    with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
       run<Space>(kernels::StrainPass<L, N>{{view, {}, false}, pose.u, E + block.strain_begin});
     });
   }

@@ -115,7 +115,7 @@ void Elements<Space>::fill_rows(const ElementBlock& block, bool products, const 
     view.points_buffer = rows.points_buffer.data();
     view.H = rows.H.data();
   }
-  if (products && block.law == ElementLaw::corotational) {
+  if (products && block.law == Law::corotational) {
     rows.turn.resize(lanes * 6);
     view.turn = rows.turn.data();
   }

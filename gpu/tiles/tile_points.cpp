@@ -72,7 +72,7 @@ std::string not_for_tiles(const PointSet& set) {
   for (int node = 0; node < set.node_count(); ++node)
     if (set.dofs.kind(node) != FrameKind::rigid) return "the model has nodes that are not rigid frames";
   for (const GroupRule& group : set.rule)
-    if (group.rule.law != Law::solid || group.rule.stabilization == Stabilization::affine)
+    if (group.rule.law != Law::st_venant_kirchhoff || group.rule.stabilization == Stabilization::affine)
       return "the model has points of another law than the St Venant-Kirchhoff solid";
   return {};
 }

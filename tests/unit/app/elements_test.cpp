@@ -25,7 +25,7 @@ TEST(Elements, DefaultsAreThoseOfTheManual) {
   EXPECT_EQ(body.cells->count, (std::vector{8, 2, 2}));
   EXPECT_EQ(body.cells->split, 6);
   EXPECT_EQ(body.mass, 1.0);
-  EXPECT_EQ(body.materials.at(0).material.law, MaterialLaw::st_venant_kirchhoff);
+  EXPECT_EQ(body.materials.at(0).material.law, Law::st_venant_kirchhoff);
 }
 
 TEST(Elements, MeshlessBodiesKeepTheirModel) {
@@ -105,11 +105,11 @@ TEST(Elements, ReadsNeoHookeanMaterials) {
   const std::string rubber = "[materials.rubber]\nlaw = \"neo-hookean\"\nlame = { lambda = -1, mu = 3 }\n";
   const std::string text = mesh_body("tetrahedra", meshed_box) + rubber;
   const Scene scene = test::parse(std::string(text).replace(text.find("\"soft\""), 6, "\"rubber\""));
-  EXPECT_EQ(scene.bodies.at(0).materials.at(0).material.law, MaterialLaw::neo_hookean);
+  EXPECT_EQ(scene.bodies.at(0).materials.at(0).material.law, Law::neo_hookean);
   EXPECT_EQ(scene.bodies.at(0).materials.at(0).material.lambda, -1);
   const Scene solid = test::parse(
       test::beam_with("material = \"soft\"", "material = { law = \"neo-hookean\", young = 1, poisson = 0.4 }"));
-  EXPECT_EQ(solid.bodies.at(0).materials.at(0).material.law, MaterialLaw::neo_hookean);
+  EXPECT_EQ(solid.bodies.at(0).materials.at(0).material.law, Law::neo_hookean);
 }
 
 TEST(Elements, ReadsTractions) {

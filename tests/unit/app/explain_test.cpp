@@ -133,7 +133,7 @@ TEST(Variants, FormulationsBringALawThatTheyTake) {
     ++formulations;
     const Scene changed = carried_out(v);
     EXPECT_NE(changed.bodies[0].formulation, Formulation::large_strain);
-    EXPECT_EQ(changed.bodies[0].materials[0].material.law, MaterialLaw::st_venant_kirchhoff);
+    EXPECT_EQ(changed.bodies[0].materials[0].material.law, Law::st_venant_kirchhoff);
     EXPECT_NEAR(changed.bodies[0].materials[0].material.young(), 1e4, 1e-8);
     EXPECT_EQ(changed.bodies[0].materials[0].material.mass_damping, 1);
     EXPECT_FALSE(v.closer);
@@ -152,7 +152,7 @@ TEST(Variants, OfMaterialsAndTheSolver) {
                 .material.mass_damping,
             0);
   EXPECT_EQ(carried_out(*find(materials, VariantKind::law, "materials.gel.law")).bodies[0].materials[0].material.law,
-            MaterialLaw::st_venant_kirchhoff);
+            Law::st_venant_kirchhoff);
   RunFacts facts;
   facts.processors = 4;
   const std::vector<Variant> solver = solver_variants(scene, facts);

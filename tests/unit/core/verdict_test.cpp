@@ -87,7 +87,7 @@ PointSet chain(const std::vector<double>& young) {
     p.mu = 0.5 * young[k];
     p.influences = {{0.5, {{-1, 0, 0}}, {}, {}}, {0.5, {{1, 0, 0}}, {}, {}}};
     const std::array<int, 2> nodes{static_cast<int>(k), static_cast<int>(k) + 1};
-    builder.add_points(nodes, std::array{p}, 0.1, {Law::solid, Stabilization::none, false});
+    builder.add_points(nodes, std::array{p}, 0.1, {Law::st_venant_kirchhoff, Stabilization::none, false});
   }
   return std::move(builder).finish(std::vector<FrameKind>(young.size() + 1, FrameKind::vertex));
 }

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "core/physics/law.hpp"
+#include "core/physics/neo_hookean.hpp"
+#include "core/physics/small_strain.hpp"
+
+#include <concepts>
+
+/// Laws of solids, for points, elements and results, on the processor and the GPU: a struct of constants each, whose
+/// energy density is that of distortion and of a volumetric strain θ,
+///
+///   ψ = ψ_μ(H) + λ θ(H)²/2,   S = S_μ + p ∂θ/∂E   with p = λ θ, or its average about nodes.
+///
+/// A new one is a header beside neo_hookean.hpp, a name in Law and a line in each of the two lists below; the typed
+/// test of tests/unit/core/laws_test.cpp then holds it to its derivatives, objectivity and rest.
+namespace fascia {
+
+template <class L, class T>
+concept IsSolidLaw = requires(const L law, const typename L::At at, const Mat3<T> M, const T p) {
+  { L::kSmall } -> std::convertible_to<bool>;                                  ///< P = S, of small rotations
+  typename L::At;                                                              ///< what stresses share at a state:
+  { typename L::At(M) } -> std::same_as<typename L::At>;                       ///< made of H = F − I
+  { L::strain(M) } -> std::same_as<Mat3<T>>;                                   ///< E of H; of damping too
+  { L::volumetric_strain(M) } -> std::same_as<T>;                              ///< θ of H
+  { L::volumetric_gradient(M) } -> std::same_as<Mat3<T>>;                      ///< ∂θ/∂F at H
+  { law.shear_energy(M) } -> std::same_as<T>;                                  ///< ψ_μ of H [J/m³]
+  { law.second_piola(at, M, p) } -> std::same_as<Mat3<T>>;                     ///< S of E and p [Pa]
+  { law.second_piola_differential(at, p, M, true) } -> std::same_as<Mat3<T>>;  ///< dS of dE, with λ for dp [Pa]
+};
+
+template <Law L>
+struct LawOf;
+template <>
+struct LawOf<Law::st_venant_kirchhoff> {
+  template <class T>
+  using Of = StVenantKirchhoff<T>;
+};
+template <>
+struct LawOf<Law::neo_hookean> {
+  template <class T>
+  using Of = NeoHookean<T>;
+};
+template <>
+struct LawOf<Law::linear> {
+  template <class T>
+  using Of = SmallStrain<T>;
+};
+template <>
+struct LawOf<Law::corotational> : LawOf<Law::linear> {};  ///< in the element's axes
+template <Law L, class T>
+using SolidLaw = typename LawOf<L>::template Of<T>;
+static_assert(IsSolidLaw<SolidLaw<Law::st_venant_kirchhoff, double>, double>);
+static_assert(IsSolidLaw<SolidLaw<Law::neo_hookean, double>, double>);
+static_assert(IsSolidLaw<SolidLaw<Law::linear, double>, double>);
+
+/// Those of large strain.
+inline constexpr Law kSolidLaws[] = {Law::st_venant_kirchhoff, Law::neo_hookean};
+
+/// Calls act.operator()<L>() for a law of large strain.
+template <class Act>
+FASCIA_HD constexpr decltype(auto) with_solid_law(Law law, const Act& act) {
+  switch (law) {
+    case Law::neo_hookean:
+      return act.template operator()<Law::neo_hookean>();
+    default:
+      return act.template operator()<Law::st_venant_kirchhoff>();
+  }
+}
+
+/// ψ [J/m³]
+template <class T, template <class> class L>
+FASCIA_HD T energy_density(const L<T>& law, const Mat3<T>& H) requires IsSolidLaw<L<T>, T> {
+  const T theta = L<T>::volumetric_strain(H);
+  return law.shear_energy(H) + T(0.5) * law.lambda * theta * theta;
+}
+/// Elastic S [Pa]
+template <class T, template <class> class L>
+FASCIA_HD Mat3<T> second_piola(const L<T>& law, const Mat3<T>& H) requires IsSolidLaw<L<T>, T> {
+  return law.second_piola(typename L<T>::At(H), L<T>::strain(H), law.lambda * L<T>::volumetric_strain(H));
+}
+/// dS of dE at H [Pa]
+template <class T, template <class> class L>
+FASCIA_HD Mat3<T> second_piola_differential(const L<T>& law, const Mat3<T>& H,
+                                            const Mat3<T>& dE) requires IsSolidLaw<L<T>, T> {
+  return law.second_piola_differential(typename L<T>::At(H), law.lambda * L<T>::volumetric_strain(H), dE, true);
+}
+
+}  // namespace fascia
