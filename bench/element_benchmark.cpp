@@ -23,7 +23,7 @@ test::ElementOptions options(std::int64_t kind, bool large) {
   if (kind == corotational) o.formulation = ElementFormulation::corotational;
   if (kind == linear) o.formulation = ElementFormulation::linear;
   if (kind == averaged) o.locking = ElementLocking::averaged;
-  o.neo_hookean = kind == neo_hookean;
+  o.law = kind == neo_hookean ? Law::neo_hookean : Law::st_venant_kirchhoff;
   o.cells = large ? std::array{18, 18, 18} : std::array{8, 11, 12};
   o.distortion = 0;
   return o;

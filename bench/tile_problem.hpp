@@ -194,9 +194,9 @@ class TileReference {
       add_influence(q, k, u(p_.points.node[k]), D(p_.points.node[k]), x);
     return x;
   }
-  SolidMaterial<double> material(int q) const {
+  SolidMaterial<Law::st_venant_kirchhoff, double> material(int q) const {
     const TileMaterial& m = p_.points.materials[at(p_.points.material[at(q)])];
-    SolidMaterial<double> r;
+    SolidMaterial<Law::st_venant_kirchhoff, double> r;
     r.volume = p_.points.volume[at(q)];
     r.lambda = m.lambda;
     r.mu = m.mu;

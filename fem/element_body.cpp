@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace fascia {
 
@@ -135,13 +136,11 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
 void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& builder) {
   const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
   const double length = mean_edge(mesh());
-  std::array<std::vector<std::size_t>, 4> by_law;
-  for (std::size_t e = 0; e < mesh().size(); ++e)
-    by_law[static_cast<std::size_t>(law(static_cast<int>(e)))].push_back(e);
-  for (const std::vector<std::size_t>& chosen : by_law) {
-    if (chosen.empty()) continue;
+  std::map<Law, std::vector<std::size_t>> by_law;
+  for (std::size_t e = 0; e < mesh().size(); ++e) by_law[law(static_cast<int>(e))].push_back(e);
+  for (const auto& [law, chosen] : by_law) {
     ElementBlockSpec block;
-    block.law = law(static_cast<int>(chosen[0]));
+    block.law = law;
     block.averaged = averaged_;
     block.nodes = fascia::node_count(mesh().shape);
     block.points = static_cast<int>(rule.size());

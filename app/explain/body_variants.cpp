@@ -130,7 +130,7 @@ class BodyVariants {
   /// The law that one of large strain becomes where a formulation takes none; empty where that cannot be said in one
   /// line.
   std::vector<std::string> linear_law() const {
-    const auto large = [](const MaterialUse& use) { return is_of_large_strain(use.material.law); };
+    const auto large = [](const MaterialUse& use) { return needs_large_strain(use.material.law); };
     if (std::none_of(body_.materials.begin(), body_.materials.end(), large) || body_.materials.size() != 1) return {};
     const Material& m = body_.materials[0].material;
     std::string text = fmt::format("{}.material={{ young = {}, poisson = {}", path_, m.young(), m.poisson());

@@ -58,7 +58,7 @@ std::vector<Variant> material_variants(const Scene& scene) {
     const bool damped = material->mass_damping > 0 || material->stiffness_damping > 0;
     if (is_dynamic(scene.solver.kind) && damped)
       add(VariantKind::damping, damping, fmt::format("without `{}`", damping), damping + "=");
-    if (is_of_large_strain(material->law))
+    if (needs_large_strain(material->law))
       add(VariantKind::law, path + ".law", fmt::format("with `{}.law = \"st-venant-kirchhoff\"`", path), law);
   }
   return found;

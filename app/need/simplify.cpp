@@ -38,9 +38,8 @@ struct Simplification {
 void of_body(const Scene& scene, const Body& body, const RunFacts& facts, std::vector<Simplification>& all) {
   const std::string formulation = "bodies." + toml_key(body.name) + ".formulation";
   const bool small = is_mesh_model(body) && !scene.says(formulation) &&
-                     std::all_of(body.materials.begin(), body.materials.end(), [](const MaterialUse& m) {
-                       return m.material.law == Law::st_venant_kirchhoff;
-                     });
+                     std::all_of(body.materials.begin(), body.materials.end(),
+                                 [](const MaterialUse& m) { return m.material.law == Law::st_venant_kirchhoff; });
   const bool solid = body.model == BodyModel::meshless ? body.thickness.empty() && !body.radius : is_mesh_model(body);
   const bool held = scene.bodies.size() > 1 || !scene.couplings.empty();
   const bool whole = solid && held && !body.fluid && !std::holds_alternative<BetweenDomain>(body.domain);

@@ -106,7 +106,7 @@ void check_thin_laws(const TableReader& table, const Body& body) {
   const std::optional<Extent> extent = read_extent(table);
   if (!extent || *extent == Extent::solid) return;
   for (std::size_t i = 0; i < body.materials.size(); ++i)
-    if (const Law law = body.materials[i].material.law; is_of_large_strain(law))
+    if (const Law law = body.materials[i].material.law; needs_large_strain(law))
       table.diagnostics().add(
           place_of_material(table, i),
           fmt::format("has the law \"{}\", which thin bodies do not take; must be of the law \"{}\"", word(law),

@@ -65,7 +65,7 @@ void read_formulation(const TableReader& table, Body& body) {
   if (formulation == "st-venant-kirchhoff") return;
   body.formulation = formulation == "linear" ? Formulation::linear : Formulation::corotational;
   for (std::size_t i = 0; i < body.materials.size(); ++i)
-    if (const Law law = body.materials[i].material.law; is_of_large_strain(law))
+    if (const Law law = body.materials[i].material.law; needs_large_strain(law))
       table.diagnostics().add(
           place_of_material(table, i),
           fmt::format("has the law \"{}\", which formulation = \"{}\" does not take; must be of the "

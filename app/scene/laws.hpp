@@ -34,7 +34,7 @@ constexpr Law material_law(std::string_view text) {
   return kMaterialLaws[0].law;
 }
 
-/// Shells, thin bodies and formulations of small strain take the first alone.
-constexpr bool is_of_large_strain(Law law) { return law != kMaterialLaws[0].law; }
+/// Shells, thin bodies and formulations of small strain do not take it: they know the first alone.
+constexpr bool needs_large_strain(Law law) { return law != kMaterialLaws[0].law; }
 
 }  // namespace fascia::app

@@ -159,7 +159,6 @@ class CpuExecutor {
   void multiply_group(const Linearization& at, int group);
   template <PointKind Kind>
   void assemble_group(const Linearization& at, int group, Entries entries, BlockMatrix& matrix) const;
-  /// Calls act with the kind of a group as a constant.
   const PointRule& rule_of(int group) const { return set_.rule[static_cast<std::size_t>(group)].rule; }
 
   const PointSet& set_;

@@ -11,7 +11,7 @@ namespace fascia {
 /// spent. Levels that turn out far more expensive hand back to blocks, which may then take as long as those did.
 class BlocksOrLevels {
  public:
-  /// Both in iterations with blocks.
+  /// Both in iterations with blocks; of a processor unless said.
   struct Costs {
     double cycle = 5;    ///< an iteration with levels
     double making = 40;  ///< of levels
@@ -25,6 +25,7 @@ class BlocksOrLevels {
     levels_ = true;
     solves_ = 0;
   }
+  void turn_to_blocks() { levels_ = false; }
   /// Of a solve with levels. @param made  how often levels were made for it
   void took(int iterations, int made) {
     const double cost = costs_.cycle * iterations + costs_.making * made;

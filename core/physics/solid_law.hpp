@@ -11,8 +11,8 @@
 ///
 ///   ψ = ψ_μ(H) + λ θ(H)²/2,   S = S_μ + p ∂θ/∂E   with p = λ θ, or its average about nodes.
 ///
-/// A new one is a header beside neo_hookean.hpp, a name in Law and a line in each of the two lists below; the typed
-/// test of tests/unit/core/laws_test.cpp then holds it to its derivatives, objectivity and rest.
+/// A new one is a header beside neo_hookean.hpp, a name in Law, and below a LawOf and a place in kSolidLaws; with its
+/// type in tests/unit/core/laws_test.cpp it is held to its derivatives, objectivity and rest.
 namespace fascia {
 
 template <class L, class T>
@@ -49,22 +49,19 @@ template <>
 struct LawOf<Law::corotational> : LawOf<Law::linear> {};  ///< in the element's axes
 template <Law L, class T>
 using SolidLaw = typename LawOf<L>::template Of<T>;
-static_assert(IsSolidLaw<SolidLaw<Law::st_venant_kirchhoff, double>, double>);
-static_assert(IsSolidLaw<SolidLaw<Law::neo_hookean, double>, double>);
-static_assert(IsSolidLaw<SolidLaw<Law::linear, double>, double>);
 
 /// Those of large strain.
 inline constexpr Law kSolidLaws[] = {Law::st_venant_kirchhoff, Law::neo_hookean};
+inline constexpr int kSolidLawCount = sizeof(kSolidLaws) / sizeof(Law);
 
 /// Calls act.operator()<L>() for a law of large strain.
-template <class Act>
+template <int I = 0, class Act>
 FASCIA_HD constexpr decltype(auto) with_solid_law(Law law, const Act& act) {
-  switch (law) {
-    case Law::neo_hookean:
-      return act.template operator()<Law::neo_hookean>();
-    default:
-      return act.template operator()<Law::st_venant_kirchhoff>();
-  }
+  constexpr Law kThis = kSolidLaws[I];
+  static_assert(IsSolidLaw<SolidLaw<kThis, double>, double>);
+  if constexpr (I + 1 < kSolidLawCount)
+    if (law != kThis) return with_solid_law<I + 1>(law, act);
+  return act.template operator()<kThis>();
 }
 
 /// ψ [J/m³]

@@ -318,8 +318,8 @@ CgReport TangentSolver::solve_by_factor(const CpuVectors::Vector& b, CpuVectors:
 }
 
 /// Blocks precondition; levels of rigid frames do from the first solve on that ends at its limit of iterations, where
-/// no factor takes over and the limit is not a budget that the user set. Where the program chose conjugate gradients
-/// itself, they do as soon as they are likely to be cheaper.
+/// the limit is not a budget that the user set. Where the program chose conjugate gradients itself, they do as soon as
+/// they are likely to be cheaper, and hand back where they are not.
 CgReport TangentSolver::solve_by_either(const CpuVectors::Vector& b, CpuVectors::Vector& x, const CgOptions& options) {
   const auto by_levels = [&] {
     const int made = kept_levels_.made();
@@ -334,7 +334,6 @@ CgReport TangentSolver::solve_by_either(const CpuVectors::Vector& b, CpuVectors:
     first.max_iterations = std::min(options.max_iterations, blocks_or_levels_.patience());
   const CgReport tried = solve_by_blocks(b, x, first);
   if (tried.status != CgStatus::limit || budget || kept_levels_.fail()) return tried;
-  if (!chosen && gives_way_to_factor(options.max_iterations)) return tried;
   blocks_or_levels_.turn_to_levels();
   CgReport cg = by_levels();
   cg.iterations += tried.iterations;

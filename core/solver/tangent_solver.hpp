@@ -162,9 +162,9 @@ class TangentSolver {
   std::optional<bool> direct_;
   LowRank low_rank_;
   bool factor_is_preconditioner_ = false;
-  BlocksOrLevels blocks_or_levels_{{.cycle = 5, .making = 40}};  ///< of an automatic preconditioner
-  double shift_ = 0;                                             ///< of the last factorisation that needed one
-  bool shifted_ = false;                                         ///< the last factor is such
+  BlocksOrLevels blocks_or_levels_{{}};  ///< of an automatic preconditioner
+  double shift_ = 0;                     ///< of the last factorisation that needed one
+  bool shifted_ = false;                 ///< the last factor is such
   std::optional<Multigrid> multigrid_, material_multigrid_;
   KeptLevels kept_levels_;
   Multigrid::Places places_;                  ///< of the tangent that was assembled last

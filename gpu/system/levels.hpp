@@ -19,6 +19,11 @@ class Levels {
  public:
   /// @param nodes  of the model that the levels are of
   void take(const Multigrid& made, const NodesView& nodes);
+  void clear() {
+    ++key_;
+    levels_.clear();
+    coarsest_ = {};
+  }
   /// Differs after each call of take().
   std::uint64_t key() const { return key_; }
 

@@ -163,7 +163,6 @@ class System {
   bool make_levels(bool material);
   bool levels_may_pay() const;
   CgOptions before_levels() const;
-  void note_cost_of_levels(int iterations, int made_before);
   bool limit_is_guessed() const {
     return settings_.linear == LinearMethod::automatic && settings_.cg.max_iterations == CgOptions{}.max_iterations;
   }

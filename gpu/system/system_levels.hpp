@@ -23,7 +23,7 @@ template <class Space>
 bool System<Space>::levels_may_pay() const {
   return !blocks_or_levels_.levels() && !kept_levels_.fail() && levels_fit_ &&
          settings_.preconditioner == Preconditioner::automatic && settings_.precision != Precision::single &&
-         settings_.devices.size() <= 1 && (step_.h > 0 || !host_may_solve()) &&
+         settings_.devices.size() <= 1 && ((step_.h > 0 && tiles_ == nullptr) || !host_may_solve()) &&
          settings_.cg.max_iterations >= CgOptions{}.max_iterations;
 }
 
@@ -31,17 +31,10 @@ bool System<Space>::levels_may_pay() const {
 /// the user chose, go on to the limit.
 template <class Space>
 CgOptions System<Space>::before_levels() const {
-  CgOptions options = settings_.cg;
-  if (limit_is_guessed() && tiles_ == nullptr)
-    options.max_iterations = std::min(options.max_iterations, blocks_or_levels_.patience());
+  if (settings_.linear != LinearMethod::automatic || tiles_ != nullptr) return settings_.cg;
+  CgOptions options = solve_options();
+  options.max_iterations = std::min(options.max_iterations, blocks_or_levels_.patience());
   return options;
-}
-
-/// @param made_before  how often levels had been made before the solve
-template <class Space>
-void System<Space>::note_cost_of_levels(int iterations, int made_before) {
-  if (blocks_or_levels_.levels() && tiles_ == nullptr)
-    blocks_or_levels_.took(iterations, kept_levels_.made() - made_before);
 }
 
 /// @return  false where a level is not positive definite, or memory ends
@@ -59,6 +52,7 @@ bool System<Space>::make_levels(bool material) {
   } catch (const DeviceMemoryError&) {
     levels_fit_ = false;
   }
+  levels_.clear();
   return false;
 }
 

@@ -158,7 +158,13 @@ CgReport System<Space>::solve_in_tiles(const CgOptions& options) {
 /// @param has_material  levels of the tangent's material part may take the place of those of an indefinite one
 template <class Space>
 CgReport System<Space>::solve(const CgOptions& options, bool has_material) {
-  return use_levels() ? solve_by_levels(options, has_material) : solve_by_blocks(options);
+  if (!use_levels()) return solve_by_blocks(options);
+  const int made = kept_levels_.made();
+  const CgReport cg = solve_by_levels(options, has_material);
+  // There is no way back to tiles, nor from a look at the tangent alone.
+  if (has_material && blocks_or_levels_.levels() && tiles_ == nullptr)
+    blocks_or_levels_.took(cg.iterations, kept_levels_.made() - made);
+  return cg;
 }
 
 template <class Space>
@@ -227,6 +233,7 @@ template <class Space>
 DirectionReport System<Space>::direction() {
   const bool whole = unsymmetric();
   if (indefinite_ || too_slow_ || (whole && host_may_solve())) return direction_of_host();
+  if (blocks_or_levels_.levels() && (kept_levels_.fail() || !levels_fit_)) blocks_or_levels_.turn_to_blocks();
   linearize(settings_.tangent, true, taken_step());
   const int n = model_.node_count();
   const auto right_hand_side = [&] {
@@ -237,11 +244,7 @@ DirectionReport System<Space>::direction() {
     });
   };
   const Clock::time_point start = Clock::now();
-  CgOptions options = solve_options();
-  const bool may_change = levels_may_pay();
-  const int made_before = kept_levels_.made();
-  if (may_change) options = before_levels();
-  const auto solved = [&] {
+  const auto solved = [&](const CgOptions& options) {
     right_hand_side();
     if (whole) {
       if (const std::optional<CgReport> exact = solve_unsymmetric(options)) return *exact;
@@ -249,19 +252,18 @@ DirectionReport System<Space>::direction() {
     }
     return solve(options);
   };
-  CgReport cg = solved();
-  if (cg.status == CgStatus::limit && may_change) {
-    const int tried = cg.iterations;
+  const auto solved_by_either = [&](bool tethers_turn) {
+    if (!levels_may_pay()) return solved(solve_options());
+    const CgReport tried = solved(before_levels());
+    if (tried.status != CgStatus::limit) return tried;
     const bool in_tiles = use_tiles();
     blocks_or_levels_.turn_to_levels();
-    if (in_tiles) linearize(settings_.tangent, true);
-    options = solve_options();
-    cg = solved();
-    note_cost_of_levels(cg.iterations, made_before);
-    cg.iterations += tried;
-  } else {
-    note_cost_of_levels(cg.iterations, made_before);
-  }
+    if (in_tiles) linearize(settings_.tangent, tethers_turn);
+    CgReport cg = solved(solve_options());
+    cg.iterations += tried.iterations;
+    return cg;
+  };
+  CgReport cg = solved_by_either(true);
   const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;
   if (host_is_faster(cg.iterations)) too_slow_ = true;
   if ((too_slow_ || cg.status == CgStatus::negative_curvature) && failed && host_may_solve()) {
@@ -271,8 +273,7 @@ DirectionReport System<Space>::direction() {
   }
   if (cg.status == CgStatus::negative_curvature && !model_.tethers.empty()) {
     linearize(settings_.tangent, false);
-    right_hand_side();
-    cg = solve(options);
+    cg = solved_by_either(false);
   }
   DirectionReport report;
   report.cg_seconds = seconds_since(start);

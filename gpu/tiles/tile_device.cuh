@@ -193,7 +193,8 @@ __device__ inline void finish_frame(const FrameSum& sum, const double* pose, con
   }
 }
 
-__device__ inline SolidMaterial<Law::st_venant_kirchhoff, double> solid_material(const TileMaterial& m, double volume, double inverse_step) {
+__device__ inline SolidMaterial<Law::st_venant_kirchhoff, double> solid_material(const TileMaterial& m, double volume,
+                                                                                 double inverse_step) {
   SolidMaterial<Law::st_venant_kirchhoff, double> r;
   r.volume = volume;
   r.lambda = m.lambda;
@@ -236,7 +237,8 @@ __device__ inline void store_symmetric(double* rows, int lanes, const Mat3d& m) 
 /// v dP and, with drilling, v (dP + dY / blend) of a direction at the state of a point.
 /// @param state  rows of the point: H, S, with drilling Dbar
 template <bool Drilling>
-__device__ inline void stress_of_direction(const double* state, int lanes, const SolidMaterial<Law::st_venant_kirchhoff, double>& material,
+__device__ inline void stress_of_direction(const double* state, int lanes,
+                                           const SolidMaterial<Law::st_venant_kirchhoff, double>& material,
                                            Tangent tangent, const Mat3d& tg, const Mat3d& wA, double blend, Mat3d& dP,
                                            Mat3d& dW) {
   constexpr Stabilization kTie = Drilling ? Stabilization::drilling : Stabilization::none;

@@ -37,7 +37,7 @@ class CoupledModel {
     spec.density = 1000;
     const Lame lame = Lame::from_young(2e4, 0.3);
     spec.material = [=](const Vec3d&, int) {
-      return PointMaterialSpec{lame.lambda, lame.mu, mass_damping, stiffness_damping, false};
+      return PointMaterialSpec{lame.lambda, lame.mu, mass_damping, stiffness_damping};
     };
     return add<ElementBody>(std::move(spec));
   }

@@ -3,6 +3,7 @@
 #include "core/executor/executor.hpp"
 #include "core/levels/multigrid.hpp"
 #include "core/node/positive_inverse.hpp"
+#include "core/solver/dependents.hpp"
 #include "tests/support/models.hpp"
 
 #include <random>
@@ -28,6 +29,10 @@ struct TangentAtRest {
     executor.gradient(rest, {}, g);
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, matrix);
+    if (DependentNodes dependents(model.points); !dependents.empty()) {
+      dependents.turn(lin.Q);
+      dependents.condense(matrix);
+    }
     const DofLayout& dofs = model.points.dofs;
     inverse.resize(dofs.block_total());
     for (int node = 0; node < model.node_count(); ++node) {

@@ -196,7 +196,7 @@ double solve(const Problem& problem, int n) {
   o.young = kYoung;
   o.poisson = problem.poisson;
   o.locking = problem.locking;
-  o.neo_hookean = problem.law == ElasticLaw::neo_hookean;
+  o.law = problem.law == ElasticLaw::neo_hookean ? Law::neo_hookean : Law::st_venant_kirchhoff;
   o.formulation = problem.law == ElasticLaw::linear         ? ElementFormulation::linear
                   : problem.law == ElasticLaw::corotational ? ElementFormulation::corotational
                                                             : ElementFormulation::large_strain;

@@ -36,13 +36,13 @@ std::vector<Case> cases() {
     add("linear_" + name, shape, [](ElementOptions& o) { o.formulation = linear; });
     add("corotational_" + name, shape, [](ElementOptions& o) { o.formulation = corotational; });
     add("svk_" + name, shape, [](ElementOptions&) {});
-    add("neo_hookean_" + name, shape, [](ElementOptions& o) { o.neo_hookean = true; });
+    add("neo_hookean_" + name, shape, [](ElementOptions& o) { o.law = Law::neo_hookean; });
     add("corotational_viscous_" + name, shape, [](ElementOptions& o) {
       o.formulation = corotational;
       o.stiffness_damping = 0.02;
     });
     add("neo_hookean_viscous_" + name, shape, [](ElementOptions& o) {
-      o.neo_hookean = true;
+      o.law = Law::neo_hookean;
       o.stiffness_damping = 0.02;
     });
   }
@@ -63,7 +63,7 @@ std::vector<Case> cases() {
   add("svk_averaged", tet4, [](ElementOptions& o) { o.locking = ElementLocking::averaged; });
   add("neo_hookean_averaged", tet4, [](ElementOptions& o) {
     o.locking = ElementLocking::averaged;
-    o.neo_hookean = true;
+    o.law = Law::neo_hookean;
     o.poisson = 0.49;
   });
   add("averaged_viscous_penalty", tet4, [](ElementOptions& o) {
@@ -141,7 +141,7 @@ TEST(ElementReference, BlocksEqualOrdinaryPoints) {
     for (const bool neo_hookean : {false, true}) {
       ElementOptions o;
       o.shape = shape;
-      o.neo_hookean = neo_hookean;
+      o.law = neo_hookean ? Law::neo_hookean : Law::st_venant_kirchhoff;
       const ElementModel built = element_model(o);
       const ElementBody& body = *built.body;
       PointSetBuilder builder;
@@ -178,7 +178,7 @@ TEST(ElementReference, StandBesideFrames) {
   ElementBodySpec spec;
   spec.mesh = distorted_mesh({});
   spec.density = 1000;
-  spec.material = [](const Vec3d&, int) { return PointMaterialSpec{5e3, 4e3, 0, 0, false}; };
+  spec.material = [](const Vec3d&, int) { return PointMaterialSpec{5e3, 4e3, 0, 0}; };
   Model model;
   PointSetBuilder points;
   const GridBody frames(block_spec({}), model, points);

@@ -10,7 +10,7 @@ namespace fascia::test {
 struct ElementOptions {
   ElementShape shape = ElementShape::tet4;
   ElementFormulation formulation = ElementFormulation::large_strain;
-  bool neo_hookean = false;
+  Law law = Law::st_venant_kirchhoff;
   ElementLocking locking = ElementLocking::none;
   double penalty = 0, stiffness_damping = 0, mass_damping = 0;
   double young = 1e4, poisson = 0.3, density = 1000;
@@ -49,7 +49,7 @@ inline ElementModel element_model(const ElementOptions& o, ElementMesh mesh) {
   spec.density = o.density;
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d&, int) {
-    return PointMaterialSpec{lame.lambda, lame.mu, o.mass_damping, o.stiffness_damping, o.neo_hookean};
+    return PointMaterialSpec{lame.lambda, lame.mu, o.mass_damping, o.stiffness_damping, o.law};
   };
   return element_model(std::move(spec));
 }

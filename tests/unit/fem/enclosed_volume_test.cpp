@@ -16,7 +16,7 @@ using namespace test;
 ElementModel filled(double bulk_modulus) {
   ElementOptions o;
   o.shape = ElementShape::tet10;
-  o.neo_hookean = true;
+  o.law = Law::neo_hookean;
   ElementModel built = element_model(o);
   SurfaceLoad load = surface_of(*built.body, built.body->faces());
   load.bulk_modulus = bulk_modulus;

@@ -43,7 +43,7 @@ std::vector<Case> cases() {
             ElementOptions o;
             o.shape = shape;
             o.formulation = law.formulation;
-            o.neo_hookean = law.neo_hookean;
+            o.law = law.neo_hookean ? Law::neo_hookean : Law::st_venant_kirchhoff;
             if (averaged) o.locking = ElementLocking::averaged;
             if (penalised) o.penalty = 1e5;
             if (damped) o.stiffness_damping = 0.02;
@@ -87,7 +87,7 @@ ElementBodySpec spec_of(const ElementOptions& o, const Vec3d& shift) {
   spec.density = 1000;
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d& X, int) {
-    return PointMaterialSpec{lame.lambda * (1 + X[0]), lame.mu, 0, o.stiffness_damping, o.neo_hookean};
+    return PointMaterialSpec{lame.lambda * (1 + X[0]), lame.mu, 0, o.stiffness_damping, o.law};
   };
   return spec;
 }
@@ -96,7 +96,7 @@ ElementBodySpec spec_of(const ElementOptions& o, const Vec3d& shift) {
 TEST(GpuElementBodies, OfSeveralBodies) {
   ElementOptions first, second, third;
   first.locking = ElementLocking::averaged;
-  first.neo_hookean = true;
+  first.law = Law::neo_hookean;
   second.shape = ElementShape::hex20;
   second.formulation = ElementFormulation::corotational;
   second.stiffness_damping = 0.02;

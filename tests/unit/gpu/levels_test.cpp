@@ -1,6 +1,8 @@
 #include "gpu/system/levels.hpp"
 
+#include "core/math/rotation.hpp"
 #include "gpu/space/space.hpp"
+#include "tests/support/dependent_models.hpp"
 #include "tests/support/shell_models.hpp"
 #include "tests/support/tangent_at_rest.hpp"
 #include "tests/unit/gpu/host_model.hpp"
@@ -66,6 +68,29 @@ TEST(LevelsTest, HaveTheProcessorsCycleOfAFewNodes) {
   BuiltModel built = build({block_spec(o)});
   hold_face(built.model);
   expect_same_cycle(std::move(built.model), "eight");
+}
+
+/// Vertices beside frames, nodes that depend on others, constraints in axes of their own.
+TEST(LevelsTest, HaveTheProcessorsCycleOfMixedNodes) {
+  for (const std::string& name : kWaysToDepend) {
+    Model model = std::move(coupled_model(name)->model);
+    const PointSet& points = model.points;
+    int held = 0;
+    for (int i = 0; i < model.node_count(); ++i) {
+      const bool follows = std::any_of(points.dependents.begin(), points.dependents.end(),
+                                       [i](const DependentNode& d) { return d.node == i; });
+      if (follows) continue;
+      FrameConstraint c;
+      c.node = i;
+      c.translations = held < 4 ? 3 : 1;
+      c.rotations = model.frame_kind[at(i)] == FrameKind::vertex || held >= 4 ? 0 : 3;
+      c.whole = model.frame_kind[at(i)] == FrameKind::affine && held < 4;
+      if (held >= 4) c.translation_axes = Mat3d::identity() + rotation_increment({{0.3, -0.8, 0.5}});
+      model.constraints.push_back(c);
+      if (++held == 6) break;
+    }
+    expect_same_cycle(std::move(model), name.c_str());
+  }
 }
 
 /// Levels that were taken before leave nothing behind.
