@@ -115,6 +115,7 @@ Shape body_material_schema() {
 
 const Shape& material_schema() {
   std::vector<Choice> laws;
+  laws.reserve(kMaterialLaws.size());
   for (const LawWord& law : kMaterialLaws) laws.push_back({law.word, law.meaning});
   static const Shape material =
       table({key("law", choice(laws), "Elastic law.").defaults("\"st-venant-kirchhoff\""),

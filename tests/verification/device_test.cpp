@@ -175,14 +175,15 @@ TEST_P(DeviceSolution, IsThatOfTheProcessor) {
 using DeviceLevels = Device;
 using DeviceChoice = Device;
 
-/// Made of the same tangent by the same code: levels take as many iterations here as there.
+/// Made of the same tangent by the same code: as long as they are new, levels take as many iterations here as there.
+/// Kept for later tangents they smooth with the matrix that they were made of, where the processor has the present one:
+/// up to half as many iterations more, from which on they are made again.
 TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
-  const std::optional<Simulation> simulation =
-      loaded({"solver.linear.kind=cg", "solver.linear.preconditioner=multigrid", "solver.linear.tolerance=1e-10",
-              "solver.newton.tolerance=1e-12"});
+  std::optional<Simulation> simulation = loaded({"solver.linear.kind=cg", "solver.linear.preconditioner=multigrid",
+                                                 "solver.linear.tolerance=1e-10", "solver.newton.tolerance=1e-12"});
   if (!simulation) GTEST_SKIP() << why_not;
   ASSERT_EQ(app::not_on_gpu(*simulation), "");
-  const Simulation& s = *simulation;
+  Simulation& s = *simulation;
   SolverSettings settings = app::settings_of(s.scene.solver);
   const auto [expected, on_cpu] = solve(s, Where::processor, settings);
   const auto [got, there] = solve(s, where(), settings);
@@ -195,9 +196,21 @@ TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
   const auto each = [](const RunReport& run) {
     return static_cast<double>(run.linear_iterations) / run.newton_iterations;
   };
-  EXPECT_NEAR(each(there), each(on_cpu), 0.05 * each(on_cpu) + 1);
-  settings.precision = Precision::mixed;
-  if (scene() == "shell_roof") EXPECT_LE(displacement_difference(solve(s, where(), settings).state, expected), 1e-9);
+  EXPECT_LE(each(there), 1.5 * each(on_cpu) + 1);
+  if (scene() == "shell_roof") {
+    SolverSettings mixed = settings;
+    mixed.precision = Precision::mixed;
+    EXPECT_LE(displacement_difference(solve(s, where(), mixed).state, expected), 1e-9);
+  }
+  // The first solve alone; a large motion is cut into more steps, whose levels are kept.
+  s.scene.solver.load_steps = s.scene.solver.steps = 1;
+  settings.max_iterations = 1;
+  settings.proceed_on_limit = true;
+  const RunReport first = solve(s, Where::processor, settings).report;
+  EXPECT_GT(first.linear_iterations, 0);
+  if (first.newton_iterations > 1) return;
+  EXPECT_NEAR(solve(s, where(), settings).report.linear_iterations, first.linear_iterations,
+              0.05 * first.linear_iterations + 1);
 }
 
 /// Blocks end at their limit; levels then converge, where no factor takes over.
