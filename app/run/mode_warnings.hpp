@@ -6,7 +6,7 @@
 
 namespace fascia::app {
 
-/// What is to be said of natural modes: those that frames have and matter hardly feels, and what rounding leaves open.
+/// Warns of natural modes that frames have and matter hardly feels, and of what rounding leaves open.
 void warn_of_modes(const Modes& modes, const Simulation& simulation, Warnings& warnings);
 
 }  // namespace fascia::app

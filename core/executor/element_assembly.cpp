@@ -38,7 +38,7 @@ void add_columns(BatchTangent<L, N>& tangent, const ElementBlock& block, int bat
   }
 }
 
-/// The same by the closed form of a law.
+/// Adds the stiffness of a batch by the closed form of its law.
 template <Law L, int N>
 void add_blocks(const BatchTangent<L, N>& tangent, const ElementBlock& block, int batch, int half, bool full,
                 Mat3<Lanes>* K) {

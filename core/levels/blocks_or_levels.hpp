@@ -26,7 +26,7 @@ class BlocksOrLevels {
     solves_ = 0;
   }
   void turn_to_blocks() { levels_ = false; }
-  /// Of a solve with levels. @param made  how often levels were made for it
+  /// Takes the cost of a solve with levels into account. @param made  how often levels were made for it
   void took(int iterations, int made) {
     const double cost = costs_.cycle * iterations + costs_.making * made;
     recent_ = solves_ == 0 ? cost : recent_ + (cost - recent_) / kMemory;

@@ -9,10 +9,10 @@ namespace fascia {
 /// and of points that are no matter but springs to places in space.
 enum class Law : unsigned char { st_venant_kirchhoff, neo_hookean, linear, corotational, sheet, line, tether };
 
-/// Of sheets, lines and tethers, whose points have axes.
+/// Sheets, lines and tethers are thin: their points have axes.
 FASCIA_HD constexpr bool is_thin(Law law) { return law == Law::sheet || law == Law::line || law == Law::tether; }
 
-/// Of solids under large strain, whose points know their law alone.
+/// Solids under large strain have a law of each point alone.
 FASCIA_HD constexpr bool is_of_points(Law law) {
   return !is_thin(law) && law != Law::linear && law != Law::corotational;
 }

@@ -47,7 +47,7 @@ struct NeoHookean {
     return trace(E) - where_positive(change + T(1), T(0.5) * log1p(volume_change(E * T(2))), log1p(change));
   }
 
-  // As a law of solids (solid_law.hpp): θ = ln J.
+  // This is a law of solids (solid_law.hpp) with θ = ln J.
   struct At {
     Mat3<T> F_inverse;
     FASCIA_HD explicit At(const Mat3<T>& H) : F_inverse(inverse(Mat3<T>::identity() + H)) {}

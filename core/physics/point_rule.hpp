@@ -15,7 +15,7 @@ struct PointRule {
   bool transverse = false;  ///< thin laws: directors may stretch (affine frames), and resist it on their own
 };
 
-/// What the compiler must know of a rule to leave out what it does not need: of thin laws only that they are such.
+/// The compiler knows this much of a rule and leaves out the rest: to it all thin laws are one.
 struct PointKind {
   Stabilization stabilization = Stabilization::none;
   Law law = Law::st_venant_kirchhoff;

@@ -34,7 +34,7 @@ struct StVenantKirchhoff {
     return T(0.5) * lambda * t * t + mu * contract(E, E);
   }
 
-  // As a law of solids (solid_law.hpp): θ = tr E.
+  // This is a law of solids (solid_law.hpp) with θ = tr E.
   struct At {
     FASCIA_HD explicit At(const Mat3<T>&) {}
     At() = default;

@@ -24,7 +24,7 @@ class Levels {
     levels_.clear();
     coarsest_ = {};
   }
-  /// Differs after each call of take().
+  /// Differs after each call of take() and clear().
   std::uint64_t key() const { return key_; }
 
   /// z = M⁻¹ r

@@ -27,8 +27,8 @@ bool System<Space>::levels_may_pay() const {
          settings_.cg.max_iterations >= CgOptions{}.max_iterations;
 }
 
-/// What a solve with blocks may take before. Tiles, far faster than what levels need in their place, and solvers that
-/// the user chose, go on to the limit.
+/// Limits a solve with blocks that levels may follow. Tiles, far faster than what levels need in their place, and
+/// solvers that the user chose, go on to their limit.
 template <class Space>
 CgOptions System<Space>::before_levels() const {
   if (settings_.linear != LinearMethod::automatic || tiles_ != nullptr) return settings_.cg;
