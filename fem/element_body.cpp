@@ -38,8 +38,6 @@ std::vector<std::size_t> ordered(const ElementMesh& mesh, const std::vector<std:
   return order;
 }
 
-double poisson_of(const PointMaterialSpec& m) { return m.lambda / (2 * (m.lambda + m.mu)); }
-
 }  // namespace
 
 std::vector<BodyGroup> body_groups(const ElementMesh& mesh) {
@@ -75,7 +73,7 @@ Law ElementBody::law(int element) const {
 
 void ElementBody::choose_formulation(const ElementBodySpec& spec) {
   const bool nearly = std::any_of(material_.begin(), material_.end(),
-                                  [](const PointMaterialSpec& m) { return poisson_of(m) > kLockingPoisson; });
+                                  [](const PointMaterialSpec& m) { return m.poisson() > kLockingPoisson; });
   const bool can_average = mesh().shape == ElementShape::tet4 && formulation_ == ElementFormulation::large_strain;
   averaged_ =
       spec.locking == ElementLocking::averaged || (spec.locking == ElementLocking::automatic && nearly && can_average);
@@ -119,11 +117,9 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
     for (const QuadraturePoint& q : rule) {
       const ElementPoint p = shape_at(mesh(), e, q.xi);
       const double v = p.det_J * q.weight;
-      BodyPoint point;
+      BodyPoint point{m};
       point.X = point.middle = p.X;
       point.volume = v;
-      point.lambda = m.lambda;
-      point.mu = m.mu;
       point.law = m.law;
       point.cell = static_cast<int>(e);
       points_.push_back(point);
@@ -158,7 +154,7 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
         block.volume.push_back(p.det_J * q.weight);
       }
       const PointMaterialSpec& m = material_[e];
-      block.material.push_back({m.lambda, m.mu, m.stiffness_damping, spec.penalty});
+      block.material.push_back({m, m.stiffness_damping, spec.penalty});
     }
     builder.add_elements(make_element_block(block));
   }

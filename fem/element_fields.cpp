@@ -70,7 +70,7 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
   std::vector<Averaged> result(mesh().size());
   for (const Law law : kSolidLaws) {
     std::vector<double> theta(n), volume(n);
-    std::vector<LambdaMean> lambda(n);
+    std::vector<VolumetricMean> modulus(n);
     for (std::size_t e = 0; e < mesh().size(); ++e) {
       if (points_[e].law != law) continue;
       const Mat3d H = field_at(attach_point(e), state).H;
@@ -78,13 +78,13 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
       for (const int node : mesh().element(e)) {
         theta[at(node)] += strain * points_[e].volume;
         volume[at(node)] += points_[e].volume;
-        lambda[at(node)].add(points_[e].lambda, points_[e].volume);
+        modulus[at(node)].add(volumetric_modulus(law, points_[e]), points_[e].volume);
       }
     }
     for (std::size_t e = 0; e < mesh().size(); ++e) {
       if (points_[e].law != law) continue;
       for (const int node : mesh().element(e)) {
-        const double mean = theta[at(node)] / volume[at(node)], stiffness = lambda[at(node)].value();
+        const double mean = theta[at(node)] / volume[at(node)], stiffness = modulus[at(node)].value();
         result[e].pressure += 0.25 * stiffness * mean;
         result[e].energy_density += 0.125 * stiffness * mean * mean;
       }
@@ -113,9 +113,9 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const St
     const Mat3d F = Mat3d::identity() + H;
     const Mat3d S = with_solid_law(p.law, [&]<Law L>() {
       using Solid = SolidLaw<L, double>;
-      const Solid solid{p.lambda, p.mu};
+      const auto solid = make_law<Solid>(p);
       t.energy_density = averaged ? solid.shear_energy(H) + averaged->energy_density : energy_density(solid, H);
-      const double pressure = averaged ? averaged->pressure : p.lambda * Solid::volumetric_strain(H);
+      const double pressure = averaged ? averaged->pressure : solid.volumetric_modulus() * Solid::volumetric_strain(H);
       return solid.second_piola(typename Solid::At(H), t.strain, pressure);
     });
     t.stress = times_transpose(F * S, F) * (1 / determinant(F));

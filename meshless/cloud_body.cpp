@@ -51,7 +51,7 @@ void CloudBody::split_points(const CloudSpec& spec) {
     const auto add = [&](const Vec3d& offset, double part, Law law) {
       point_places_.push_back({place, offset});
       const int axes = is_thin(law) ? static_cast<int>(axes_.size()) : -1;
-      points_.push_back({p.place.X + offset, p.volume * part, m.lambda, m.mu, p.place.X, law, spec.affine, axes});
+      points_.push_back({m, p.place.X + offset, p.volume * part, p.place.X, law, spec.affine, axes});
       if (axes >= 0) axes_.push_back(T);
     };
     if (p.place.dimension == 3 || spec.through == 1) {

@@ -66,7 +66,7 @@ void CloudBody::add_middle_ties(const CloudSpec& spec, const std::vector<Scatter
     if (places_[p].dimension == 3 || spec.through == 1) continue;  // tied at their points
     const Attachment a = attach_place(places_[p], weights[p], {});
     const double mu = spec.material(places_[p].X).mu;
-    const PointSample tie{places_[p].X, spec.points[p].volume, 0, 0, spec.stabilization * mu, 0, a.influences, {}};
+    const PointSample tie{{}, places_[p].X, spec.points[p].volume, spec.stabilization * mu, 0, a.influences, {}};
     builder.add_points(a.nodes, std::span(&tie, 1), spec.spacing,
                        {Law::st_venant_kirchhoff, Stabilization::affine, true});
   }
@@ -101,14 +101,12 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
   std::vector<PointSample> samples;
   for (const std::size_t q : members) {
     const BodyPoint& p = points_[q];
-    const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
     const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine) || !point_places_[q].stabilized;
     const double stabilization = none ? 0.0 : spec.stabilization * p.mu;
-    PointSample s{p.X,
+    PointSample s{{thin_lame(p.law, p), p.own},
+                  p.X,
                   p.volume,
-                  lame.lambda,
-                  lame.mu,
                   stabilization,
                   spec.material(p.middle).stiffness_damping,
                   {},

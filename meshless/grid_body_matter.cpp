@@ -25,8 +25,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
   bool nearly_incompressible = false;
   for (const Sample& s : samples) {
     materials.push_back(spec.material(to_world(s.x)));
-    const double poisson = materials.back().lambda / (2 * (materials.back().lambda + materials.back().mu));
-    nearly_incompressible = nearly_incompressible || poisson > kSelectivePoisson;
+    nearly_incompressible = nearly_incompressible || materials.back().poisson() > kSelectivePoisson;
     if (spec.integration == IntegrationKind::selective && materials.back().lambda < 0)
       throw InputError("selective integration needs a Poisson ratio that is not negative; use integration = \"full\"");
   }
@@ -67,16 +66,10 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       const PointMaterialSpec& m = materials[q];
       const Vec3d X = to_world(s.x);
       const double stabilization = stabilization_of(m, a);
-      points_.push_back({X, s.volume, m.lambda, m.mu, X, m.law});
+      points_.push_back({m, X, s.volume, X, m.law});
       point_cells_.push_back({a.cell, s.tetrahedron});
-      points.push_back({X,
-                        s.volume,
-                        selective_ ? 0.0 : m.lambda,
-                        m.mu,
-                        stabilization,
-                        m.stiffness_damping,
-                        std::move(a.influences),
-                        {}});
+      points.push_back({m, X, s.volume, stabilization, m.stiffness_damping, std::move(a.influences), {}});
+      if (selective_) points.back().lambda = 0;
       nodes = a.nodes;
       volumetric.volume += s.volume;
       volumetric.lambda += s.volume * m.lambda;

@@ -65,8 +65,7 @@ PlaneTriangle ShellBody::corners(std::size_t t) const {
 }
 
 ShellSection ShellBody::section(std::size_t t) const {
-  const double lambda = material_[t].lambda, mu = material_[t].mu;
-  return {mu * (3 * lambda + 2 * mu) / (lambda + mu), lambda / (2 * (lambda + mu)), thickness_[t]};
+  return {material_[t].young(), material_[t].poisson(), thickness_[t]};
 }
 
 void ShellBody::number_nodes(Model& model) {
@@ -128,8 +127,7 @@ void ShellBody::add_triangles(const ShellBodySpec& spec, PointSetBuilder& builde
     for (const int node : mesh_.triangles[t]) point.X += mesh_.nodes[at(node)] * (1.0 / 3);
     point.middle = point.X;
     point.volume = area_[t] * thickness_[t];
-    point.lambda = material_[t].lambda;
-    point.mu = material_[t].mu;
+    static_cast<LawConstants&>(point) = material_[t];
     point.law = Law::sheet;
     point.cell = static_cast<int>(t);
     points_.push_back(point);

@@ -27,9 +27,7 @@ constexpr double kDrilling = 0.1, kAffineStabilization = 0.003;
 
 }  // namespace
 
-PointMaterialSpec point_material(const Material& m) {
-  return {m.lambda, m.mu, m.mass_damping, m.stiffness_damping, m.law};
-}
+PointMaterialSpec point_material(const Material& m) { return {m, m.mass_damping, m.stiffness_damping, m.law}; }
 
 namespace {
 

@@ -38,7 +38,7 @@ struct Means {
   void add(const BodyPoint& p, double weights_length, double rho) {
     volume += p.volume;
     length += p.volume * weights_length;
-    stiffness += p.volume * (p.lambda + 2 * p.mu);
+    stiffness += p.volume * p.wave_modulus();
     density += p.volume * rho;
   }
 };
@@ -59,7 +59,7 @@ class Search {
     if (best.body < 0) return out;
     const SimulatedBody& b = s_.bodies[at(best.body)];
     const BodyPoint& p = b.body->points()[best.point];
-    const double rho = density_of(*b.body), stiffness = p.lambda + 2 * p.mu;
+    const double rho = density_of(*b.body), stiffness = p.wave_modulus();
     out.body = best.body;
     out.point = best.point;
     out.share = std::min(1.0, strained_.energy / total);
@@ -79,9 +79,7 @@ class Search {
     double energy = 0;
   };
 
-  static std::string young_text(const BodyPoint& p) {
-    return pressure_text(p.mu * (3 * p.lambda + 2 * p.mu) / (p.lambda + p.mu));
-  }
+  static std::string young_text(const BodyPoint& p) { return pressure_text(p.young()); }
 
   void look(int index) {
     const ModelBody& body = *s_.bodies[at(index)].body;

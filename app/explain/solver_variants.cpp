@@ -54,12 +54,21 @@ std::vector<Variant> material_variants(const Scene& scene) {
     found.push_back({kind, key, label, "", {change}, "", false, 1});
   };
   for (const auto& [path, material] : materials_of(scene)) {
-    const std::string damping = path + ".damping", law = path + ".law=\"st-venant-kirchhoff\"";
+    const std::string damping = path + ".damping";
     const bool damped = material->mass_damping > 0 || material->stiffness_damping > 0;
     if (is_dynamic(scene.solver.kind) && damped)
       add(VariantKind::damping, damping, fmt::format("without `{}`", damping), damping + "=");
-    if (needs_large_strain(material->law))
-      add(VariantKind::law, path + ".law", fmt::format("with `{}.law = \"st-venant-kirchhoff\"`", path), law);
+    if (!needs_large_strain(material->law)) continue;
+    add(VariantKind::law, path + ".law", fmt::format("with `{}.law = \"st-venant-kirchhoff\"`", path),
+        path + ".law=\"st-venant-kirchhoff\"");
+    std::vector<std::string>& changes = found.back().overrides;
+    const LawWord& law = law_word(material->law);
+    if (law.own.empty()) continue;  // else Young's modulus and Poisson's ratio in the place of what the law has
+    for (const LawKey& key : law.own)
+      if (scene.says(path + "." + key.name)) changes.push_back(fmt::format("{}.{}=", path, key.name));
+    changes.push_back(path + ".bulk=");
+    changes.push_back(fmt::format("{}.young={}", path, material->young()));
+    changes.push_back(fmt::format("{}.poisson={}", path, material->poisson()));
   }
   return found;
 }

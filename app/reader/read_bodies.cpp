@@ -85,11 +85,41 @@ void read_lame(const TableReader& table, Material& material) {
 void read_young(const TableReader& table, Material& material) {
   const auto young = table.number("young"), poisson = table.number("poisson");
   if (!young || !poisson) return;
-  material.lambda = *young * *poisson / ((1 + *poisson) * (1 - 2 * *poisson));
-  material.mu = *young / (2 * (1 + *poisson));
+  static_cast<Lame&>(material) = Lame::from_young(*young, *poisson);
   if (!std::isfinite(material.lambda) || !std::isfinite(material.mu) || !(material.mu > 0))
     table.error("young", fmt::format("{} Pa with Poisson's ratio {} gives no finite stiffness; must be less extreme",
                                      *young, *poisson));
+}
+
+/// Constants that the law does not have.
+void refuse_other_constants(const TableReader& table, const LawWord& law) {
+  const std::string why = fmt::format("is no constant of the law \"{}\"", law.word);
+  if (!law.own.empty()) return table.refuse({"young", "poisson", "lame"}, why);
+  table.refuse({"bulk"}, why);
+  for (const LawWord& other : kMaterialLaws)
+    for (const LawKey& key : other.own)
+      if (table.has(key.name))
+        table.error(key.name, fmt::format("{}; remove it, or add law = \"{}\"", why, other.word));
+}
+
+/// What the law has of its own, and Lamé's constants that it has at small strain.
+void read_own_constants(const TableReader& table, const LawWord& law, Material& material) {
+  bool complete = true;
+  const auto read = [&](const char* name, bool needed) {
+    const auto value = table.number(name);
+    if (!value && needed && !table.has(name))
+      table.error(name, fmt::format("is missing; the law \"{}\" needs it", law.word));
+    complete = complete && (value || !needed);
+    return value.value_or(0);
+  };
+  for (const LawKey& key : law.own) material.own.push_back(read(key.name, key.needed));
+  const double bulk = read("bulk", true);
+  if (!complete) return;
+  const double mu = law.shear_modulus(material.own);
+  static_cast<Lame&>(material) = Lame::from_bulk(bulk, mu);
+  if (!(mu > 0) || !std::isfinite(material.lambda))
+    table.error(law.own.front().name,
+                fmt::format("makes a shear modulus of {:.6g} Pa at small strain; must make one above 0", mu));
 }
 
 std::optional<BodyModel> read_model(const TableReader& body) {
@@ -155,7 +185,11 @@ Material read_material(const TableReader& table) {
   Material material;
   material.place = table.place();
   if (const auto law = table.text("law")) material.law = material_law(*law);
-  if (table.has("young")) {
+  const LawWord& law = law_word(material.law);
+  refuse_other_constants(table, law);
+  if (!law.own.empty()) {
+    read_own_constants(table, law, material);
+  } else if (table.has("young")) {
     if (!table.has("poisson"))
       table.error("poisson", "is missing beside young; must be a number above -1 and below 0.5");
     read_young(table, material);

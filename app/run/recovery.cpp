@@ -30,9 +30,10 @@ void keep_nearest_material(const ModelBody& body, const Vec3d& X, std::vector<No
   });
   if (nearest == patch.end()) return;
   const BodyPoint own = point(*nearest);
+  const LawConstants& constants = own;
   std::erase_if(patch, [&](const auto& s) {
     const BodyPoint& p = point(s);
-    return p.lambda != own.lambda || p.mu != own.mu || p.law != own.law;
+    return p != constants || p.law != own.law;
   });
 }
 

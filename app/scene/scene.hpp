@@ -5,6 +5,7 @@
 #include "app/scene/region.hpp"
 #include "core/math/mat3.hpp"
 #include "core/physics/law.hpp"
+#include "core/physics/law_constants.hpp"
 
 #include <array>
 #include <filesystem>
@@ -30,14 +31,11 @@ struct StatedNeed {
 };
 
 // ------------------------------------------------------------------------------------------------ bodies
-struct Material {
+struct Material : LawConstants {
   Place place;
   std::string name;  ///< empty for an inline table
   Law law = Law::st_venant_kirchhoff;
-  double lambda = 0, mu = 0;                       ///< [Pa]
   double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
-  double poisson() const { return lambda / (2 * (lambda + mu)); }
-  double young() const { return mu * (3 * lambda + 2 * mu) / (lambda + mu); }
 };
 struct MaterialUse {
   Region where;  ///< AllRegion where none was given

@@ -1,6 +1,8 @@
 #include "app/scene/laws.hpp"
 #include "app/schema/schema.hpp"
 
+#include <fmt/format.h>
+
 namespace fascia::app {
 namespace {
 
@@ -113,23 +115,42 @@ Shape body_material_schema() {
   return one_of({text("the name of a material"), material(), array(part, 1)});
 }
 
-const Shape& material_schema() {
+namespace {
+
+/// Young's modulus, Lamé's parameters or what a law has of its own.
+Shape make_material_schema() {
   std::vector<Choice> laws;
-  laws.reserve(kMaterialLaws.size());
   for (const LawWord& law : kMaterialLaws) laws.push_back({law.word, law.meaning});
-  static const Shape material =
-      table({key("law", choice(laws), "Elastic law.").defaults("\"st-venant-kirchhoff\""),
-             key("young", number("Pa", above(0)), "Young's modulus."),
-             key("poisson", number("1", inside(-1, 0.5)), "Poisson's ratio; goes with `young`."),
-             key("lame",
-                 table({key("lambda", number("Pa"), "First parameter; 3 lambda + 2 mu > 0.").needed(),
-                        key("mu", number("Pa", above(0)), "Shear modulus.").needed()}),
-                 "Lamé's parameters."),
-             key("damping",
-                 table({key("mass", number("1/s", at_least(0)), "On velocities.").defaults("0"),
-                        key("stiffness", number("s", at_least(0)), "On the rate of strain.").defaults("0")}),
-                 "Viscous damping.")},
-            {{{"young", "lame"}}});
+  std::vector<Key> keys{key("law", choice(laws), "Elastic law.").defaults("\"st-venant-kirchhoff\""),
+                        key("young", number("Pa", above(0)), "Young's modulus."),
+                        key("poisson", number("1", inside(-1, 0.5)), "Poisson's ratio; goes with `young`."),
+                        key("lame",
+                            table({key("lambda", number("Pa"), "First parameter; 3 lambda + 2 mu > 0.").needed(),
+                                   key("mu", number("Pa", above(0)), "Shear modulus.").needed()}),
+                            "Lamé's parameters.")};
+  Exclusive one{{"young", "lame"}};
+  for (const LawWord& law : kMaterialLaws) {
+    if (law.own.empty()) continue;
+    one.keys.push_back(law.own.front().name);
+    for (const LawKey& own : law.own) {
+      const std::string of_law = fmt::format("Of `law = \"{}\"`: {}", law.word, own.meaning);
+      keys.push_back(own.needed ? key(own.name, number(own.unit), of_law)
+                                : key(own.name, number(own.unit), of_law).defaults("0"));
+    }
+  }
+  keys.push_back(
+      key("bulk", number("Pa", above(0)), "Bulk modulus of laws with constants of their own, which need it."));
+  keys.push_back(key("damping",
+                     table({key("mass", number("1/s", at_least(0)), "On velocities.").defaults("0"),
+                            key("stiffness", number("s", at_least(0)), "On the rate of strain.").defaults("0")}),
+                     "Viscous damping."));
+  return table(std::move(keys), {one});
+}
+
+}  // namespace
+
+const Shape& material_schema() {
+  static const Shape material = make_material_schema();
   return material;
 }
 

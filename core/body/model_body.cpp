@@ -2,13 +2,15 @@
 
 #include "core/base/index.hpp"
 
+#include <algorithm>
+
 namespace fascia {
 
 namespace {
 
 /// The point's material as the mechanics use it, without stabilisation and damping.
 ThinMaterial<double> stress_material(const BodyPoint& p, const Mat3d& axes) {
-  const Lame lame = thin_lame(p.law, {p.lambda, p.mu});
+  const Lame lame = thin_lame(p.law, p);
   ThinMaterial<double> m{};
   m.volume = p.volume;
   m.lambda = lame.lambda;
@@ -29,7 +31,11 @@ PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, cons
     return {E, cauchy(F, second_piola(m, E)), energy_density(m, E)};
   }
   return with_solid_law(p.law, [&]<Law L>() -> PointTensors {
-    const SolidLaw<L, double> shear{0, p.mu}, volume{p.lambda, 0};
+    LawConstants without_lambda = p, lambda_alone = p;
+    without_lambda.lambda = lambda_alone.mu = 0;
+    std::fill(lambda_alone.own.begin(), lambda_alone.own.end(), 0.0);
+    const auto shear = make_law<SolidLaw<L, double>>(without_lambda),
+               volume = make_law<SolidLaw<L, double>>(lambda_alone);
     return {E, cauchy(F, second_piola(shear, H)) + cauchy(Fv, second_piola(volume, Hv)),
             energy_density(shear, H) + energy_density(volume, Hv)};
   });

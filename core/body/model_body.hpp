@@ -13,8 +13,7 @@
 namespace fascia {
 
 /// Material of a point.
-struct PointMaterialSpec {
-  double lambda = 0, mu = 0;                       ///< [Pa]
+struct PointMaterialSpec : LawConstants {
   double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
   Law law = Law::st_venant_kirchhoff;              ///< of solids
 };
@@ -34,11 +33,10 @@ struct FieldValue {
 FieldValue field_at(const Attachment& attachment, const State& state);
 
 /// An integration point with what it weighs, for results.
-struct BodyPoint {
+struct BodyPoint : LawConstants {
   Vec3d X{};          ///< [m]
   double volume = 0;  ///< [m³]
-  double lambda = 0, mu = 0;
-  Vec3d middle{};  ///< its place on the middle of a sheet or line; X in a solid [m]
+  Vec3d middle{};     ///< its place on the middle of a sheet or line; X in a solid [m]
   Law law = Law::st_venant_kirchhoff;
   bool transverse = false;  ///< as in PointRule
   int axes = -1;            ///< of a thin law: index into ModelBody::axes()

@@ -38,14 +38,14 @@ void add_columns(BatchTangent<L, N>& tangent, const ElementBlock& block, int bat
   }
 }
 
-/// Adds the stiffness of a batch by the closed form of its law.
+/// Adds the stiffness of a batch by the blocks of its points.
 template <Law L, int N>
 void add_blocks(const BatchTangent<L, N>& tangent, const ElementBlock& block, int batch, int half, bool full,
                 Mat3<Lanes>* K) {
   const int n = nodes_of<N>(block);
   for (int q = 0; q < tangent.points.count(); ++q) {
     const ElasticPoint<L, Lanes>& point = tangent.point(q);
-    const ElementStiffness<L, Lanes> stiffness(point, tangent.m, tangent.lambda(), full, block.damped);
+    const ElementStiffness<L, Lanes> stiffness(point, tangent.m, tangent.volumetric_modulus(), full, block.damped);
     const Lanes v = tangent.points.v(q);
     typename ElementStiffness<L, Lanes>::Node node[kRoom<N>];
     for (int a = 0; a < n; ++a) node[a] = stiffness.node(gradient(block.gradient_of(batch, q), a, half));
@@ -96,9 +96,9 @@ template <Law L, int N>
       const Lanes pressure = block_.averaged ? mean_pressure(block_, batch, half, nodes, node_pressure_) : Lanes(0);
       BatchTangent<L, N> tangent(block_, batch, half, u, state, pressure);
       Mat3<Lanes> K[pair_count(kRoom<N>)];
-      constexpr bool kClosed = ElementStiffness<L, Lanes>::kClosed;
-      const bool by_columns = !kClosed || block_.penalised;
-      if constexpr (kClosed) {
+      constexpr bool kOfPoints = ElementStiffness<L, Lanes>::kOfPoints;
+      const bool by_columns = !kOfPoints || block_.penalised;
+      if constexpr (kOfPoints) {
         if (!by_columns) add_blocks(tangent, block_, batch, half, state.tangent == Tangent::full, K);
       }
       if (by_columns) add_columns(tangent, block_, batch, half, K);

@@ -5,31 +5,32 @@
 
 /// Node-averaged volumetric strain (after Bonet and Burton 1998, as an energy): a linear tetrahedron that cannot change
 /// its volume cannot move either, but the tetrahedra around a node together can. θ_a = Σ V θ / Σ V over the elements of
-/// node a, energy Σ λ_a V_a θ_a²/2 with V_a = Σ V/4; an element feels the mean of λ_a θ_a of its nodes as pressure.
+/// node a, energy Σ k_a V_a θ_a²/2 with V_a = Σ V/4 and the law's volumetric modulus k; an element feels the mean of
+/// k_a θ_a of its nodes as pressure.
 namespace fascia {
 
 using namespace kernels;
 
 void ElementExecutor::prepare_average() {
   node_volume_.assign(at(set_.node_count()), 0.0);
-  node_lambda_.assign(at(set_.node_count()), 0.0);
+  node_modulus_.assign(at(set_.node_count()), 0.0);
   node_pressure_ = node_theta_ = node_volume_;
   slot_theta_.resize(slot_u_.size());
-  std::vector<LambdaMean> means(node_volume_.size());
+  std::vector<VolumetricMean> means(node_volume_.size());
   int e = 0;
   block_.for_each_element([&](std::span<const int> element) {
     const double v = block_.volume_of(e / kElementLanes, 0)[e % kElementLanes];
-    const double lambda = block_.material_of(e / kElementLanes)[e % kElementLanes];
+    const double k = volumetric_modulus(block_.law, block_.constants_of(e));
     for (const int node : element) {
       node_volume_[at(node)] += v / 4;
-      means[at(node)].add(lambda, v / 4);
+      means[at(node)].add(k, v / 4);
     }
     ++e;
   });
-  for (std::size_t i = 0; i < means.size(); ++i) node_lambda_[i] = means[i].value();
+  for (std::size_t i = 0; i < means.size(); ++i) node_modulus_[i] = means[i].value();
 }
 
-/// λ times the mean about each node of theta(H, dH).
+/// k times the mean about each node of theta(H, dH).
 template <class Theta>
 void ElementExecutor::average_of(const At& state, std::span<const Vec3d> dx, std::vector<double>& out,
                                  const Theta& theta) {
@@ -59,7 +60,7 @@ void ElementExecutor::average_of(const At& state, std::span<const Vec3d> dx, std
       double sum = 0;
       for (int k = block_.node_slot_begin[at(node)]; k < block_.node_slot_begin[at(node + 1)]; ++k)
         sum += slot_theta_[at(block_.node_slot[at(k)])];
-      out[at(node)] = sum == 0 ? 0.0 : node_lambda_[at(node)] * sum / node_volume_[at(node)];
+      out[at(node)] = sum == 0 ? 0.0 : node_modulus_[at(node)] * sum / node_volume_[at(node)];
     }
   });
 }
@@ -85,11 +86,12 @@ void ElementExecutor::average_direction(const At& state, std::span<const Vec3d> 
 double ElementExecutor::average_energy() const {
   double energy = 0;
   for (std::size_t i = 0; i < node_pressure_.size(); ++i)
-    if (node_lambda_[i] != 0) energy += 0.5 * node_volume_[i] * node_pressure_[i] * node_pressure_[i] / node_lambda_[i];
+    if (node_modulus_[i] != 0)
+      energy += 0.5 * node_volume_[i] * node_pressure_[i] * node_pressure_[i] / node_modulus_[i];
   return energy;
 }
 
-/// Σ λ_a V_a G_a G_aᵀ with G_a = ∂θ_a/∂x, which reaches all nodes of the elements around a.
+/// Σ k_a V_a G_a G_aᵀ with G_a = ∂θ_a/∂x, which reaches all nodes of the elements around a.
 void ElementExecutor::assemble_average(const At& state, BlockMatrix& matrix) {
   std::vector<Vec3d> element_gradient(at(block_.count) * 4);  // V/4 ∂θ/∂x of each element
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
@@ -138,7 +140,7 @@ void ElementExecutor::assemble_average(const At& state, BlockMatrix& matrix) {
         if (matrix.fills_upper() ? j < i : j > i) continue;
         double* block = matrix.block(matrix.find(i, j));
         const int stride = matrix.dofs().size(j);
-        const Mat3d part = outer(gi, gj) * (node_lambda_[a] / node_volume_[a]);
+        const Mat3d part = outer(gi, gj) * (node_modulus_[a] / node_volume_[a]);
         for (int r = 0; r < 3; ++r)
           for (int c = 0; c < 3; ++c) block[stride * r + c] += part(r, c);
       }

@@ -12,15 +12,15 @@ class BatchTangent {
   static constexpr bool kTurns = L == Law::corotational;
 
   BatchPoints<N> points;
-  ElementMaterial<Lanes> m;
+  ElementSolid<L, Lanes> m;
 
-  /// @param pressure  λ θ averaged about the nodes; used where the block is averaged
+  /// @param pressure  k θ averaged about the nodes; used where the block is averaged
   BatchTangent(const ElementBlock& block, int batch, int half, const Vec3<Lanes>* u, const ElementExecutor::At& state,
                const Lanes& pressure)
       : points(block, batch, half, u),
-        m(element_material(block, batch, half, state.inverse_step)),
+        m(element_material<L>(block, batch, half, state.inverse_step)),
         full_(state.tangent == Tangent::full),
-        lambda_(block.averaged ? Lanes(0) : m.lambda),
+        k_(block.averaged ? Lanes(0) : m.law().volumetric_modulus()),
         element_(points.mean(points.H), points.safe_volume(), full_) {
     for (int q = 0; q < points.count(); ++q) {
       const Mat3<Lanes> old = old_strain(block, state.E, batch, q, half);
@@ -28,7 +28,7 @@ class BatchTangent {
         sigma_[q] = element_.stress(element_.strain(points.H[q]), m, old, block.damped);
         element_.add_point(points.H[q], sigma_[q], points.v(q));
       } else {
-        const Lanes p = block.averaged ? pressure : m.lambda * SolidLaw<L, Lanes>::volumetric_strain(points.H[q]);
+        const Lanes p = block.averaged ? pressure : k_ * SolidLaw<L, Lanes>::volumetric_strain(points.H[q]);
         point_[q] = ElasticPoint<L, Lanes>(points.H[q], m, p, old, block.damped);
         if (!state.S.empty())
           point_[q].set_stress(symmetric_matrix(state.S.data() + symmetric_row(block, batch, q), 0, half));
@@ -38,7 +38,8 @@ class BatchTangent {
   }
 
   const ElasticPoint<L, Lanes>& point(int q) const { return point_[q]; }
-  const Lanes& lambda() const { return lambda_; }
+  /// Of dp; 0 where p is an average.
+  const Lanes& volumetric_modulus() const { return k_; }
 
   /// dP of each point for its dF; without what node averages add.
   void differential(const Mat3<Lanes>* dF, Mat3<Lanes>* dP) {
@@ -53,7 +54,7 @@ class BatchTangent {
       element_.close_direction();
       for (int q = 0; q < points.count(); ++q) dP[q] = element_.differential(sigma_[q], dsigma[q]);
     } else {
-      for (int q = 0; q < points.count(); ++q) dP[q] = point_[q].differential(dF[q], m, lambda_, full_);
+      for (int q = 0; q < points.count(); ++q) dP[q] = point_[q].differential(dF[q], m, k_, full_);
     }
     if (points.block.penalised) add_penalty(dF, dP);
   }
@@ -77,7 +78,7 @@ class BatchTangent {
   }
 
   bool full_;
-  Lanes lambda_;
+  Lanes k_;
   std::conditional_t<kTurns, CorotationalElement<Lanes>, Nothing> element_;
   Mat3<Lanes> sigma_[kTurns ? kPoints : 1];
   ElasticPoint<L, Lanes> point_[kTurns ? 1 : kPoints];

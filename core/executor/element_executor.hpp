@@ -101,7 +101,7 @@ class ElementExecutor {
   std::vector<std::uint32_t> pair_slot_;   ///< (batches × pairs × 8): place of a block's values
   std::vector<std::uint8_t> pair_stride_;  ///< likewise: length of its rows; empty where all nodes are vertices
 
-  std::vector<double> node_volume_, node_lambda_;   ///< of averaging: Σ V/4 [m³], mean λ [Pa]
+  std::vector<double> node_volume_, node_modulus_;  ///< of averaging: Σ V/4 [m³], mean k [Pa]
   std::vector<double> slot_theta_;                  ///< Σ V θ/4 by patch
   std::vector<double> node_pressure_, node_theta_;  ///< λ times the mean of θ, and of its derivative [Pa]
 };

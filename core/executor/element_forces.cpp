@@ -84,7 +84,7 @@ template <Law L, int N>
       Vec3<Lanes> u[kRoom<N>], f[kRoom<N>];
       gather<N>(block_, batch, half, slot_u_.data() + first, u);
       const BatchPoints<N> points(block_, batch, half, u);
-      const auto m = element_material(block_, batch, half, state.inverse_step);
+      const auto m = element_material<L>(block_, batch, half, state.inverse_step);
       const bool mixed = energies && !lane_part_.empty();
       const Lanes motion = mixed ? lane_motion(batch, half, part_motion) : patch_motion;
       Lanes rounding;
@@ -130,12 +130,12 @@ template <Law L, int N>
             p = mean_pressure(block_, batch, half, nodes, node_pressure_);
           } else {
             theta = SolidLaw<L, Lanes>::volumetric_strain(H);
-            p = m.lambda * theta;
+            p = m.law().volumetric_modulus() * theta;
           }
           const ElasticPoint<L, Lanes> point(H, m, p, old, block_.damped);
           add(q, with_penalty(q, point.first_piola()));
           if (energies)
-            energy(q, SolidLaw<L, Lanes>{m.lambda, m.mu}.shear_energy(H) + Lanes(0.5) * m.lambda * theta * theta,
+            energy(q, m.law().shear_energy(H) + Lanes(0.5) * m.law().volumetric_modulus() * theta * theta,
                    SolidLaw<L, Lanes>::strain(H) - old);
         }
       }

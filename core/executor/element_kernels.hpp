@@ -62,9 +62,17 @@ inline Mat3<Lanes> displacement_gradient(const ElementBlock& block, const double
   return H;
 }
 
-inline ElementMaterial<Lanes> element_material(const ElementBlock& block, int batch, int half, double inverse_step) {
+template <Law L>
+ElementSolid<L, Lanes> element_material(const ElementBlock& block, int batch, int half, double inverse_step) {
   const double* base = block.material_of(batch);
-  return {row(base, 0, half), row(base, 1, half), row(base, 2, half) * Lanes(inverse_step), row(base, 3, half)};
+  ElementSolid<L, Lanes> m;
+  m.lambda = row(base, ElementBlock::kLambda, half);
+  m.mu = row(base, ElementBlock::kMu, half);
+  m.viscosity = row(base, ElementBlock::kStiffnessDamping, half) * Lanes(inverse_step);
+  m.penalty = row(base, ElementBlock::kPenalty, half);
+  if constexpr (constexpr int kOwn = SolidLaw<L, Lanes>::kOwn; kOwn > 0)
+    for (int k = 0; k < kOwn; ++k) m.own[k] = row(base, ElementBlock::kOwnConstants + k, half);
+  return m;
 }
 
 /// Place of a symmetric matrix of each point in an array of the layout of strains.

@@ -57,7 +57,10 @@ inline auto material(const PointSet& set, int group, int batch, double inverse_s
   m.mu = row(base, kMu, batch);
   m.stabilization = row(base, kStabilization, batch);
   m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(inverse_step);
-  if constexpr (is_thin(Kind.law)) {
+  if constexpr (!is_thin(Kind.law)) {
+    if constexpr (constexpr int kOwn = SolidLaw<Kind.law, Lanes>::kOwn; kOwn > 0)
+      for (int k = 0; k < kOwn; ++k) m.own[k] = row(set.own_of_group(group), k, batch);
+  } else {
     const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];
     const auto index = static_cast<std::size_t>(rule.axes);
     m.law = rule.rule.law;

@@ -90,6 +90,16 @@ Batch<W> log1p(const Batch<W>& a) {
 }
 
 template <int W>
+Batch<W> expm1(const Batch<W>& a) {
+  return for_each(a, [](double x) { return std::expm1(x); });
+}
+
+template <int W>
+Batch<W> cbrt(const Batch<W>& a) {
+  return for_each(a, [](double x) { return std::cbrt(x); });
+}
+
+template <int W>
 Batch<W> sqrt(const Batch<W>& a) {
   return for_each(a, [](double x) { return std::sqrt(x); });
 }

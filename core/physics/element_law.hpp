@@ -7,17 +7,17 @@
 /// the whole element, is in corotational.hpp.
 namespace fascia {
 
-/// λ about a node: the harmonic mean by volume, which is exact where the pressure is the same on both sides of a change
-/// of material; the arithmetic one where a λ is not positive.
-struct LambdaMean {
+/// A law's volumetric modulus k about a node: the harmonic mean by volume, which is exact where the pressure is the
+/// same on both sides of a change of material; the arithmetic one where a k is not positive.
+struct VolumetricMean {
   double volume = 0, sum = 0, inverse = 0;
   bool positive = true;
 
-  FASCIA_HD void add(double lambda, double v) {
+  FASCIA_HD void add(double k, double v) {
     volume += v;
-    sum += lambda * v;
-    positive = positive && lambda > 0;
-    if (lambda > 0) inverse += v / lambda;
+    sum += k * v;
+    positive = positive && k > 0;
+    if (k > 0) inverse += v / k;
   }
   FASCIA_HD double value() const {
     if (volume <= 0) return 0;
@@ -30,6 +30,12 @@ struct ElementMaterial {
   T lambda, mu;  ///< [Pa]
   T viscosity;   ///< κ = β/h [-]: viscous stress κ C : (E − E_old)
   T penalty;     ///< of the cell's volume [Pa]
+};
+
+/// With what the law has of its own.
+template <Law L, class T>
+struct ElementSolid : ElementMaterial<T>, OwnConstants<SolidLaw<L, T>::kOwn, T> {
+  FASCIA_HD SolidLaw<L, T> law() const { return make_law<SolidLaw<L, T>>(*this); }
 };
 
 /// Calls act.operator()<L, N>() for a law of elements and a number of nodes; N is 4 or, of others, 0.
@@ -46,6 +52,13 @@ void with_element_kind(Law law, int nodes, const Act& act) {
   with_solid_law(law, with_law);
 }
 
+/// k of a law with these constants [Pa]
+inline double volumetric_modulus(Law law, const LawConstants& constants) {
+  double k = 0;
+  with_element_kind(law, 0, [&]<Law L, int N>() { k = make_law<SolidLaw<L, double>>(constants).volumetric_modulus(); });
+  return k;
+}
+
 /// State of a point from which stress and stiffness follow.
 template <Law L, class T>
 struct ElasticPoint {
@@ -54,14 +67,14 @@ struct ElasticPoint {
   Mat3<T> S;          ///< second Piola-Kirchhoff stress, elastic [Pa]
   Mat3<T> S_viscous;  ///< [Pa]
   typename Solid::At at;
-  T p;  ///< λ θ, or its average about nodes [Pa]
+  T p;  ///< k θ, or its average about nodes [Pa]
 
   ElasticPoint() = default;
-  FASCIA_HD ElasticPoint(const Mat3<T>& H_now, const ElementMaterial<T>& m, const T& pressure, const Mat3<T>& E_old,
+  FASCIA_HD ElasticPoint(const Mat3<T>& H_now, const ElementSolid<L, T>& m, const T& pressure, const Mat3<T>& E_old,
                          bool damped)
       : H(H_now), F(Mat3<T>::identity() + H_now), at(H_now), p(pressure) {
     const Mat3<T> E = Solid::strain(H);
-    S = Solid{m.lambda, m.mu}.second_piola(at, E, p);
+    S = m.law().second_piola(at, E, p);
     if (damped) S_viscous = StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(E - E_old) * m.viscosity;
   }
 
@@ -73,17 +86,16 @@ struct ElasticPoint {
       return total + H * total;
   }
 
-  /// dS for dF, elastic and viscous; `lambda` 0 where p is an average.
-  FASCIA_HD Mat3<T> stress_differential(const Mat3<T>& dF, const ElementMaterial<T>& m, const T& lambda,
-                                        bool full) const {
+  /// dS for dF, elastic and viscous. @param k  of dp; 0 where p is an average
+  FASCIA_HD Mat3<T> stress_differential(const Mat3<T>& dF, const ElementSolid<L, T>& m, const T& k, bool full) const {
     const Mat3<T> dE = Solid::kSmall ? sym(dF) : sym(transpose_times(F, dF));
     return StVenantKirchhoff<T>{m.lambda, m.mu}.second_piola(dE) * m.viscosity +
-           Solid{lambda, m.mu}.second_piola_differential(at, p, dE, full);
+           m.law().second_piola_differential(at, p, k, dE, full);
   }
 
-  /// dP for dF; `lambda` 0 where p is an average.
-  FASCIA_HD Mat3<T> differential(const Mat3<T>& dF, const ElementMaterial<T>& m, const T& lambda, bool full) const {
-    const Mat3<T> dS = stress_differential(dF, m, lambda, full);
+  /// dP for dF. @param k  of dp; 0 where p is an average
+  FASCIA_HD Mat3<T> differential(const Mat3<T>& dF, const ElementSolid<L, T>& m, const T& k, bool full) const {
+    const Mat3<T> dS = stress_differential(dF, m, k, full);
     if constexpr (Solid::kSmall) {
       return dS;
     } else {
@@ -94,8 +106,8 @@ struct ElasticPoint {
   }
 
   /// Total stress after a step dF, to first order: of the geometric part of the next tangent (point_physics.hpp).
-  FASCIA_HD Mat3<T> extrapolated_stress(const Mat3<T>& dF, const ElementMaterial<T>& m) const {
-    return S + S_viscous + stress_differential(dF, m, m.lambda, true);
+  FASCIA_HD Mat3<T> extrapolated_stress(const Mat3<T>& dF, const ElementSolid<L, T>& m) const {
+    return S + S_viscous + stress_differential(dF, m, m.law().volumetric_modulus(), true);
   }
   /// Takes such a stress for what products need of one.
   FASCIA_HD void set_stress(const Mat3<T>& total) {
@@ -104,22 +116,65 @@ struct ElasticPoint {
   }
 };
 
-/// Stiffness blocks of a point in closed form: what of them depends on one node only is computed once a node. A law may
-/// do without; its blocks are then made from unit motions.
+/// Components of a symmetric matrix, and the matrix that has one of them.
+inline constexpr int kSymmetricPlaces[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+
+/// Stiffness blocks of a point: what of them depends on one node only is computed once a node. Of any law, by its dS of
+/// the six unit strains; laws whose blocks have a closed form say so below.
 template <Law L, class T>
-struct ElementStiffness {
-  static constexpr bool kClosed = false;
+class ElementStiffness {
+ public:
+  static constexpr bool kOfPoints = true;
+  struct Node {
+    Vec3<T> g;      ///< gradient of its shape function
+    Mat3<T> dS[3];  ///< for its unit motions
+  };
+  FASCIA_HD ElementStiffness(const ElasticPoint<L, T>& point, const ElementSolid<L, T>& m, const T& k, bool full,
+                             bool /*damped*/)
+      : F_(point.F) {
+    static_assert(!SolidLaw<L, T>::kSmall);
+    const SolidLaw<L, T> law = m.law();
+    const StVenantKirchhoff<T> viscous{m.lambda * m.viscosity, m.mu * m.viscosity};
+    for (int c = 0; c < 6; ++c) {
+      Mat3<T> dE;
+      dE(kSymmetricPlaces[c][0], kSymmetricPlaces[c][1]) = dE(kSymmetricPlaces[c][1], kSymmetricPlaces[c][0]) = T(1);
+      dS_[c] = law.second_piola_differential(point.at, point.p, k, dE, full) + viscous.second_piola(dE);
+    }
+    if (full) S_ = point.S + point.S_viscous;
+  }
+  FASCIA_HD Node node(const Vec3<T>& g) const {
+    Node n{g, {}};
+    for (int i = 0; i < 3; ++i) {
+      const Mat3<T> dE = sym(outer(F_.row(i), g));
+      for (int c = 0; c < 6; ++c) n.dS[i] += dS_[c] * dE(kSymmetricPlaces[c][0], kSymmetricPlaces[c][1]);
+    }
+    return n;
+  }
+  FASCIA_HD Mat3<T> block(const Node& a, const Node& b) const {
+    const Mat3<T> forces = Mat3<T>::from_columns(b.dS[0] * a.g, b.dS[1] * a.g, b.dS[2] * a.g);
+    return F_ * forces + Mat3<T>::diagonal(dot(a.g, S_ * b.g));
+  }
+
+ private:
+  Mat3<T> F_, S_, dS_[6];
+};
+
+/// The rotation is the whole element's: its blocks come from unit motions of nodes.
+template <class T>
+class ElementStiffness<Law::corotational, T> {
+ public:
+  static constexpr bool kOfPoints = false;
 };
 
 template <class T>
 class ElementStiffness<Law::linear, T> {
  public:
-  static constexpr bool kClosed = true;
+  static constexpr bool kOfPoints = true;
   struct Node {
     Vec3<T> g;  ///< gradient of its shape function
   };
-  FASCIA_HD ElementStiffness(const ElasticPoint<Law::linear, T>&, const ElementMaterial<T>& m, const T& lambda,
-                             bool /*full*/, bool /*damped*/)
+  FASCIA_HD ElementStiffness(const ElasticPoint<Law::linear, T>&, const ElementSolid<Law::linear, T>& m,
+                             const T& lambda, bool /*full*/, bool /*damped*/)
       : lambda_(lambda + m.lambda * m.viscosity), mu_(m.mu * (T(1) + m.viscosity)) {}
   FASCIA_HD Node node(const Vec3<T>& g) const { return {g}; }
   FASCIA_HD Mat3<T> block(const Node& a, const Node& b) const {
@@ -133,12 +188,13 @@ class ElementStiffness<Law::linear, T> {
 template <class T>
 class ElementStiffness<Law::st_venant_kirchhoff, T> {
  public:
-  static constexpr bool kClosed = true;
+  static constexpr bool kOfPoints = true;
   struct Node {
     Vec3<T> g, f;  ///< f = F g
   };
-  FASCIA_HD ElementStiffness(const ElasticPoint<Law::st_venant_kirchhoff, T>& point, const ElementMaterial<T>& m,
-                             const T& lambda, bool full, bool /*damped*/)
+  FASCIA_HD ElementStiffness(const ElasticPoint<Law::st_venant_kirchhoff, T>& point,
+                             const ElementSolid<Law::st_venant_kirchhoff, T>& m, const T& lambda, bool full,
+                             bool /*damped*/)
       : lambda_(lambda + m.lambda * m.viscosity),
         mu_(m.mu * (T(1) + m.viscosity)),
         F_(point.F),
@@ -159,11 +215,11 @@ class ElementStiffness<Law::st_venant_kirchhoff, T> {
 template <class T>
 class ElementStiffness<Law::neo_hookean, T> {
  public:
-  static constexpr bool kClosed = true;
+  static constexpr bool kOfPoints = true;
   struct Node {
     Vec3<T> g, f, h;  ///< f = F g, h = F⁻ᵀ g
   };
-  FASCIA_HD ElementStiffness(const ElasticPoint<Law::neo_hookean, T>& point, const ElementMaterial<T>& m,
+  FASCIA_HD ElementStiffness(const ElasticPoint<Law::neo_hookean, T>& point, const ElementSolid<Law::neo_hookean, T>& m,
                              const T& lambda, bool full, bool damped)
       : lambda_(lambda),
         shear_(NeoHookean<T>{lambda, m.mu}.shear(point.p, full)),

@@ -31,6 +31,7 @@ FASCIA_HD constexpr Mat3<T> cofactor_differential(const Mat3<T>& F, const Mat3<T
 template <class T>
 struct NeoHookean {
   static constexpr bool kSmall = false;
+  static constexpr int kOwn = 0;
   T lambda, mu;  ///< [Pa]
 
   /// ln J
@@ -57,16 +58,18 @@ struct NeoHookean {
   FASCIA_HD static Mat3<T> strain(const Mat3<T>& H) { return green_strain(H); }
   FASCIA_HD static T volumetric_strain(const Mat3<T>& H) { return log_volume(H); }
   FASCIA_HD static Mat3<T> volumetric_gradient(const Mat3<T>& H) { return transpose(inverse(Mat3<T>::identity() + H)); }
+  FASCIA_HD T volumetric_modulus() const { return lambda; }
   FASCIA_HD T shear_energy(const Mat3<T>& H) const { return mu * distortion(H); }
   /// S = μ (I − C⁻¹) + p C⁻¹  [Pa]
   FASCIA_HD Mat3<T> second_piola(const At& at, const Mat3<T>& E, const T& p) const {
     const Mat3<T> C_inverse = at.C_inverse();
     return (C_inverse * E) * (T(2) * mu) + C_inverse * p;
   }
-  /// dS = 2 (μ − p) C⁻¹ dE C⁻¹ + λ (C⁻¹ : dE) C⁻¹  [Pa]
-  FASCIA_HD Mat3<T> second_piola_differential(const At& at, const T& p, const Mat3<T>& dE, bool full) const {
+  /// dS = 2 (μ − p) C⁻¹ dE C⁻¹ + k (C⁻¹ : dE) C⁻¹  [Pa]
+  FASCIA_HD Mat3<T> second_piola_differential(const At& at, const T& p, const T& k, const Mat3<T>& dE,
+                                              bool full) const {
     const Mat3<T> C_inverse = at.C_inverse();
-    return C_inverse * dE * C_inverse * (T(2) * shear(p, full)) + C_inverse * (lambda * contract(C_inverse, dE));
+    return C_inverse * dE * C_inverse * (T(2) * shear(p, full)) + C_inverse * (k * contract(C_inverse, dE));
   }
   /// μ − p; the material tangent takes no negative one.
   FASCIA_HD T shear(const T& p, bool full) const {

@@ -20,8 +20,8 @@ struct PointMaterial {
 };
 
 template <Law L, class T>
-struct SolidMaterial : PointMaterial<T> {
-  FASCIA_HD SolidLaw<L, T> law() const { return {this->lambda, this->mu}; }
+struct SolidMaterial : PointMaterial<T>, OwnConstants<SolidLaw<L, T>::kOwn, T> {
+  FASCIA_HD SolidLaw<L, T> law() const { return make_law<SolidLaw<L, T>>(*this); }
 };
 
 /// Of a sheet, a line or a tether. A type of its own, so that solids do not ask at every point which law they have.
@@ -50,7 +50,7 @@ FASCIA_HD constexpr bool is_tether(const ThinMaterial<T>& m) {
 /// makes plane stress, a line's λ' = E − 2μ makes S₁₁ = E E₁₁.
 FASCIA_HD constexpr Lame thin_lame(Law law, const Lame& m) {
   if (law == Law::sheet) return {2 * m.lambda * m.mu / (m.lambda + 2 * m.mu), m.mu};
-  if (law == Law::line) return {m.mu * (3 * m.lambda + 2 * m.mu) / (m.lambda + m.mu) - 2 * m.mu, m.mu};
+  if (law == Law::line) return {m.young() - 2 * m.mu, m.mu};
   return m;
 }
 

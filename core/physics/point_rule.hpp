@@ -25,6 +25,7 @@ struct PointKind {
 struct GroupRule {
   PointRule rule;
   int axes = -1;  ///< index of the group among those that have axes, −1: none
+  int own = -1;   ///< first row of its law's own constants, −1: none
 };
 
 }  // namespace fascia

@@ -1,16 +1,9 @@
 #pragma once
 
 #include "core/math/mat3.hpp"
+#include "core/physics/law_constants.hpp"
 
 namespace fascia {
-
-/// λ and μ of a Young modulus [Pa] and a Poisson ratio in (−1, ½).
-struct Lame {
-  double lambda = 0, mu = 0;  ///< [Pa]
-  FASCIA_HD static constexpr Lame from_young(double young, double poisson) {
-    return {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))};
-  }
-};
 
 /// Green-Lagrange strain E = (FᵀF − I)/2 of F = I + H, without the cancellation that FᵀF − I has for small H.
 template <class T>
@@ -22,6 +15,7 @@ FASCIA_HD constexpr Mat3<T> green_strain(const Mat3<T>& H) {
 template <class T>
 struct StVenantKirchhoff {
   static constexpr bool kSmall = false;
+  static constexpr int kOwn = 0;
   T lambda, mu;  ///< [Pa]
 
   /// Second Piola-Kirchhoff stress S = λ tr(E) I + 2μ E  [Pa]; linear, so it also maps dE to dS.
@@ -42,6 +36,7 @@ struct StVenantKirchhoff {
   FASCIA_HD static Mat3<T> strain(const Mat3<T>& H) { return green_strain(H); }
   FASCIA_HD static T volumetric_strain(const Mat3<T>& H) { return trace(green_strain(H)); }
   FASCIA_HD static Mat3<T> volumetric_gradient(const Mat3<T>& H) { return Mat3<T>::identity() + H; }
+  FASCIA_HD T volumetric_modulus() const { return lambda; }
   FASCIA_HD T shear_energy(const Mat3<T>& H) const {
     const Mat3<T> E = green_strain(H);
     return mu * contract(E, E);
@@ -49,8 +44,8 @@ struct StVenantKirchhoff {
   FASCIA_HD Mat3<T> second_piola(const At&, const Mat3<T>& E, const T& p) const {
     return E * (T(2) * mu) + Mat3<T>::diagonal(p);
   }
-  FASCIA_HD Mat3<T> second_piola_differential(const At&, const T&, const Mat3<T>& dE, bool /*full*/) const {
-    return second_piola(dE);
+  FASCIA_HD Mat3<T> second_piola_differential(const At&, const T&, const T& k, const Mat3<T>& dE, bool /*full*/) const {
+    return StVenantKirchhoff{k, mu}.second_piola(dE);
   }
 };
 

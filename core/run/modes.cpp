@@ -112,13 +112,14 @@ class Problem {
       for (int batch = 0; batch < block.batch_count(); ++batch) {
         for (int q = 0; q < block.points; ++q) {
           for (int lane = 0; lane < kElementLanes; ++lane) {
-            const double lambda = block.material_of(batch)[lane], mu = block.material_of(batch)[kElementLanes + lane];
+            const double* m = block.material_of(batch) + lane;
+            const Lame lame{m[ElementBlock::kLambda * kElementLanes], m[ElementBlock::kMu * kElementLanes]};
             double squares = 0;
             for (int k = 0; k < 3 * block.nodes; ++k) {
               const double g = block.gradient_of(batch, q)[k * kElementLanes + lane];
               squares += g * g;
             }
-            stiffness_ += block.volume_of(batch, q)[lane] * (lambda + 2 * mu) * squares;
+            stiffness_ += block.volume_of(batch, q)[lane] * lame.wave_modulus() * squares;
           }
         }
       }

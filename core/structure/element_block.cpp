@@ -2,6 +2,7 @@
 
 #include "core/base/coloring.hpp"
 #include "core/base/index.hpp"
+#include "core/physics/solid_law.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -41,11 +42,13 @@ void fill_batch(const ElementBlockSpec& spec, int batch, ElementBlock& block) {
               spec.gradient[point * at(spec.nodes) + at(order[at(a)])][k];
     }
     const ElementMaterialSpec m = used ? spec.material[e] : ElementMaterialSpec{};
-    double* rows = block.material.data() + at(batch) * 4 * kElementLanes + at(lane);
-    rows[0] = m.lambda;
-    rows[1 * kElementLanes] = m.mu;
-    rows[2 * kElementLanes] = m.stiffness_damping;
-    rows[3 * kElementLanes] = m.penalty;
+    double* rows = block.material.data() + at(batch * block.material_rows()) * kElementLanes + at(lane);
+    rows[ElementBlock::kLambda * kElementLanes] = m.lambda;
+    rows[ElementBlock::kMu * kElementLanes] = m.mu;
+    rows[ElementBlock::kStiffnessDamping * kElementLanes] = m.stiffness_damping;
+    rows[ElementBlock::kPenalty * kElementLanes] = m.penalty;
+    for (std::size_t k = 0; k < std::min(m.own.size(), at(block.own_constants)); ++k)
+      rows[(ElementBlock::kOwnConstants + k) * kElementLanes] = m.own[k];
     block.penalised = block.penalised || m.penalty > 0;
     block.damped = block.damped || m.stiffness_damping > 0;
   }
@@ -79,16 +82,26 @@ ElementBlock make_element_block(const ElementBlockSpec& spec) {
   block.points = spec.points;
   block.length = spec.length;
   block.count = static_cast<int>(spec.material.size());
+  block.own_constants = own_constant_count(spec.law);
   const auto batches = at(block.batch_count());
   block.gradient.resize(batches * at(spec.points) * at(spec.nodes) * 3 * kElementLanes);
   block.volume.resize(batches * at(spec.points) * kElementLanes);
-  block.material.resize(batches * 4 * kElementLanes);
+  block.material.resize(batches * at(block.material_rows()) * kElementLanes);
   block.local.resize(batches * at(spec.nodes) * kElementLanes);
   const int batches_a_patch = std::max(1, kPatchElements / kElementLanes);
   for (int batch = 0; batch < block.batch_count(); ++batch) fill_batch(spec, batch, block);
   for (int batch = 0; batch < block.batch_count(); batch += batches_a_patch)
     number_patch(spec, batch, std::min(batch + batches_a_patch, block.batch_count()), block);
   return block;
+}
+
+LawConstants ElementBlock::constants_of(int element) const {
+  const double* rows = material_of(element / kElementLanes) + element % kElementLanes;
+  LawConstants c;
+  c.lambda = rows[kLambda * kElementLanes];
+  c.mu = rows[kMu * kElementLanes];
+  for (int k = 0; k < own_constants; ++k) c.own.push_back(rows[(kOwnConstants + k) * kElementLanes]);
+  return c;
 }
 
 void finish_element_block(ElementBlock& block, int nodes_of_model) {

@@ -3,6 +3,7 @@
 #include "core/base/aligned.hpp"
 #include "core/math/mat3.hpp"
 #include "core/physics/law.hpp"
+#include "core/physics/law_constants.hpp"
 
 #include <cstdint>
 #include <span>
@@ -14,8 +15,7 @@ namespace fascia {
 inline constexpr int kElementLanes = 8;
 
 /// Constants of an element's material.
-struct ElementMaterialSpec {
-  double lambda = 0, mu = 0;     ///< [Pa]
+struct ElementMaterialSpec : LawConstants {
   double stiffness_damping = 0;  ///< β [s]
   double penalty = 0;            ///< κ of the volume penalty [Pa]
 };
@@ -41,11 +41,14 @@ struct ElementBlock {
   Law law = Law::st_venant_kirchhoff;
   bool averaged = false, penalised = false, damped = false;
   int nodes = 4, points = 1, count = 0;
+  int own_constants = 0;  ///< of the law (core/physics/law_constants.hpp)
   double length = 1;
 
   AlignedVector<double> gradient;  ///< (batches × points × nodes × 3 × 8)
   AlignedVector<double> volume;    ///< (batches × points × 8)
-  AlignedVector<double> material;  ///< (batches × 4 × 8): λ, μ, β, κ
+  /// Rows of `material`; a law's own constants are the last ones.
+  enum Row { kLambda, kMu, kStiffnessDamping, kPenalty, kOwnConstants };
+  AlignedVector<double> material;  ///< (batches × material_rows() × 8)
 
   std::vector<int> patch_batch{0};               ///< (patches + 1)
   std::vector<int> patch_begin{0};               ///< (patches + 1): slots, each a node of a patch
@@ -76,9 +79,12 @@ struct ElementBlock {
            (static_cast<std::size_t>(batch) * static_cast<std::size_t>(points) + static_cast<std::size_t>(point)) *
                kElementLanes;
   }
+  int material_rows() const { return kOwnConstants + own_constants; }
   const double* material_of(int batch) const {
-    return material.data() + static_cast<std::size_t>(batch) * 4 * kElementLanes;
+    return material.data() +
+           static_cast<std::size_t>(batch) * static_cast<std::size_t>(material_rows()) * kElementLanes;
   }
+  LawConstants constants_of(int element) const;
   const std::uint16_t* local_of(int batch) const {
     return local.data() + static_cast<std::size_t>(batch) * static_cast<std::size_t>(nodes) * kElementLanes;
   }

@@ -27,7 +27,7 @@ void for_each_tie(const PointSet& set, const Act& act) {
     int element = 0;
     block.for_each_element([&](std::span<const int> nodes) {
       const double* m = block.material_of(element / kElementLanes) + element % kElementLanes;
-      act(nodes, m[0] + 2 * m[kElementLanes]);
+      act(nodes, m[ElementBlock::kLambda * kElementLanes] + 2 * m[ElementBlock::kMu * kElementLanes]);
       ++element;
     });
   }

@@ -2,6 +2,7 @@
 
 #include "core/base/coloring.hpp"
 #include "core/base/index.hpp"
+#include "core/physics/solid_law.hpp"
 #include "core/structure/parts.hpp"
 
 #include <algorithm>
@@ -52,7 +53,7 @@ void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const Poin
 void PointSetBuilder::add_rule(std::span<const PointSample> points, double length, PointRule rule) {
   if (std::none_of(points.begin(), points.end(), [](const PointSample& p) { return p.stabilization > 0; }))
     rule.stabilization = Stabilization::none;
-  GroupRule group{rule, -1};
+  GroupRule group{rule};
   if (is_thin(rule.law)) {
     const std::size_t first = set_.axes.size();
     group.axes = static_cast<int>(first / (9 * kGroupSize));
@@ -62,8 +63,22 @@ void PointSetBuilder::add_rule(std::span<const PointSample> points, double lengt
         set_.axes[first + k * kGroupSize + lane] =
             points[std::min(lane, points.size() - 1)].axes(static_cast<int>(k / 3), static_cast<int>(k % 3));
   }
+  add_own_constants(points, group);
   set_.rule.push_back(group);
   group_length_.push_back(length);
+}
+
+/// A point that lacks them has zeros.
+void PointSetBuilder::add_own_constants(std::span<const PointSample> points, GroupRule& group) {
+  const auto rows = at(own_constant_count(group.rule.law));
+  if (rows == 0) return;
+  group.own = static_cast<int>(set_.own.size() / kGroupSize);
+  for (std::size_t k = 0; k < rows; ++k) {
+    for (std::size_t lane = 0; lane < kGroupSize; ++lane) {
+      const PointSample& p = points[std::min(lane, points.size() - 1)];
+      set_.own.push_back(k < p.own.size() ? p.own[k] : 0.0);
+    }
+  }
 }
 
 void PointSetBuilder::add_shell(ShellBlock shell) {

@@ -2,6 +2,7 @@
 
 #include "core/base/aligned.hpp"
 #include "core/math/mat3.hpp"
+#include "core/physics/law_constants.hpp"
 #include "core/physics/point_rule.hpp"
 #include "core/physics/spring.hpp"
 #include "core/structure/dependent_node.hpp"
@@ -30,10 +31,9 @@ struct Influence {
 };
 
 /// An integration point as a builder describes it.
-struct PointSample {
+struct PointSample : LawConstants {
   Vec3d X{};                          ///< rest position [m]
   double volume = 0;                  ///< [m³]
-  double lambda = 0, mu = 0;          ///< Lamé [Pa]
   double stabilization = 0;           ///< γ [Pa]
   double stiffness_damping = 0;       ///< β [s]
   std::vector<Influence> influences;  ///< one for each node of its group
@@ -54,6 +54,7 @@ struct PointSet {
   AlignedVector<double> material;  ///< (groups × 6 × 8): volume, λ, μ, γ, β, gradient norm
   std::vector<GroupRule> rule;     ///< (groups)
   AlignedVector<double> axes;      ///< (groups that need them × 9 × 8): PointSample::axes by rows
+  AlignedVector<double> own;       ///< (rows × 8): constants that a group's law has of its own
 
   std::vector<int> node_slot_begin;  ///< (nodes + 1), transposed incidence
   std::vector<int> node_slot;        ///< slots of each node, ascending
@@ -84,6 +85,11 @@ struct PointSet {
   }
   const double* shape_of_slot(int slot) const {
     return shape.data() + static_cast<std::size_t>(slot) * 13 * kGroupSize;
+  }
+  /// Constants that the group's law has of its own, by rows; null where it has none.
+  const double* own_of_group(int group) const {
+    const int row = rule[static_cast<std::size_t>(group)].own;
+    return row < 0 ? nullptr : own.data() + static_cast<std::size_t>(row) * kGroupSize;
   }
   const double* material_of_group(int group) const {
     return material.data() + static_cast<std::size_t>(group) * 6 * kGroupSize;
@@ -132,6 +138,7 @@ class PointSetBuilder {
  private:
   void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
   void add_rule(std::span<const PointSample> points, double length, PointRule rule);
+  void add_own_constants(std::span<const PointSample> points, GroupRule& group);
   PointSet set_;
   std::vector<double> group_length_;  ///< spacing of the frames [m]
   std::vector<Joint> joints_;

@@ -16,7 +16,10 @@ FASCIA_HD auto material(const PointsOf<T>& set, int group, int lane, double inve
   m.mu = row(base, kMu, lane);
   m.stabilization = row(base, kStabilization, lane);
   m.viscosity = row(base, kStiffnessDamping, lane) * static_cast<T>(inverse_step);
-  if constexpr (is_thin(L)) {
+  if constexpr (!is_thin(L)) {
+    if constexpr (constexpr int kOwn = SolidLaw<L, T>::kOwn; kOwn > 0)
+      for (int k = 0; k < kOwn; ++k) m.own[k] = row(set.own, set.rule[group].own + k, lane);
+  } else {
     const GroupRule& rule = set.rule[group];
     const auto index = static_cast<std::size_t>(rule.axes);
     m.law = rule.rule.law;

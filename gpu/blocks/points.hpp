@@ -22,7 +22,7 @@ struct PointsOf {
   int groups = 0, slots = 0;
   const int *slot_begin = nullptr, *slot_node = nullptr, *slot_group = nullptr;
   const int *node_slot_begin = nullptr, *node_slot = nullptr;
-  const T *shape = nullptr, *material = nullptr, *axes = nullptr;
+  const T *shape = nullptr, *material = nullptr, *axes = nullptr, *own = nullptr;
   const GroupRule* rule = nullptr;
   const char* blends = nullptr;     ///< of each group: Y is not zero
   const double* targets = nullptr;  ///< of tethers
@@ -96,7 +96,7 @@ class Points {
   /// What has a scalar. Of 32 bits, it is there for products beside that for forces.
   template <class T>
   struct Rows {
-    Array<Space, T> shape, material, axes, stress, slot_sums, motion;
+    Array<Space, T> shape, material, axes, own, stress, slot_sums, motion;
     PointsOf<T> view;
   };
   template <class T>

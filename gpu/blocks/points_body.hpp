@@ -53,15 +53,16 @@ void Points<Space>::upload(const PointSet& set) {
   r.shape.upload_rounded(std::span<const double>(set.shape));
   r.material.upload_rounded(std::span<const double>(set.material));
   r.axes.upload_rounded(std::span<const double>(set.axes));
+  r.own.upload_rounded(std::span<const double>(set.own));
   r.stress.resize(lanes * 18);
   r.stress.set_zero();
   r.slot_sums.resize(at(set.slot_count()) * 12);
   if (is_narrow_ != std::is_same_v<T, double>) r.motion.resize(lanes * kPointRows);
   r.view = {set.group_count(),  set.slot_count(),        slot_begin_.data(), slot_node_.data(),
             slot_group_.data(), node_slot_begin_.data(), node_slot_.data(),  r.shape.data(),
-            r.material.data(),  r.axes.data(),           rule_.data(),       blends_.data(),
-            targets_.data(),    r.stress.data(),         r.slot_sums.data(), r.motion.data(),
-            quantities_.data()};
+            r.material.data(),  r.axes.data(),           r.own.data(),       rule_.data(),
+            blends_.data(),     targets_.data(),         r.stress.data(),    r.slot_sums.data(),
+            r.motion.data(),    quantities_.data()};
 }
 
 /// Calls act.operator()<Kind>(groups, count) for each kind.

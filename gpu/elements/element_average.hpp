@@ -21,7 +21,7 @@ struct ThetaPass {
   }
 };
 
-/// λ times the mean about each node.
+/// k times the mean about each node.
 template <class T>
 struct NodeAveragePass {
   ElementBlockOf<T> block;
@@ -31,7 +31,7 @@ struct NodeAveragePass {
     for (int k = block.around_begin[node]; k < block.around_begin[node + 1]; ++k)
       sum += block.theta[block.around[k] / 4];
     block.node_pressure[node] =
-        sum == 0 ? T(0) : static_cast<T>(block.node_lambda[node] * sum / block.node_volume[node]);
+        sum == 0 ? T(0) : static_cast<T>(block.node_modulus[node] * sum / block.node_volume[node]);
   }
 };
 
@@ -47,7 +47,7 @@ struct ThetaGradientPass {
   }
 };
 
-/// The node's own block of Σ λ_a V_a G_a G_aᵀ, G_a = ∂θ_a/∂x, after ThetaGradientPass: over the nodes a of the elements
+/// The node's own block of Σ k_a V_a G_a G_aᵀ, G_a = ∂θ_a/∂x, after ThetaGradientPass: over the nodes a of the elements
 /// about it.
 template <class T>
 struct AverageDiagonalPass {
@@ -64,7 +64,7 @@ struct AverageDiagonalPass {
         if (find(begin, k, a) < k) continue;  // it has been met before
         Vec3d G;
         for (int l = k; l < end; l = find(l + 1, end, a)) G += corner_gradient(l);
-        K += outer(G, G) * (block.node_lambda[a] / block.node_volume[a]);
+        K += outer(G, G) * (block.node_modulus[a] / block.node_volume[a]);
       }
     double* out = blocks + nodes.block[node];
     for (int r = 0; r < 3; ++r)

@@ -27,13 +27,19 @@ FASCIA_HD T* point_rows(T* rows, const ElementBlockOf<T>& block, int batch, int 
   return rows + (at(batch) * at(block.points) + at(point)) * 9 * kLanes;
 }
 
-template <class T>
-FASCIA_HD ElementMaterial<T> element_material(const ElementBlockOf<T>& block, int batch, int lane,
+template <Law L, class T>
+FASCIA_HD ElementSolid<L, T> element_material(const ElementBlockOf<T>& block, int batch, int lane,
                                               double inverse_step) {
-  const T* base = block.material + at(batch) * 4 * kLanes;
-  return {row(base, 0, lane), row(base, 1, lane),
-          block.damped ? row(base, 2, lane) * static_cast<T>(inverse_step) : T(0),
-          block.penalised ? row(base, 3, lane) : T(0)};
+  constexpr int kOwn = SolidLaw<L, T>::kOwn;
+  const T* base = block.material + at(batch) * at(ElementBlock::kOwnConstants + kOwn) * kLanes;
+  ElementSolid<L, T> m;
+  m.lambda = row(base, ElementBlock::kLambda, lane);
+  m.mu = row(base, ElementBlock::kMu, lane);
+  m.viscosity = block.damped ? row(base, ElementBlock::kStiffnessDamping, lane) * static_cast<T>(inverse_step) : T(0);
+  m.penalty = block.penalised ? row(base, ElementBlock::kPenalty, lane) : T(0);
+  if constexpr (kOwn > 0)
+    for (int k = 0; k < kOwn; ++k) m.own[k] = row(base, ElementBlock::kOwnConstants + k, lane);
+  return m;
 }
 
 template <class T>

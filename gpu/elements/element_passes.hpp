@@ -123,7 +123,7 @@ struct ForcesPass : ElementPass<L, N, double> {
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, double> x = this->points_of(i, u, block.points_buffer);
     if (x.batch * kLanes + x.lane >= block.count) return;
-    const auto m = element_material(block, x.batch, x.lane, history.inverse_step);
+    const auto m = element_material<L>(block, x.batch, x.lane, history.inverse_step);
     const double pressure = block.averaged ? mean_of_nodes(block, x.batch, x.lane) : 0.0;
     const ElementAt<L, N, double> element(x, m, turn_of<L>(x, false), pressure, true);
     double elastic = 0, viscous = 0, rounding = 0, motion = 0;
@@ -149,15 +149,15 @@ struct ForcesPass : ElementPass<L, N, double> {
   }
 
  private:
-  /// The element's share of λ V θ²/2 of its nodes.
+  /// The element's share of k V θ²/2 of its nodes.
   FASCIA_HD static double averaged_energy(const ElementPoints<N, double>& x) {
     const ElementBlockView& block = x.block;
     if (!block.averaged) return 0;
     double energy = 0;
     for (int a = 0; a < 4; ++a) {
       const int node = node_of(block, x.batch, a, x.lane);
-      const double lambda = block.node_lambda[node], p = block.node_pressure[node];
-      if (lambda != 0) energy += 0.125 * x.v(0) * p * p / lambda;
+      const double k = block.node_modulus[node], p = block.node_pressure[node];
+      if (k != 0) energy += 0.125 * x.v(0) * p * p / k;
     }
     return energy;
   }
@@ -192,7 +192,7 @@ struct ProductPass : ElementPass<L, N, T> {
 
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, T> x = this->points_of(i, u, block.H);
-    const auto m = element_material(block, x.batch, x.lane, history.inverse_step);
+    const auto m = element_material<L>(block, x.batch, x.lane, history.inverse_step);
     ElementAt<L, N, T, Plain> element(x, m, turn_of<L>(x, true), block.averaged ? block.pressure[i] : T(0), full);
     if constexpr (N == 4) {
       const Mat3<T> dF = x.gradient_of_nodes(dx);
@@ -228,7 +228,7 @@ struct DiagonalPass : ElementPass<L, N, T> {
     const int lane = i % kLanes, corner = i / kLanes % block.nodes, batch = i / kLanes / block.nodes;
     const int e = batch * kLanes + lane;
     const ElementPoints<N, T> x = this->points_of(e, u, block.H);
-    const auto m = element_material(block, batch, lane, history.inverse_step);
+    const auto m = element_material<L>(block, batch, lane, history.inverse_step);
     ElementAt<L, N, T> element(x, m, turn_of<L>(x, true), block.averaged ? block.pressure[e] : T(0), full);
     const auto gradient_at = [&](int q) { return gradient(gradient_of(block, batch, q), corner, lane); };
     const auto dF = [&](int q) {
@@ -253,7 +253,7 @@ struct ExtrapolationPass : ElementPass<L, N, double> {
 
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, double> x = this->points_of(i, taken.start.u, block.points_buffer);
-    const ElementAt<L, N, double> element(x, element_material(block, x.batch, x.lane, history.inverse_step),
+    const ElementAt<L, N, double> element(x, element_material<L>(block, x.batch, x.lane, history.inverse_step),
                                           turn_of<L>(x, false), 0, true);
     for (int q = x.begin(); q < x.end(); ++q) {
       const Mat3d dF = point_gradient(block, x.batch, q, x.lane, taken.direction.dx) * taken.length;
@@ -283,7 +283,7 @@ struct StrainPass : ElementPass<L, N, double> {
 
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, double> x = this->points_of(i, u, block.points_buffer);
-    const ElementAt<L, N, double> element(x, element_material(block, x.batch, x.lane, 0), turn_of<L>(x, false), 0,
+    const ElementAt<L, N, double> element(x, element_material<L>(block, x.batch, x.lane, 0), turn_of<L>(x, false), 0,
                                           true);
     for (int q = x.begin(); q < x.end(); ++q)
       store_symmetric(E + (at(x.batch) * at(block.points) + at(q)) * 6 * kLanes, 0, x.lane, element.strain(q));

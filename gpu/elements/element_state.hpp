@@ -37,8 +37,8 @@ class ElementAt {
   static constexpr bool kTurns = L == Law::corotational;
 
   /// @param points  all of the element's, or any where its law is that of each point alone
-  /// @param pressure  λ θ averaged about the nodes; used where the block is averaged
-  FASCIA_HD ElementAt(const Points& points, const ElementMaterial<T>& material, const ElementTurn<T>& turn, T pressure,
+  /// @param pressure  k θ averaged about the nodes; used where the block is averaged
+  FASCIA_HD ElementAt(const Points& points, const ElementSolid<L, T>& material, const ElementTurn<T>& turn, T pressure,
                       bool full)
       : x_(points),
         block_(points.block),
@@ -75,7 +75,7 @@ class ElementAt {
       return StVenantKirchhoff<T>{m_.lambda, m_.mu}.energy_density(strain(q));
     } else {
       const T theta = block_.averaged ? T(0) : SolidLaw<L, T>::volumetric_strain(x_.H(q));
-      return SolidLaw<L, T>{m_.lambda, m_.mu}.shear_energy(x_.H(q)) + T(0.5) * m_.lambda * theta * theta;
+      return m_.law().shear_energy(x_.H(q)) + T(0.5) * m_.law().volumetric_modulus() * theta * theta;
     }
   }
   FASCIA_HD T viscous_density(int q) const {
@@ -127,7 +127,7 @@ class ElementAt {
       const Mat3<T> dA = element_.relative_differential(x_.H(q), dF);
       dP = element_.differential(sigma(q), element_.stress_differential(dA, m_));
     } else {
-      dP = point(q).differential(dF, m_, block_.averaged ? T(0) : m_.lambda, full_);
+      dP = point(q).differential(dF, m_, block_.averaged ? T(0) : m_.law().volumetric_modulus(), full_);
     }
     if (penalised()) {
       const Mat3<T> F = Mat3<T>::identity() + x_.H(q);
@@ -154,15 +154,16 @@ class ElementAt {
   FASCIA_HD Mat3<T> sigma(int q) const { return element_.stress(strain(q), m_, old(q), damped()); }
   FASCIA_HD ElasticPoint<L, T> point(int q) const {
     const Mat3<T> H = x_.H(q);
-    ElasticPoint<L, T> p(H, m_, block_.averaged ? pressure_ : m_.lambda * SolidLaw<L, T>::volumetric_strain(H), old(q),
-                         damped());
+    ElasticPoint<L, T> p(
+        H, m_, block_.averaged ? pressure_ : m_.law().volumetric_modulus() * SolidLaw<L, T>::volumetric_strain(H),
+        old(q), damped());
     if (x_.history.S != nullptr) p.set_stress(x_.stress(q));
     return p;
   }
 
   const Points& x_;
   const ElementBlockOf<T>& block_;
-  ElementMaterial<T> m_;
+  ElementSolid<L, T> m_;
   T pressure_;
   bool full_;
   T volume_, swelling_ = 0, d_swelling_ = 0;

@@ -34,9 +34,9 @@ struct ElementBlockOf {
   T* pressure = nullptr;  ///< (batches × 8): mean of λ θ about the nodes, averaged [Pa]
 
   // Averages about nodes (core/executor/element_average.cpp).
-  const int *around_begin = nullptr, *around = nullptr;    ///< 4 · element + corner about each node, ascending
-  const T *node_volume = nullptr, *node_lambda = nullptr;  ///< Σ V/4 [m³], mean λ [Pa]
-  T *theta = nullptr, *node_pressure = nullptr;            ///< V θ/4 of elements, λ times the nodes' mean of θ
+  const int *around_begin = nullptr, *around = nullptr;     ///< 4 · element + corner about each node, ascending
+  const T *node_volume = nullptr, *node_modulus = nullptr;  ///< Σ V/4 [m³], mean k [Pa]
+  T *theta = nullptr, *node_pressure = nullptr;             ///< V θ/4 of elements, λ times the nodes' mean of θ
 
   FASCIA_HD bool one_point() const { return nodes == 4; }
   FASCIA_HD int lanes() const { return batches * kElementLanes; }
@@ -107,7 +107,7 @@ class Elements {
   template <class T>
   struct Rows {
     Array<Space, T> gradient, volume, material, points_buffer, H, turn, pressure;
-    Array<Space, T> node_volume, node_lambda, theta, node_pressure;
+    Array<Space, T> node_volume, node_modulus, theta, node_pressure;
     ElementBlockOf<T> view;
   };
   struct Block {

@@ -131,30 +131,30 @@ void Elements<Space>::prepare_average(const ElementBlock& block, int nodes_of_mo
     });
   };
   list_by_node(nodes_of_model, for_each_corner, begin, around);
-  std::vector<double> node_volume(at(nodes_of_model)), node_lambda(at(nodes_of_model));
+  std::vector<double> node_volume(at(nodes_of_model)), node_modulus(at(nodes_of_model));
   for (std::size_t node = 0; node < node_volume.size(); ++node) {
-    LambdaMean mean;
+    VolumetricMean mean;
     for (int k = begin[node]; k < begin[node + 1]; ++k) {
       const int e = around[at(k)] / 4;
       const double v = block.volume_of(e / kElementLanes, 0)[e % kElementLanes] / 4;
       node_volume[node] += v;
-      mean.add(block.material_of(e / kElementLanes)[e % kElementLanes], v);
+      mean.add(volumetric_modulus(block.law, block.constants_of(e)), v);
     }
-    node_lambda[node] = mean.value();
+    node_modulus[node] = mean.value();
   }
   out.around_begin.upload(begin);
   out.around.upload(around);
   const auto lanes = at(block.batch_count()) * kElementLanes;
   const auto fill = [&](auto& rows) {
     rows.node_volume.upload_rounded(std::span<const double>(node_volume));
-    rows.node_lambda.upload_rounded(std::span<const double>(node_lambda));
+    rows.node_modulus.upload_rounded(std::span<const double>(node_modulus));
     rows.pressure.resize(lanes);
     rows.theta.resize(lanes);
     rows.node_pressure.resize(at(nodes_of_model));
     rows.view.around_begin = out.around_begin.data();
     rows.view.around = out.around.data();
     rows.view.node_volume = rows.node_volume.data();
-    rows.view.node_lambda = rows.node_lambda.data();
+    rows.view.node_modulus = rows.node_modulus.data();
     rows.view.pressure = rows.pressure.data();
     rows.view.theta = rows.theta.data();
     rows.view.node_pressure = rows.node_pressure.data();

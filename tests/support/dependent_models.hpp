@@ -36,9 +36,7 @@ class CoupledModel {
     for (Vec3d& x : spec.mesh.nodes) x += corner + random_vector(random, 0.02);
     spec.density = 1000;
     const Lame lame = Lame::from_young(2e4, 0.3);
-    spec.material = [=](const Vec3d&, int) {
-      return PointMaterialSpec{lame.lambda, lame.mu, mass_damping, stiffness_damping};
-    };
+    spec.material = [=](const Vec3d&, int) { return PointMaterialSpec{{lame}, mass_damping, stiffness_damping}; };
     return add<ElementBody>(std::move(spec));
   }
 

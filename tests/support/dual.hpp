@@ -23,6 +23,11 @@ struct Dual {
 };
 
 inline Dual log1p(const Dual& a) { return {std::log1p(a.v), a.d / (1 + a.v)}; }
+inline Dual expm1(const Dual& a) { return {std::expm1(a.v), a.d * std::exp(a.v)}; }
+inline Dual cbrt(const Dual& a) {
+  const double root = std::cbrt(a.v);
+  return {root, a.d / (3 * root * root)};
+}
 inline Dual where_positive(const Dual& condition, const Dual& a, const Dual& b) { return condition.v > 0 ? a : b; }
 
 }  // namespace fascia::test

@@ -8,6 +8,7 @@
 #include "core/structure/model.hpp"
 #include "meshless/cloud_build.hpp"
 #include "meshless/grid_body.hpp"
+#include "tests/support/law_constants.hpp"
 
 #include <random>
 
@@ -27,6 +28,7 @@ struct BlockOptions {
   IntegrationKind integration = IntegrationKind::automatic;
   Mat3d rotation = Mat3d::identity();
   Vec3d translation{};
+  Law law = Law::st_venant_kirchhoff;
 };
 
 inline GridSpec block_spec(const BlockOptions& o) {
@@ -44,7 +46,7 @@ inline GridSpec block_spec(const BlockOptions& o) {
   spec.translation = o.translation;
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d&) {
-    return PointMaterialSpec{lame.lambda, lame.mu, o.mass_damping, o.stiffness_damping};
+    return PointMaterialSpec{{lame, own_constants(o.law, lame.mu)}, o.mass_damping, o.stiffness_damping, o.law};
   };
   return spec;
 }

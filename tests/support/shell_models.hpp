@@ -67,7 +67,7 @@ inline ShellBodySpec shell_spec(ShellMesh mesh, const ShellMatter& m) {
   ShellBodySpec spec;
   const Lame lame = Lame::from_young(m.young, m.poisson);
   spec.thickness.assign(mesh.triangles.size(), m.thickness);
-  spec.material.assign(mesh.triangles.size(), {lame.lambda, lame.mu, m.mass_damping, m.stiffness_damping});
+  spec.material.assign(mesh.triangles.size(), {{lame}, m.mass_damping, m.stiffness_damping});
   spec.density = m.density;
   spec.mesh = std::move(mesh);
   return spec;

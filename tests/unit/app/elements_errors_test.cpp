@@ -107,11 +107,13 @@ TEST(ElementErrors, FBarIsForLinearShapesAndLargeStrain) {
                   formulation + "\"");
 }
 
+/// Errors of a body of a material.
+std::string errors(std::string text, const std::string& material) {
+  return errors_of(text.replace(text.find("\"soft\""), 6, material));
+}
+
 TEST(ElementErrors, LawsAndFormulations) {
   const std::string rubber = "{ law = \"neo-hookean\", young = 1, poisson = 0.3 }";
-  const auto errors = [&](std::string text, const std::string& material) {
-    return errors_of(text.replace(text.find("\"soft\""), 6, material));
-  };
   for (const std::string formulation : {"corotational", "linear"})
     EXPECT_EQ(errors(mesh_body("hexahedra", meshed_box, "formulation = \"" + formulation + "\"\n"), rubber),
               "a.toml:8:12: bodies.block.material: has the law \"neo-hookean\", which formulation = \"" + formulation +
@@ -122,10 +124,31 @@ TEST(ElementErrors, LawsAndFormulations) {
             "does not take; must be of the law \"st-venant-kirchhoff\", or change the formulation");
   EXPECT_EQ(errors(mesh_body("tetrahedra", meshed_box), "{ law = \"neo-hooke\", young = 1, poisson = 0.3 }"),
             "a.toml:8:20: bodies.block.material.law: \"neo-hooke\" is no known value; must be "
-            "\"st-venant-kirchhoff\" or \"neo-hookean\" (did you mean \"neo-hookean\"?)");
+            "\"st-venant-kirchhoff\", \"neo-hookean\" or \"mooney-rivlin\" (did you mean \"neo-hookean\"?)");
   EXPECT_EQ(errors(mesh_body("tetrahedra", meshed_box), "{ law = \"neo-hookean\", lame = { lambda = -3, mu = 3 } }"),
             "a.toml:8:53: bodies.block.material.lame.lambda: -3 Pa gives no stable material; must be above -2/3 mu, -2 "
             "Pa");
+}
+
+TEST(ElementErrors, LawsTakeTheirOwnConstants) {
+  const auto errors_of_material = [](const std::string& material) {
+    return errors(mesh_body("tetrahedra", meshed_box), "{ " + material + " }");
+  };
+  EXPECT_EQ(errors_of_material("law = \"mooney-rivlin\", c10 = 1, c01 = 0, bulk = 9"), "");
+  EXPECT_EQ(errors_of_material("law = \"mooney-rivlin\", c10 = 1, bulk = 9"),
+            "a.toml:8:12: bodies.block.material.c01: is missing; the law \"mooney-rivlin\" needs it");
+  EXPECT_EQ(errors_of_material("law = \"mooney-rivlin\", c10 = 1, c01 = 1"),
+            "a.toml:8:12: bodies.block.material.bulk: is missing; the law \"mooney-rivlin\" needs it");
+  EXPECT_EQ(errors_of_material("law = \"mooney-rivlin\", c10 = 1, c01 = -2, bulk = 9"),
+            "a.toml:8:43: bodies.block.material.c10: makes a shear modulus of -2 Pa at small strain; must make one "
+            "above 0");
+  EXPECT_EQ(errors_of_material("c10 = 1"),
+            "a.toml:8:20: bodies.block.material.c10: is no constant of the law \"st-venant-kirchhoff\"; remove it, or "
+            "add law = \"mooney-rivlin\"");
+  EXPECT_EQ(errors_of_material("young = 1, poisson = 0.3, bulk = 9"),
+            "a.toml:8:47: bodies.block.material.bulk: is no constant of the law \"st-venant-kirchhoff\"; remove it");
+  EXPECT_EQ(errors_of_material("law = \"mooney-rivlin\", c10 = 1, c01 = 1, bulk = 9, poisson = 0.3"),
+            "a.toml:8:75: bodies.block.material.poisson: is no constant of the law \"mooney-rivlin\"; remove it");
 }
 
 TEST(ElementErrors, ThinMeshlessBodiesTakeOneLaw) {

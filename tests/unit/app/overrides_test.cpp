@@ -61,10 +61,10 @@ TEST(Overrides, RemoveOnlyWhatIsThere) {
             "--set:1:13: constraints[2]: \"2\" is no index of this list; must be from 0 to 1");
   EXPECT_EQ(errors_of_override("materials.soft.young.x="),
             "--set:1:22: materials.soft.young.x: \"40 kPa\" has no key \"x\"; set the whole value");
-  EXPECT_EQ(
-      errors_of_override("bodies.beam.material="),
-      "a.toml:4:1: bodies.beam.material: is missing; must be the name of a material, a table with young or lame or "
-      "a list, each a table with use");
+  EXPECT_EQ(errors_of_override("bodies.beam.material="),
+            "a.toml:4:1: bodies.beam.material: is missing; must be the name of a material, a table with young, lame or "
+            "c10 or "
+            "a list, each a table with use");
 }
 
 TEST(Overrides, MakeMissingTables) {

@@ -74,9 +74,8 @@ TEST(SceneErrors, UnknownKeys) {
 
 TEST(SceneErrors, MissingKeysAreReportedAtTheTable) {
   EXPECT_EQ(errors_of(beam_with("material = \"soft\"\n", "")),
-            "a.toml:4:1: bodies.beam.material: is missing; must be the name of a material, a table with young or lame "
-            "or a list, each "
-            "a table with use");
+            "a.toml:4:1: bodies.beam.material: is missing; must be the name of a material, a table with young, "
+            "lame or c10 or a list, each a table with use");
   EXPECT_EQ(errors_of(beam_with("mass = \"5 kg\"\n", "")),
             "a.toml:4:1: bodies.beam: mass or density is missing; give exactly one");
   EXPECT_EQ(errors_of(beam_with("poisson = 0.3\n", "")),

@@ -37,7 +37,7 @@ BuiltModel mixture() {
     nodes.insert(nodes.end(), at_b.nodes.begin(), at_b.nodes.end());
     std::vector<Influence> influences = at_a.influences;
     influences.insert(influences.end(), at_b.influences.begin(), at_b.influences.end());
-    PointSample tether{X, 1, 1e3, 0, 0, 0, {}, Mat3d::diagonal(1e3) + outer(X, X) * 500.0};
+    PointSample tether{{{1e3, 0}}, X, 1, 0, 0, {}, Mat3d::diagonal(1e3) + outer(X, X) * 500.0};
     for (const Influence& i : influences) {
       Influence column;
       column.g[0] = i.w;
@@ -49,7 +49,7 @@ BuiltModel mixture() {
   // Points that follow frames of both kinds.
   const Attachment at_a = a.attach({{0.8, 0.5, 0.5}}), at_b = b.attach({{0.8, 0.5, 0.5}});
   std::vector<int> nodes = at_a.nodes;
-  PointSample shared{{{0.8, 0.5, 0.5}}, 0.1, 5e3, 4e3, 400, 0, {}, {}};
+  PointSample shared{{{5e3, 4e3}}, {{0.8, 0.5, 0.5}}, 0.1, 400, 0, {}, {}};
   for (std::size_t k = 0; k < at_a.nodes.size(); ++k) {
     Influence i = at_a.influences[k];
     i.w *= 0.5;
@@ -85,6 +85,10 @@ std::vector<Case> cases() {
   viscous.stiffness_damping = 0.02;
   affine.affine = true;
   affine.drilling = 0.003;
+  const auto of_law = [](Law law, BlockOptions o) {
+    o.law = law;
+    return o;
+  };
   BlockOptions turned = plain, affine_viscous = affine;
   turned.rotation = rotation_about(normalized(Vec3d{{1, 2, 3}}), 0.7);
   affine_viscous.stiffness_damping = 0.02;
@@ -97,6 +101,10 @@ std::vector<Case> cases() {
           {"paper", solid(full)},
           {"linear", solid(linear)},
           {"selective", solid(selective)},
+          {"neo hookean", solid(of_law(Law::neo_hookean, plain))},
+          {"mooney rivlin", solid(of_law(Law::mooney_rivlin, plain))},
+          {"selective mooney rivlin", solid(of_law(Law::mooney_rivlin, selective))},
+          {"affine viscous mooney rivlin", solid(of_law(Law::mooney_rivlin, affine_viscous)), 0.05},
           {"viscous", solid(viscous), 0.05},
           {"affine", solid(affine)},
           {"affine viscous", solid(affine_viscous), 0.05},

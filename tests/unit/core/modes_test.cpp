@@ -19,7 +19,7 @@ TEST(Modes, OfASoftPartBesideAStiffOneAreFoundOrDoubted) {
     GridSpec spec = block_spec(o);
     spec.material = [stiff](const Vec3d& X) {
       const Lame lame = Lame::from_young(X[0] < 0.5 ? 1.0 : stiff, 0.3);
-      return PointMaterialSpec{lame.lambda, lame.mu, 0, 0};
+      return PointMaterialSpec{{lame}, 0, 0};
     };
     BuiltModel built = build({spec});
     hold_face(built.model);

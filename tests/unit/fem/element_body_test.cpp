@@ -167,8 +167,8 @@ TEST(ElementBody, TensorsOfAveragedElementsAddUpToTheEnergy) {
   spec.penalty = 1e5;
   spec.density = 1000;
   spec.material = [](const Vec3d&, int element) {
-    return PointMaterialSpec{element % 3 == 0 ? 1e6 : 2e4, 4e3, 0, 0,
-                             element % 2 == 0 ? Law::neo_hookean : Law::st_venant_kirchhoff};
+    return PointMaterialSpec{
+        {{element % 3 == 0 ? 1e6 : 2e4, 4e3}}, 0, 0, element % 2 == 0 ? Law::neo_hookean : Law::st_venant_kirchhoff};
   };
   EXPECT_LT(energy_gap(element_model(std::move(spec))), 1e-12);
 }

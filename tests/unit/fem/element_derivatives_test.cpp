@@ -37,6 +37,7 @@ std::vector<Case> cases() {
     add("corotational_" + name, shape, [](ElementOptions& o) { o.formulation = corotational; });
     add("svk_" + name, shape, [](ElementOptions&) {});
     add("neo_hookean_" + name, shape, [](ElementOptions& o) { o.law = Law::neo_hookean; });
+    add("mooney_rivlin_" + name, shape, [](ElementOptions& o) { o.law = Law::mooney_rivlin; });
     add("corotational_viscous_" + name, shape, [](ElementOptions& o) {
       o.formulation = corotational;
       o.stiffness_damping = 0.02;
@@ -65,6 +66,12 @@ std::vector<Case> cases() {
     o.locking = ElementLocking::averaged;
     o.law = Law::neo_hookean;
     o.poisson = 0.49;
+  });
+  add("mooney_rivlin_averaged_viscous", tet4, [](ElementOptions& o) {
+    o.locking = ElementLocking::averaged;
+    o.law = Law::mooney_rivlin;
+    o.poisson = 0.49;
+    o.stiffness_damping = 0.02;
   });
   add("averaged_viscous_penalty", tet4, [](ElementOptions& o) {
     o.locking = ElementLocking::averaged;
@@ -138,17 +145,17 @@ INSTANTIATE_TEST_SUITE_P(Laws, ElementDerivatives, testing::ValuesIn(cases()),
 /// The slow reference: the same elements as ordinary points of a point set whose nodes are vertices.
 TEST(ElementReference, BlocksEqualOrdinaryPoints) {
   for (const ElementShape shape : {ElementShape::tet4, ElementShape::tet10, ElementShape::hex8, ElementShape::hex20}) {
-    for (const bool neo_hookean : {false, true}) {
+    for (const Law law : kSolidLaws) {
       ElementOptions o;
       o.shape = shape;
-      o.law = neo_hookean ? Law::neo_hookean : Law::st_venant_kirchhoff;
+      o.law = law;
       const ElementModel built = element_model(o);
       const ElementBody& body = *built.body;
       PointSetBuilder builder;
       for (std::size_t q = 0; q < body.points().size(); ++q) {
         const BodyPoint& p = body.points()[q];
         const Attachment a = body.attach_point(q);
-        const PointSample sample{p.X, p.volume, p.lambda, p.mu, 0, 0, a.influences, {}};
+        const PointSample sample{p, p.X, p.volume, 0, 0, a.influences, {}};
         builder.add_points(a.nodes, std::span(&sample, 1), 1, {p.law, Stabilization::none, false});
       }
       const PointSet set = std::move(builder).finish(built.model.frame_kind);
@@ -178,7 +185,7 @@ TEST(ElementReference, StandBesideFrames) {
   ElementBodySpec spec;
   spec.mesh = distorted_mesh({});
   spec.density = 1000;
-  spec.material = [](const Vec3d&, int) { return PointMaterialSpec{5e3, 4e3, 0, 0}; };
+  spec.material = [](const Vec3d&, int) { return PointMaterialSpec{{{5e3, 4e3}}, 0, 0}; };
   Model model;
   PointSetBuilder points;
   const GridBody frames(block_spec({}), model, points);

@@ -2,6 +2,7 @@
 
 #include "fem/element_body.hpp"
 #include "fem/generate.hpp"
+#include "tests/support/law_constants.hpp"
 #include "tests/support/models.hpp"
 
 /// Small models of finite elements for tests.
@@ -49,7 +50,7 @@ inline ElementModel element_model(const ElementOptions& o, ElementMesh mesh) {
   spec.density = o.density;
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d&, int) {
-    return PointMaterialSpec{lame.lambda, lame.mu, o.mass_damping, o.stiffness_damping, o.law};
+    return PointMaterialSpec{{lame, own_constants(o.law, lame.mu)}, o.mass_damping, o.stiffness_damping, o.law};
   };
   return element_model(std::move(spec));
 }

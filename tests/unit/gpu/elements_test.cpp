@@ -25,12 +25,13 @@ std::vector<Case> cases() {
   struct LawCase {
     const char* name;
     ElementFormulation formulation;
-    bool neo_hookean;
+    Law law = Law::st_venant_kirchhoff;
   };
-  const LawCase laws[] = {{"linear", ElementFormulation::linear, false},
-                          {"corotational", ElementFormulation::corotational, false},
-                          {"svk", ElementFormulation::large_strain, false},
-                          {"neo_hookean", ElementFormulation::large_strain, true}};
+  const LawCase laws[] = {{"linear", ElementFormulation::linear},
+                          {"corotational", ElementFormulation::corotational},
+                          {"svk", ElementFormulation::large_strain},
+                          {"neo_hookean", ElementFormulation::large_strain, Law::neo_hookean},
+                          {"mooney_rivlin", ElementFormulation::large_strain, Law::mooney_rivlin}};
   const std::pair<ElementShape, const char*> shapes[] = {
       {tet4, "tet4"}, {tet10, "tet10"}, {hex8, "hex8"}, {hex20, "hex20"}};
   std::vector<Case> all;
@@ -43,7 +44,7 @@ std::vector<Case> cases() {
             ElementOptions o;
             o.shape = shape;
             o.formulation = law.formulation;
-            o.law = law.neo_hookean ? Law::neo_hookean : Law::st_venant_kirchhoff;
+            o.law = law.law;
             if (averaged) o.locking = ElementLocking::averaged;
             if (penalised) o.penalty = 1e5;
             if (damped) o.stiffness_damping = 0.02;
@@ -87,7 +88,8 @@ ElementBodySpec spec_of(const ElementOptions& o, const Vec3d& shift) {
   spec.density = 1000;
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d& X, int) {
-    return PointMaterialSpec{lame.lambda * (1 + X[0]), lame.mu, 0, o.stiffness_damping, o.law};
+    return PointMaterialSpec{
+        {{lame.lambda * (1 + X[0]), lame.mu}, own_constants(o.law, lame.mu)}, 0, o.stiffness_damping, o.law};
   };
   return spec;
 }
@@ -102,6 +104,7 @@ TEST(GpuElementBodies, OfSeveralBodies) {
   second.stiffness_damping = 0.02;
   second.cells = {1, 1, 1};
   third.stiffness_damping = 0.01;
+  third.law = Law::mooney_rivlin;
   Model model;
   PointSetBuilder points;
   std::vector<std::unique_ptr<ElementBody>> bodies;

@@ -53,9 +53,7 @@ inline void add_host(SharedModel& s, const HostOptions& o) {
     spec.locking = o.averaged ? ElementLocking::averaged : ElementLocking::none;
     spec.density = 1000;
     const Lame lame = Lame::from_young(1e4, o.averaged ? 0.49 : 0.3);
-    spec.material = [lame, o](const Vec3d&, int) {
-      return PointMaterialSpec{lame.lambda, lame.mu, 0, o.damping, Law::neo_hookean};
-    };
+    spec.material = [lame, o](const Vec3d&, int) { return PointMaterialSpec{{lame}, 0, o.damping, Law::neo_hookean}; };
     s.host = std::make_shared<ElementBody>(std::move(spec), s.model, s.points);
   }
   s.before = s.model.inertia;
