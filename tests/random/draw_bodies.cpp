@@ -139,6 +139,7 @@ class BodyDrawing {
     }
     if (draws_.chance(0.2)) material["damping"]["mass"] = draws_.decades(-3, 0) / s_.time();
     if (draws_.chance(0.2)) material["damping"]["stiffness"] = draws_.decades(-4, -1) * s_.time();
+    take_own_constants(material);
     return material;
   }
 
@@ -170,6 +171,34 @@ std::vector<RowBody> add_bodies(Draws& draws, const Scales& scales, Json& scene)
     row.push_back(add_body(draws, scales, i, row.empty() ? 0.0 : row.back().to,
                            !row.empty() && row.back().solid && !row.back().stiff, scene));
   return row;
+}
+
+/// Without draws: what else a seed makes does not depend on the law.
+void take_own_constants(Json& material) {
+  if (material.value("law", "") != "mooney-rivlin") return;
+  double mu = 0, lambda = 0;
+  if (material.contains("lame")) {
+    mu = material["lame"]["mu"], lambda = material["lame"]["lambda"];
+  } else {
+    const double young = material["young"], nu = material["poisson"];
+    mu = young / (2 * (1 + nu)), lambda = 2 * mu * nu / (1 - 2 * nu);
+  }
+  for (const char* key : {"young", "poisson", "lame"}) material.erase(key);
+  material["c10"] = 0.3 * mu;
+  material["c01"] = 0.2 * mu;
+  material["c20"] = 0.1 * mu;
+  material["c02"] = 0.05 * mu;
+  material["bulk"] = lambda + 2 * mu / 3;
+}
+
+void take_moduli(Json& material) {
+  if (material.contains("c10")) {
+    const double mu = 2 * (material["c10"].get<double>() + material["c01"].get<double>()), bulk = material["bulk"];
+    for (const char* key : {"c10", "c01", "c20", "c02", "bulk"}) material.erase(key);
+    material["young"] = 9 * bulk * mu / (3 * bulk + mu);
+    material["poisson"] = (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu));
+  }
+  material.erase("law");
 }
 
 }  // namespace fascia::random_scenes

@@ -64,7 +64,7 @@ void add_closed_shell(Draws& draws, const Scales& s, std::vector<RowBody>& row, 
   shell["thickness"] = s.width * draws.decades(-2.5, -0.7);
   for (const char* key : {"density", "mass", "material", "initial"})
     if (body.contains(key)) shell[key] = body[key];
-  shell["material"].erase("law");
+  take_moduli(shell["material"]);
   body = std::move(shell);
   b.thin = b.has_boundary = true;
   b.solid = false;

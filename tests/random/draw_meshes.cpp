@@ -140,11 +140,13 @@ void use_ends(Draws& draws, const MeshDrawing& drawing, const RowBody& b, const 
 /// Another stiffness in a part of the cells.
 void use_part(Draws& draws, MeshFile& mesh, Json& body) {
   const int count = static_cast<int>(mesh.cells.size());
-  if (count < 2 || !body["material"].contains("young")) return;
+  if (count < 2 || body["material"].contains("lame")) return;
   const int part = draws.whole(1, count - 1);
   for (int c = 0; c < part; ++c) mesh.cells[static_cast<std::size_t>(c)].group = kPart;
   Json other = body["material"];
-  other["young"] = other["young"].get<double>() * draws.decades(-1, 0);
+  const double part_of_it = draws.decades(-1, 0);
+  for (const char* key : {"young", "c10", "c01", "c20", "c02", "bulk"})
+    if (other.contains(key)) other[key] = other[key].get<double>() * part_of_it;
   const Json in_part{{"where", Json::object({{"group", kPart}})}, {"use", other}};
   body["material"] = Json::array({in_part, Json::object({{"use", body["material"]}})});
 }

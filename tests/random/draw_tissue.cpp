@@ -36,6 +36,7 @@ Json matter(Draws& draws, const Scales& s, const std::string& as, double gap, do
   body["density"] = s.density;
   body["material"] = Json{{"young", young}, {"poisson", draws.uniform(0, 0.45)}};
   if (as == "volume") body["material"]["law"] = draws.word("materials.*.law");
+  take_own_constants(body["material"]);
   return body;
 }
 

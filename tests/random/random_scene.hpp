@@ -64,6 +64,11 @@ void add_probes(const Scales& scales, const std::vector<RowBody>& row, Json& sce
 /// Makes one thing wrong.
 void spoil(Draws& draws, RandomScene& scene);
 
+/// Gives a material of the law "mooney-rivlin" its constants in the place of the moduli that it was drawn with.
+void take_own_constants(Json& material);
+/// Takes them and the law back.
+void take_moduli(Json& material);
+
 // Parts of one scene in five.
 /// A shell that a fluid can fill takes the place of the last body.
 void add_closed_shell(Draws& draws, const Scales& scales, std::vector<RowBody>& row, Json& scene);

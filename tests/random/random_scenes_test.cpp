@@ -183,11 +183,12 @@ TEST(RandomScenesSee, AThousandthOfAModulus) {
     Json other = scene.tree;
     bool changed = false;
     for (auto& [name, body] : other["bodies"].items())
-      if (body.contains("material") && body["material"].is_object() && body["material"].contains("young") &&
-          body["material"]["young"].is_number()) {
-        body["material"]["young"] = 1.001 * body["material"]["young"].get<double>();
-        changed = true;
-      }
+      for (const char* key : {"young", "c10", "c01", "c20", "c02", "bulk"})
+        if (body.contains("material") && body["material"].is_object() && body["material"].contains(key) &&
+            body["material"][key].is_number()) {
+          body["material"][key] = 1.001 * body["material"][key].get<double>();
+          changed = true;
+        }
     if (!scene.wrong.empty() || !changed || !scene.tree.contains("loads") || scene.tree["solver"]["kind"] != "static")
       continue;
     const test::TemporaryFolder folder;
