@@ -93,7 +93,7 @@ std::size_t owner_of(const Simulation& s, int node) {
 Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const MechanicalSystem& system, const State& state,
                std::size_t shared) {
   const int node = tissue.body->shared_nodes()[shared];
-  const auto f = system.executor().gradient_of_groups(tissue.body->first_group, tissue.body->group_count, node);
+  const auto f = system.executor().points().sum_of_groups(tissue.body->first_group, tissue.body->group_count, node);
   Wrench w;
   const Mat3d Q = Mat3d::identity() + state.D[at(node)];
   const bool turns = s.model.kind(node) != FrameKind::vertex;
@@ -113,7 +113,7 @@ nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b
                                      const State& state) {
   double energy = 0, gap = 0;
   for (int g = b.body->first_group; g < b.body->first_group + b.body->group_count; ++g)
-    energy += system.executor().group_elastic()[at(g)];
+    energy += system.executor().points().group_elastic()[at(g)];
   std::map<std::size_t, std::pair<Wrench, int>> partners;
   std::map<std::size_t, double> gaps;
   const std::vector<DependentNode>& dependents = s.model.points.dependents;
@@ -166,7 +166,7 @@ nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, c
     for (const int index : built.springs) {
       const Spring& spring = s.model.points.springs[at(index)];
       const Vec3d end = place_of(s, state, spring.node) + spring.arm + state.D[at(spring.node)] * spring.arm;
-      sum.add(end, CpuExecutor::spring_force(spring, state), {});
+      sum.add(end, SpringExecutor::force(spring, state), {});
       energy += system.executor().spring_energy(index);
     }
     return entry(sum, 0, energy);

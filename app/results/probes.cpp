@@ -126,8 +126,8 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
     const ModelBody& body = *s.bodies[b].body;
     for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
-      e.elastic += snap.system->executor().group_elastic()[at(g)];
-      e.stabilization += snap.system->executor().group_stabilization()[at(g)];
+      e.elastic += snap.system->executor().points().group_elastic()[at(g)];
+      e.stabilization += snap.system->executor().points().group_stabilization()[at(g)];
     }
     for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
       e.elastic += snap.system->executor().block_elastic(block);
@@ -135,7 +135,7 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
       e.elastic += snap.system->executor().shell_elastic(shell);
   }
   for (const int group : tether_groups(s, probe.body))
-    e.stabilization += snap.system->executor().group_stabilization()[at(group)];
+    e.stabilization += snap.system->executor().points().group_stabilization()[at(group)];
   const std::vector<Spring>& springs = s.model.points.springs;
   for (std::size_t k = 0; k < springs.size(); ++k)
     if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), springs[k].node))
@@ -202,7 +202,7 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     const TetheredMaterial& m = s.tethered[at(t)];
     held = true;
     const Tether& tether = s.model.tethers[at(m.tether)];
-    const Vec3d f = snap.system->executor().tether_force(tether, *snap.state), u = field_at(m.field, *snap.state).u;
+    const Vec3d f = snap.system->executor().points().tether_force(tether, *snap.state), u = field_at(m.field, *snap.state).u;
     const bool turn = squared_norm(tether.arm) > 0;  // a couple
     if (!turn) force += f;
     moment += turn ? cross(tether.arm + u, f) : cross(tether.X + u - probe.about, f);

@@ -120,6 +120,7 @@ namespace {
 /// Young's modulus, Lamé's parameters or what a law has of its own.
 Shape make_material_schema() {
   std::vector<Choice> laws;
+  laws.reserve(kMaterialLaws.size());
   for (const LawWord& law : kMaterialLaws) laws.push_back({law.word, law.meaning});
   std::vector<Key> keys{key("law", choice(laws), "Elastic law.").defaults("\"st-venant-kirchhoff\""),
                         key("young", number("Pa", above(0)), "Young's modulus."),

@@ -84,7 +84,7 @@ void add_wide_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, const std::u
 
 /// K has room for the pairs of the largest element only where it must: a linear tetrahedron's stay in registers' reach.
 template <Law L, int N>
-[[gnu::flatten]] void ElementExecutor::assemble_patch(const At& state, int patch, BlockMatrix& matrix) {
+[[gnu::flatten]] void ElementExecutor::assemble_patch(const BlockState& state, int patch, BlockMatrix& matrix) {
   gather_patch(state.u, patch, slot_u_);
   const auto first = at(block_.patch_begin[at(patch)]);
   const auto nodes = block_.nodes_of_patch(patch);
@@ -144,7 +144,7 @@ void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
   }
 }
 
-void ElementExecutor::assemble(const At& state, BlockMatrix& matrix) {
+void ElementExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Entries /*entries*/) {
   if (pair_slot_.empty()) find_pair_slots(matrix);
   if (block_.averaged) average(state);
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {

@@ -32,7 +32,7 @@ void ElementExecutor::prepare_average() {
 
 /// k times the mean about each node of theta(H, dH).
 template <class Theta>
-void ElementExecutor::average_of(const At& state, std::span<const Vec3d> dx, std::vector<double>& out,
+void ElementExecutor::average_of(const BlockState& state, std::span<const Vec3d> dx, std::vector<double>& out,
                                  const Theta& theta) {
   pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
     gather_patch(state.u, patch, slot_u_);
@@ -65,7 +65,7 @@ void ElementExecutor::average_of(const At& state, std::span<const Vec3d> dx, std
   });
 }
 
-void ElementExecutor::average(const At& state) {
+void ElementExecutor::average(const BlockState& state) {
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     if constexpr (N == 4 && L != Law::corotational)
       average_of(state, {}, node_pressure_,
@@ -73,7 +73,7 @@ void ElementExecutor::average(const At& state) {
   });
 }
 
-void ElementExecutor::average_direction(const At& state, std::span<const Vec3d> dx) {
+void ElementExecutor::average_direction(const BlockState& state, std::span<const Vec3d> dx) {
   average(state);
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     if constexpr (N == 4 && L != Law::corotational)
@@ -92,7 +92,7 @@ double ElementExecutor::average_energy() const {
 }
 
 /// Σ k_a V_a G_a G_aᵀ with G_a = ∂θ_a/∂x, which reaches all nodes of the elements around a.
-void ElementExecutor::assemble_average(const At& state, BlockMatrix& matrix) {
+void ElementExecutor::assemble_average(const BlockState& state, BlockMatrix& matrix) {
   std::vector<Vec3d> element_gradient(at(block_.count) * 4);  // V/4 ∂θ/∂x of each element
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     if constexpr (N == 4 && L != Law::corotational) {

@@ -15,7 +15,7 @@ class BatchTangent {
   ElementSolid<L, Lanes> m;
 
   /// @param pressure  k θ averaged about the nodes; used where the block is averaged
-  BatchTangent(const ElementBlock& block, int batch, int half, const Vec3<Lanes>* u, const ElementExecutor::At& state,
+  BatchTangent(const ElementBlock& block, int batch, int half, const Vec3<Lanes>* u, const BlockState& state,
                const Lanes& pressure)
       : points(block, batch, half, u),
         m(element_material<L>(block, batch, half, state.inverse_step)),
@@ -30,8 +30,8 @@ class BatchTangent {
       } else {
         const Lanes p = block.averaged ? pressure : k_ * SolidLaw<L, Lanes>::volumetric_strain(points.H[q]);
         point_[q] = ElasticPoint<L, Lanes>(points.H[q], m, p, old, block.damped);
-        if (!state.S.empty())
-          point_[q].set_stress(symmetric_matrix(state.S.data() + symmetric_row(block, batch, q), 0, half));
+        if (!state.kept.empty())
+          point_[q].set_stress(symmetric_matrix(state.kept.data() + symmetric_row(block, batch, q), 0, half));
       }
     }
     if constexpr (kTurns) element_.close();

@@ -69,7 +69,7 @@ Lanes rounding_of(const Mat3<Lanes>& H, const Mat3<Lanes>& P, const ElementMater
 }  // namespace
 
 template <Law L, int N>
-[[gnu::flatten]] void ElementExecutor::forces_of_patch(const At& state, int patch,
+[[gnu::flatten]] void ElementExecutor::forces_of_patch(const BlockState& state, int patch,
                                                        std::span<const double> part_motion) {
   const bool energies = !part_motion.empty();
   const Lanes patch_motion(energies ? part_motion[at(part_of_patch(patch))] : 0.0);
@@ -148,7 +148,7 @@ template <Law L, int N>
   patch_sums_[at(patch)] = sums;
 }
 
-void ElementExecutor::compute_forces(const At& state, bool energies, std::span<const double> part_motion) {
+void ElementExecutor::compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion) {
   if (block_.averaged) average(state);
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
@@ -192,10 +192,10 @@ void ElementExecutor::strain_of_patch(int patch, std::span<double> E) const {
   }
 }
 
-void ElementExecutor::store_strain(std::span<const Vec3d> u, std::span<double> E) {
+void ElementExecutor::store_strain(const BlockState& state, std::span<double> E) {
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
-      gather_patch(u, patch, slot_u_);
+      gather_patch(state.u, patch, slot_u_);
       strain_of_patch<L, N>(patch, E);
     });
   });

@@ -8,7 +8,7 @@ namespace fascia {
 using namespace kernels;
 
 template <Law L, int N>
-[[gnu::flatten]] void ElementExecutor::product_of_patch(const At& state, int patch, std::span<const Vec3d> dx) {
+[[gnu::flatten]] void ElementExecutor::product_of_patch(const BlockState& state, int patch, std::span<const Vec3d> dx) {
   gather_patch(state.u, patch, slot_u_);
   gather_patch(dx, patch, slot_d_);
   const auto first = at(block_.patch_begin[at(patch)]);
@@ -41,7 +41,7 @@ template <Law L, int N>
 }
 
 template <Law L, int N>
-void ElementExecutor::extrapolate_patch(const At& start, int patch, std::span<double> S) const {
+void ElementExecutor::extrapolate_patch(const BlockState& start, int patch, std::span<double> S) const {
   const auto first = at(block_.patch_begin[at(patch)]);
   for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
     for (int half = 0; half < kBatches; ++half) {
@@ -58,14 +58,16 @@ void ElementExecutor::extrapolate_patch(const At& start, int patch, std::span<do
   }
 }
 
-void ElementExecutor::extrapolate(const At& start, std::span<const Vec3d> dx, std::span<double> S) {
+void ElementExecutor::linearize(const BlockState&, const BlockState* start, const BlockDirection* step,
+                                std::span<double> kept) {
+  if (kept.empty()) return;
   slot_d_.resize(slot_u_.size());
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     if constexpr (is_of_points(L))
       pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
-        gather_patch(start.u, patch, slot_u_);
-        gather_patch(dx, patch, slot_d_);
-        extrapolate_patch<L, N>(start, patch, S);
+        gather_patch(start->u, patch, slot_u_);
+        gather_patch(step->dx, patch, slot_d_);
+        extrapolate_patch<L, N>(*start, patch, kept);
       });
   });
 }
@@ -88,12 +90,12 @@ double ElementExecutor::spin_of_patch(int patch) const {
   return std::sqrt(largest);
 }
 
-double ElementExecutor::largest_spin(std::span<const Vec3d> dx) {
+double ElementExecutor::largest_spin(const BlockDirection& direction) {
   if (block_.law == Law::linear) return 0;
   slot_d_.resize(slot_u_.size());
   patch_spin_.resize(at(block_.patch_count()));
   pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
-    gather_patch(dx, patch, slot_d_);
+    gather_patch(direction.dx, patch, slot_d_);
     patch_spin_[at(patch)] = block_.nodes == 4 ? spin_of_patch<4>(patch) : spin_of_patch<0>(patch);
   });
   double largest = 0;
@@ -101,11 +103,12 @@ double ElementExecutor::largest_spin(std::span<const Vec3d> dx) {
   return largest;
 }
 
-void ElementExecutor::compute_product(const At& state, std::span<const Vec3d> dx) {
+void ElementExecutor::compute_product(const BlockState& state, const BlockDirection& direction) {
   slot_d_.resize(slot_u_.size());
-  if (block_.averaged) average_direction(state, dx);
+  if (block_.averaged) average_direction(state, direction.dx);
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
-    pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) { product_of_patch<L, N>(state, patch, dx); });
+    pool_.for_ranges(block_.patch_count(), 1,
+                     [&](int patch, int) { product_of_patch<L, N>(state, patch, direction.dx); });
   });
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/executor/executor.hpp"
+#include "core/executor/block_executor.hpp"
 #include "core/math/batch.hpp"
 
 #include <type_traits>
@@ -124,6 +124,18 @@ inline void slot_sums(const double* shape, const Mat3<Lanes> (&P)[kBatches], con
       out[3 + 3 * i + j] = lane_sum(sum);
     }
   }
+}
+
+/// Rotation − I of a node, or A − I.
+inline const Mat3d& turn_of(const BlockState& state, int node) {
+  static constexpr Mat3d kNone{};
+  return state.D.empty() ? kNone : state.D[static_cast<std::size_t>(node)];
+}
+
+/// Strain of a group's batch at the start of the step; zero where nothing is damped.
+inline Mat3<Lanes> old_strain(const BlockState& state, int group, int batch) {
+  if (state.E.empty()) return {};
+  return symmetric_matrix(state.E.data() + static_cast<std::size_t>(group) * 6 * kGroupSize, 0, batch);
 }
 
 }  // namespace fascia::kernels

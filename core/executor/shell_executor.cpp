@@ -31,7 +31,7 @@ struct ShellBatch {
   Vec3<Lanes> u[3];
   Mat3<Lanes> D[3];
 
-  ShellBatch(const ShellBlock& block, int batch, int half, const ShellExecutor::At& state)
+  ShellBatch(const ShellBlock& block, int batch, int half, const BlockState& state)
       : node(block.nodes_of(batch) + half * kBatchWidth) {
     const double* rows = block.constants_of(batch);
     for (int a = 0; a < 3; ++a)
@@ -130,13 +130,13 @@ void store_corners(const Mat3<Lanes>& axes, const ShellNodes<Lanes>& f, double* 
 
 }  // namespace
 
-void ShellExecutor::forces_of_batch(const At& state, int batch, bool energies, double motion) {
+void ShellExecutor::forces_of_batch(const BlockState& state, int batch, bool energies, double motion) {
   Sums sums;
   for (int half = 0; half < kBatches; ++half) {
     const ShellBatch shell(block_, batch, half, state);
     const ShellTriangle<Lanes> triangle(shell.constants, shell.u, shell.D);
     const ShellStrain<Lanes>& e = triangle.strain();
-    const ShellStrain<Lanes> old = load_strain(state.e, batch, half);
+    const ShellStrain<Lanes> old = load_strain(state.E, batch, half);
     const ShellNodes<Lanes> f = triangle.forces(total_stress(shell, e, old));
     const Mat3<Lanes> axes = shell.axes + shell.axes * triangle.turned();
     store_corners(axes, f, slot_sums_.data() + (at(batch) * kElementLanes + at(half * kBatchWidth)) * kElementDofs);
@@ -151,7 +151,7 @@ void ShellExecutor::forces_of_batch(const At& state, int batch, bool energies, d
   sums_[at(batch)] = sums;
 }
 
-void ShellExecutor::compute_forces(const At& state, bool energies, std::span<const double> part_motion) {
+void ShellExecutor::compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion) {
   pool_.for_ranges(block_.batch_count(), kGrain, [&](int begin, int end) {
     for (int batch = begin; batch < end; ++batch)
       forces_of_batch(state, batch, energies, energies ? part_motion[at(part_of_batch(batch))] : 0.0);
@@ -169,17 +169,18 @@ void ShellExecutor::add_rounding(std::span<double> squares_of_parts) const {
     squares_of_parts[at(part_of_batch(batch))] += sums_[at(batch)].rounding;
 }
 
-ShellExecutor::Force ShellExecutor::sum_at(int node) const {
-  Force sum;
+void ShellExecutor::add_sums(int node, NodeSum& sum) const {
+  Vec3d force, torque;
   for (int k = block_.node_slot_begin[at(node)]; k < block_.node_slot_begin[at(node + 1)]; ++k) {
     const double* s = slot_sums_.data() + at(block_.node_slot[at(k)]) * kCornerDofs;
-    sum.force += {{s[0], s[1], s[2]}};
-    sum.torque += {{s[3], s[4], s[5]}};
+    force += {{s[0], s[1], s[2]}};
+    torque += {{s[3], s[4], s[5]}};
   }
-  return sum;
+  sum.force += force;
+  sum.torque += torque;
 }
 
-void ShellExecutor::store_strain(const At& state, std::span<double> e) {
+void ShellExecutor::store_strain(const BlockState& state, std::span<double> e) {
   pool_.for_ranges(block_.batch_count(), kGrain, [&](int begin, int end) {
     for (int batch = begin; batch < end; ++batch) {
       for (int half = 0; half < kBatches; ++half) {
@@ -200,15 +201,15 @@ struct BatchProducts {
   Lanes stiffness;
   bool full;
 
-  BatchProducts(const ShellBlock& block, int batch, int half, const ShellExecutor::At& state)
+  BatchProducts(const ShellBlock& block, int batch, int half, const BlockState& state)
       : shell(block, batch, half, state),
         triangle(shell.constants, shell.u, shell.D),
         axes(shell.axes + shell.axes * triangle.turned()),
         stiffness(Lanes(1) + shell.viscosity),
         full(state.tangent == Tangent::full) {
-    triangle.prepare_products(state.s.empty()
-                                  ? total_stress(shell, triangle.strain(), load_strain(state.e, batch, half))
-                                  : load_strain(state.s, batch, half));
+    triangle.prepare_products(state.kept.empty()
+                                  ? total_stress(shell, triangle.strain(), load_strain(state.E, batch, half))
+                                  : load_strain(state.kept, batch, half));
   }
   BatchProducts(const BatchProducts&) = delete;
   BatchProducts& operator=(const BatchProducts&) = delete;
@@ -232,7 +233,7 @@ ShellNodes<Lanes> motion_in(const Mat3<Lanes>& axes, const ShellBatch& shell, co
 
 }  // namespace
 
-void ShellExecutor::product_of_batch(const At& state, int batch, std::span<const double> d) {
+void ShellExecutor::product_of_batch(const BlockState& state, int batch, std::span<const double> d) {
   for (int half = 0; half < kBatches; ++half) {
     const BatchProducts products(block_, batch, half, state);
     const ShellNodes<Lanes> motion = motion_in(products.axes, products.shell, set_.dofs, d);
@@ -241,28 +242,30 @@ void ShellExecutor::product_of_batch(const At& state, int batch, std::span<const
   }
 }
 
-void ShellExecutor::extrapolate(const At& start, std::span<const double> d, std::span<double> s) {
+void ShellExecutor::linearize(const BlockState&, const BlockState* start, const BlockDirection* step,
+                              std::span<double> kept) {
+  if (kept.empty()) return;
   pool_.for_ranges(block_.batch_count(), kGrain, [&](int begin, int end) {
     for (int batch = begin; batch < end; ++batch) {
       for (int half = 0; half < kBatches; ++half) {
-        const ShellBatch shell(block_, batch, half, start);
+        const ShellBatch shell(block_, batch, half, *start);
         const ShellTriangle<Lanes> triangle(shell.constants, shell.u, shell.D);
         const Mat3<Lanes> axes = shell.axes + shell.axes * triangle.turned();
         const ShellStrain<Lanes> e =
-            triangle.strain() + triangle.strain_differential(motion_in(axes, shell, set_.dofs, d));
-        store_strain_of(total_stress(shell, e, load_strain(start.e, batch, half)), s, batch, half);
+            triangle.strain() + triangle.strain_differential(motion_in(axes, shell, set_.dofs, step->d));
+        store_strain_of(total_stress(shell, e, load_strain(start->E, batch, half)), kept, batch, half);
       }
     }
   });
 }
 
-void ShellExecutor::compute_product(const At& state, std::span<const double> d) {
+void ShellExecutor::compute_product(const BlockState& state, const BlockDirection& direction) {
   pool_.for_ranges(block_.batch_count(), kGrain, [&](int begin, int end) {
-    for (int batch = begin; batch < end; ++batch) product_of_batch(state, batch, d);
+    for (int batch = begin; batch < end; ++batch) product_of_batch(state, batch, direction.d);
   });
 }
 
-void ShellExecutor::assemble_batch(const At& state, int batch, BlockMatrix& matrix) const {
+void ShellExecutor::assemble_batch(const BlockState& state, int batch, BlockMatrix& matrix) const {
   for (int half = 0; half < kBatches; ++half) {
     const BatchProducts products(block_, batch, half, state);
     const auto place = [upper = matrix.fills_upper()](int i, int k) {
@@ -308,7 +311,7 @@ void ShellExecutor::find_pair_slots(const BlockMatrix& matrix) {
         }
 }
 
-void ShellExecutor::assemble(const At& state, BlockMatrix& matrix) {
+void ShellExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Entries /*entries*/) {
   if (pair_slot_.empty()) find_pair_slots(matrix);
   for (std::size_t c = 0; c + 1 < block_.color_begin.size(); ++c) {
     const int first = block_.color_begin[c];

@@ -1,9 +1,11 @@
 #include "core/linear/block_matrix.hpp"
 
 #include "core/base/index.hpp"
+#include "core/structure/blocks.hpp"
 
 #include <algorithm>
 #include <iterator>
+#include <type_traits>
 #include <utility>
 
 namespace fascia {
@@ -13,21 +15,14 @@ namespace {
 /// Elements around each node of a block.
 struct ElementsAround {
   int nodes;                       ///< of an element
+  bool averaged;                   ///< an element feels the nodes of all elements around its own nodes
   std::vector<int> element;        ///< (elements × nodes)
   std::vector<int> begin, around;  ///< (nodes of the model + 1), elements of each
 
-  ElementsAround(const ElementBlock& block, int model_nodes) : nodes(block.nodes) {
+  template <class Block>
+  ElementsAround(const Block& block, int model_nodes) : nodes(block.nodes), averaged(block.averaged) {
     element.reserve(at(block.count) * at(nodes));
-    block.for_each_element([&](std::span<const int> e) { element.insert(element.end(), e.begin(), e.end()); });
-    count(model_nodes);
-  }
-  ElementsAround(const ShellBlock& shell, int model_nodes) : nodes(3) {
-    for (int e = 0; e < shell.count; ++e)
-      for (const int node : shell.element(e)) element.push_back(node);
-    count(model_nodes);
-  }
-
-  void count(int model_nodes) {
+    block.for_each_cell([&](std::span<const int> e, double) { element.insert(element.end(), e.begin(), e.end()); });
     begin.assign(at(model_nodes) + 1, 0);
     for (const int node : element) ++begin[at(node) + 1];
     for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
@@ -84,8 +79,9 @@ void BlockMatrix::find_pattern(const PointSet& set) {
     std::fill(group_of_slot.begin() + set.slot_begin[at(group)], group_of_slot.begin() + set.slot_begin[at(group + 1)],
               group);
   std::vector<ElementsAround> around;
-  for (const ElementBlock& block : set.blocks) around.emplace_back(block, set.node_count());
-  for (const ShellBlock& shell : set.shells) around.emplace_back(shell, set.node_count());
+  for_each_block(set, [&]<class Block>(const Block& block) {
+    if constexpr (!std::is_same_v<Block, PointGroups>) around.emplace_back(block, set.node_count());
+  });
   std::vector<int> last_seen(at(set.node_count()), -1);
   for (int row = 0; row < set.node_count(); ++row) {
     const std::size_t begin = column_.size();
@@ -100,7 +96,7 @@ void BlockMatrix::find_pattern(const PointSet& set) {
     for (std::size_t b = 0; b < around.size(); ++b) {
       const std::size_t known = column_.size();
       around[b].for_each_neighbour(row, add);
-      if (b >= set.blocks.size() || !set.blocks[b].averaged) continue;
+      if (!around[b].averaged) continue;
       const std::vector<int> near(column_.begin() + static_cast<std::ptrdiff_t>(known), column_.end());
       around[b].for_each_neighbour(row, add);
       for (const int column : near) around[b].for_each_neighbour(column, add);

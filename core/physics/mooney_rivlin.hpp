@@ -30,15 +30,15 @@ struct MooneyRivlin {
     }
     At() = default;
 
-    FASCIA_HD T I1() const { return T(3) + T(2) * trace(E); }
+    FASCIA_HD T first_invariant() const { return T(3) + T(2) * trace(E); }
     /// I₂ − 3
-    FASCIA_HD T I2_change() const {
+    FASCIA_HD T second_invariant_change() const {
       const T t = trace(E);
       return T(4) * t + T(2) * (t * t - contract(E, E));
     }
-    /// x and y, of `a` alone or of what a is more than 1 with all its digits.
+    /// x and y. @param a_change  a − 1, with the digits that the caller needs
     FASCIA_HD T x(const T& a_change) const { return T(3) * a_change + a * T(2) * trace(E); }
-    FASCIA_HD T y(const T& a_change) const { return T(3) * a_change * (a + T(1)) + a * a * I2_change(); }
+    FASCIA_HD T y(const T& a_change) const { return T(3) * a_change * (a + T(1)) + a * a * second_invariant_change(); }
   };
   FASCIA_HD static Mat3<T> strain(const Mat3<T>& H) { return green_strain(H); }
   FASCIA_HD static T volumetric_strain(const Mat3<T>& H) { return volume_change(H); }
@@ -74,7 +74,8 @@ struct MooneyRivlin {
     const Slopes s = slopes(at);
     const Mat3<T>& C_inverse = at.C_inverse;
     const Mat3<T> turned = C_inverse * dE * C_inverse;
-    const T d = contract(C_inverse, dE), pJ = p * at.J, kJ2 = k * at.J * at.J, I1 = at.I1(), I2 = T(3) + at.I2_change();
+    const T d = contract(C_inverse, dE), pJ = p * at.J, kJ2 = k * at.J * at.J, I1 = at.first_invariant(),
+            I2 = T(3) + at.second_invariant_change();
     if (!full) {
       const T shear = T(2.0 / 3) * (at.a * I1 * s.first + at.a * at.a * I2 * s.second) - pJ;
       const T stiff = where_positive(shear, shear, T(0)), volume = kJ2 + pJ * T(1.0 / 3);

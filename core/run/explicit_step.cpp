@@ -227,12 +227,12 @@ double ExplicitStepper::tether_work(std::span<const double> factors) {
   const std::span<double> targets = executor_.targets();
   old_targets_.assign(targets.begin(), targets.end());
   old_forces_.clear();
-  for (const Tether& t : model_.tethers) old_forces_.push_back(executor_.tether_force(t, state_));
+  for (const Tether& t : model_.tethers) old_forces_.push_back(executor_.points().tether_force(t, state_));
   place_tethers(model_, factors, targets);
   double work = 0;
   for (std::size_t i = 0; i < model_.tethers.size(); ++i) {
     const Tether& t = model_.tethers[i];
-    const Vec3d force = (old_forces_[i] + executor_.tether_force(t, state_)) * 0.5;
+    const Vec3d force = (old_forces_[i] + executor_.points().tether_force(t, state_)) * 0.5;
     const auto first = at(model_.points.rule[at(t.group)].axes) * 3 * kGroupSize + at(t.lane);
     for (int k = 0; k < 3; ++k) {
       const std::size_t entry = first + at(k) * kGroupSize;

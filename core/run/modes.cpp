@@ -7,6 +7,7 @@
 #include "core/math/rotation.hpp"
 #include "core/node/dof_filter.hpp"
 #include "core/solver/dependents.hpp"
+#include "core/structure/blocks.hpp"
 #include "core/structure/inertia.hpp"
 
 #include <algorithm>
@@ -97,42 +98,7 @@ class Problem {
   /// Σ v (λ + 2μ) |g|² over points and nodes, and Σ k over springs.
   void sum_stiffness(const PointSet& set) {
     for (const Spring& spring : set.springs) stiffness_ += spring.stiffness;
-    for (const ShellBlock& shell : set.shells) {
-      for (int e = 0; e < shell.count; ++e) {
-        const double* rows = shell.constants_of(e / kElementLanes) + e % kElementLanes;
-        double squares = 0;
-        for (int k = 0; k < 6; ++k) {
-          const double g = rows[(ShellBlock::kGradients + k) * kElementLanes];
-          squares += g * g;
-        }
-        stiffness_ += rows[ShellBlock::kMembrane * kElementLanes] * squares;
-      }
-    }
-    for (const ElementBlock& block : set.blocks) {
-      for (int batch = 0; batch < block.batch_count(); ++batch) {
-        for (int q = 0; q < block.points; ++q) {
-          for (int lane = 0; lane < kElementLanes; ++lane) {
-            const double* m = block.material_of(batch) + lane;
-            const Lame lame{m[ElementBlock::kLambda * kElementLanes], m[ElementBlock::kMu * kElementLanes]};
-            double squares = 0;
-            for (int k = 0; k < 3 * block.nodes; ++k) {
-              const double g = block.gradient_of(batch, q)[k * kElementLanes + lane];
-              squares += g * g;
-            }
-            stiffness_ += block.volume_of(batch, q)[lane] * lame.wave_modulus() * squares;
-          }
-        }
-      }
-    }
-    for (int group = 0; group < set.group_count(); ++group) {
-      if (set.rule[at(group)].rule.law == Law::tether) continue;
-      const double* material = set.material_of_group(group);
-      for (int lane = 0; lane < kGroupSize; ++lane) {
-        const double g = material[kGradientNorm * kGroupSize + lane];
-        stiffness_ += material[kVolume * kGroupSize + lane] *
-                      (material[kLambda * kGroupSize + lane] + 2 * material[kMu * kGroupSize + lane]) * g * g;
-      }
-    }
+    for_each_block(set, [&](const auto& block) { stiffness_ += block.stiffness_sum(); });
   }
 
   ThreadPool& pool_;

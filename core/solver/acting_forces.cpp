@@ -66,7 +66,7 @@ std::vector<PartForces> MechanicalSystem::part_forces() const {
                 .load = squared_load(part_squares_.load[p], part_squares_.turned[p]),
                 .inertia = part_squares_.inertia[p],
                 .reaction = part_squares_.reaction[p],
-                .tether = executor_.squared_tether_force(part),
+                .tether = executor_.points().squared_tether_force(part),
                 .momentum = inertia_cancelled_[p],
                 .rounding = 4 * leverage * std::hypot(executor_.rounding(part), cancelled, surfaces_.rounding(part))};
     PartForces& f = parts[p];

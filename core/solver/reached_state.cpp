@@ -46,7 +46,7 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
     const std::array<double, 3> weights = middles_.weights(state.time);
     for (std::size_t i = 0; i < model_.tethers.size(); ++i) {
       const Tether& t = model_.tethers[i];
-      Vec3d more = executor_.tether_stretch(t, state_) * -1.0;
+      Vec3d more = executor_.points().tether_stretch(t, state_) * -1.0;
       for (std::size_t k = 0; k < 3; ++k)
         if (weights[k] != 0) more += middles_.stretch[k][i] * weights[k];
       move_target(t, model_.points.rule[at(t.group)].axes, more, targets.data());
@@ -83,7 +83,7 @@ void MechanicalSystem::note_stretches() {
   if (model_.tethers.empty() || !solves_for_middle() || form_.h <= 0) return;
   std::vector<Vec3d>& stretch = middles_.at_middle(start_.time + form_.reach);
   stretch.clear();
-  for (const Tether& t : model_.tethers) stretch.push_back(executor_.tether_stretch(t, state_));
+  for (const Tether& t : model_.tethers) stretch.push_back(executor_.points().tether_stretch(t, state_));
 }
 
 /// @param targets  what tethers pull to where that differs from what their energy says; or empty

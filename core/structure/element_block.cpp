@@ -95,6 +95,23 @@ ElementBlock make_element_block(const ElementBlockSpec& spec) {
   return block;
 }
 
+double ElementBlock::stiffness_sum() const {
+  double sum = 0;
+  for (int batch = 0; batch < batch_count(); ++batch) {
+    for (int q = 0; q < points; ++q) {
+      for (int lane = 0; lane < kElementLanes; ++lane) {
+        double squares = 0;
+        for (int k = 0; k < 3 * nodes; ++k) {
+          const double g = gradient_of(batch, q)[k * kElementLanes + lane];
+          squares += g * g;
+        }
+        sum += volume_of(batch, q)[lane] * lame_of(batch * kElementLanes + lane).wave_modulus() * squares;
+      }
+    }
+  }
+  return sum;
+}
+
 LawConstants ElementBlock::constants_of(int element) const {
   const double* rows = material_of(element / kElementLanes) + element % kElementLanes;
   LawConstants c;

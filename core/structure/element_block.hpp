@@ -85,12 +85,24 @@ struct ElementBlock {
            static_cast<std::size_t>(batch) * static_cast<std::size_t>(material_rows()) * kElementLanes;
   }
   LawConstants constants_of(int element) const;
+  Lame lame_of(int element) const {
+    const double* m = material_of(element / kElementLanes) + element % kElementLanes;
+    return {m[kLambda * kElementLanes], m[kMu * kElementLanes]};
+  }
   const std::uint16_t* local_of(int batch) const {
     return local.data() + static_cast<std::size_t>(batch) * static_cast<std::size_t>(nodes) * kElementLanes;
   }
   /// Calls act(nodes of the element, by number of the model, ascending) for each element, in their order.
   template <class Act>
   void for_each_element(const Act& act) const;
+  /// Calls act(nodes, stiffness λ + 2μ [Pa]) for each element, as all blocks do (blocks.hpp).
+  template <class Act>
+  void for_each_cell(const Act& act) const {
+    int element = 0;
+    for_each_element([&](std::span<const int> nodes_of) { act(nodes_of, lame_of(element++).wave_modulus()); });
+  }
+  /// Σ v (λ + 2μ) |g|² over points and nodes: a measure of all that resists motion [N/m].
+  double stiffness_sum() const;
 };
 
 /// Elements that lie near each other should follow each other.

@@ -2,44 +2,15 @@
 
 #include "core/base/disjoint_sets.hpp"
 #include "core/base/index.hpp"
+#include "core/structure/blocks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 
 namespace fascia {
 
 namespace {
-
-/// Calls act(nodes, stiffness [Pa]) for all that ties nodes to one another by matter.
-template <class Act>
-void for_each_tie(const PointSet& set, const Act& act) {
-  for (int group = 0; group < set.group_count(); ++group) {
-    double stiffness = 0;
-    const double* material = set.material_of_group(group);
-    const bool matter = set.rule[at(group)].rule.law != Law::tether;
-    for (int lane = 0; lane < kGroupSize && matter; ++lane)
-      stiffness = std::max(stiffness, material[kLambda * kGroupSize + lane] + 2 * material[kMu * kGroupSize + lane]);
-    act(set.nodes(group), stiffness);
-  }
-  for (const ElementBlock& block : set.blocks) {
-    int element = 0;
-    block.for_each_element([&](std::span<const int> nodes) {
-      const double* m = block.material_of(element / kElementLanes) + element % kElementLanes;
-      act(nodes, m[ElementBlock::kLambda * kElementLanes] + 2 * m[ElementBlock::kMu * kElementLanes]);
-      ++element;
-    });
-  }
-  for (const ShellBlock& shell : set.shells) {
-    const double size = shell.length * shell.length * shell.length;
-    for (int e = 0; e < shell.count; ++e) {
-      const double* membrane = shell.constants_of(e / kElementLanes) + at(ShellBlock::kMembrane) * kElementLanes;
-      const std::array<int, 3> nodes = shell.element(e);
-      act(std::span<const int>(nodes), membrane[e % kElementLanes] / size);
-    }
-  }
-}
 
 /// Calls act(nodes) for what follows hosts, and for what is joined without matter.
 template <class Act>
@@ -55,7 +26,7 @@ void for_each_bond(const PointSet& set, const std::vector<Joint>& joints, const 
 /// Of each node: the stiffest material that moves it, or that moves what is bound to it [Pa].
 std::vector<double> node_stiffness(const PointSet& set, const std::vector<Joint>& joints) {
   std::vector<double> stiffness(at(set.node_count()), 0.0);
-  for_each_tie(set, [&](std::span<const int> nodes, double s) {
+  for_each_cell(set, [&](std::span<const int> nodes, double s) {
     for (const int node : nodes) stiffness[at(node)] = std::max(stiffness[at(node)], s);
   });
   for (int round = 0; round < 2; ++round)  // what hosts follow may follow hosts
@@ -72,7 +43,7 @@ DisjointSets connect(const PointSet& set, const std::vector<Joint>& joints) {
   const auto join = [&](std::span<const int> nodes) {
     for (const int node : nodes) sets.join(node, nodes[0]);
   };
-  for_each_tie(set, [&](std::span<const int> nodes, double) { join(nodes); });
+  for_each_cell(set, [&](std::span<const int> nodes, double) { join(nodes); });
   for_each_bond(set, joints, join);
   return sets;
 }
@@ -82,7 +53,7 @@ DisjointSets connect_alike(const PointSet& set, const std::vector<Joint>& joints
                            const std::vector<double>& stiffness) {
   DisjointSets sets(set.node_count());
   std::vector<int> sorted;
-  for_each_tie(set, [&](std::span<const int> nodes, double) {
+  for_each_cell(set, [&](std::span<const int> nodes, double) {
     sorted.assign(nodes.begin(), nodes.end());
     std::sort(sorted.begin(), sorted.end(), [&](int a, int b) { return stiffness[at(a)] < stiffness[at(b)]; });
     for (std::size_t k = 1; k < sorted.size(); ++k) {

@@ -3,6 +3,7 @@
 #include "core/base/coloring.hpp"
 #include "core/base/index.hpp"
 #include "core/physics/solid_law.hpp"
+#include "core/structure/blocks.hpp"
 #include "core/structure/parts.hpp"
 
 #include <algorithm>
@@ -149,6 +150,29 @@ PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   for (ElementBlock& block : set_.blocks) finish_element_block(block, set_.node_count());
   for (ShellBlock& shell : set_.shells) finish_shell_block(shell, set_.node_count());
   return std::move(set_);
+}
+
+double PointGroups::stiffness_of(int group) const {
+  if (set.rule[at(group)].rule.law == Law::tether) return 0;
+  const double* material = set.material_of_group(group);
+  double stiffness = 0;
+  for (int lane = 0; lane < kGroupSize; ++lane)
+    stiffness = std::max(stiffness, material[kLambda * kGroupSize + lane] + 2 * material[kMu * kGroupSize + lane]);
+  return stiffness;
+}
+
+double PointGroups::stiffness_sum() const {
+  double sum = 0;
+  for (int group = 0; group < set.group_count(); ++group) {
+    if (set.rule[at(group)].rule.law == Law::tether) continue;
+    const double* material = set.material_of_group(group);
+    for (int lane = 0; lane < kGroupSize; ++lane) {
+      const double g = material[kGradientNorm * kGroupSize + lane];
+      sum += material[kVolume * kGroupSize + lane] *
+             (material[kLambda * kGroupSize + lane] + 2 * material[kMu * kGroupSize + lane]) * g * g;
+    }
+  }
+  return sum;
 }
 
 }  // namespace fascia

@@ -72,6 +72,20 @@ ShellBlock make_shell_block(std::span<const ShellElementSpec> elements, double l
   return block;
 }
 
+double ShellBlock::stiffness_sum() const {
+  double sum = 0;
+  for (int e = 0; e < count; ++e) {
+    const double* rows = constants_of(e / kElementLanes) + e % kElementLanes;
+    double squares = 0;
+    for (int k = 0; k < 6; ++k) {
+      const double g = rows[(kGradients + k) * kElementLanes];
+      squares += g * g;
+    }
+    sum += rows[kMembrane * kElementLanes] * squares;
+  }
+  return sum;
+}
+
 void finish_shell_block(ShellBlock& block, int nodes_of_model) {
   block.node_slot_begin.assign(at(nodes_of_model) + 1, 0);
   for (int e = 0; e < block.count; ++e)

@@ -40,6 +40,19 @@ struct ShellBlock {
     return constants.data() + static_cast<std::size_t>(batch) * kRows * kElementLanes;
   }
   const int* nodes_of(int batch) const { return node.data() + static_cast<std::size_t>(batch) * 3 * kElementLanes; }
+  static constexpr bool averaged = false;  ///< as ElementBlock has it
+  static constexpr int nodes = 3;          ///< of a triangle
+  /// Calls act(nodes, membrane stiffness by volume [Pa]) for each triangle, as all blocks do (blocks.hpp).
+  template <class Act>
+  void for_each_cell(const Act& act) const {
+    for (int e = 0; e < count; ++e) {
+      const std::array<int, 3> corners = element(e);
+      const double membrane = constants_of(e / kElementLanes)[kMembrane * kElementLanes + e % kElementLanes];
+      act(std::span<const int>(corners), membrane / (length * length * length));
+    }
+  }
+  /// Σ C |g|² over triangles and nodes, C the membrane stiffness: as that of elements [N/m].
+  double stiffness_sum() const;
   std::array<int, 3> element(int e) const {
     const int* n = nodes_of(e / kElementLanes) + e % kElementLanes;
     return {n[0], n[kElementLanes], n[2 * kElementLanes]};

@@ -109,7 +109,7 @@ Forces forces_at(const Simulation& s, const MechanicalSystem& system, const Stat
   Forces f{{system.gradient().begin(), system.gradient().end()}, {}, {}, energy};
   for (const auto& [name, report] : app::coupling_report(s, system, state)) append(report, f.couplings);
   for (const Tether& tether : s.model.tethers) {
-    const Vec3d pull = system.executor().tether_force(tether, state);
+    const Vec3d pull = system.executor().points().tether_force(tether, state);
     f.tethers.insert(f.tethers.end(), pull.v, pull.v + 3);
   }
   // Of free degrees of freedom it is what Newton's method left.

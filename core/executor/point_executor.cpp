@@ -1,0 +1,176 @@
+#include "core/executor/point_executor.hpp"
+
+#include "core/executor/group_kernels.hpp"
+
+#include <algorithm>
+
+namespace fascia {
+
+using namespace kernels;
+
+namespace {
+
+constexpr int kGrain = 32;
+
+Lanes squared(const Mat3<Lanes>& m) { return contract(m, m); }
+
+}  // namespace
+
+PointExecutor::PointExecutor(const PointSet& set, ThreadPool& pool)
+    : set_(set),
+      pool_(pool),
+      slot_sums_(at(set.slot_count()) * 12),
+      group_elastic_(at(set.group_count())),
+      group_stabilization_(at(set.group_count())),
+      group_viscous_(at(set.group_count())),
+      group_rounding_(at(set.group_count())),
+      group_tether_(at(set.group_count())),
+      part_tether_(at(set.part_count())),
+      targets_(set.axes.size() / 3) {
+  for (int group = 0; group < set.group_count(); ++group) {
+    if (set.rule[at(group)].rule.law != Law::tether) continue;
+    slot_is_tether_.resize(at(set.slot_count()));
+    std::fill(slot_is_tether_.begin() + set.slot_begin[at(group)],
+              slot_is_tether_.begin() + set.slot_begin[at(group + 1)], 1);
+  }
+}
+
+template <PointKind Kind>
+void PointExecutor::forces_of_group(const BlockState& state, int group, bool energies,
+                                    std::span<const double> part_motion) {
+  constexpr bool kBlend = Kind.stabilization != Stabilization::none;
+  const auto nodes = set_.nodes(group);
+  const int first_slot = set_.slot_begin[at(group)];
+  Mat3<Lanes> P[kBatches], Y[kBatches];
+  const Lanes motion(energies ? part_motion[at(set_.part_of_group(group))] : 0.0);
+  double elastic = 0, stabilizing = 0, viscous = 0, rounding = 0, tether = 0;
+  for (int b = 0; b < kBatches; ++b) {
+    PointMotion<Lanes> x;
+    for (std::size_t s = 0; s < nodes.size(); ++s)
+      add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(state.u[at(nodes[s])]),
+                       broadcast(turn_of(state, nodes[s])), x);
+    const auto m = material<Kind>(set_, group, b, state.inverse_step, targets_);
+    const Mat3<Lanes> E_old = old_strain(state, group, b);
+    const PointStress<Lanes> stress = point_stress<Kind.stabilization>(x, m, E_old);
+    P[b] = stress.P * m.volume;
+    Y[b] = stress.Y * m.volume;
+    if (!energies) continue;
+    const PointEnergy<Lanes> energy = point_energy<Kind.stabilization>(x, m, E_old);
+    elastic += lane_sum(energy.elastic);
+    stabilizing += lane_sum(energy.stabilization);
+    viscous += lane_sum(energy.viscous);
+    if (is_tether(m)) tether += lane_sum(squared(P[b]));
+    // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
+    const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
+    const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0)) * (Lanes(1.0) + m.viscosity);
+    const Lanes strain = is_tether(m) ? Lanes{} : squared(x.H);  // a tether's H is a displacement
+    rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
+                                                        (Lanes(1.0) + strain)));
+  }
+  if (energies) {
+    group_elastic_[at(group)] = elastic;
+    group_stabilization_[at(group)] = stabilizing;
+    group_viscous_[at(group)] = viscous;
+    group_rounding_[at(group)] = rounding;
+    group_tether_[at(group)] = tether;
+  }
+  for (std::size_t s = 0; s < nodes.size(); ++s) {
+    const int slot = first_slot + static_cast<int>(s);
+    slot_sums<kBlend>(set_.shape_of_slot(slot), P, Y, slot_sums_.data() + at(slot) * 12);
+  }
+}
+
+void PointExecutor::compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion) {
+  pool_.for_ranges(set_.group_count(), kGrain, [&](int begin, int end) {
+    for (int group = begin; group < end; ++group)
+      with_kind(rule_of(group), [&]<PointKind Kind>() { forces_of_group<Kind>(state, group, energies, part_motion); });
+  });
+  if (!energies) return;
+  std::fill(part_tether_.begin(), part_tether_.end(), 0.0);
+  for (int group = 0; group < set_.group_count(); ++group)
+    part_tether_[at(set_.part_of_group(group))] += group_tether_[at(group)];
+}
+
+InternalEnergy PointExecutor::energy() const {
+  InternalEnergy energy;
+  for (std::size_t group = 0; group < group_elastic_.size(); ++group)
+    energy += {group_elastic_[group], group_stabilization_[group], group_viscous_[group]};
+  return energy;
+}
+
+void PointExecutor::add_rounding(std::span<double> squares_of_parts) const {
+  for (int group = 0; group < set_.group_count(); ++group)
+    squares_of_parts[at(set_.part_of_group(group))] += group_rounding_[at(group)];
+}
+
+/// Sums a node's slots in ascending order: force (3) and Σ v (P Bᵀ + w Y) (9).
+template <class Take>
+void PointExecutor::gather(int node, const Take& take, NodeSum& sum) const {
+  for (int k = set_.node_slot_begin[at(node)]; k < set_.node_slot_begin[at(node + 1)]; ++k) {
+    if (!take(set_.node_slot[at(k)])) continue;
+    const double* s = slot_sums_.data() + at(set_.node_slot[at(k)]) * 12;
+    for (int i = 0; i < 3; ++i) {
+      sum.force[i] += s[i];
+      for (int j = 0; j < 3; ++j) sum.N(i, j) += s[3 + 3 * i + j];
+    }
+  }
+}
+
+void PointExecutor::add_sums(int node, NodeSum& sum) const {
+  gather(
+      node, [](int) { return true; }, sum);
+}
+
+NodeSum PointExecutor::tether_sum(int node) const {
+  NodeSum sum;
+  gather(
+      node, [&](int slot) { return slot_is_tether_[at(slot)] != 0; }, sum);
+  return sum;
+}
+
+NodeSum PointExecutor::sum_of_groups(int first, int count, int node) const {
+  const int begin = set_.slot_begin[at(first)], end = set_.slot_begin[at(first + count)];
+  NodeSum sum;
+  gather(
+      node, [&](int slot) { return slot >= begin && slot < end; }, sum);
+  return sum;
+}
+
+Vec3d PointExecutor::tether_stretch(const Tether& tether, const State& state) const {
+  const auto nodes = set_.nodes(tether.group);
+  Vec3d u;
+  for (std::size_t s = 0; s < nodes.size(); ++s) {
+    const double* shape = set_.shape_of_slot(set_.slot_begin[at(tether.group)] + static_cast<int>(s)) + tether.lane;
+    const Vec3d lever{{shape[4 * kGroupSize], shape[7 * kGroupSize], shape[10 * kGroupSize]}};
+    u += state.u[at(nodes[s])] * shape[kGroupSize] + state.D[at(nodes[s])] * lever;
+  }
+  const std::size_t first = at(set_.rule[at(tether.group)].axes) * 3 * kGroupSize + at(tether.lane);
+  return Vec3d{{targets_[first], targets_[first + kGroupSize], targets_[first + 2 * kGroupSize]}} - u;
+}
+
+Vec3d PointExecutor::tether_force(const Tether& tether, const State& state) const {
+  const Vec3d stretch = tether_stretch(tether, state);
+  const auto index = at(set_.rule[at(tether.group)].axes);
+  Vec3d force;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      force[i] += set_.axes[(index * 9 + at(3 * i + j)) * kGroupSize + at(tether.lane)] * stretch[j];
+  return force * set_.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
+}
+
+void PointExecutor::store_strain(const BlockState& state, std::span<double> E) {
+  pool_.for_ranges(set_.group_count(), kGrain, [&](int begin, int end) {
+    for (int group = begin; group < end; ++group) {
+      const auto nodes = set_.nodes(group);
+      for (int b = 0; b < kBatches; ++b) {
+        PointMotion<Lanes> x;
+        for (std::size_t s = 0; s < nodes.size(); ++s)
+          add_slot<false>(set_.shape_of_slot(set_.slot_begin[at(group)] + static_cast<int>(s)), b,
+                          broadcast(state.u[at(nodes[s])]), broadcast(turn_of(state, nodes[s])), x);
+        store_symmetric(E.data() + at(group) * 6 * kGroupSize, 0, b, green_strain(x.H));
+      }
+    }
+  });
+}
+
+}  // namespace fascia
