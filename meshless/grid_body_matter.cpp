@@ -72,6 +72,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       if (selective_) points.back().lambda = 0;
       nodes = a.nodes;
       volumetric.volume += s.volume;
+      volumetric.own.assign(m.own.size(), 0.0);
       volumetric.lambda += s.volume * m.lambda;
       volumetric.stiffness_damping += s.volume * m.stiffness_damping;
     }

@@ -1,6 +1,7 @@
 #include "app/diagnosis/failure.hpp"
 
 #include "app/diagnosis/places.hpp"
+#include "app/scene/laws.hpp"
 #include "core/base/index.hpp"
 #include "core/node/dof_filter.hpp"
 
@@ -180,7 +181,7 @@ class Search {
       return fmt::format("; look at bodies.{}.thickness, its mesh there, and what acts there", body.name);
     if (crushed_)
       return fmt::format(
-          "; a stiffer {}young, smaller loads or motions there, or {}", name,
+          "; a stiffer {}{}, smaller loads or motions there, or {}", name, stiffness_key(p.law),
           is_mesh_model(body) ? "a mesh without flat elements there" : "other bodies." + body.name + ".frames");
     return "";
   }

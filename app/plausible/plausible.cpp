@@ -1,6 +1,7 @@
 #include "app/plausible/plausible.hpp"
 
 #include "app/plausible/readable.hpp"
+#include "app/scene/laws.hpp"
 #include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 
@@ -50,7 +51,7 @@ void warn_of_stiffness(Simulation& s, const Body& body, const BodyScale& scale, 
   for (const MaterialUse& use : body.materials) {
     if (!told.insert(use.material.place.key).second) continue;
     const double E = use.material.young();
-    const Place place = place_of_material(s.scene, use.material, "young");
+    const Place place = place_of_material(s.scene, use.material, stiffness_key(use.material.law));
     if (use.material.poisson() < 0 && scale.density > kFoam)
       s.warnings.add(
           "stiffness", place_of_material(s.scene, use.material, "poisson"),
@@ -115,10 +116,15 @@ bool is_bare_number(const Scene& scene, const Place& place) {
          (std::isdigit(static_cast<unsigned char>(line[value])) != 0 || line[value] == '.');
 }
 
+/// What the body's first material says of its stiffness.
+Place place_of_stiffness(const Scene& scene, const Body& body) {
+  const Material& material = body.materials.front().material;
+  return place_of_material(scene, material, stiffness_key(material.law));
+}
+
 /// Without weight and inertia a scene may be in any units that agree, as published problems are.
 bool may_have_units_of_its_own(const Scene& scene, const Body& body) {
-  return !mass_matters(scene) &&
-         is_bare_number(scene, place_of_material(scene, body.materials.front().material, "young"));
+  return !mass_matters(scene) && is_bare_number(scene, place_of_stiffness(scene, body));
 }
 
 /// A body far from the origin for its size.
@@ -198,11 +204,12 @@ void warn_of_sag(Simulation& s, const Body& body, const BodyScale& scale) {
   const double bent = weight / scale.softest * slenderness * slenderness;
   const bool limp = scale.softest < kSofterThanBrain && body.thickness.empty() && bent > kLimp;
   if (weight < kCrushed * scale.softest && !limp) return;
-  s.warnings.add("sag", place_of_material(s.scene, body.materials.front().material, "young"),
-                 fmt::format("{} does not bear body \"{}\" ({}, {:.4g} kg/m3): its own weight would {}; see young, "
+  s.warnings.add("sag", place_of_stiffness(s.scene, body),
+                 fmt::format("{} does not bear body \"{}\" ({}, {:.4g} kg/m3): its own weight would {}; see {}, "
                              "density, lengths and world.gravity",
                              pressure_text(scale.softest), body.name, length_text(scale.length), scale.density,
-                             limp ? "fold it over" : "crush a column of that length"));
+                             limp ? "fold it over" : "crush a column of that length",
+                             stiffness_key(body.materials.front().material.law)));
 }
 
 /// One cell of frames along a body that is much longer than thick: it hardly bends.

@@ -99,7 +99,8 @@ void refuse_other_constants(const TableReader& table, const LawWord& law) {
   for (const LawWord& other : kMaterialLaws)
     for (const LawKey& key : other.own)
       if (table.has(key.name))
-        table.error(key.name, fmt::format("{}; remove it, or add law = \"{}\"", why, other.word));
+        table.error(key.name, fmt::format("{}; remove it, or {} law = \"{}\"", why, table.has("law") ? "use" : "add",
+                                          other.word));
 }
 
 /// What the law has of its own, and Lamé's constants that it has at small strain.
@@ -117,9 +118,13 @@ void read_own_constants(const TableReader& table, const LawWord& law, Material& 
   if (!complete) return;
   const double mu = law.shear_modulus(material.own);
   static_cast<Lame&>(material) = Lame::from_bulk(bulk, mu);
-  if (!(mu > 0) || !std::isfinite(material.lambda))
-    table.error(law.own.front().name,
-                fmt::format("makes a shear modulus of {:.6g} Pa at small strain; must make one above 0", mu));
+  if (!(mu > 0) || !std::isfinite(mu))
+    return table.error(law.own.front().name,
+                       fmt::format("makes a shear modulus of {:.6g} Pa at small strain; must make one above 0", mu));
+  constexpr double kLeast = 1e-9, kMost = 1e12;  // of bulk / mu, so that Poisson's ratio has digits left
+  if (!(bulk >= kLeast * mu && bulk <= kMost * mu) || !std::isfinite(material.young()))
+    table.error("bulk", fmt::format("{:.6g} Pa beside a shear modulus of {:.6g} Pa; must be {:g} to {:g} times as much",
+                                    bulk, mu, kLeast, kMost));
 }
 
 std::optional<BodyModel> read_model(const TableReader& body) {
@@ -184,8 +189,10 @@ Place place_of_material(const TableReader& body, std::size_t use) {
 Material read_material(const TableReader& table) {
   Material material;
   material.place = table.place();
-  if (const auto law = table.text("law")) material.law = material_law(*law);
+  const auto text = table.text("law");
+  if (text) material.law = material_law(*text);
   const LawWord& law = law_word(material.law);
+  if (text && *text != law.word) return material;  // no known law, as the schema has said
   refuse_other_constants(table, law);
   if (!law.own.empty()) {
     read_own_constants(table, law, material);

@@ -49,6 +49,11 @@ constexpr const LawWord& law_word(Law law) {
   return kMaterialLaws[0];
 }
 constexpr const char* word(Law law) { return law_word(law).word; }
+/// The key of a material by which it is made stiffer.
+constexpr const char* stiffness_key(Law law) {
+  const LawWord& known = law_word(law);
+  return known.own.empty() ? "young" : known.own.front().name;
+}
 
 /// The first where there is none of that name, which the schema has refused.
 constexpr Law material_law(std::string_view text) {

@@ -82,7 +82,7 @@ void BlockMatrix::find_pattern(const PointSet& set) {
   for_each_block(set, [&]<class Block>(const Block& block) {
     if constexpr (!std::is_same_v<Block, PointGroups>) around.emplace_back(block, set.node_count());
   });
-  std::vector<int> last_seen(at(set.node_count()), -1);
+  std::vector<int> last_seen(at(set.node_count()), -1), near;  // near: those of a block about the row
   for (int row = 0; row < set.node_count(); ++row) {
     const std::size_t begin = column_.size();
     const auto add = [&](int column) {
@@ -94,11 +94,14 @@ void BlockMatrix::find_pattern(const PointSet& set) {
     for (int k = set.node_slot_begin[at(row)]; k < set.node_slot_begin[at(row + 1)]; ++k)
       for (const int column : set.nodes(group_of_slot[at(set.node_slot[at(k)])])) add(column);
     for (std::size_t b = 0; b < around.size(); ++b) {
-      const std::size_t known = column_.size();
-      around[b].for_each_neighbour(row, add);
+      near.clear();
+      around[b].for_each_neighbour(row, [&](int column) {
+        add(column);
+        near.push_back(column);
+      });
       if (!around[b].averaged) continue;
-      const std::vector<int> near(column_.begin() + static_cast<std::ptrdiff_t>(known), column_.end());
-      around[b].for_each_neighbour(row, add);
+      std::sort(near.begin(), near.end());
+      near.erase(std::unique(near.begin(), near.end()), near.end());
       for (const int column : near) around[b].for_each_neighbour(column, add);
     }
     std::sort(column_.begin() + static_cast<std::ptrdiff_t>(begin), column_.end());

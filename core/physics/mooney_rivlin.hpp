@@ -68,7 +68,7 @@ struct MooneyRivlin {
   /// dS of dE  [Pa]. With d = C⁻¹ : dE,
   ///   d(∂Ī₁/∂C) = 2a (I₁/3 C⁻¹ dE C⁻¹ − tr dE/3 C⁻¹) − 2/3 d ∂Ī₁/∂C,
   ///   d(∂Ī₂/∂C) = a² (2 tr dE I − 2 dE − 2/3 dI₂ C⁻¹ + 4/3 I₂ C⁻¹ dE C⁻¹) − 4/3 d ∂Ī₂/∂C,   dI₂ = 2 (I₁ I − C) : dE.
-  /// The positive part takes deviators of the spatial strain with the present shear modulus, and the volume on its own.
+  /// Where not full: deviators of the spatial strain with the present shear modulus, and the volume on its own.
   FASCIA_HD Mat3<T> second_piola_differential(const At& at, const T& p, const T& k, const Mat3<T>& dE,
                                               bool full) const {
     const Slopes s = slopes(at);

@@ -29,7 +29,7 @@ concept IsSolidLaw = requires(const L law, const typename L::At at, const Mat3<T
   { law.volumetric_modulus() } -> std::same_as<T>;          ///< k [Pa]
   { law.shear_energy(M) } -> std::same_as<T>;               ///< ψ_μ of H [J/m³]
   { law.second_piola(at, M, p) } -> std::same_as<Mat3<T>>;  ///< S of E and p [Pa]
-  /// dS of dE, with k for dp; the tangent's positive part where not full [Pa]
+  /// dS of dE, with k for dp; where not full, one that is never negative [Pa]
   { law.second_piola_differential(at, p, p, M, true) } -> std::same_as<Mat3<T>>;
 };
 
@@ -78,6 +78,8 @@ FASCIA_HD constexpr decltype(auto) with_solid_law(Law law, const Act& act) {
 constexpr int own_constant_count(Law law) {
   return is_of_points(law) ? with_solid_law(law, []<Law L>() { return int{SolidLaw<L, double>::kOwn}; }) : 0;
 }
+/// @throws InputError  the record lacks constants that its law has
+void check_own_constants(Law law, const LawConstants& constants);
 
 /// ψ [J/m³]
 template <class T, template <class> class L>

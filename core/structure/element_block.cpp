@@ -83,6 +83,7 @@ ElementBlock make_element_block(const ElementBlockSpec& spec) {
   block.length = spec.length;
   block.count = static_cast<int>(spec.material.size());
   block.own_constants = own_constant_count(spec.law);
+  for (const ElementMaterialSpec& m : spec.material) check_own_constants(spec.law, m);
   const auto batches = at(block.batch_count());
   block.gradient.resize(batches * at(spec.points) * at(spec.nodes) * 3 * kElementLanes);
   block.volume.resize(batches * at(spec.points) * kElementLanes);

@@ -72,6 +72,7 @@ void PointSetBuilder::add_rule(std::span<const PointSample> points, double lengt
 /// A point that lacks them has zeros.
 void PointSetBuilder::add_own_constants(std::span<const PointSample> points, GroupRule& group) {
   const auto rows = at(own_constant_count(group.rule.law));
+  for (const PointSample& p : points) check_own_constants(group.rule.law, p);
   if (rows == 0) return;
   group.own = static_cast<int>(set_.own.size() / kGroupSize);
   for (std::size_t k = 0; k < rows; ++k) {

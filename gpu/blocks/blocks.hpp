@@ -6,6 +6,7 @@
 #include "gpu/elements/elements.hpp"
 #include "gpu/space/part_sums.hpp"
 
+#include <tuple>
 #include <vector>
 
 namespace fascia::gpu {
@@ -39,10 +40,10 @@ class Blocks {
   /// After a product: with the scalar of products.
   template <class T>
   BlocksOf<T> view_of() const;
-  Points<Space>& points() { return points_; }
-  const Elements<Space>& elements() const { return elements_; }
-  /// As CpuExecutor has them: points, elements, shells.
-  std::size_t strain_size() const { return points_.strain_size() + elements_.strain_size() + shells_.strain_size(); }
+  Points<Space>& points() { return std::get<Points<Space>>(kinds_); }
+  const Elements<Space>& elements() const { return std::get<Elements<Space>>(kinds_); }
+  /// By kinds, in the order in which CpuExecutor has them.
+  std::size_t strain_size() const { return strain_size_; }
   /// Numbers that sum_quantities() writes.
   std::size_t report_size() const { return sums_.size() * at(parts_) * kQuantities; }
 
@@ -68,17 +69,24 @@ class Blocks {
   };
   template <class Kind>
   void sum_kind(const Kind& kind, const PointSet& set);
-  /// Strains of elements and of shells. @param offset  before theirs
-  static HistoryView part_of(const HistoryView& all, std::size_t offset) {
-    return {all.E == nullptr ? nullptr : all.E + offset, all.inverse_step};
+  /// Calls act(kind, strains before its own) for each kind of matter that the model has.
+  template <class Act>
+  void for_each_kind(const Act& act) {
+    std::size_t begin = 0;
+    const auto one = [&](auto& kind) {
+      if (!kind.empty()) act(kind, begin);
+      begin += kind.strain_size();
+    };
+    std::apply([&](auto&... kinds) { (one(kinds), ...); }, kinds_);
   }
-  std::size_t elements_begin() const { return points_.strain_size(); }
-  std::size_t shells_begin() const { return points_.strain_size() + elements_.strain_size(); }
+  /// A kind's strains.
+  static HistoryView part_of(const HistoryView& all, std::size_t begin) {
+    return {all.E == nullptr ? nullptr : all.E + begin, all.inverse_step};
+  }
 
-  Points<Space> points_;
-  Elements<Space> elements_;
-  Shells<Space> shells_;
+  std::tuple<Points<Space>, Elements<Space>, Shells<Space>> kinds_;
   Springs<Space> springs_;
+  std::size_t strain_size_ = 0;
   std::vector<Summed> sums_;  ///< of the kinds that the model has
   int parts_;
 };

@@ -7,14 +7,13 @@ namespace fascia::gpu {
 
 template <class Space>
 Blocks<Space>::Blocks(const PointSet& set, Precision precision)
-    : points_(set, precision),
-      elements_(set, precision),
-      shells_(set, precision),
+    : kinds_(Points<Space>(set, precision), Elements<Space>(set, precision), Shells<Space>(set, precision)),
       springs_(set),
       parts_(set.part_count()) {
-  sum_kind(points_, set);
-  sum_kind(elements_, set);
-  sum_kind(shells_, set);
+  for_each_kind([&](const auto& kind, std::size_t begin) {
+    sum_kind(kind, set);
+    strain_size_ = begin + kind.strain_size();
+  });
   sum_kind(springs_, set);
 }
 
@@ -27,53 +26,44 @@ void Blocks<Space>::sum_kind(const Kind& kind, const PointSet& set) {
 template <class Space>
 template <class T>
 BlocksOf<T> Blocks<Space>::view_of() const {
-  return {points_.template view_of<T>(),
-          elements_.template view_of<T>(),
-          shells_.template view_of<T>(),
+  const auto& [points, elements, shells] = kinds_;
+  return {points.template view_of<T>(),
+          elements.template view_of<T>(),
+          shells.template view_of<T>(),
           springs_.view(),
-          !points_.empty(),
-          !elements_.empty(),
-          !shells_.empty(),
+          !points.empty(),
+          !elements.empty(),
+          !shells.empty(),
           !springs_.empty()};
 }
 
 template <class Space>
 void Blocks<Space>::forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history,
                            const double* part_motion) {
-  if (!points_.empty()) points_.forces(nodes, pose, history, part_motion);
-  if (!elements_.empty()) elements_.forces(nodes, pose, part_of(history, elements_begin()), part_motion);
-  if (!shells_.empty()) shells_.forces(nodes, pose, part_of(history, shells_begin()), part_motion);
+  for_each_kind([&](auto& kind, std::size_t begin) { kind.forces(nodes, pose, part_of(history, begin), part_motion); });
   if (!springs_.empty()) springs_.forces(nodes, pose, part_motion);
 }
 
 template <class Space>
 void Blocks<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent,
                               const TakenStepView& taken) {
-  if (!points_.empty()) points_.linearize(pose, history, tangent, taken);
-  if (!elements_.empty()) elements_.linearize(pose, part_of(history, elements_begin()), tangent, taken);
-  if (!shells_.empty()) shells_.linearize(pose, part_of(history, shells_begin()), tangent, taken);
+  for_each_kind([&](auto& kind, std::size_t begin) { kind.linearize(pose, part_of(history, begin), tangent, taken); });
 }
 
 template <class Space>
 template <class T, class V>
 void Blocks<Space>::product(const DirectionOf<T, V>& direction) {
-  if (!points_.empty()) points_.product(direction);
-  if (!elements_.empty()) elements_.product(direction);
-  if (!shells_.empty()) shells_.product(direction);
+  for_each_kind([&](auto& kind, std::size_t) { kind.product(direction); });
 }
 
 template <class Space>
 void Blocks<Space>::add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks) {
-  if (!points_.empty()) points_.add_diagonal(nodes, Q, blocks);
-  if (!elements_.empty()) elements_.add_diagonal(nodes, Q, blocks);
-  if (!shells_.empty()) shells_.add_diagonal(nodes, Q, blocks);
+  for_each_kind([&](auto& kind, std::size_t) { kind.add_diagonal(nodes, Q, blocks); });
 }
 
 template <class Space>
 void Blocks<Space>::store_strain(const PoseView& pose, double* E) {
-  if (!points_.empty()) points_.store_strain(pose, E);
-  if (!elements_.empty()) elements_.store_strain(pose, E + elements_begin());
-  if (!shells_.empty()) shells_.store_strain(pose, E + shells_begin());
+  for_each_kind([&](auto& kind, std::size_t begin) { kind.store_strain(pose, E + begin); });
 }
 
 namespace kernels {

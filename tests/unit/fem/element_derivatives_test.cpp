@@ -210,6 +210,35 @@ TEST(ElementReference, StandBesideFrames) {
   for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(assembled[i], Kd[i], 1e-12 * test::norm(Kd));
 }
 
+/// Averages reach the neighbours of neighbours by law: also those that another law's elements are about.
+TEST(ElementReference, AveragedElementsOfAllLawsInOneBody) {
+  ElementBodySpec spec;
+  ElementOptions o;
+  o.cells = {3, 3, 2};
+  spec.mesh = distorted_mesh(o);
+  spec.locking = ElementLocking::averaged;
+  spec.density = 1000;
+  spec.material = [](const Vec3d&, int element) {
+    const Law law = kSolidLaws[element % kSolidLawCount];
+    return PointMaterialSpec{{{5e3, 4e3}, own_constants(law, 4e3)}, 0, 0, law};
+  };
+  const ElementModel built = element_model(std::move(spec));
+  const State state = random_state(built.model, 0.02, 0);
+  ThreadPool pool(2);
+  CpuExecutor executor(built.model.points, pool);
+  const auto n = at(built.model.dof_count());
+  std::vector<double> g(n), Kd(n), assembled(n);
+  executor.gradient(state, {}, g);
+  Linearization lin;
+  executor.linearize(state, {}, Tangent::full, lin);
+  const std::vector<double> d = random_direction(built.model);
+  executor.multiply(lin, d, Kd);
+  BlockMatrix matrix(built.model.points);
+  executor.assemble(lin, matrix);
+  matrix.multiply(pool, d, assembled);
+  for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(assembled[i], Kd[i], 1e-12 * test::norm(Kd));
+}
+
 /// An element turned inside out keeps a proper rotation: energy and forces stay finite and agree.
 TEST(ElementReference, CorotationalElementsSurviveInversion) {
   ElementOptions o;
