@@ -202,7 +202,8 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     const TetheredMaterial& m = s.tethered[at(t)];
     held = true;
     const Tether& tether = s.model.tethers[at(m.tether)];
-    const Vec3d f = snap.system->executor().points().tether_force(tether, *snap.state), u = field_at(m.field, *snap.state).u;
+    const Vec3d f = snap.system->executor().points().tether_force(tether, *snap.state),
+                u = field_at(m.field, *snap.state).u;
     const bool turn = squared_norm(tether.arm) > 0;  // a couple
     if (!turn) force += f;
     moment += turn ? cross(tether.arm + u, f) : cross(tether.X + u - probe.about, f);
