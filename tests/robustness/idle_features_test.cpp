@@ -30,10 +30,10 @@ const Feature kElements{
 const Feature kMeshless{"meshless bodies", {"meshless/"}, {}};
 const Feature kCouplings{
     "couplings",
-    {"coupling/", "core/solver/dependents", "core/executor/spring_forces", "core/structure/dependent_inertia",
+    {"coupling/", "core/solver/dependents", "core/executor/spring_executor", "core/structure/dependent_inertia",
      "app/actions/couplings", "app/assembly/carried_surface", "app/results/coupling_report"},
-    {"DependentNodes", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "note_springs",
-     "add_spring_forces", "linearize_springs", "add_couplings", "move_inertia_to_hosts", "coupling_report"}};
+    {"DependentNodes", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "SpringExecutor",
+     "add_couplings", "move_inertia_to_hosts", "coupling_report"}};
 const Feature kTethers{"tethers", {"app/actions/tethers"}, {}};
 const Feature kSurfaces{"fluids and pressure",
                         {"core/structure/surface_load", "core/structure/face_rule", "core/executor/surface_tangent",
