@@ -16,9 +16,9 @@ struct LawKey {
 };
 
 inline constexpr std::array kMooneyRivlinKeys = {
-    LawKey{"c10", "Pa", "Of I1 - 3; `c10` + `c01` is half the shear modulus.", true},
-    LawKey{"c01", "Pa", "Of I2 - 3.", true}, LawKey{"c20", "Pa", "Of (I1 - 3)^2.", false},
-    LawKey{"c11", "Pa", "Of (I1 - 3)(I2 - 3).", false}, LawKey{"c02", "Pa", "Of (I2 - 3)^2.", false}};
+    LawKey{"c10", "Pa", "factor of I1 - 3. `c10` + `c01` is half the shear modulus.", true},
+    LawKey{"c01", "Pa", "factor of I2 - 3.", true}, LawKey{"c20", "Pa", "factor of (I1 - 3)^2.", false},
+    LawKey{"c11", "Pa", "factor of (I1 - 3)(I2 - 3).", false}, LawKey{"c02", "Pa", "factor of (I2 - 3)^2.", false}};
 
 /// A law of `material.law`, in the words of a scene. Without constants of its own it takes Young's modulus and
 /// Poisson's ratio or Lamé's parameters; with them, these and `bulk`.
@@ -36,12 +36,12 @@ inline constexpr std::array kMaterialLaws = {
     LawWord{Law::neo_hookean, "neo-hookean",
             "Compressible: stiffens as it is compressed to nothing. Not for thin meshless bodies, nor "
             "`formulation = \"corotational\"` or `\"linear\"`."},
-    LawWord{
-        Law::mooney_rivlin, "mooney-rivlin",
-        "Of `c10`, `c01`, if wanted `c20`, `c11`, `c02`, and `bulk`: c10 (I1 - 3) + c01 (I2 - 3) + c20 (I1 - 3)^2 + "
-        "c11 (I1 - 3)(I2 - 3) + c02 (I2 - 3)^2 of the strain without its change of volume, and "
-        "bulk/2 (J - 1)^2. Where \"neo-hookean\" may stand.",
-        kMooneyRivlinKeys, [](std::span<const double> c) { return 2 * (c[0] + c[1]); }}};
+    LawWord{Law::mooney_rivlin, "mooney-rivlin",
+            "Given by `c10`, `c01`, if wanted `c20`, `c11`, `c02`, and `bulk`: c10 (I1 - 3) + c01 (I2 - 3) + c20 (I1 - "
+            "3)^2 + "
+            "c11 (I1 - 3)(I2 - 3) + c02 (I2 - 3)^2 of the strain without its change of volume, and "
+            "bulk/2 (J - 1)^2. It may stand where `\"neo-hookean\"` may.",
+            kMooneyRivlinKeys, [](std::span<const double> c) { return 2 * (c[0] + c[1]); }}};
 
 constexpr const LawWord& law_word(Law law) {
   for (const LawWord& known : kMaterialLaws)

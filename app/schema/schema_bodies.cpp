@@ -134,7 +134,7 @@ Shape make_material_schema() {
     if (law.own.empty()) continue;
     one.keys.push_back(law.own.front().name);
     for (const LawKey& own : law.own) {
-      const std::string of_law = fmt::format("Of `law = \"{}\"`: {}", law.word, own.meaning);
+      const std::string of_law = fmt::format("With `law = \"{}\"`: {}", law.word, own.meaning);
       keys.push_back(own.needed ? key(own.name, number(own.unit), of_law)
                                 : key(own.name, number(own.unit), of_law).defaults("0"));
     }

@@ -49,7 +49,9 @@ std::vector<char> give_all_away(Model& model) {
 
 }  // namespace
 
-void move_idle_inertia_to_hosts(Model& model) { give_all_away(model); }
+void move_idle_inertia_to_hosts(Model& model) {
+  if (!model.points.dependents.empty()) give_all_away(model);
+}
 
 void move_inertia_to_hosts(Model& model) {
   if (model.points.dependents.empty()) return;

@@ -33,7 +33,7 @@ const Feature kCouplings{
     {"coupling/", "core/solver/dependents", "core/executor/spring_executor", "core/structure/dependent_inertia",
      "app/actions/couplings", "app/assembly/carried_surface", "app/results/coupling_report"},
     {"DependentNodes", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "SpringExecutor",
-     "add_couplings", "move_inertia_to_hosts", "coupling_report"}};
+     "add_couplings", "move_inertia_to_hosts", "move_idle_inertia_to_hosts", "coupling_report"}};
 const Feature kTethers{"tethers", {"app/actions/tethers"}, {}};
 const Feature kSurfaces{"fluids and pressure",
                         {"core/structure/surface_load", "core/structure/face_rule", "core/executor/surface_tangent",
@@ -45,11 +45,11 @@ const Feature kPaths{"paths and imperfections",
 const Feature kExplicit{"explicit dynamics", {"core/run/explicit_", "core/run/stable_step"}, {}};
 const Feature kModes{"modes", {"core/run/modes"}, {}};
 const Feature kGpu{
-    "GPU", {"gpu/", "app/run/gpu_run"}, {"device_functions_in_use", "device_module_exists", "module_file"}};
+    "GPU", {"gpu/", "app/run/gpu_run"}, {"device_functions_in_use", "device_module_exists", "module_file", "file_of"}};
 const Feature kCommands{"other commands",
                         {"app/bench/", "app/study/", "app/explain/", "app/estimate/", "app/verify/", "app/report/",
                          "app/rerun", "app/compare", "app/list", "app/run/check_scene", "app/results/picture"},
-                        {}};
+                        {"listed_things"}};
 
 /// Most instructions of the doors of all features, of the whole run.
 constexpr double kLeast = 1e-4;
@@ -95,8 +95,8 @@ std::string source_of(const fs::path& object) {
   return path.substr(0, path.size() - std::string(".cpp.o").size());
 }
 
-/// The sources that define each function. Templates of the standard library are nobody's own, nor is what is called
-/// when the program is loaded.
+/// The sources that define each function. Templates of the standard library and of fmt are nobody's own, nor is what is
+/// called when the program is loaded.
 std::map<std::string, std::set<std::string>> sources_of_functions() {
   std::map<std::string, std::set<std::string>> sources;
   for (const char* folder : {"app", "core", "coupling", "fem", "gpu", "io", "meshless", "shells"})
@@ -107,7 +107,8 @@ std::map<std::string, std::set<std::string>> sources_of_functions() {
         std::istringstream words(line);
         std::string address, kind, name;
         if (!(words >> address >> kind >> name) || std::string("TtWw").find(kind) == std::string::npos) continue;
-        const bool standard = name.starts_with("_ZSt") || name.starts_with("_ZNSt") || name.starts_with("_ZNKSt");
+        const bool standard = name.starts_with("_ZSt") || name.starts_with("_ZNSt") || name.starts_with("_ZNKSt") ||
+                              name.find("N3fmt") != std::string::npos || name.find("NK3fmt") != std::string::npos;
         if (!standard && !name.starts_with("_GLOBAL__sub_I")) sources[name].insert(source);
       }
     }
