@@ -116,7 +116,7 @@ bool is_bare_number(const Scene& scene, const Place& place) {
          (std::isdigit(static_cast<unsigned char>(line[value])) != 0 || line[value] == '.');
 }
 
-/// What the body's first material says of its stiffness.
+/// The place where the body's first material says how stiff it is.
 Place place_of_stiffness(const Scene& scene, const Body& body) {
   const Material& material = body.materials.front().material;
   return place_of_material(scene, material, stiffness_key(material.law));

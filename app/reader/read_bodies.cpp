@@ -103,7 +103,7 @@ void refuse_other_constants(const TableReader& table, const LawWord& law) {
                                           other.word));
 }
 
-/// What the law has of its own, and Lamé's constants that it has at small strain.
+/// Reads the constants that the law has of its own, and makes Lamé's of small strain from them.
 void read_own_constants(const TableReader& table, const LawWord& law, Material& material) {
   bool complete = true;
   const auto read = [&](const char* name, bool needed) {
@@ -192,7 +192,7 @@ Material read_material(const TableReader& table) {
   const auto text = table.text("law");
   if (text) material.law = material_law(*text);
   const LawWord& law = law_word(material.law);
-  if (text && *text != law.word) return material;  // no known law, as the schema has said
+  if (table.has("law") && !text) return material;  // no known law, as the schema has said
   refuse_other_constants(table, law);
   if (!law.own.empty()) {
     read_own_constants(table, law, material);

@@ -27,7 +27,7 @@ struct InternalEnergy {
   }
 };
 
-/// What an assembly must fill: all entries, or at least those of the diagonal.
+/// An assembly must fill all entries, or at least those of the diagonal.
 enum class Entries { all, diagonal };
 
 /// A state as a block sees it. The arrays belong to the caller; those of the block are in its own layout.
@@ -47,7 +47,7 @@ struct BlockDirection {
   std::span<const double> motions;  ///< (nodes × 12) dx (3), dA (9), by rows; likewise
 };
 
-/// What blocks give a node: a force, a torque, and what is conjugate to A (add_moment()).
+/// Blocks give a node a force, a torque, and what is conjugate to A (add_moment()).
 struct NodeSum {
   Vec3d force{}, torque{};
   Mat3d N{};
@@ -65,7 +65,8 @@ concept IsBlockExecutor = requires(B& block, const B& same, const BlockState& st
   block.store_strain(state, out);
   /// The gradient of the energy, for add_sums(). `true`: energies, and rounding by the parts' motion, too.
   block.compute_forces(state, true, part_motion);
-  /// What products need of a state. @param start, step  where a step led to it: stresses are extrapolated along it
+  /// Keeps what products need of a state. @param start, step  where a step led to it: stresses are extrapolated along
+  /// it
   { same.kept_size(true) } -> std::same_as<std::size_t>;
   block.linearize(state, &state, &direction, out);
   block.compute_product(state, direction);

@@ -38,7 +38,7 @@ class BatchTangent {
   }
 
   const ElasticPoint<L, Lanes>& point(int q) const { return point_[q]; }
-  /// Of dp; 0 where p is an average.
+  /// k of dp; it is 0 where p is an average.
   const Lanes& volumetric_modulus() const { return k_; }
 
   /// dP of each point for its dF; without what node averages add.

@@ -122,7 +122,7 @@ class CpuExecutor {
     };
     std::apply([&](auto&... kinds) { (each(kinds), ...); }, blocks_);
   }
-  /// The same of a state with its part of arrays over all blocks.
+  /// A block sees a state, or a linearisation, with its own part of arrays over all blocks.
   BlockState state_of(const State& state, const StrainHistory& history, std::size_t block) const;
   BlockState state_of(const Linearization& lin, std::size_t block) const;
   /// A motion as blocks see it. @param Q  I + D where it starts

@@ -72,7 +72,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   if (see_state_again_) out.E = history.E;
 }
 
-/// What blocks keep, and what their stresses do to turning frames where those are extrapolated.
+/// Blocks keep what they need; where stresses are extrapolated, what they do to turning frames is kept too.
 void CpuExecutor::linearize_blocks(const State& state, const StrainHistory& history, const TakenStep* taken,
                                    Linearization& out) {
   out.kept_begin.assign(1, 0);

@@ -2,6 +2,7 @@
 
 #include "core/executor/block_executor.hpp"
 #include "core/math/batch.hpp"
+#include "core/physics/element_law.hpp"
 
 #include <type_traits>
 
@@ -30,20 +31,18 @@ inline void store_matrix(double* base, int first_row, int batch, const Mat3<Lane
     for (int j = 0; j < 3; ++j) store(base, first_row + 3 * i + j, batch, m(i, j));
 }
 
-inline constexpr int kSymmetric[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
-
 inline Mat3<Lanes> symmetric_matrix(const double* base, int first_row, int batch) {
   Mat3<Lanes> m;
   for (int k = 0; k < 6; ++k) {
     const Lanes value = row(base, first_row + k, batch);
-    m(kSymmetric[k][0], kSymmetric[k][1]) = value;
-    m(kSymmetric[k][1], kSymmetric[k][0]) = value;
+    m(kSymmetricPlaces[k][0], kSymmetricPlaces[k][1]) = value;
+    m(kSymmetricPlaces[k][1], kSymmetricPlaces[k][0]) = value;
   }
   return m;
 }
 
 inline void store_symmetric(double* base, int first_row, int batch, const Mat3<Lanes>& m) {
-  for (int k = 0; k < 6; ++k) store(base, first_row + k, batch, m(kSymmetric[k][0], kSymmetric[k][1]));
+  for (int k = 0; k < 6; ++k) store(base, first_row + k, batch, m(kSymmetricPlaces[k][0], kSymmetricPlaces[k][1]));
 }
 
 /// @param targets  of tethers: (groups with axes × 3 × 8) [m]

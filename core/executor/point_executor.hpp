@@ -9,7 +9,7 @@
 
 namespace fascia {
 
-/// What the groups of points of a set do at a state, as CpuExecutor asks for it: one pass over groups, whose sums by
+/// Computes the groups of points of a set at a state, as CpuExecutor asks for it: one pass over groups, whose sums by
 /// slot the nodes gather.
 class PointExecutor {
  public:
@@ -37,11 +37,11 @@ class PointExecutor {
   /// Elastic and stabilisation energy of each group at the last forces with energies [J].
   std::span<const double> group_elastic() const { return group_elastic_; }
   std::span<const double> group_stabilization() const { return group_stabilization_; }
-  /// What a range of groups gave a node.
+  /// A range of groups gave this to a node.
   NodeSum sum_of_groups(int first, int count, int node) const;
 
   bool has_tethers() const { return !slot_is_tether_.empty(); }
-  /// What they alone gave a node.
+  /// Tethers alone gave this to a node.
   NodeSum tether_sum(int node) const;
   /// Σ |force|² of a connected part's tethers at the last forces with energies [N²].
   double squared_tether_force(int part) const { return part_tether_[at(part)]; }

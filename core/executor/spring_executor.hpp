@@ -18,7 +18,7 @@ class SpringExecutor {
   double note(const State& state, std::span<const double> part_motion, std::span<double> squares_of_parts);
   /// Adds their second derivative to the nodes' own blocks.
   void add_blocks(const State& state, Tangent tangent, std::span<double> node_blocks) const;
-  /// Of each at the last note() [J].
+  /// Energy of each at the last note() [J].
   double energy(int spring) const { return energy_[static_cast<std::size_t>(spring)]; }
   /// On its node [N].
   static Vec3d force(const Spring& spring, const State& state);

@@ -16,7 +16,7 @@ struct Lame {
   FASCIA_HD static constexpr Lame from_bulk(double bulk, double mu) { return {bulk - 2 * mu / 3, mu}; }
   FASCIA_HD constexpr double young() const { return mu * (3 * lambda + 2 * mu) / (lambda + mu); }
   FASCIA_HD constexpr double poisson() const { return lambda / (2 * (lambda + mu)); }
-  /// Of waves of compression: λ + 2μ.
+  /// Modulus of waves of compression: λ + 2μ.
   FASCIA_HD constexpr double wave_modulus() const { return lambda + 2 * mu; }
 
   friend constexpr bool operator==(const Lame&, const Lame&) = default;

@@ -142,6 +142,12 @@ TEST(ElementErrors, LawsTakeTheirOwnConstants) {
   EXPECT_EQ(errors_of_material("law = \"mooney-rivlin\", c10 = 1, c01 = -2, bulk = 9"),
             "a.toml:8:43: bodies.block.material.c10: makes a shear modulus of -2 Pa at small strain; must make one "
             "above 0");
+  EXPECT_EQ(errors_of_material("law = \"mooney-rivlin\", c10 = 1, c01 = 1, bulk = 1e-300"),
+            "a.toml:8:62: bodies.block.material.bulk: 1e-300 Pa beside a shear modulus of 4 Pa; must be 1e-09 to 1e+12 "
+            "times as much");
+  EXPECT_EQ(errors_of_material("law = \"mooney\", c10 = 1, c01 = 1, bulk = 9"),
+            "a.toml:8:20: bodies.block.material.law: \"mooney\" is no known value; must be \"st-venant-kirchhoff\", "
+            "\"neo-hookean\" or \"mooney-rivlin\"");
   EXPECT_EQ(errors_of_material("c10 = 1"),
             "a.toml:8:20: bodies.block.material.c10: is no constant of the law \"st-venant-kirchhoff\"; remove it, or "
             "add law = \"mooney-rivlin\"");

@@ -108,7 +108,7 @@ TYPED_TEST(LawsTest, SmallStrainsMakeHookesStress) {
   EXPECT_LE(largest(second_piola(this->law, H) - hooke), 10 * size * largest(hooke));
 }
 
-/// What "material" takes in the place of the differential is never negative, and the same at rest.
+/// The stand-in of "material" for the differential is never negative, and equals it at rest.
 TYPED_TEST(LawsTest, PositivePartIsPositive) {
   using Known = typename TestFixture::template Solid<double>;
   const double k = this->law.volumetric_modulus();
