@@ -114,14 +114,15 @@ void measure_iteration(const Simulation& s, MechanicalSystem& system, const Stat
   print_row("linearize", whole.linearize);
   print_row("assemble", whole.assemble);
   std::vector<double> x(static_cast<std::size_t>(s.model.dof_count())), y = x;
-  TangentSolver& tangent = system.tangent();
-  if (tangent.direct()) {
-    print_row("factor", shortest([&] { tangent.factor().factorize(tangent.matrix()); }));
-    print_row("solve", shortest([&] { tangent.factor().solve(system.gradient(), x); }));
+  TangentSolver& linear = system.linear();
+  const BlockMatrix& matrix = linear.tangent().matrix();
+  if (linear.direct()) {
+    print_row("factor", shortest([&] { linear.factor().cholesky().factorize(matrix); }));
+    print_row("solve", shortest([&] { linear.factor().cholesky().solve(system.gradient(), x); }));
   } else {
     print_row(fmt::format("conjugate gradients, {} iterations", iterations),
               direction - whole.linearize - whole.assemble);
-    print_row("product of one iteration", shortest([&] { tangent.matrix().multiply(pool, system.gradient(), y); }));
+    print_row("product of one iteration", shortest([&] { matrix.multiply(pool, system.gradient(), y); }));
   }
   fmt::print("bodies alone [ms]          gradient linearize  assemble\n");
   std::string meshless;

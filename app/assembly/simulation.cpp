@@ -12,9 +12,9 @@
 #include "core/geometry/bounds.hpp"
 #include "core/math/rotation.hpp"
 #include "core/solver/boundary_motion.hpp"
-#include "core/solver/dependents.hpp"
 #include "core/structure/dependent_inertia.hpp"
 #include "core/structure/inertia.hpp"
+#include "core/tangent/dependents.hpp"
 #include "meshless/scattered/neighbours.hpp"
 
 #include <fmt/format.h>

@@ -9,7 +9,7 @@ namespace fascia::app {
 namespace {
 
 constexpr double kUsualIterations = 5, kStepIterations = 2;
-/// Up to here stiffness is factorised where the scene does not say how (core/solver/tangent_solver.cpp).
+/// Up to here stiffness is factorised where the scene does not say how (core/tangent/tangent_solver.cpp).
 constexpr double kFactorised = 15000;
 /// The least part of an iteration that the linear solver can have: timing spreads more.
 constexpr double kLeastSolve = 0.1;
@@ -182,7 +182,7 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   forecast.iterations = dynamics ? solver.steps * (linear ? 1 : kStepIterations)
                                  : std::max(1, solver.load_steps) * (linear ? 1 : kUsualIterations);
   const bool factorised =
-      solver.linear == LinearKind::cholesky || (solver.linear == LinearKind::automatic && unknowns <= kFactorised);
+      solver.linear == LinearMethod::cholesky || (solver.linear == LinearMethod::automatic && unknowns <= kFactorised);
   const bool shell = std::all_of(s.scene.bodies.begin(), s.scene.bodies.end(),
                                  [](const Body& b) { return is_carrier(b) || is_shell(b); });
   const double solve = factorised ? main->factor * std::pow(unknowns, main->exponent)

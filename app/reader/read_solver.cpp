@@ -1,4 +1,5 @@
 #include "app/reader/readers.hpp"
+#include "app/scene/solver_words.hpp"
 
 #include <fmt/format.h>
 
@@ -14,20 +15,9 @@ void read_newton(const TableReader& newton, Solver& solver) {
   if (newton.text("on_limit") == "continue") solver.on_limit = OnLimit::proceed;
 }
 
-PreconditionerKind preconditioner_of(const std::string& name) {
-  if (name == "none") return PreconditionerKind::none;
-  if (name == "jacobi") return PreconditionerKind::jacobi;
-  if (name == "block-jacobi") return PreconditionerKind::block_jacobi;
-  if (name == "multigrid") return PreconditionerKind::multigrid;
-  if (name == "cholesky") return PreconditionerKind::cholesky;
-  return PreconditionerKind::automatic;
-}
-
 void read_linear(const TableReader& linear, Solver& solver) {
-  const std::string kind = linear.text("kind").value_or("auto");
-  if (kind == "cg") solver.linear = LinearKind::cg;
-  if (kind == "cholesky") solver.linear = LinearKind::cholesky;
-  solver.preconditioner = preconditioner_of(linear.text("preconditioner").value_or("auto"));
+  solver.linear = kind_of(kLinearSolvers, linear.text("kind").value_or(""));
+  solver.preconditioner = kind_of(kPreconditioners, linear.text("preconditioner").value_or(""));
   solver.linear_max_iterations = linear.integer("max_iterations").value_or(solver.linear_max_iterations);
   solver.linear_tolerance = linear.number("tolerance").value_or(solver.linear_tolerance);
 }

@@ -20,7 +20,7 @@ std::string not_on_gpu(const Simulation& s) {
   if (solver.kind == SolverKind::modes) return "solver.kind = \"modes\"";
   if (solver.control == StaticControl::arc_length) return "solver.control = \"arc-length\"";
   if (solver.control == StaticControl::displacement) return "solver.control = \"displacement\"";
-  if (solver.linear == LinearKind::cholesky) return "solver.linear.kind = \"cholesky\"";
+  if (solver.linear == LinearMethod::cholesky) return "solver.linear.kind = \"cholesky\"";
   if (solver.preconditioner == PreconditionerKind::cholesky) return "solver.linear.preconditioner = \"cholesky\"";
   if (solver.preconditioner == PreconditionerKind::multigrid && solver.precision == "single")
     return "solver.linear.preconditioner = \"multigrid\" with precision = \"single\"";

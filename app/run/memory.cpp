@@ -185,17 +185,17 @@ class Setup {
 
   void of_solver() {
     const Solver& solver = s_.scene.solver;
-    TangentSolver& tangent = system_->tangent();
-    system_->executor().assemble(lin_, tangent.matrix());
+    TangentSolver& linear = system_->linear();
+    BlockMatrix& matrix = linear.tangent().pattern();
+    system_->executor().assemble(lin_, matrix);
     const bool load = solver.control == StaticControl::load, statics = solver.kind == SolverKind::statics;
-    factorizes_ = tangent.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
-                  (statics && tangent.gives_way_to_factor(guessed_iterations())) ||
-                  (statics && load && tangent.factor_is_cheap(kGuessedSolves * guessed_iterations()));
-    if (!factorizes_) return of_levels(tangent.matrix());
-    take(tangent.factor(), tangent.matrix());
+    factorizes_ = linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
+                  (statics && linear.gives_way_to_factor(guessed_iterations())) ||
+                  (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations()));
+    if (!factorizes_) return of_levels(matrix);
+    take(linear.factor().cholesky(), matrix);
     if (!load || !s_.model.loads_are_conservative())
-      beyond_ =
-          bytes_of(BlockCholesky(tangent.matrix(), system_->filter(), Pivots::any, &tangent.order()), tangent.matrix());
+      beyond_ = bytes_of(BlockCholesky(matrix, system_->filter(), Pivots::any, &linear.factor().order()), matrix);
   }
 
   /// Levels of rigid frames, where blocks would take too many iterations: a prolongator, and what it is made from.
@@ -204,7 +204,7 @@ class Setup {
     const bool asked = kind == PreconditionerKind::multigrid;
     const Solver& solver = s_.scene.solver;
     const int most =
-        solver.linear == LinearKind::automatic ? BlocksOrLevels({}).patience() : solver.linear_max_iterations;
+        solver.linear == LinearMethod::automatic ? BlocksOrLevels({}).patience() : solver.linear_max_iterations;
     const bool budget = solver.linear_max_iterations < CgOptions{}.max_iterations;
     if (!asked && (kind != PreconditionerKind::automatic || budget || guessed_iterations() < most)) return;
     const double levels = kLevels * 8 * static_cast<double>(matrix.value_count());
@@ -291,7 +291,7 @@ double estimated_memory(const Scene& scene) {
     // fill of a factor, which grows with the section, where one is made whatever its size.
     const double dofs = (is_mesh_model(b) ? 3 : b.affine ? 12 : 6) * e.frames;
     const double block = is_mesh_model(b) ? 0.25 : b.affine ? 4 : 1;
-    const bool factor = scene.solver.linear == LinearKind::cholesky || dofs <= 15000;
+    const bool factor = scene.solver.linear == LinearMethod::cholesky || dofs <= 15000;
     bytes += e.points * (is_mesh_model(b) ? 300 + 60.0 * e.neighbours : 500 + 250.0 * e.neighbours) +
              e.frames * (e.coupled * 300 * block + 1000 + (factor ? 36 * 8 * 6 * block * std::cbrt(e.frames) : 0.0)) +
              e.pieces * 160;

@@ -196,7 +196,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   out.times.processor = processor_seconds() - processor - output_processor;
   if (options.verbose && out.backend == Backend::cpu && out.run.newton_iterations > 0 && !path &&
       s.model.free_dof_count() > 0)
-    say("{}\n", told(system.tangent().choice()));
+    say("{}\n", told(system.linear().choice()));
   if (!not_shown.empty()) {
     out.run.status = RunStatus::diverged;
     out.run.message = fmt::format("{} {:.6g}: {}; the results end before it",

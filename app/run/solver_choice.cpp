@@ -1,27 +1,20 @@
 #include "app/run/solver_choice.hpp"
 
+#include "app/scene/solver_words.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
 
 namespace fascia::app {
 
 namespace {
 
 std::string preconditioned_by(const SolverChoice& choice) {
-  switch (choice.preconditioner) {
-    case Preconditioner::none:
-      return "without a preconditioner";
-    case Preconditioner::jacobi:
-      return "with the diagonal";
-    case Preconditioner::cholesky:
-      return "with a factor";
-    case Preconditioner::multigrid:
-      return fmt::format("with levels of {} nodes", fmt::join(choice.levels, ", "));
-    case Preconditioner::automatic:
-    case Preconditioner::block_jacobi:
-      break;
-  }
-  return "with blocks";
+  if (choice.preconditioner == PreconditionerKind::multigrid)
+    return fmt::format("with levels of {} nodes", fmt::join(choice.levels, ", "));
+  return std::ranges::find(kPreconditioners, choice.preconditioner, &SolverWord<PreconditionerKind>::kind)->told;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/solver/tangent_solver.hpp"
+#include "core/tangent/tangent_solver.hpp"
 
 #include <string>
 

@@ -9,29 +9,8 @@ SolverSettings settings_of(const Solver& solver) {
   s.max_iterations = solver.newton_max_iterations;
   s.tolerance = solver.newton_tolerance;
   s.proceed_on_limit = solver.on_limit == OnLimit::proceed;
-  s.linear = solver.linear == LinearKind::cg         ? LinearMethod::cg
-             : solver.linear == LinearKind::cholesky ? LinearMethod::cholesky
-                                                     : LinearMethod::automatic;
-  switch (solver.preconditioner) {
-    case PreconditionerKind::automatic:
-      s.preconditioner = Preconditioner::automatic;
-      break;
-    case PreconditionerKind::none:
-      s.preconditioner = Preconditioner::none;
-      break;
-    case PreconditionerKind::jacobi:
-      s.preconditioner = Preconditioner::jacobi;
-      break;
-    case PreconditionerKind::block_jacobi:
-      s.preconditioner = Preconditioner::block_jacobi;
-      break;
-    case PreconditionerKind::multigrid:
-      s.preconditioner = Preconditioner::multigrid;
-      break;
-    case PreconditionerKind::cholesky:
-      s.preconditioner = Preconditioner::cholesky;
-      break;
-  }
+  s.linear = solver.linear;
+  s.preconditioner = solver.preconditioner;
   s.cg.max_iterations = solver.linear_max_iterations;
   s.cg.tolerance = solver.linear_tolerance;
   if (solver.precision == "mixed") s.precision = Precision::mixed;

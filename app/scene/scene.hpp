@@ -6,6 +6,7 @@
 #include "core/math/mat3.hpp"
 #include "core/physics/law.hpp"
 #include "core/physics/law_constants.hpp"
+#include "core/tangent/linear_settings.hpp"
 
 #include <array>
 #include <filesystem>
@@ -256,8 +257,6 @@ constexpr bool is_dynamic(SolverKind kind) {
   return is_implicit_dynamics(kind) || kind == SolverKind::central_differences;
 }
 
-enum class LinearKind { automatic, cg, cholesky };
-enum class PreconditionerKind { automatic, none, jacobi, block_jacobi, multigrid, cholesky };
 enum class OnLimit { stop, proceed };
 
 enum class StaticControl { load, displacement, arc_length };
@@ -287,7 +286,7 @@ struct Solver {
   int newton_max_iterations = 50;
   double newton_tolerance = 1e-8;
   OnLimit on_limit = OnLimit::stop;
-  LinearKind linear = LinearKind::automatic;
+  LinearMethod linear = LinearMethod::automatic;
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
   int linear_max_iterations = 1000;
   double linear_tolerance = 1e-6;

@@ -1,3 +1,4 @@
+#include "app/scene/solver_words.hpp"
 #include "app/schema/schema.hpp"
 #include "core/solver/settings.hpp"
 
@@ -19,20 +20,18 @@ Shape newton_schema() {
            .defaults("\"stop\"")});
 }
 
+template <class Words>
+std::vector<Choice> choices_of(const Words& words) {
+  std::vector<Choice> out;
+  out.reserve(words.size());
+  for (const auto& known : words) out.push_back({known.word, known.meaning});
+  return out;
+}
+
 Shape linear_schema() {
   return table(
-      {key("kind",
-           choice({{"auto", "Chosen by size."}, {"cg", "Conjugate gradients."}, {"cholesky", "Sparse factorisation."}}),
-           "Linear solver.")
-           .defaults("\"auto\""),
-       key("preconditioner",
-           choice({{"auto", "Chosen by size."},
-                   {"none", "None."},
-                   {"jacobi", "Diagonal."},
-                   {"block-jacobi", "A block for each node."},
-                   {"multigrid", "Levels of rigid frames: iterations hardly grow with the number of unknowns."},
-                   {"cholesky", "An older factorisation."}}),
-           "Preconditioner of conjugate gradients.")
+      {key("kind", choice(choices_of(kLinearSolvers)), "Linear solver.").defaults("\"auto\""),
+       key("preconditioner", choice(choices_of(kPreconditioners)), "Preconditioner of conjugate gradients.")
            .defaults("\"auto\""),
        key("max_iterations", integer(between(1, many)), "Iterations of conjugate gradients.").defaults("1000"),
        key("tolerance", number("1", inside(0, 1)), "Relative residual of conjugate gradients.").defaults("1e-6")});

@@ -1,6 +1,6 @@
 #include "core/run/explicit_mode.hpp"
 
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "core/run/explicit_nodes.hpp"
 
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 
 namespace fascia {
 

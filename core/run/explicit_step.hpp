@@ -2,8 +2,8 @@
 
 #include "core/run/explicit_mode.hpp"
 #include "core/run/explicit_nodes.hpp"
-#include "core/solver/dependents.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/tangent/dependents.hpp"
 
 #include <optional>
 #include <span>

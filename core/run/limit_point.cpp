@@ -7,7 +7,7 @@ namespace fascia {
 
 bool near_limit_point(MechanicalSystem& system, const State& state, const FactorFunction& factors, double reached) {
   constexpr double kSofter = 4, kSlopeWidth = 2e-4;
-  if (!system.tangent().direct()) return false;
+  if (!system.linear().direct()) return false;
   // How far a unit of the loads' growth moves the nodes.
   const Translations dots(system.model());
   const auto answer = [&](const State& from, double ahead, double behind, int& unstable) {

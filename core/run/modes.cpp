@@ -6,9 +6,9 @@
 #include "core/math/dense.hpp"
 #include "core/math/rotation.hpp"
 #include "core/node/dof_filter.hpp"
-#include "core/solver/dependents.hpp"
 #include "core/structure/blocks.hpp"
 #include "core/structure/inertia.hpp"
+#include "core/tangent/dependents.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "core/node/node_inertia.hpp"
 #include "core/node/small_factor.hpp"
 #include "core/run/explicit_dynamics.hpp"
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -241,7 +241,7 @@ DirectionReport MechanicalSystem::direction() {
   report.indefinite = solved.indefinite;
   report.unsolved = solved.unsolved;
   report.linear_residual = solved.residual;
-  report.cg_seconds = solved.cg_seconds;
+  report.cg_seconds = solved.seconds;
   filter_.to_global(direction_);
   dependents_.expand(direction_);
   surfaces_.aim(lin_, direction_);
@@ -264,6 +264,20 @@ void MechanicalSystem::linearize_loads() {
   lin_.Q.resize(state_.D.size());
   for (std::size_t i = 0; i < lin_.Q.size(); ++i) lin_.Q[i] = Mat3d::identity() + state_.D[i];
   add_node_blocks(lin_);
+}
+
+Stability MechanicalSystem::stability(const State& end, long made, bool current) {
+  return stability_of(*this, end, State::at_rest(model_), [&](bool at_end) {
+    executor_.linearize(state_, history_, Tangent::full, lin_);
+    add_node_blocks(lin_);
+    return tangent_.softest(lin_, made, current && at_end && settings_.tangent == Tangent::full);
+  });
+}
+
+TangentCondition MechanicalSystem::condition(double most_flops) {
+  executor_.linearize(state_, history_, settings_.tangent, lin_);
+  add_node_blocks(lin_);
+  return tangent_.condition(lin_, most_flops);
 }
 
 const Multigrid* MechanicalSystem::levels(bool material) {

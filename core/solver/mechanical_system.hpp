@@ -3,12 +3,12 @@
 #include "core/executor/executor.hpp"
 #include "core/node/node_step.hpp"
 #include "core/node/time_scheme.hpp"
-#include "core/solver/dependents.hpp"
 #include "core/solver/newton.hpp"
 #include "core/solver/surface_loads.hpp"
-#include "core/solver/tangent_solver.hpp"
 #include "core/structure/inertia.hpp"
 #include "core/structure/model.hpp"
+#include "core/tangent/dependents.hpp"
+#include "core/tangent/tangent_solver.hpp"
 
 #include <optional>
 #include <span>
@@ -78,14 +78,13 @@ class MechanicalSystem {
   /// Of loads without a potential, the energy of an evaluation has the work that they did since the start of the step.
   static constexpr bool compares_energies() { return true; }
 
-  /// Of the equilibrium that the last step of statics found, which the system still stands at (tangent_stability.cpp).
+  /// Of the equilibrium that the last step of statics found, which the system still stands at.
   /// @param end   as finish_step() returned it
   /// @param made     iterations of CG in the run so far
   /// @param current  the last direction was that of a correction too small to matter
   Stability stability(const State& end, long made, bool current);
 
-  /// Condition of the tangent at the state of the last evaluation (tangent_condition.cpp); see
-  /// TangentSolver::condition().
+  /// Condition of the tangent at the state of the last evaluation; see TangentSolver::condition().
   TangentCondition condition(double most_flops);
 
   // What path following asks for (path_system.cpp).
@@ -166,7 +165,7 @@ class MechanicalSystem {
   const DofFilter& filter() const { return filter_; }
   /// At the state of the last evaluation.
   const SurfaceLoads& surfaces() const { return surfaces_; }
-  TangentSolver& tangent() { return tangent_; }
+  TangentSolver& linear() { return tangent_; }
 
  private:
   /// What a step changes, for save() and restore().

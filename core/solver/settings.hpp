@@ -1,15 +1,12 @@
 #pragma once
 
-#include "core/linear/cg.hpp"
 #include "core/physics/point_physics.hpp"
+#include "core/tangent/linear_settings.hpp"
 
 #include <functional>
 #include <vector>
 
 namespace fascia {
-
-enum class LinearMethod { automatic, cg, cholesky };
-enum class Preconditioner { automatic, none, jacobi, block_jacobi, multigrid, cholesky };
 
 /// Arithmetic of Newton's directions; residuals, states and energies are of 64 bits always, and so what a converged run
 /// is judged by. mixed: products with the tangent of 32 bits; single: vectors of conjugate gradients too. Sums over
@@ -27,13 +24,10 @@ struct IterationInfo {
 /// GPUs that can share a run.
 inline constexpr int kMostDevices = 8;
 
-struct SolverSettings {
+struct SolverSettings : LinearSettings {
   int max_iterations = 50;        ///< Newton iterations of a load or time step
   double tolerance = 1e-8;        ///< residual relative to what acts, see judge()
   bool proceed_on_limit = false;  ///< go on with the residual reached
-  LinearMethod linear = LinearMethod::automatic;
-  Preconditioner preconditioner = Preconditioner::automatic;
-  CgOptions cg;
   Tangent tangent = Tangent::full;
   Precision precision = Precision::full;
   std::function<void(const IterationInfo&)> iterating;  ///< is told of each Newton iteration; may be empty

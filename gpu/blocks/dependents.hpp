@@ -57,7 +57,7 @@ struct DependentsView {
   }
 };
 
-/// The dependent nodes of a model on the device, as in core/solver/dependents.hpp. Hosts of a level depend on nodes of
+/// The dependent nodes of a model on the device, as in core/tangent/dependents.hpp. Hosts of a level depend on nodes of
 /// lower levels alone; a pass goes through the levels.
 template <class Space>
 class Dependents {

@@ -2,7 +2,7 @@
 
 #include "core/base/index.hpp"
 #include "core/node/node_force.hpp"
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 #include "gpu/blocks/dependents.hpp"
 #include "gpu/space/node_rows.hpp"
 

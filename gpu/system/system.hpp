@@ -154,7 +154,7 @@ class System {
       return narrow_cg_;
   }
   bool use_levels() const {
-    const bool asked = settings_.preconditioner == Preconditioner::multigrid;
+    const bool asked = settings_.preconditioner == PreconditionerKind::multigrid;
     return levels_fit_ && (asked || (blocks_or_levels_.levels() && !kept_levels_.fail()));
   }
   CgReport solve(const CgOptions& options, bool has_material = true);

@@ -78,10 +78,11 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
 /// that move by themselves, in world axes, and vectors of 64 bits.
 template <class Space>
 std::string System<Space>::not_in_tiles() const {
-  const Preconditioner kind = settings_.preconditioner;
+  const PreconditionerKind kind = settings_.preconditioner;
   if (std::string refusal = not_for_tiles(model_.points); !refusal.empty()) return refusal;
   if (settings_.precision == Precision::single) return "precision is single";
-  if (kind != Preconditioner::automatic && kind != Preconditioner::block_jacobi && kind != Preconditioner::none)
+  if (kind != PreconditionerKind::automatic && kind != PreconditionerKind::block_jacobi &&
+      kind != PreconditionerKind::none)
     return "the preconditioner is not block-Jacobi";
   if (filter_.turns()) return "a constraint has axes of its own";
   if (!dependents_.empty()) return "the model has nodes that depend on others";
@@ -115,7 +116,7 @@ void System<Space>::make_tiles() {
   if (!tiles_) return;
   for (int i = 0; i < model_.node_count(); ++i) held_.push_back(static_cast<std::uint8_t>(filter_.fixed_of(i)));
   tiles_->set_held(held_);
-  if (settings_.preconditioner == Preconditioner::none) tiles_->clear_preconditioner();
+  if (settings_.preconditioner == PreconditionerKind::none) tiles_->clear_preconditioner();
 }
 
 template <class Space>

@@ -22,7 +22,7 @@ BlocksOrLevels::Costs System<Space>::costs_of_levels() const {
 template <class Space>
 bool System<Space>::levels_may_pay() const {
   return !blocks_or_levels_.levels() && !kept_levels_.fail() && levels_fit_ &&
-         settings_.preconditioner == Preconditioner::automatic && settings_.precision != Precision::single &&
+         settings_.preconditioner == PreconditionerKind::automatic && settings_.precision != Precision::single &&
          settings_.devices.size() <= 1 && ((step_.h > 0 && tiles_ == nullptr) || !host_may_solve()) &&
          settings_.cg.max_iterations >= CgOptions{}.max_iterations;
 }

@@ -55,11 +55,11 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn, const TakenSte
       dependents_.transfer(nodes, surfaces_.volume_gradient(t), nullptr);
   }
   inverse_.copy_from(node_blocks_);
-  const Preconditioner kind = settings_.preconditioner;
-  if (kind != Preconditioner::none) blocks_.add_diagonal(nodes, Q_.data(), inverse_.data());
+  const PreconditionerKind kind = settings_.preconditioner;
+  if (kind != PreconditionerKind::none) blocks_.add_diagonal(nodes, Q_.data(), inverse_.data());
   if (!dependents_.empty()) dependents_.add_diagonal(nodes, inverse_.data());
-  Space::for_each(nodes.count, kernels::InvertBlocks{data_.view(), inverse_.data(), kind == Preconditioner::jacobi,
-                                                     kind == Preconditioner::none});
+  Space::for_each(nodes.count, kernels::InvertBlocks{data_.view(), inverse_.data(), kind == PreconditionerKind::jacobi,
+                                                     kind == PreconditionerKind::none});
   if (settings_.precision != Precision::single) return;
   const int entries = static_cast<int>(node_blocks_.size());
   Space::for_each(entries, kernels::Round<float>{node_blocks_.data(), narrow_blocks_.data()});
@@ -90,7 +90,7 @@ void System<Space>::linearize_tiles(Tangent tangent) {
   blocks_.add_spring_blocks(data_.view().nodes, pose(), tangent, node_blocks_.data());
   tiles_->linearize(u_.data()->v, &(*D_.data())(0, 0), tangent, damped_ ? inverse_step_ : 0.0);
   tiles_->set_node_blocks(node_blocks_.data());
-  if (settings_.preconditioner != Preconditioner::none) tiles_->build_preconditioner();
+  if (settings_.preconditioner != PreconditionerKind::none) tiles_->build_preconditioner();
 }
 
 /// v.Ap = K v.p in constraint axes, with the next direction in v.p.

@@ -30,7 +30,7 @@ const Feature kElements{
 const Feature kMeshless{"meshless bodies", {"meshless/"}, {}};
 const Feature kCouplings{
     "couplings",
-    {"coupling/", "core/solver/dependents", "core/executor/spring_executor", "core/structure/dependent_inertia",
+    {"coupling/", "core/tangent/dependents", "core/executor/spring_executor", "core/structure/dependent_inertia",
      "app/actions/couplings", "app/assembly/carried_surface", "app/results/coupling_report"},
     {"DependentNodes", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "SpringExecutor",
      "add_couplings", "move_inertia_to_hosts", "move_idle_inertia_to_hosts", "coupling_report"}};

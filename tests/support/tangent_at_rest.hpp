@@ -3,7 +3,7 @@
 #include "core/executor/executor.hpp"
 #include "core/levels/multigrid.hpp"
 #include "core/node/positive_inverse.hpp"
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 #include "tests/support/models.hpp"
 
 #include <random>

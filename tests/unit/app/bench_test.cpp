@@ -84,7 +84,7 @@ TEST(BenchCases, HaveNamesOfTheirOwnAndSoundScenesOfFixedWork) {
       EXPECT_TRUE(names.insert(c.name).second) << c.name;
       const Scene scene = parsed(c);
       EXPECT_EQ(scene.solver.kind, SolverKind::implicit_euler) << c.name;
-      EXPECT_EQ(scene.solver.linear, LinearKind::cg) << c.name;
+      EXPECT_EQ(scene.solver.linear, LinearMethod::cg) << c.name;
       EXPECT_EQ(scene.solver.linear_max_iterations, 60) << c.name;
       EXPECT_EQ(scene.solver.newton_max_iterations, 1) << c.name;
       EXPECT_EQ(scene.solver.on_limit, OnLimit::proceed) << c.name;

@@ -249,7 +249,7 @@ threads = 2
   EXPECT_EQ(solver.kind, SolverKind::implicit_euler);
   EXPECT_EQ(solver.steps, 100);
   EXPECT_EQ(solver.on_limit, OnLimit::proceed);
-  EXPECT_EQ(solver.linear, LinearKind::cg);
+  EXPECT_EQ(solver.linear, LinearMethod::cg);
   EXPECT_EQ(solver.preconditioner, PreconditionerKind::block_jacobi);
   EXPECT_FALSE(solver.full_tangent);
   EXPECT_EQ(solver.backend, "cuda");

@@ -1,4 +1,4 @@
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 
 #include "core/base/errors.hpp"
 #include "core/executor/executor.hpp"

@@ -74,7 +74,7 @@ TEST(Path, IndefiniteFactorCountsAndSolves) {
   system.begin_step(State::at_rest(built.model), 0);
   system.evaluate();
   system.direction();
-  BlockMatrix& matrix = system.tangent().matrix();
+  const BlockMatrix& matrix = system.linear().tangent().matrix();
   const DofFilter& filter = system.filter();
   const auto n = static_cast<Eigen::Index>(filter.size());
   for (const double shift : {0.0, -0.1, -0.3, -0.7}) {

@@ -139,11 +139,12 @@ TEST(Results, CgAgreesWithCholesky) {
   add_gravity(built.model, {{0, -0.5, 0}});
   State ends[6];
   int k = 0;
-  for (const auto& [method, preconditioner] :
-       {std::pair{LinearMethod::cholesky, Preconditioner::automatic},
-        std::pair{LinearMethod::cg, Preconditioner::block_jacobi}, std::pair{LinearMethod::cg, Preconditioner::jacobi},
-        std::pair{LinearMethod::cg, Preconditioner::cholesky}, std::pair{LinearMethod::cg, Preconditioner::none},
-        std::pair{LinearMethod::cg, Preconditioner::multigrid}}) {
+  for (const auto& [method, preconditioner] : {std::pair{LinearMethod::cholesky, PreconditionerKind::automatic},
+                                               std::pair{LinearMethod::cg, PreconditionerKind::block_jacobi},
+                                               std::pair{LinearMethod::cg, PreconditionerKind::jacobi},
+                                               std::pair{LinearMethod::cg, PreconditionerKind::cholesky},
+                                               std::pair{LinearMethod::cg, PreconditionerKind::none},
+                                               std::pair{LinearMethod::cg, PreconditionerKind::multigrid}}) {
     ThreadPool pool(2);
     SolverSettings settings;
     settings.linear = method;

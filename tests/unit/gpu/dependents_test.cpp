@@ -1,6 +1,6 @@
 #include "gpu/blocks/dependents.hpp"
 
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 #include "tests/support/dependent_models.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 

@@ -18,7 +18,7 @@ class LowRank {
   void set(const std::vector<RankOne>& terms, const DofFilter& filter);
   bool empty() const { return terms_.empty(); }
   int count() const { return static_cast<int>(terms_.size()); }
-  /// Negative eigenvalues of K that the terms lifted, as the last correct() found: each denominator below 0 is one.
+  /// Negative eigenvalues of K that the terms lift, as prepare() found: each denominator below 0 is one.
   int lifted() const {
     return static_cast<int>(std::count_if(scale_.begin(), scale_.end(), [](double s) { return s < 0; }));
   }
@@ -28,20 +28,23 @@ class LowRank {
     for (const RankOne& term : terms_) fascia::add_product(term, x, y);
   }
 
-  /// Turns x = K⁻¹ b into the solution with all terms. Prescribed entries of b and x are zero.
-  /// @param solve  solve(b, x): x = K⁻¹ b on the free degrees of freedom
+  /// Makes ready for correct(). @param solve  solve(b, x): x = K⁻¹ b on the free degrees of freedom
   template <class Solve>
-  void correct(const Solve& solve, std::span<const double> b, std::span<double> x) {
+  void prepare(const Solve& solve) {
     for (std::size_t r = 0; r < terms_.size(); ++r) {
       free_ = terms_[r].g;
       filter_->clear_fixed(free_);
       std::vector<double>& z = z_[r];
-      z.resize(x.size());
+      z.resize(free_.size());
       solve(free_, z);
       for (std::size_t s = 0; s < r; ++s) add(z, s, -scale_[s] * dot(z_[s], free_));
       scale_[r] = 1 / (1 / terms_[r].stiffness + dot(free_, z));
-      add(x, r, -scale_[r] * dot(z, b));
     }
+  }
+
+  /// Turns x = K⁻¹ b into the solution with all terms. Prescribed entries of b and x are zero.
+  void correct(std::span<const double> b, std::span<double> x) const {
+    for (std::size_t r = 0; r < terms_.size(); ++r) add(x, r, -scale_[r] * dot(z_[r], b));
   }
 
  private:

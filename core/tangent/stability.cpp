@@ -1,4 +1,4 @@
-#include "core/solver/stability.hpp"
+#include "core/tangent/stability.hpp"
 
 #include "core/base/index.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/solver/dependents.hpp"
+#include "core/tangent/dependents.hpp"
 
 #include "core/base/index.hpp"
 #include "core/node/node_force.hpp"

@@ -1,0 +1,94 @@
+#include "core/tangent/cg_solver.hpp"
+
+#include "core/base/clock.hpp"
+#include "core/linear/cg.hpp"
+
+#include <algorithm>
+
+namespace fascia {
+
+CgSolver::CgSolver(TangentOperator& K, const LinearSettings& settings, FactorSolver& factor)
+    : K_(K),
+      settings_(settings),
+      one_(preconditioner_of(settings.preconditioner, K, factor)),
+      levels_(K, false),
+      material_(K, true) {
+  if (!one_) one_ = std::make_unique<DiagonalBlocks>(K, true);
+}
+
+CgReport CgSolver::solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options) {
+  M.begin();
+  return conjugate_gradients(
+      K_.vectors(), [this](const Vector& p, Vector& Ap) { K_.apply_free(p, Ap); },
+      [&M](const Vector& r, Vector& z) { return M.apply(r, z); }, b, x, options);
+}
+
+CgReport CgSolver::solve_by_one(const Vector& b, Vector& x, const CgOptions& options) {
+  if (!one_is_ready_ && !one_->prepare()) return {CgStatus::not_finite, 0, 0, 0};
+  const CgReport cg = solve_with(*one_, b, x, options);
+  one_is_ready_ = one_->took(cg.iterations);
+  return cg;
+}
+
+CgReport CgSolver::solve_by_levels(const Vector& b, Vector& x, const CgOptions& options) {
+  return kept_levels_.solve(
+      options, K_.has_tamer(), [this](bool material) { return make_levels(material); },
+      [&](bool material, const CgOptions& few) { return solve_with(material ? material_ : levels_, b, x, few); },
+      [&](const CgOptions& all) { return solve_by_one(b, x, all); });
+}
+
+CgReport CgSolver::solve_by_either(const Vector& b, Vector& x, const CgOptions& options) {
+  const auto by_levels = [&] {
+    const int made = kept_levels_.made();
+    const CgReport cg = solve_by_levels(b, x, options);
+    blocks_or_levels_.took(cg.iterations, kept_levels_.made() - made);
+    return cg;
+  };
+  if (levels_are_taken()) return by_levels();
+  const bool budget = options.max_iterations < kEnoughForBulk, chosen = settings_.linear == LinearMethod::automatic;
+  CgOptions first = options;
+  if (chosen && !budget && !kept_levels_.fail())
+    first.max_iterations = std::min(options.max_iterations, blocks_or_levels_.patience());
+  const CgReport tried = solve_by_one(b, x, first);
+  if (tried.status != CgStatus::limit || budget || kept_levels_.fail()) return tried;
+  blocks_or_levels_.turn_to_levels();
+  CgReport cg = by_levels();
+  cg.iterations += tried.iterations;
+  return cg;
+}
+
+LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, double rough) {
+  CgOptions options = settings_.cg;
+  options.tolerance = std::max(options.tolerance, rough);
+  return solve(b, x, options);
+}
+
+CgReport CgSolver::solve_as_asked(const Vector& b, Vector& x, const CgOptions& options) {
+  switch (settings_.preconditioner) {
+    case PreconditionerKind::automatic:
+      return solve_by_either(b, x, options);
+    case PreconditionerKind::multigrid:
+      return solve_by_levels(b, x, options);
+    default:
+      return solve_by_one(b, x, options);
+  }
+}
+
+LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, const CgOptions& options) {
+  const Clock::time_point start = Clock::now();
+  Vector found;
+  const CgReport cg = solve_as_asked(Vector(b.begin(), b.end()), found, options);
+  std::copy(found.begin(), found.end(), x.begin());
+  LinearReport report;
+  report.iterations = cg.iterations;
+  report.negative = cg.status == CgStatus::negative_curvature ? 1 : 0;
+  if (report.negative > 0) report.trouble = "CG met negative curvature";
+  report.usable = cg.status != CgStatus::not_finite;
+  if (!report.usable) report.trouble = found.empty() ? one_->trouble() : "CG met a number that is not finite";
+  report.unsolved = cg.status == CgStatus::limit;
+  report.residual = cg.relative_norm;
+  report.seconds = seconds_since(start);
+  return report;
+}
+
+}  // namespace fascia

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/levels/blocks_or_levels.hpp"
+#include "core/levels/kept_levels.hpp"
+#include "core/tangent/linear_settings.hpp"
+#include "core/tangent/linear_solver.hpp"
+#include "core/tangent/preconditioners.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// A limit of iterations below this is a budget that the user set, and not too small a guess of ours.
+inline constexpr int kEnoughForBulk = 1000;
+
+/// Solves by preconditioned conjugate gradients.
+///
+/// Where the preconditioner is left open, blocks precondition; levels of rigid frames do from the first solve on that
+/// ends at its limit of iterations, where the limit is not a budget that the user set. Where the program chose
+/// conjugate gradients itself, they do as soon as they are likely to be cheaper, and hand back where they are not.
+class CgSolver final : public LinearSolver {
+ public:
+  /// @param K       belongs to the caller, as does factor
+  /// @param factor  of K, for the preconditioner that asks for one
+  CgSolver(TangentOperator& K, const LinearSettings& settings, FactorSolver& factor);
+
+  /// Preconditioners are made where a solve asks for them.
+  bool prepare() override {
+    one_is_ready_ = false;
+    return true;
+  }
+  LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
+  LinearReport solve(std::span<const double> b, std::span<double> x, const CgOptions& options);
+  bool iterates() const override { return true; }
+
+  /// That was taken last; automatic: blocks.
+  PreconditionerKind preconditioner() const {
+    return levels_are_taken() ? PreconditionerKind::multigrid : settings_.preconditioner;
+  }
+  /// Levels of K or of its material part, the last that were made; null where there were none.
+  const Multigrid* levels(bool material = false) const { return (material ? material_ : levels_).levels(); }
+  /// Makes them. False where one of them is not positive definite.
+  bool make_levels(bool material) { return (material ? material_ : levels_).prepare(); }
+
+ private:
+  using Vector = CpuVectors::Vector;
+  bool levels_are_taken() const { return blocks_or_levels_.levels() && !kept_levels_.fail(); }
+  CgReport solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options);
+  CgReport solve_as_asked(const Vector& b, Vector& x, const CgOptions& options);
+  CgReport solve_by_one(const Vector& b, Vector& x, const CgOptions& options);
+  CgReport solve_by_levels(const Vector& b, Vector& x, const CgOptions& options);
+  CgReport solve_by_either(const Vector& b, Vector& x, const CgOptions& options);
+
+  TangentOperator& K_;
+  LinearSettings settings_;
+  std::unique_ptr<Preconditioner> one_;  ///< that is asked for, or blocks
+  bool one_is_ready_ = false;            ///< made for K as it is
+  LevelsOfFrames levels_, material_;
+  KeptLevels kept_levels_;
+  BlocksOrLevels blocks_or_levels_{{}};  ///< of an automatic preconditioner
+};
+
+}  // namespace fascia

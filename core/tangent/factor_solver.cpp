@@ -1,0 +1,136 @@
+#include "core/tangent/factor_solver.hpp"
+
+#include "core/linear/cg.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia {
+
+namespace {
+
+/// An indefinite tangent is shifted by this part of its material diagonal first.
+constexpr double kSmallestShift = 1e-6;
+
+}  // namespace
+
+const EliminationOrder& FactorSolver::order() {
+  if (!order_) order_ = EliminationOrder::of(K_.pattern(), K_.filter());
+  return *order_;
+}
+
+BlockCholesky& FactorSolver::cholesky() {
+  if (!cholesky_) cholesky_.emplace(K_.pattern(), K_.filter(), Pivots::positive, &order());
+  return *cholesky_;
+}
+
+double FactorSolver::flops_per_number() {
+  const BlockMatrix& matrix = K_.pattern();
+  return order().flops / (static_cast<double>(matrix.value_count()) * (matrix.fills_upper() ? 2 : 1));
+}
+
+bool FactorSolver::fits() {
+  return order().fits() && sizeof(double) * order().numbers <= kMostBytes && cholesky().factor_bytes() <= kMostBytes;
+}
+
+/// K + Σ k g gᵀ has as many negative eigenvalues as K, less those that the terms lift.
+void FactorSolver::take(BlockCholesky& factor, int negative_pivots) {
+  factor_ = &factor;
+  negative_pivots_ = negative_pivots;
+  shifted_ = false;
+  K_.beside().prepare([&](std::span<const double> g, std::span<double> z) { factor.solve(g, z); });
+  negative_ = std::max(0, negative_pivots - K_.beside().lifted());
+  definite_ = negative_ == 0;
+}
+
+bool FactorSolver::factorize_any() {
+  if (!indefinite_) indefinite_.emplace(K_.pattern(), K_.filter(), Pivots::any, &order());
+  if (!indefinite_->factorize(K_.matrix())) return false;
+  take(*indefinite_, indefinite_->negative_pivots());
+  return true;
+}
+
+bool FactorSolver::prepare_any(bool definite_first) {
+  definite_ = false;
+  if (!definite_first || !cholesky().factorize(K_.matrix())) return factorize_any();
+  take(cholesky(), 0);
+  return true;
+}
+
+/// The matrix alone may not be positive definite where it is with the terms beside it: an enclosed fluid holds a wall
+/// that could not hold itself.
+bool FactorSolver::prepare() {
+  definite_ = false;
+  if (cholesky().factorize(K_.matrix()))
+    take(cholesky(), 0);
+  else if (!K_.beside().empty())
+    factorize_any();
+  return definite_;
+}
+
+/// Shifts start small, since those that are larger than need be shorten every step, and come down again.
+bool FactorSolver::prepare_shifted() {
+  constexpr double kLargest = 1e3, kDown = 0.1, kUp = 4;
+  const BlockMatrix& shift_from = K_.material_part(Entries::diagonal);
+  for (shift_ = std::max(kSmallestShift, kDown * shift_); shift_ < kLargest; shift_ *= kUp)
+    if (cholesky().factorize(K_.matrix(), shift_, &shift_from)) {
+      take(cholesky(), 0);
+      definite_ = false;
+      shifted_ = true;
+      return true;
+    }
+  return false;
+}
+
+void FactorSolver::solve_with_factor(std::span<const double> b, std::span<double> x) {
+  factor_->solve(b, x);
+  K_.beside().correct(b, x);
+}
+
+LinearReport FactorSolver::solve(std::span<const double> b, std::span<double> x, double /*rough*/) {
+  solve_with_factor(b, x);
+  if (shifted_) finish_shifted(b, x);
+  LinearReport report;
+  report.negative = negative_;
+  report.usable = std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); });
+  return report;
+}
+
+/// Where the smallest shift is enough, a few soft directions alone are indefinite, and a slender body has softer ones
+/// beside them: conjugate gradients with the shifted factor as a preconditioner give those their full step, and stop
+/// at the first direction of negative curvature, which they take as far as if it were as stiff upwards.
+void FactorSolver::finish_shifted(std::span<const double> b, std::span<double> x) {
+  constexpr CgOptions kOptions{30, 1e-6};
+  if (shift_ > kSmallestShift) return;
+  const CpuVectors& vectors = K_.vectors();
+  CpuVectors::Vector result;
+  const CgReport cg = conjugate_gradients(
+      vectors, [&](const auto& p, auto& Ap) { K_.apply_free(p, Ap); },
+      [&](const auto& r, auto& z) {
+        solve_with_factor(r, z);
+        return vectors.dot(r, z);
+      },
+      CpuVectors::Vector(b.begin(), b.end()), result, kOptions, NegativeCurvature::reflected);
+  const double descent = vectors.dot(b, result);  // else the shifted solution stays
+  if (cg.status != CgStatus::not_finite && std::isfinite(descent) && descent > 0)
+    std::copy(result.begin(), result.end(), x.begin());
+}
+
+bool FactorSolver::solve_refined(std::span<const double> b, std::span<double> x) {
+  constexpr double kSpoilt = 1e-2;
+  rest_.assign(b.begin(), b.end());
+  correction_.resize(b.size());
+  solve_with_factor(rest_, x);
+  K_.apply_free(x, correction_);
+  for (std::size_t i = 0; i < b.size(); ++i) rest_[i] -= correction_[i];
+  solve_with_factor(rest_, correction_);
+  double squared = 0, change = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    squared += x[i] * x[i];
+    change += correction_[i] * correction_[i];
+    x[i] += correction_[i];
+  }
+  return std::isfinite(squared) && std::sqrt(change) <= kSpoilt * std::sqrt(squared);
+}
+
+}  // namespace fascia

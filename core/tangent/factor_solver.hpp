@@ -1,0 +1,69 @@
+#pragma once
+
+#include "core/linear/cholesky.hpp"
+#include "core/tangent/linear_solver.hpp"
+#include "core/tangent/tangent_operator.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Solves with a factor: L Lᵀ of a positive definite tangent, or L D Lᵀ of any, whose pivots tell in how many
+/// directions the equilibrium is unstable.
+class FactorSolver final : public LinearSolver {
+ public:
+  /// @param K  belongs to the caller
+  explicit FactorSolver(TangentOperator& K) : K_(K) {}
+
+  /// False where K with the terms beside it is not positive definite.
+  bool prepare() override;
+  /// False where a pivot vanishes. @param definite_first  L Lᵀ, which is several times faster, is tried first
+  bool prepare_any(bool definite_first = true);
+  /// Of K + s · diagonal of its material part, with the smallest s of a few that is enough. False where none is.
+  bool prepare_shifted();
+
+  /// Takes the terms beside K as they are now, with the factor of a K as good as the same.
+  void renew_terms() { take(*factor_, negative_pivots_); }
+
+  /// After a shift: a direction of descent.
+  LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
+  /// With a step of refinement, since L D Lᵀ has no pivoting. False where rounding spoils the solution: K is all but
+  /// singular.
+  bool solve_refined(std::span<const double> b, std::span<double> x);
+  bool iterates() const override { return false; }
+
+  /// What was prepared last is positive definite, and not shifted.
+  bool definite() const { return definite_; }
+  /// Of what was prepared last: directions of negative curvature.
+  int negative() const { return negative_; }
+
+  /// Of elimination; known before a factor is made.
+  const EliminationOrder& order();
+  bool knows_order() const { return order_.has_value(); }
+  /// A factor's operations for each number of the matrix.
+  double flops_per_number();
+  /// A factor fits into memory.
+  bool fits();
+  BlockCholesky& cholesky();
+
+ private:
+  static constexpr double kMostBytes = 2e9;
+  bool factorize_any();
+  void take(BlockCholesky& factor, int negative_pivots);
+  void finish_shifted(std::span<const double> b, std::span<double> x);
+  void solve_with_factor(std::span<const double> b, std::span<double> x);
+
+  TangentOperator& K_;
+  std::optional<EliminationOrder> order_;
+  std::optional<BlockCholesky> cholesky_, indefinite_;
+  BlockCholesky* factor_ = nullptr;  ///< that solves
+  bool definite_ = false;
+  int negative_ = 0, negative_pivots_ = 0;
+  double shift_ = 0;      ///< of the last factorisation that needed one
+  bool shifted_ = false;  ///< the last factor is such
+  std::vector<double> rest_, correction_;
+};
+
+}  // namespace fascia

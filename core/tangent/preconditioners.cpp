@@ -1,0 +1,116 @@
+#include "core/tangent/preconditioners.hpp"
+
+#include "core/base/index.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace fascia {
+
+namespace {
+
+constexpr int kNodeChunk = 512;
+/// A factor that leaves more iterations is out of date.
+constexpr int kMostOfOldFactor = 30;
+
+/// y = B x; returns x · y.
+template <int N>
+double apply_block(const double* B, const double* x, double* y) {
+  double dot = 0;
+  for (int i = 0; i < N; ++i) {
+    double sum = 0;
+    for (int j = 0; j < N; ++j) sum += B[N * i + j] * x[j];
+    y[i] = sum;
+    dot += x[i] * sum;
+  }
+  return dot;
+}
+
+}  // namespace
+
+std::unique_ptr<Preconditioner> preconditioner_of(PreconditionerKind kind, TangentOperator& K, FactorSolver& factor) {
+  switch (kind) {
+    case PreconditionerKind::none:
+      return std::make_unique<NoPreconditioner>(K);
+    case PreconditionerKind::jacobi:
+      return std::make_unique<DiagonalBlocks>(K, false);
+    case PreconditionerKind::block_jacobi:
+      return std::make_unique<DiagonalBlocks>(K, true);
+    case PreconditionerKind::cholesky:
+      return std::make_unique<OldFactor>(K, factor);
+    case PreconditionerKind::automatic:
+    case PreconditionerKind::multigrid:
+      break;
+  }
+  return nullptr;
+}
+
+double NoPreconditioner::apply(std::span<const double> r, std::span<double> z) {
+  std::copy(r.begin(), r.end(), z.begin());
+  return K_.vectors().dot(r, z);
+}
+
+bool DiagonalBlocks::prepare() {
+  K_.invert_diagonal(K_.matrix(), whole_, inverse_);
+  chunk_sums_.resize(at((K_.model().node_count() + kNodeChunk - 1) / kNodeChunk));
+  return true;
+}
+
+double DiagonalBlocks::apply(std::span<const double> r, std::span<double> z) {
+  const DofLayout& dofs = K_.model().points.dofs;
+  K_.pool().for_ranges(dofs.node_count(), kNodeChunk, [&](int begin, int end) {
+    double sum = 0;
+    for (int node = begin; node < end; ++node) {
+      const double* inverse = inverse_.data() + dofs.block_begin(node);
+      const std::size_t first = at(dofs.begin(node));
+      switch (dofs.size(node)) {
+        case 3:
+          sum += apply_block<3>(inverse, r.data() + first, z.data() + first);
+          break;
+        case 6:
+          sum += apply_block<6>(inverse, r.data() + first, z.data() + first);
+          break;
+        default:
+          sum += apply_block<12>(inverse, r.data() + first, z.data() + first);
+      }
+    }
+    chunk_sums_[at(begin / kNodeChunk)] = sum;
+  });
+  return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
+}
+
+bool OldFactor::prepare() {
+  if (!ready_) ready_ = factor_.cholesky().factorize(K_.matrix());
+  return ready_;
+}
+
+double OldFactor::apply(std::span<const double> r, std::span<double> z) {
+  factor_.cholesky().solve(r, z);
+  return K_.vectors().dot(r, z);
+}
+
+bool OldFactor::took(int iterations) {
+  if (iterations > kMostOfOldFactor) ready_ = false;
+  return ready_;
+}
+
+bool LevelsOfFrames::prepare() {
+  const BlockMatrix& from = material_ ? K_.material_part() : K_.matrix();
+  if (!levels_) levels_.emplace(from, K_.filter(), K_.pool());
+  K_.invert_diagonal(from, true, inverse_);
+  return levels_->build(K_.places(), inverse_,
+                        [this, &from](std::span<const double> x, std::span<double> y) { K_.apply_free(from, x, y); });
+}
+
+/// Where nothing but rounding is left, the sign of r · z says nothing.
+double LevelsOfFrames::apply(std::span<const double> r, std::span<double> z) {
+  const double rz = levels_->precondition(r, z);
+  const bool first = start_ == 0;
+  if (first) start_ = std::abs(rz);
+  const bool indefinite = first ? rz < 0 || (rz == 0 && K_.vectors().dot(r, r) > 0) : rz < -kCycleRounding * start_;
+  return indefinite ? std::numeric_limits<double>::quiet_NaN() : rz;
+}
+
+}  // namespace fascia

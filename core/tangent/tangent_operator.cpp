@@ -1,0 +1,103 @@
+#include "core/tangent/tangent_operator.hpp"
+
+#include "core/base/index.hpp"
+#include "core/node/positive_inverse.hpp"
+
+#include <algorithm>
+
+namespace fascia {
+
+TangentOperator::TangentOperator(const Model& model, CpuExecutor& executor, const DofFilter& filter)
+    : model_(model),
+      executor_(executor),
+      filter_(filter),
+      vectors_(executor.pool()),
+      dependents_(model.points),
+      work_(at(model.dof_count())) {}
+
+void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
+  at_ = &lin;
+  tamer_ = tamer;
+  assembled_ = tamed_ = false;
+  beside_.set(lin.low_rank, filter_);
+  if (!dependents_.empty()) dependents_.turn(lin.Q);
+}
+
+void TangentOperator::tame(TamerTangent kind) {
+  assemble((*tamer_)(kind), pattern(), Entries::all);
+  assembled_ = tamed_ = true;
+}
+
+void TangentOperator::assemble(const Linearization& lin, BlockMatrix& out, Entries entries) {
+  executor_.assemble(lin, out, dependents_.empty() ? entries : Entries::all);
+  if (!dependents_.empty()) dependents_.condense(out);
+}
+
+BlockMatrix& TangentOperator::pattern() {
+  if (!matrix_) matrix_.emplace(model_.points);
+  return *matrix_;
+}
+
+const BlockMatrix& TangentOperator::matrix() {
+  if (!assembled_) assemble(*at_, pattern(), Entries::all);
+  assembled_ = true;
+  return *matrix_;
+}
+
+const BlockMatrix& TangentOperator::material_part(Entries entries) {
+  if (!material_) material_.emplace(model_.points);
+  assemble((*tamer_)(TamerTangent::material), *material_, entries);
+  return *material_;
+}
+
+void TangentOperator::apply_blocks(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
+  if (!filter_.turns()) return matrix.multiply(pool(), x, y);
+  std::copy(x.begin(), x.end(), work_.begin());
+  filter_.to_global(work_);
+  matrix.multiply(pool(), work_, y);
+  filter_.to_local(y);
+}
+
+void TangentOperator::apply(std::span<const double> x, std::span<double> y) {
+  apply_blocks(matrix(), x, y);
+  beside_.add_product(x, y);
+}
+
+void TangentOperator::apply_whole(std::span<const double> x, std::span<double> y) {
+  work_.assign(x.begin(), x.end());
+  filter_.to_global(work_);
+  dependents_.expand(work_);
+  executor_.multiply(*at_, work_, y);
+  add_unsymmetric_product(*at_, model_.points.dofs, work_, y);
+  dependents_.transfer(y);
+  filter_.to_local(y);
+}
+
+void TangentOperator::invert_diagonal(const BlockMatrix& matrix, bool whole, std::vector<double>& out) const {
+  const DofLayout& dofs = model_.points.dofs;
+  out.resize(dofs.block_total());
+  pool().for_ranges(model_.node_count(), 128, [&](int begin, int end) {
+    for (int node = begin; node < end; ++node) {
+      const int n = dofs.size(node);
+      double* block = out.data() + dofs.block_begin(node);
+      filter_.rotate_block(node, node, matrix.block(matrix.diagonal(node)), block);
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+          const bool held = filter_.is_fixed(at(dofs.begin(node) + i)) || filter_.is_fixed(at(dofs.begin(node) + j));
+          if (held || (!whole && i != j)) block[n * i + j] = i == j ? 1 : 0;
+        }
+      }
+      positive_inverse(block, n);
+    }
+  });
+}
+
+Multigrid::Places TangentOperator::places() const {
+  Multigrid::Places places;
+  places.x = model_.rest_position;
+  for (std::size_t i = 0; i < at_->u.size(); ++i) places.x[i] += at_->u[i];
+  places.Q = at_->Q;
+  return places;
+}
+
+}  // namespace fascia

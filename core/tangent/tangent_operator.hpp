@@ -1,0 +1,93 @@
+#pragma once
+
+#include "core/executor/executor.hpp"
+#include "core/levels/multigrid.hpp"
+#include "core/linear/block_matrix.hpp"
+#include "core/linear/vectors.hpp"
+#include "core/node/dof_filter.hpp"
+#include "core/tangent/dependents.hpp"
+#include "core/tangent/low_rank.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace fascia {
+
+/// Tangents that are positive definite where the full one is not: without the pull of tethers on turning frames, and
+/// without all that stress does.
+enum class TamerTangent { without_tethers, material };
+using Relinearize = std::function<const Linearization&(TamerTangent)>;
+
+/// The tangent of a model at a state, as linear solvers see it: a symmetric part K, and what loads without a potential
+/// add to it. Vectors are in constraint axes, one number for each degree of freedom; what depends on other nodes is
+/// condensed onto these. The matrix is assembled when it is first asked for.
+class TangentOperator {
+ public:
+  TangentOperator(const Model& model, CpuExecutor& executor, const DofFilter& filter);
+
+  /// @param at     is held by the caller for as long as this is asked about it
+  /// @param tamer  gives tamer tangents at the same state, as long; null: there are none
+  void take(const Linearization& at, const Relinearize* tamer = nullptr);
+  /// Puts a tamer tangent in the place of K; the whole tangent stays what it is.
+  void tame(TamerTangent kind);
+  bool tamed() const { return tamed_; }
+  bool has_tamer() const { return tamer_ != nullptr; }
+  void forget_tamer() { tamer_ = nullptr; }
+  bool symmetric() const { return at_->symmetric(); }
+
+  const Model& model() const { return model_; }
+  const DofFilter& filter() const { return filter_; }
+  const CpuVectors& vectors() const { return vectors_; }
+  ThreadPool& pool() const { return executor_.pool(); }
+  int free_count() const { return filter_.free_count(); }
+
+  /// y = K x, of held degrees of freedom too.
+  void apply(std::span<const double> x, std::span<double> y);
+  /// y = K x on the free degrees of freedom; the others become 0.
+  void apply_free(std::span<const double> x, std::span<double> y) {
+    apply(x, y);
+    filter_.clear_fixed(y);
+  }
+  /// The same of a matrix with K's pattern.
+  void apply_free(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
+    apply_blocks(matrix, x, y);
+    filter_.clear_fixed(y);
+  }
+  /// y = K x with all that the tangent has, of held degrees of freedom too.
+  void apply_whole(std::span<const double> x, std::span<double> y);
+
+  /// K without the terms beside it; of the axes of the world.
+  const BlockMatrix& matrix();
+  /// The same, whose values may be any.
+  BlockMatrix& pattern();
+  /// Terms of K that no matrix holds.
+  LowRank& beside() { return beside_; }
+  const LowRank& beside() const { return beside_; }
+  /// The part of K that is definite whatever the stress. A tamer tangent must be there.
+  const BlockMatrix& material_part(Entries entries = Entries::all);
+  /// Of each node the inverse of the free part of its diagonal block, with pivots kept positive; 1 where it is held.
+  /// @param whole  false: of the diagonal alone
+  void invert_diagonal(const BlockMatrix& matrix, bool whole, std::vector<double>& out) const;
+  /// K resists rigid motions of parts least: where the nodes are, and how they are turned.
+  Multigrid::Places places() const;
+
+ private:
+  void assemble(const Linearization& at, BlockMatrix& out, Entries entries);
+  void apply_blocks(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y);
+
+  const Model& model_;
+  CpuExecutor& executor_;
+  const DofFilter& filter_;
+  CpuVectors vectors_;
+  DependentNodes dependents_;
+  const Linearization* at_ = nullptr;
+  const Relinearize* tamer_ = nullptr;
+  std::optional<BlockMatrix> matrix_, material_;
+  bool assembled_ = false, tamed_ = false;
+  LowRank beside_;
+  std::vector<double> work_;
+};
+
+}  // namespace fascia

@@ -1,0 +1,242 @@
+#include "core/tangent/tangent_solver.hpp"
+
+#include "core/tangent/whole_tangent.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fascia {
+
+namespace {
+
+constexpr int kRoundsOfFactor = 4, kRoundsOfCg = 1;
+
+/// Products that an iteration with levels is worth.
+constexpr double kCycle = 6;
+
+/// Inverse iteration with a solver that was prepared.
+SoftestDirection softest_by(LinearSolver& solver, const TangentOperator& K, int rounds) {
+  const auto solve = [&](std::span<const double> b, std::span<double> x) {
+    const LinearReport report = solver.solve(b, x);
+    return TangentProbe{report.usable && (!report.unsolved || report.negative > 0), report.negative};
+  };
+  return softest_direction(K.model(), K.filter(), solve, rounds);
+}
+
+}  // namespace
+
+TangentSolver::TangentSolver(const Model& model, CpuExecutor& executor, const DofFilter& filter,
+                             const LinearSettings& settings)
+    : settings_(settings),
+      filter_(filter),
+      K_(model, executor, filter),
+      factor_(K_),
+      cg_(K_, settings, factor_),
+      own_(settings.own ? settings.own(K_) : nullptr) {}
+
+bool TangentSolver::direct() {
+  if (direct_) return *direct_;
+  if (own_)
+    direct_ = false;
+  else if (!guessed())
+    direct_ = settings_.linear == LinearMethod::cholesky;
+  else if (filter_.free_count() <= kDirectDofs)
+    direct_ = true;
+  else
+    direct_ = factor_.order().fits() && factor_.flops_per_number() < kFlopsPerNumber;
+  return *direct_;
+}
+
+SolverChoice TangentSolver::choice() {
+  SolverChoice made;
+  made.direct = direct_.value_or(true);
+  made.preconditioner = cg_.preconditioner();
+  if (cg_.levels() != nullptr) made.levels = cg_.levels()->level_sizes();
+  if (!factor_.knows_order()) return made;
+  made.flops = factor_.order().flops;
+  made.numbers = factor_.order().numbers;
+  made.flops_per_number = factor_.flops_per_number();
+  return made;
+}
+
+bool TangentSolver::gives_way_to_factor(long iterations) {
+  const int limit = settings_.cg.max_iterations;
+  return guessed() && limit >= kEnoughForBulk && iterations >= limit && factor_.fits();
+}
+
+bool TangentSolver::factor_is_cheap(long made) {
+  constexpr double kSpeedup = 5, kShare = 0.1;
+  constexpr int kAlways = 5000;  // less than a second, whatever the shape
+  if (settings_.preconditioner == PreconditionerKind::cholesky || filter_.free_count() <= kAlways) return true;
+  const BlockMatrix& matrix = K_.pattern();
+  const double product = (cg_.levels() != nullptr ? kCycle : 1) * 2.0 * static_cast<double>(matrix.value_count()) *
+                         (matrix.fills_upper() ? 2 : 1);
+  return factor_.order().flops <= kSpeedup * kShare * static_cast<double>(made) * product && factor_.fits();
+}
+
+/// @param whole  with what is beside the symmetric part
+void TangentSolver::set_right_side(std::span<const double> prescribed, std::span<const double> b, bool whole) {
+  rhs_.assign(b.begin(), b.end());
+  if (!prescribed.empty()) {
+    product_.resize(b.size());
+    whole ? K_.apply_whole(prescribed, product_) : K_.apply(prescribed, product_);
+    for (std::size_t i = 0; i < b.size(); ++i) rhs_[i] -= product_[i];
+  }
+  filter_.clear_fixed(rhs_);
+}
+
+void TangentSolver::take_prescribed(std::span<const double> prescribed, std::span<double> x) const {
+  for (std::size_t i = 0; i < prescribed.size(); ++i)
+    if (filter_.is_fixed(i)) x[i] = prescribed[i];
+}
+
+TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed,
+                                   std::span<const double> b, std::span<double> x, const Relinearize& relinearize) {
+  K_.take(lin, &relinearize);
+  TangentReport report;
+  std::optional<TangentReport> exact;
+  if (filter_.free_count() == 0) {
+    std::fill(x.begin(), x.end(), 0.0);
+  } else {
+    if (!K_.symmetric()) {
+      set_right_side(prescribed, b, true);
+      exact = solve_unsymmetric(x);
+      if (!exact) K_.take(lin, &relinearize);
+    }
+    if (!exact) set_right_side(prescribed, b, false);
+    report = exact ? *exact : descend(x);
+  }
+  K_.forget_tamer();
+  if (!report.usable) return report;
+  if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) {
+    report.usable = false;
+    report.trouble = "the linear solver returned a number that is not finite";
+    return report;
+  }
+  take_prescribed(prescribed, x);
+  return report;
+}
+
+/// With K as it is, or where it is indefinite as near to it as a direction of descent needs.
+TangentReport TangentSolver::descend(std::span<double> x) {
+  if (direct()) return descend_by_factor(x);
+  LinearSolver& solver = iterative();
+  solver.prepare();
+  TangentReport report{solver.solve(rhs_, x)};
+  if (!report.trouble.empty() && !K_.model().tethers.empty()) {
+    K_.tame(TamerTangent::without_tethers);
+    solver.prepare();
+    report = TangentReport{solver.solve(rhs_, x)};
+  }
+  if (report.trouble.empty() && report.negative > 0) report.trouble = "the tangent is not positive definite";
+  if (!report.usable || !report.unsolved || !gives_way_to_factor(report.iterations)) return report;
+  direct_ = true;
+  const int iterations = report.iterations;
+  report = descend_by_factor(x);
+  report.iterations = iterations;
+  return report;
+}
+
+TangentReport TangentSolver::descend_by_factor(std::span<double> x) {
+  TangentReport report;
+  bool ready = factor_.prepare();
+  if (!ready && !K_.model().tethers.empty()) {
+    K_.tame(TamerTangent::without_tethers);
+    ready = factor_.prepare();
+  }
+  if (!ready) {
+    ready = factor_.prepare_shifted();
+    report.trouble = ready ? "the tangent was not positive definite (buckling, or parts that nothing holds); it was "
+                             "shifted"
+                           : "the tangent stays indefinite under every shift";
+  }
+  report.usable = ready;
+  if (ready) factor_.solve(rhs_, x);
+  return report;
+}
+
+/// None where the symmetric part has no factor, or too much is left. Where conjugate gradients meet negative curvature
+/// or their limit a factor takes over, if they were only a guess; else the material part alone, which is definite,
+/// preconditions.
+std::optional<TangentReport> TangentSolver::solve_unsymmetric(std::span<double> x) {
+  TangentReport report;
+  const auto solve = [&](LinearSolver& inner, double tolerance) {
+    const LinearReport whole = solve_whole(K_, inner, guessed(), rhs_, x, tolerance);
+    report.iterations += whole.iterations;
+    report.seconds += whole.seconds;
+    report.indefinite = report.indefinite || whole.negative > 0;
+    report.unsolved = inner.iterates() && whole.unsolved;
+    report.residual = inner.iterates() ? whole.residual : 0;
+    return whole.usable;
+  };
+  if (!direct()) {
+    LinearSolver& inner = iterative();
+    inner.prepare();
+    if (solve(inner, settings_.cg.tolerance)) return report;
+    if (!guessed() || !factor_.fits()) {
+      K_.tame(TamerTangent::material);
+      inner.prepare();
+      return solve(inner, settings_.cg.tolerance) ? std::optional(report) : std::nullopt;
+    }
+    direct_ = true;
+  }
+  report.indefinite = false;
+  if (!factor_.prepare_any() || !solve(factor_, kDirectTolerance)) return std::nullopt;
+  return report;
+}
+
+std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
+  K_.take(lin);
+  if (filter_.free_count() == 0) return 0;
+  // Cholesky's factor, which is several times faster, while it lasts.
+  if (!factor_.prepare_any(unstable_ == 0)) return std::nullopt;
+  unstable_ = factor_.negative();
+  if (unstable_ == 0 || K_.symmetric()) return unstable_;
+  const SoftestDirection whole = softest_of_whole(K_, factor_, false);
+  return whole.probe.usable ? std::optional(whole.probe.unstable) : std::nullopt;
+}
+
+bool TangentSolver::solve_as_is(std::span<const double> prescribed, std::span<const double> b, std::span<double> x) {
+  bool solved = true;
+  if (filter_.free_count() > 0) {
+    set_right_side(prescribed, b, !K_.symmetric());
+    solved = K_.symmetric() ? factor_.solve_refined(rhs_, x)
+                            : solve_whole(K_, factor_, false, rhs_, x, kDirectTolerance).usable;
+  }
+  take_prescribed(prescribed, x);
+  return solved;
+}
+
+SoftestDirection TangentSolver::softest(const Linearization& lin, long made, bool current) {
+  const bool reusable = current && direct() && factor_.definite() && !K_.tamed();
+  K_.take(lin);
+  const bool by_factor = reusable || direct() || (!own_ && factor_is_cheap(made));
+  LinearSolver& solver = by_factor ? factor_ : iterative();
+  bool definite = true;
+  if (reusable) {
+    factor_.renew_terms();
+  } else if (by_factor) {
+    if (!factor_.prepare_any()) return {};
+    definite = factor_.definite();
+  } else {
+    definite = solver.prepare();
+  }
+  if (!solver.iterates())
+    return K_.symmetric() ? softest_by(solver, K_, kRoundsOfFactor) : softest_of_whole(K_, solver, definite);
+  SoftestDirection found = softest_by(solver, K_, kRoundsOfCg);
+  if (!K_.symmetric() && found.probe.unstable > 0) return {};  // of the symmetric part alone: nothing is known
+  // A solve that was cut short has no quotient, and must not pass for one near a limit point.
+  if (found.probe.unstable > 0) found.stiffness = -std::numeric_limits<double>::infinity();
+  return found;
+}
+
+const Multigrid* TangentSolver::levels(const Linearization& lin, bool material) {
+  const Relinearize itself = [&](TamerTangent) -> const Linearization& { return lin; };
+  K_.take(lin, &itself);
+  const bool made = cg_.make_levels(material);
+  K_.forget_tamer();
+  return made ? cg_.levels(material) : nullptr;
+}
+
+}  // namespace fascia

@@ -1,0 +1,147 @@
+// A linear solver of the caller's own takes the place of conjugate gradients and of Cholesky's factor: in Newton's
+// method, beside loads without a potential, and where stability is asked for.
+#include "core/tangent/linear_solver.hpp"
+#include "core/run/drivers.hpp"
+#include "core/tangent/tangent_operator.hpp"
+#include "tests/support/models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace fascia::linear_solver_test {
+namespace {
+
+using namespace test;
+
+/// A dense inverse, from products alone.
+class DenseSolver final : public LinearSolver {
+ public:
+  struct Counts {
+    int prepared = 0, solves = 0;
+  };
+  DenseSolver(TangentOperator& K, Counts& counts) : K_(K), counts_(counts) {}
+
+  bool prepare() override {
+    ++counts_.prepared;
+    const std::size_t n = K_.filter().size();
+    std::vector<double> e(n), column(n);
+    free_.clear();
+    for (std::size_t i = 0; i < n; ++i)
+      if (!K_.filter().is_fixed(i)) free_.push_back(i);
+    const auto m = static_cast<Eigen::Index>(free_.size());
+    Eigen::MatrixXd dense(m, m);
+    for (Eigen::Index j = 0; j < m; ++j) {
+      e.assign(n, 0);
+      e[free_[static_cast<std::size_t>(j)]] = 1;
+      K_.apply_free(e, column);
+      for (Eigen::Index i = 0; i < m; ++i) dense(i, j) = column[free_[static_cast<std::size_t>(i)]];
+    }
+    factor_.compute(dense);
+    negative_ =
+        static_cast<int>((Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues().array() < 0).count());
+    return negative_ == 0;
+  }
+
+  LinearReport solve(std::span<const double> b, std::span<double> x, double) override {
+    ++counts_.solves;
+    const auto m = static_cast<Eigen::Index>(free_.size());
+    Eigen::VectorXd rhs(m);
+    for (Eigen::Index i = 0; i < m; ++i) rhs[i] = b[free_[static_cast<std::size_t>(i)]];
+    const Eigen::VectorXd y = factor_.solve(rhs);
+    std::fill(x.begin(), x.end(), 0.0);
+    for (Eigen::Index i = 0; i < m; ++i) x[free_[static_cast<std::size_t>(i)]] = y[i];
+    LinearReport report;
+    report.negative = negative_;
+    return report;
+  }
+
+  bool iterates() const override { return false; }
+
+ private:
+  TangentOperator& K_;
+  Counts& counts_;
+  std::vector<std::size_t> free_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+  int negative_ = 0;
+};
+
+struct Solved {
+  State end;
+  RunReport run;
+};
+
+Solved solved(const Model& model, const SolverSettings& settings) {
+  ThreadPool pool(2);
+  MechanicalSystem system(model, pool, settings);
+  Solved out{State::at_rest(model), {}};
+  out.run = run_statics(system, out.end, kRamp, settings, {}, nullptr);
+  EXPECT_EQ(out.run.status, RunStatus::converged) << out.run.message;
+  return out;
+}
+
+/// With the solver of its own, and with Cholesky's factor; the counts are those of the first.
+DenseSolver::Counts expect_equal(const Model& model) {
+  DenseSolver::Counts counts;
+  SolverSettings own, usual;
+  usual.linear = LinearMethod::cholesky;
+  own.own = [&](TangentOperator& K) { return std::make_unique<DenseSolver>(K, counts); };
+  const Solved a = solved(model, own), b = solved(model, usual);
+  EXPECT_EQ(a.run.newton_iterations, b.run.newton_iterations);
+  EXPECT_EQ(a.run.stability.known, b.run.stability.known);
+  EXPECT_EQ(a.run.stability.unstable, b.run.stability.unstable);
+  double largest = 0, difference = 0;
+  for (std::size_t i = 0; i < a.end.u.size(); ++i) {
+    largest = std::max(largest, norm(b.end.u[i]));
+    difference = std::max(difference, norm(a.end.u[i] - b.end.u[i]));
+  }
+  EXPECT_LT(difference, 1e-9 * largest);
+  return counts;
+}
+
+BuiltModel held_block() {
+  BlockOptions o;
+  o.grid = {6, 2, 2};
+  o.size = {{4, 1, 1}};
+  BuiltModel built = block(o);
+  hold_face(built.model);
+  return built;
+}
+
+TEST(LinearSolver, OfTheCallerTakesThePlaceOfOurs) {
+  BuiltModel built = held_block();
+  add_gravity(built.model, {{0, -0.5, 0.2}});
+  const DenseSolver::Counts counts = expect_equal(built.model);
+  EXPECT_GT(counts.prepared, 3);
+  EXPECT_GE(counts.solves, counts.prepared);
+}
+
+TEST(LinearSolver, OfTheCallerPreconditionsWhatLoadsWithoutAPotentialAdd) {
+  BuiltModel built = held_block();
+  const int last = built.model.node_count() - 1;
+  built.model.followers.push_back({0, {{0, 30, 10}}, {}, {last}, {1.0}, {{}}, {}});
+  const DenseSolver::Counts counts = expect_equal(built.model);
+  EXPECT_GT(counts.solves, 2 * counts.prepared);  // GMRES takes several
+}
+
+TEST(LinearSolver, NothingIsPreparedWhereNothingIsFree) {
+  BuiltModel built = held_block();
+  for (int node = 0; node < built.model.node_count(); ++node) {
+    FrameConstraint c;
+    c.node = node;
+    c.translations = c.rotations = 3;
+    if (static_cast<std::size_t>(node) >= built.model.constraints.size()) built.model.constraints.push_back(c);
+    built.model.constraints[static_cast<std::size_t>(node)] = c;
+  }
+  DenseSolver::Counts counts;
+  SolverSettings own;
+  own.own = [&](TangentOperator& K) { return std::make_unique<DenseSolver>(K, counts); };
+  solved(built.model, own);
+  EXPECT_EQ(counts.prepared, 0);
+}
+
+}  // namespace
+}  // namespace fascia::linear_solver_test
