@@ -70,7 +70,7 @@ StepTimes run_on_gpu(const Simulation& s, const StepPlan& plan, const std::vecto
   StepWatch watch(plan);
   const RunReport report = gpu::run_implicit(
       s.model, state, [&](double t) { return s.factors(t); }, settings, dynamics_of(s, plan),
-      [&](const StepInfo& step, gpu::DeviceStep&) { return watch.see(step); });
+      [&](const StepInfo& step, ReachedStep&) { return watch.see(step); });
   return std::move(watch).times(report);
 }
 

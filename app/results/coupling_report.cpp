@@ -2,6 +2,8 @@
 
 #include "app/assembly/mechanisms.hpp"
 #include "core/base/index.hpp"
+#include "core/executor/point_executor.hpp"
+#include "core/executor/spring_executor.hpp"
 #include "core/structure/inertia.hpp"
 
 #include <fmt/format.h>
@@ -65,8 +67,8 @@ Wrench drag_on(const Simulation& s, const State& state, int node, const FrameIne
 }
 
 /// What hosts do on a dependent node, whose weight and mass damping they carry.
-Wrench support_of(const Simulation& s, const MechanicalSystem& system, const State& state, std::size_t dependent) {
-  const double* f = system.dependent_forces().data() + 6 * dependent;
+Wrench support_of(const Simulation& s, const ReachedForces& acting, const State& state, std::size_t dependent) {
+  const double* f = acting.dependent_forces.data() + 6 * dependent;
   Wrench w;
   const int node = s.model.points.dependents[dependent].node;
   w.add(place_of(s, state, node), {{f[0], f[1], f[2]}}, {{f[3], f[4], f[5]}});
@@ -90,10 +92,11 @@ std::size_t owner_of(const Simulation& s, int node) {
 }
 
 /// What a body's points do on a node that it shares, with the weight and the mass damping of its matter there.
-Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const MechanicalSystem& system, const State& state,
+Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const ReachedForces& acting, const State& state,
                std::size_t shared) {
   const int node = tissue.body->shared_nodes()[shared];
-  const auto f = system.executor().points().sum_of_groups(tissue.body->first_group, tissue.body->group_count, node);
+  const auto f =
+      sum_of_groups(s.model.points, acting.slot_sums, tissue.body->first_group, tissue.body->group_count, node);
   Wrench w;
   const Mat3d Q = Mat3d::identity() + state.D[at(node)];
   const bool turns = s.model.kind(node) != FrameKind::vertex;
@@ -109,23 +112,23 @@ double gap_at(const Simulation& s, const SimulatedBody& tissue, const State& sta
   return norm(field_at(tissue.body->attach(s.model.rest_position[at(node)]), state).u - state.u[at(node)]);
 }
 
-nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b, const MechanicalSystem& system,
+nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b, const ReachedForces& acting,
                                      const State& state) {
   double energy = 0, gap = 0;
   for (int g = b.body->first_group; g < b.body->first_group + b.body->group_count; ++g)
-    energy += system.executor().points().group_elastic()[at(g)];
+    energy += acting.energies.groups[at(g)];
   std::map<std::size_t, std::pair<Wrench, int>> partners;
   std::map<std::size_t, double> gaps;
   const std::vector<DependentNode>& dependents = s.model.points.dependents;
   for (std::size_t k = 0; k < dependents.size(); ++k) {
     const int node = dependents[k].node, own = node - b.body->first_node();
     if (own < 0 || own >= b.body->node_count()) continue;
-    partners[owner_of(s, dependents[k].hosts[0])].first -= support_of(s, system, state, k);
+    partners[owner_of(s, dependents[k].hosts[0])].first -= support_of(s, acting, state, k);
   }
   for (std::size_t k = 0; k < b.body->shared_nodes().size(); ++k) {
     const int node = b.body->shared_nodes()[k];
     const std::size_t owner = owner_of(s, node);
-    const Wrench w = pull_on(s, b, system, state, k);
+    const Wrench w = pull_on(s, b, acting, state, k);
     auto& [sum, count] = partners[owner];
     sum += w;
     ++count;
@@ -159,7 +162,7 @@ double gap_of(const Simulation& s, const Coupling& c, const BuiltCoupling& built
 }
 
 nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, const BuiltCoupling& built,
-                                       const MechanicalSystem& system, const State& state) {
+                                       const ReachedForces& acting, const State& state) {
   Wrench sum;
   if (c.kind == CouplingKind::spring) {
     double energy = 0;
@@ -167,14 +170,14 @@ nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, c
       const Spring& spring = s.model.points.springs[at(index)];
       const Vec3d end = place_of(s, state, spring.node) + spring.arm + state.D[at(spring.node)] * spring.arm;
       sum.add(end, SpringExecutor::force(spring, state), {});
-      energy += system.executor().spring_energy(index);
+      energy += acting.energies.springs[at(index)];
     }
     return entry(sum, 0, energy);
   }
   const std::vector<DependentNode>& dependents = s.model.points.dependents;
   for (std::size_t k = 0; k < dependents.size(); ++k) {
     if (!std::binary_search(built.nodes.begin(), built.nodes.end(), dependents[k].node)) continue;
-    sum += support_of(s, system, state, k);
+    sum += support_of(s, acting, state, k);
   }
   return entry(sum, gap_of(s, c, built, state), 0);
 }
@@ -233,13 +236,13 @@ std::string counted(std::size_t count, const char* word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
 }
 
-CouplingReports coupling_report(const Simulation& s, const MechanicalSystem& system, const State& state) {
+CouplingReports coupling_report(const Simulation& s, const ReachedForces& acting, const State& state) {
   CouplingReports reports;
   for (const SimulatedBody& b : s.bodies)
-    if (!b.interfaces.empty()) reports.emplace_back(b.name, report_tissue(s, b, system, state));
+    if (!b.interfaces.empty()) reports.emplace_back(b.name, report_tissue(s, b, acting, state));
   for (std::size_t k = 0; k < s.couplings.size(); ++k) {
     const Coupling& c = s.scene.couplings[k];
-    reports.emplace_back(c.name, report_coupling(s, c, s.couplings[k], system, state));
+    reports.emplace_back(c.name, report_coupling(s, c, s.couplings[k], acting, state));
   }
   return reports;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/assembly/simulation.hpp"
-#include "core/solver/mechanical_system.hpp"
+#include "core/solver/reached.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -14,10 +14,10 @@ namespace fascia::app {
 /// Name and entry of each coupling in summary.json.
 using CouplingReports = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
 
-/// What each coupling carries at a state at which the system was evaluated: welds, embeddings and springs by name, and
-/// bodies that share frames by theirs. Forces are those on `body` of a coupling, of a tissue those on each body that it
-/// is tied to; moments are about the origin of the world.
-CouplingReports coupling_report(const Simulation& simulation, const MechanicalSystem& system, const State& state);
+/// Tells what each coupling carries at a state, with all parts of what acts there: welds, embeddings and springs by
+/// name, and bodies that share frames by theirs. Forces are those on `body` of a coupling, of a tissue those on each
+/// body that it is tied to; moments are about the origin of the world.
+CouplingReports coupling_report(const Simulation& simulation, const ReachedForces& acting, const State& state);
 
 /// "1 frame", "2 frames"
 std::string counted(std::size_t count, const char* word);

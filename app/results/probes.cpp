@@ -3,6 +3,7 @@
 #include "app/assembly/matter.hpp"
 #include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
+#include "core/node/dof_filter.hpp"
 #include "core/structure/inertia.hpp"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const St
 }
 
 struct Energies {
-  double elastic = 0, stabilization = 0, kinetic = 0, potential = 0;
+  double elastic = 0, stabilization = 0, potential = 0;
 };
 
 /// Groups of points that tether the material of a body, or of all.
@@ -122,26 +123,23 @@ std::set<int> tether_groups(const Simulation& s, int body) {
 
 Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap) {
   Energies e;
+  const BlockEnergies& of = snap.acting->energies;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
     const ModelBody& body = *s.bodies[b].body;
     for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
-      e.elastic += snap.system->executor().points().group_elastic()[at(g)];
-      e.stabilization += snap.system->executor().points().group_stabilization()[at(g)];
+      e.elastic += of.groups[at(g)];
+      e.stabilization += of.stabilization[at(g)];
     }
     for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
-      e.elastic += snap.system->executor().block_elastic(block);
+      e.elastic += of.blocks[at(block)];
     for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
-      e.elastic += snap.system->executor().shell_elastic(shell);
+      e.elastic += of.shells[at(shell)];
   }
-  for (const int group : tether_groups(s, probe.body))
-    e.stabilization += snap.system->executor().points().group_stabilization()[at(group)];
+  for (const int group : tether_groups(s, probe.body)) e.stabilization += of.stabilization[at(group)];
   const std::vector<Spring>& springs = s.model.points.springs;
   for (std::size_t k = 0; k < springs.size(); ++k)
-    if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), springs[k].node))
-      e.elastic += snap.system->executor().spring_energy(static_cast<int>(k));
-  for (const int i : probe.nodes)
-    e.kinetic += 0.5 * inertia_product(s.model.inertia[at(i)], snap.state->v[at(i)], snap.state->Q_dot[at(i)]);
+    if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), springs[k].node)) e.elastic += of.springs[k];
   const std::vector<double> factors = s.factors(snap.state->time);
   std::vector<char> chosen(at(s.model.node_count()), 0);
   for (const int i : probe.nodes) chosen[at(i)] = 1;
@@ -157,6 +155,13 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const Snapsho
     e.potential += forces.energy;
   }
   return e;
+}
+
+double kinetic_energy(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  double energy = 0;
+  for (const int i : probe.nodes)
+    energy += 0.5 * inertia_product(s.model.inertia[at(i)], state.v[at(i)], state.Q_dot[at(i)]);
+  return energy;
 }
 
 Momentum momentum(const Simulation& s, const ResolvedProbe& probe, const State& state) {
@@ -180,8 +185,8 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     moment += torque + cross(x - probe.about, f);
   };
   bool held = false;
-  std::vector<double> held_forces(snap.system->gradient().begin(), snap.system->gradient().end());
-  const DofFilter& filter = snap.system->filter();
+  std::vector<double> held_forces = snap.acting->gradient;
+  const DofFilter filter(s.model);
   filter.to_local(held_forces);
   filter.keep_fixed(held_forces);
   filter.to_global(held_forces);
@@ -202,8 +207,7 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     const TetheredMaterial& m = s.tethered[at(t)];
     held = true;
     const Tether& tether = s.model.tethers[at(m.tether)];
-    const Vec3d f = snap.system->executor().points().tether_force(tether, *snap.state),
-                u = field_at(m.field, *snap.state).u;
+    const Vec3d f = snap.acting->tether_forces[at(m.tether)], u = field_at(m.field, *snap.state).u;
     const bool turn = squared_norm(tether.arm) > 0;  // a couple
     if (!turn) force += f;
     moment += turn ? cross(tether.arm + u, f) : cross(tether.X + u - probe.about, f);
@@ -271,11 +275,11 @@ std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, c
       out.push_back(energies(s, probe, snap).elastic);
       break;
     case Quantity::kinetic_energy:
-      out.push_back(energies(s, probe, snap).kinetic);
+      out.push_back(kinetic_energy(s, probe, state));
       break;
     case Quantity::total_energy: {
       const Energies e = energies(s, probe, snap);
-      out.push_back(e.elastic + e.stabilization + e.kinetic + e.potential);
+      out.push_back(e.elastic + e.stabilization + kinetic_energy(s, probe, state) + e.potential);
       break;
     }
     case Quantity::momentum:
@@ -304,6 +308,18 @@ std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, c
 }
 
 }  // namespace
+
+ReachedParts needed_parts(const Simulation& s) {
+  ReachedParts parts;
+  for (const ResolvedProbe& probe : s.probes) {
+    const Quantity q = probe.probe->quantity;
+    parts.forces = parts.forces || q == Quantity::force || q == Quantity::moment;
+    parts.energies = parts.energies || q == Quantity::energy || q == Quantity::total_energy;
+  }
+  for (const SimulatedBody& b : s.bodies) parts.slots = parts.slots || !b.interfaces.empty();
+  if (parts.slots || !s.couplings.empty()) parts.forces = parts.energies = true;
+  return parts;
+}
 
 std::vector<std::vector<double>> probe_values(const Simulation& s, const Snapshot& snap) {
   TensorFields fields;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/assembly/simulation.hpp"
-#include "core/solver/mechanical_system.hpp"
+#include "core/solver/reached.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -11,13 +11,16 @@
 
 namespace fascia::app {
 
-/// A state with the forces that belong to it.
+/// A state with what acts there.
 struct Snapshot {
   const State* state = nullptr;
-  MechanicalSystem* system = nullptr;  ///< evaluated at the state
-  double frequency = 0;                ///< of a mode [Hz]
-  double time_step = 0;                ///< explicit: of the step that ended here, at the start of the first one [s]
+  const ReachedForces* acting = nullptr;  ///< has the parts that needed_parts() says; null: there are none
+  double frequency = 0;                   ///< of a mode [Hz]
+  double time_step = 0;                   ///< explicit: of the step that ended here, at the start of the first one [s]
 };
+
+/// Says which parts of what acts at a state the scene's probes read, and the report on its couplings.
+ReachedParts needed_parts(const Simulation& s);
 
 /// Values of all probes, of each as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).
 std::vector<std::vector<double>> probe_values(const Simulation& s, const Snapshot& at);

@@ -62,13 +62,13 @@ std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const Factor
   SolverSettings settings = asked;
   settings.devices = devices_of(s, warnings);
   RunReport seen;
-  const gpu::DeviceObserver watch = [&](const StepInfo& step, gpu::DeviceStep& device) {
+  const gpu::DeviceObserver watch = [&](const StepInfo& step, ReachedStep& reached) {
     seen.steps = step.step;
     seen.time = step.time;
     seen.newton_iterations += step.newton.iterations;
     seen.linear_iterations += step.newton.linear_iterations;
     seen.residual = std::max(seen.residual, step.newton.last.relative);
-    return observe(step, device);
+    return observe(step, reached);
   };
   const auto gpus = [&] { return std::max(1, static_cast<int>(settings.devices.size())); };
   const auto run = [&] { return GpuRun{run_kind(s, state, factors, settings, watch, observed), gpus()}; };

@@ -70,6 +70,21 @@ class SaveRule {
   double saved_ = 0;
 };
 
+/// A state at which a system of the processor stands, where anything of it is needed.
+class StandingState final : public ReachedStep {
+ public:
+  StandingState(std::optional<MechanicalSystem>& system, const State& state) : system_(system), state_(state) {}
+  InternalEnergy energy() const override { return system_ ? system_->internal_energy() : InternalEnergy{}; }
+  const State& state() override { return state_; }
+  void read(const ReachedParts& parts, ReachedForces& out) override {
+    if (system_ && parts.any()) system_->read(parts, out);
+  }
+
+ private:
+  std::optional<MechanicalSystem>& system_;
+  const State& state_;
+};
+
 struct Outcome {
   RunReport run;
   Backend backend = Backend::cpu;  ///< that took the steps
@@ -93,7 +108,16 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   const Clock::time_point setup = Clock::now();
   SolverSettings settings = settings_of(s.scene.solver);
   const bool statics = s.scene.solver.kind == SolverKind::statics;
-  MechanicalSystem system(s.model, pool, settings);
+  // A run on a GPU has none but where it is asked for what the GPU does not say.
+  std::optional<MechanicalSystem> of_processor;
+  const auto system = [&]() -> MechanicalSystem& {
+    if (!of_processor) of_processor.emplace(s.model, pool, settings);
+    return *of_processor;
+  };
+  if (backend == Backend::cpu) system();
+  const ReachedParts parts = needed_parts(s);
+  ReachedForces acting;          // at the state that was shown last
+  bool acting_is_known = false;  // nothing broke off in the midst of it
   State state = s.initial;
   out.times.setup = seconds_since(setup);
   Progress progress(options.quiet || options.json, options.verbose, statics);
@@ -105,12 +129,16 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   int saved_step = 0;
   SnapWatch snaps(s);
   std::string not_shown;  // why the last state is in no result
-  const auto save = [&](double time, int step, const State& at, bool fields) {
+  const auto save = [&](double time, int step, ReachedStep& reached, bool fields) {
     const Clock::time_point start = Clock::now();
     const double processor = processor_seconds();
     try {
+      acting_is_known = false;
+      const State& at = reached.state();
+      reached.read(parts, acting);
+      acting_is_known = true;
       if (fields) files.add_state(path ? step : time, at);
-      files.add_probes(time, {&at, &system, 0, time_step});
+      files.add_probes(time, {&at, &acting, 0, time_step});
       if (estimate) estimate->add(time, at);
       if (fields) saved_time = time;
       if (fields) saved_step = step;
@@ -120,27 +148,33 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
     output_seconds += seconds_since(start);
     output_processor += processor_seconds() - processor;
   };
-  // What is watched in all steps, and what is saved of some: `show` makes `system` stand there.
-  const auto watch = [&](const StepInfo& step, const InternalEnergy& energy,
-                         const std::function<const State&()>& show) {
+  // No step led there: the start of explicit runs, and where a run broke off.
+  const auto save_where_it_stands = [&](int step) {
+    if (parts.any()) system().set_factors(factors(state.time));
+    if (parts.any()) system().look_at(state, s.scene.solver.time_step);
+    StandingState standing(of_processor, state);
+    save(state.time, step, standing, true);
+    if (out.backend == Backend::cuda) of_processor.reset();
+  };
+  // Watches all steps, and saves some.
+  const auto watch = [&](const StepInfo& step, ReachedStep& reached) {
+    if (step.step == 0) {
+      if (saved_time < 0) save(0, 0, reached, true);
+      return !stop.requested() && not_shown.empty();
+    }
     out.times.steps.add(step.seconds);
     progress.update(step);
     files.note(step);
     const bool due = rule.save(step);
     rule.note(step);
-    if (due || statics) save(step.time, step.step, show(), due);
-    out.stabilization = energy.stabilization;
-    if (statics && !path) snaps.look(step.time, energy.elastic);
+    if (due || statics) save(step.time, step.step, reached, due);
+    out.stabilization = reached.energy().stabilization;
+    if (statics && !path) snaps.look(step.time, reached.energy().elastic);
     return !stop.requested() && not_shown.empty();
   };
-  const auto observe = [&](const StepInfo& step, const State& at, MechanicalSystem&) {
-    return watch(step, system.internal_energy(), [&]() -> const State& { return at; });
-  };
-  const auto observe_on_gpu = [&](const StepInfo& step, gpu::DeviceStep& device) {
-    return watch(step, device.energy(), [&]() -> const State& {
-      device.show(system, factors(step.time));
-      return device.state();
-    });
+  const auto observe = [&](const StepInfo& step, const State& at, MechanicalSystem& there) {
+    SystemStep reached(there, at);
+    return watch(step, reached);
   };
   // Whether the GPU did it.
   const auto on_gpu = [&](const gpu::DeviceObserver& look, const std::function<bool(const StepInfo&)>& observed = {}) {
@@ -157,15 +191,12 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   const Clock::time_point start = Clock::now();
   const double processor = processor_seconds();
   if (path) {
-    out.run = run_path(system, state, factors, settings, path_of(s), observe);
+    out.run = run_path(system(), state, factors, settings, path_of(s), observe);
   } else if (statics) {
-    if (!on_gpu(observe_on_gpu))
-      out.run = run_statics(system, state, factors, settings, {s.scene.solver.load_steps}, observe);
+    if (!on_gpu(watch)) out.run = run_statics(system(), state, factors, settings, {s.scene.solver.load_steps}, observe);
   } else {
-    system.set_factors(factors(0));
-    system.look_at(state, s.scene.solver.time_step);
-    save(0, 0, state, true);
     if (s.scene.solver.kind == SolverKind::central_differences) {
+      save_where_it_stands(0);
       const auto observed = [&](const StepInfo& step) {
         out.times.steps.add(step.seconds);
         time_step = step.time_step;
@@ -173,22 +204,20 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
         files.note(step);
         return rule.save(step) || stop.requested();
       };
-      const auto keep = [&](const StepInfo& step, const State& at) {
+      const auto keep = [&](const StepInfo& step, ReachedStep& reached) {
         rule.note(step);
-        save(step.time, step.step, at, true);
-        out.stabilization = system.internal_energy().stabilization;
+        save(step.time, step.step, reached, true);
+        out.stabilization = reached.energy().stabilization;
         return !stop.requested() && not_shown.empty();
       };
-      const auto keep_from_gpu = [&](const StepInfo& step, gpu::DeviceStep& device) {
-        device.show(system, factors(step.time));
-        return keep(step, device.state());
-      };
-      if (!on_gpu(keep_from_gpu, observed))
-        out.run =
-            run_explicit(system, state, factors, explicit_of(s.scene, observed),
-                         [&](const StepInfo& step, const State& at, MechanicalSystem&) { return keep(step, at); });
-    } else if (!on_gpu(observe_on_gpu)) {
-      out.run = run_implicit(system, state, factors, settings, dynamics_of(s.scene.solver), observe);
+      if (!on_gpu(keep, observed))
+        out.run = run_explicit(system(), state, factors, explicit_of(s.scene, observed),
+                               [&](const StepInfo& step, const State& at, MechanicalSystem& there) {
+                                 SystemStep reached(there, at);
+                                 return keep(step, reached);
+                               });
+    } else if (!on_gpu(watch)) {
+      out.run = run_implicit(system(), state, factors, settings, dynamics_of(s.scene.solver), observe);
     }
   }
   progress.finish();
@@ -196,7 +225,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   out.times.processor = processor_seconds() - processor - output_processor;
   if (options.verbose && out.backend == Backend::cpu && out.run.newton_iterations > 0 && !path &&
       s.model.free_dof_count() > 0)
-    say("{}\n", told(system.linear().choice()));
+    say("{}\n", told(system().linear().choice()));
   if (!not_shown.empty()) {
     out.run.status = RunStatus::diverged;
     out.run.message = fmt::format("{} {:.6g}: {}; the results end before it",
@@ -205,19 +234,17 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   // What was computed up to a failure is a result too.
   const bool unsaved = path ? saved_step != out.run.steps || saved_step == 0 : saved_time != state.time;
   if (out.run.status != RunStatus::converged && unsaved && not_shown.empty()) {
-    if (statics && out.run.steps > 0) {
+    if (statics && out.run.steps > 0 && acting_is_known) {
       files.add_state(path ? out.run.steps : state.time, state);
     } else {
-      system.set_factors(factors(state.time));
-      system.look_at(state, s.scene.solver.time_step);
-      save(state.time, out.run.steps, state, true);
+      save_where_it_stands(out.run.steps);
     }
   }
   const bool ended = out.run.status == RunStatus::converged;
   add_result_warnings(s, state, out.run, out.warnings);
   out.failed = !ended || out.run.status == RunStatus::unstable || out.run.status == RunStatus::inverted;
   if (out.failed) out.failure = keep_failed(s, state, !not_shown.empty(), out.run, files);
-  out.couplings = coupling_report(s, system, state);
+  out.couplings = coupling_report(s, acting, state);
   for (std::size_t f = 0; f < s.fluids.size(); ++f) out.fluids.push_back(fluid_state(s, static_cast<int>(f), state));
   if (!snaps.warning().empty()) {
     out.run.doubts.push_back(snaps.warning());

@@ -20,7 +20,7 @@ SolverSettings settings_of(const Solver& solver) {
 }
 
 DynamicsSettings dynamics_of(const Solver& solver) {
-  return {scheme_of(solver.kind), solver.time_step, solver.steps, solver.duration.value_or(0)};
+  return {scheme_of(solver.kind), solver.time_step, solver.steps, solver.duration.value_or(0), true};
 }
 
 ExplicitSettings explicit_of(const Scene& scene, const std::function<bool(const StepInfo&)>& observed) {

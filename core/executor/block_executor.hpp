@@ -27,6 +27,12 @@ struct InternalEnergy {
   }
 };
 
+/// Holds the elastic energy of each group of points, block of elements, shell and spring, and the stabilisation of
+/// groups [J].
+struct BlockEnergies {
+  std::vector<double> groups, stabilization, blocks, shells, springs;
+};
+
 /// An assembly must fill all entries, or at least those of the diagonal.
 enum class Entries { all, diagonal };
 

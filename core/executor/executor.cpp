@@ -141,4 +141,14 @@ void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
   });
 }
 
+BlockEnergies CpuExecutor::energies() const {
+  BlockEnergies out;
+  out.groups.assign(points().group_elastic().begin(), points().group_elastic().end());
+  out.stabilization.assign(points().group_stabilization().begin(), points().group_stabilization().end());
+  for (const ElementExecutor& block : of_kind<ElementExecutor>()) out.blocks.push_back(block.energy().elastic);
+  for (const ShellExecutor& shell : of_kind<ShellExecutor>()) out.shells.push_back(shell.energy().elastic);
+  out.springs.assign(springs_.energies().begin(), springs_.energies().end());
+  return out;
+}
+
 }  // namespace fascia

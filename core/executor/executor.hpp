@@ -88,10 +88,8 @@ class CpuExecutor {
   /// Keeps the strains of a state.
   void store_strain(const State& state, StrainHistory& history);
 
-  /// Elastic energy of a block of elements, a spring or a shell at the last call of gradient() [J].
-  double block_elastic(int block) const { return of_kind<ElementExecutor>()[at(block)].energy().elastic; }
-  double shell_elastic(int shell) const { return of_kind<ShellExecutor>()[at(shell)].energy().elastic; }
-  double spring_energy(int spring) const { return springs_.energy(spring); }
+  /// Energies as the last call of gradient() found them.
+  BlockEnergies energies() const;
   /// Groups of points, with their tethers. Products and tangents with extrapolated stresses overwrite their sums.
   const PointExecutor& points() const { return of_kind<PointExecutor>().front(); }
 

@@ -103,12 +103,14 @@ void PointExecutor::add_rounding(std::span<double> squares_of_parts) const {
     squares_of_parts[at(set_.part_of_group(group))] += group_rounding_[at(group)];
 }
 
+namespace {
+
 /// Sums a node's slots in ascending order: force (3) and Σ v (P Bᵀ + w Y) (9).
 template <class Take>
-void PointExecutor::gather(int node, const Take& take, NodeSum& sum) const {
-  for (int k = set_.node_slot_begin[at(node)]; k < set_.node_slot_begin[at(node + 1)]; ++k) {
-    if (!take(set_.node_slot[at(k)])) continue;
-    const double* s = slot_sums_.data() + at(set_.node_slot[at(k)]) * 12;
+void gather(const PointSet& set, std::span<const double> slot_sums, int node, const Take& take, NodeSum& sum) {
+  for (int k = set.node_slot_begin[at(node)]; k < set.node_slot_begin[at(node + 1)]; ++k) {
+    if (!take(set.node_slot[at(k)])) continue;
+    const double* s = slot_sums.data() + at(set.node_slot[at(k)]) * 12;
     for (int i = 0; i < 3; ++i) {
       sum.force[i] += s[i];
       for (int j = 0; j < 3; ++j) sum.N(i, j) += s[3 + 3 * i + j];
@@ -116,46 +118,48 @@ void PointExecutor::gather(int node, const Take& take, NodeSum& sum) const {
   }
 }
 
+}  // namespace
+
 void PointExecutor::add_sums(int node, NodeSum& sum) const {
   gather(
-      node, [](int) { return true; }, sum);
+      set_, slot_sums_, node, [](int) { return true; }, sum);
 }
 
 NodeSum PointExecutor::tether_sum(int node) const {
   NodeSum sum;
   gather(
-      node, [&](int slot) { return slot_is_tether_[at(slot)] != 0; }, sum);
+      set_, slot_sums_, node, [&](int slot) { return slot_is_tether_[at(slot)] != 0; }, sum);
   return sum;
 }
 
-NodeSum PointExecutor::sum_of_groups(int first, int count, int node) const {
-  const int begin = set_.slot_begin[at(first)], end = set_.slot_begin[at(first + count)];
+NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, int first, int count, int node) {
+  const int begin = set.slot_begin[at(first)], end = set.slot_begin[at(first + count)];
   NodeSum sum;
   gather(
-      node, [&](int slot) { return slot >= begin && slot < end; }, sum);
+      set, slot_sums, node, [&](int slot) { return slot >= begin && slot < end; }, sum);
   return sum;
 }
 
-Vec3d PointExecutor::tether_stretch(const Tether& tether, const State& state) const {
-  const auto nodes = set_.nodes(tether.group);
+Vec3d tether_stretch(const PointSet& set, std::span<const double> targets, const Tether& tether, const State& state) {
+  const auto nodes = set.nodes(tether.group);
   Vec3d u;
   for (std::size_t s = 0; s < nodes.size(); ++s) {
-    const double* shape = set_.shape_of_slot(set_.slot_begin[at(tether.group)] + static_cast<int>(s)) + tether.lane;
+    const double* shape = set.shape_of_slot(set.slot_begin[at(tether.group)] + static_cast<int>(s)) + tether.lane;
     const Vec3d lever{{shape[4 * kGroupSize], shape[7 * kGroupSize], shape[10 * kGroupSize]}};
     u += state.u[at(nodes[s])] * shape[kGroupSize] + state.D[at(nodes[s])] * lever;
   }
-  const std::size_t first = at(set_.rule[at(tether.group)].axes) * 3 * kGroupSize + at(tether.lane);
-  return Vec3d{{targets_[first], targets_[first + kGroupSize], targets_[first + 2 * kGroupSize]}} - u;
+  const std::size_t first = at(set.rule[at(tether.group)].axes) * 3 * kGroupSize + at(tether.lane);
+  return Vec3d{{targets[first], targets[first + kGroupSize], targets[first + 2 * kGroupSize]}} - u;
 }
 
-Vec3d PointExecutor::tether_force(const Tether& tether, const State& state) const {
-  const Vec3d stretch = tether_stretch(tether, state);
-  const auto index = at(set_.rule[at(tether.group)].axes);
+Vec3d tether_force(const PointSet& set, std::span<const double> targets, const Tether& tether, const State& state) {
+  const Vec3d stretch = tether_stretch(set, targets, tether, state);
+  const auto index = at(set.rule[at(tether.group)].axes);
   Vec3d force;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      force[i] += set_.axes[(index * 9 + at(3 * i + j)) * kGroupSize + at(tether.lane)] * stretch[j];
-  return force * set_.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
+      force[i] += set.axes[(index * 9 + at(3 * i + j)) * kGroupSize + at(tether.lane)] * stretch[j];
+  return force * set.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
 }
 
 void PointExecutor::store_strain(const BlockState& state, std::span<double> E) {

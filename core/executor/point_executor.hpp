@@ -9,6 +9,13 @@
 
 namespace fascia {
 
+/// How far a tether's material is from where it pulls to, and the force with which it does.
+/// @param targets  as CpuExecutor::targets()
+Vec3d tether_stretch(const PointSet& set, std::span<const double> targets, const Tether& tether, const State& state);
+Vec3d tether_force(const PointSet& set, std::span<const double> targets, const Tether& tether, const State& state);
+/// Sums what a range of groups gave a node. @param slot_sums  (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
+NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, int first, int count, int node);
+
 /// Computes the groups of points of a set at a state, as CpuExecutor asks for it: one pass over groups, whose sums by
 /// slot the nodes gather.
 class PointExecutor {
@@ -37,16 +44,20 @@ class PointExecutor {
   /// Elastic and stabilisation energy of each group at the last forces with energies [J].
   std::span<const double> group_elastic() const { return group_elastic_; }
   std::span<const double> group_stabilization() const { return group_stabilization_; }
-  /// A range of groups gave this to a node.
-  NodeSum sum_of_groups(int first, int count, int node) const;
+  /// Sums of slots as the last forces, or a product, left them; for sum_of_groups().
+  std::span<const double> sums_of_slots() const { return slot_sums_; }
 
   bool has_tethers() const { return !slot_is_tether_.empty(); }
   /// Tethers alone gave this to a node.
   NodeSum tether_sum(int node) const;
   /// Σ |force|² of a connected part's tethers at the last forces with energies [N²].
   double squared_tether_force(int part) const { return part_tether_[at(part)]; }
-  Vec3d tether_force(const Tether& tether, const State& state) const;
-  Vec3d tether_stretch(const Tether& tether, const State& state) const;
+  Vec3d tether_force(const Tether& tether, const State& state) const {
+    return fascia::tether_force(set_, targets_, tether, state);
+  }
+  Vec3d tether_stretch(const Tether& tether, const State& state) const {
+    return fascia::tether_stretch(set_, targets_, tether, state);
+  }
 
  private:
   template <PointKind Kind>
@@ -58,8 +69,6 @@ class PointExecutor {
   void product_of_group(const BlockState& state, int group, const BlockDirection& direction);
   template <PointKind Kind>
   void assemble_group(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
-  template <class Take>
-  void gather(int node, const Take& take, NodeSum& sum) const;
   const PointRule& rule_of(int group) const { return set_.rule[at(group)].rule; }
 
   const PointSet& set_;

@@ -19,7 +19,7 @@ class SpringExecutor {
   /// Adds their second derivative to the nodes' own blocks.
   void add_blocks(const State& state, Tangent tangent, std::span<double> node_blocks) const;
   /// Energy of each at the last note() [J].
-  double energy(int spring) const { return energy_[static_cast<std::size_t>(spring)]; }
+  std::span<const double> energies() const { return energy_; }
   /// On its node [N].
   static Vec3d force(const Spring& spring, const State& state);
 

@@ -98,7 +98,8 @@ struct DynamicsSettings {
   TimeScheme scheme = TimeScheme::implicit_euler;
   double time_step = 0;  ///< [s]
   int steps = 0;
-  double duration = 0;  ///< the last step is cut, so that it ends there [s]; 0: it is as long as the others
+  double duration = 0;       ///< the last step is cut, so that it ends there [s]; 0: it is as long as the others
+  bool shows_start = false;  ///< the observer sees the state at t = 0 too, as step 0
 
   /// A step counted from 1: its end and its length [s].
   double end_of(int step) const { return ends_at_duration(step) ? duration : step * time_step; }
@@ -115,7 +116,7 @@ struct DynamicsSettings {
 /// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256.
 ///
 /// The observer sees the state at the end of each step. The system's gradient belongs to the step's equations there,
-/// with inertia; after a midpoint step it is what look_back() says.
+/// with inertia; after a midpoint step it is what look_back() says, at the start what look_at() does.
 template <class System>
 RunReport run_implicit(System& system, typename System::Pose& state, const FactorFunction& factors,
                        const SolverSettings& settings, const DynamicsSettings& dynamics,

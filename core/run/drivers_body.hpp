@@ -191,6 +191,14 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
   RunReport run;
   Stepper<System> stepper{system, factors, settings, dynamics.scheme, run, {}, 0};
   typename System::Pose earlier;  // a step before `before`; empty in the first one
+  if (observe && dynamics.shows_start) {
+    system.set_factors(factors(0));
+    system.look_at(state, dynamics.time_step);
+    if (!observe({}, state, system)) {
+      run.status = RunStatus::interrupted;
+      return run;
+    }
+  }
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
     const double end = dynamics.end_of(step), dt = dynamics.length_of(step);

@@ -4,6 +4,7 @@
 #include "core/node/node_step.hpp"
 #include "core/node/time_scheme.hpp"
 #include "core/solver/newton.hpp"
+#include "core/solver/reached.hpp"
 #include "core/solver/surface_loads.hpp"
 #include "core/structure/inertia.hpp"
 #include "core/structure/model.hpp"
@@ -111,25 +112,19 @@ class MechanicalSystem {
   /// K d at the state of the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);
 
-  /// Takes what the same step gave elsewhere, after an evaluation at its state.
-  void adopt(std::span<const double> gradient, std::span<const double> dependent_forces, const InternalEnergy& energy) {
-    gradient_.assign(gradient.begin(), gradient.end());
-    dependent_forces_.assign(dependent_forces.begin(), dependent_forces.end());
-    internal_ = energy;
-  }
-
   // Evaluations of states that no step's equations hold at (reached_state.cpp). The gradient is what acts there: with
   // the viscous stress and the mass damping of what is held, without inertia. Energies are those of the state at rest.
   /// The strain rate comes from strains along the velocities, a time h ahead and behind. @param h  0: no viscous stress
   void look_at(const State& state, double h);
-  /// With the viscous stress of a step that was taken elsewhere, and what its tethers pulled to, where there are any.
-  void look_at(const State& state, const StrainHistory& history, std::span<const double> targets);
   /// After a midpoint step: the state at its end, with what accelerated supports carry. The strain rate comes from the
   /// strains of three states, since velocities of the midpoint rule ring where strong damping starts at once; tethers
   /// pull as in the middles of the last two steps, since stiff ones ring too.
   /// @param before   the state at its start
   /// @param earlier  the one as long before that, or empty: the strain rate is then that of the middle of the step
   void look_back(const State& state, const State& before, const State& earlier, double dt);
+
+  /// Reads what acts at the last evaluation. (reached_state.cpp)
+  void read(const ReachedParts& parts, ReachedForces& out);
 
   /// Stands where another system does within its step, for direction() and levels().
   void stand_in(const StepInProgress& step);
@@ -241,6 +236,19 @@ class MechanicalSystem {
   /// it and their potential [J].
   double load_work_ = 0, saved_work_ = 0, applied_ = 0, start_power_ = 0, start_potential_ = 0;
   Linearization lin_;
+};
+
+/// A step of a system, which was evaluated there.
+class SystemStep final : public ReachedStep {
+ public:
+  SystemStep(MechanicalSystem& system, const State& state) : system_(system), state_(state) {}
+  InternalEnergy energy() const override { return system_.internal_energy(); }
+  const State& state() override { return state_; }
+  void read(const ReachedParts& parts, ReachedForces& out) override { system_.read(parts, out); }
+
+ private:
+  MechanicalSystem& system_;
+  const State& state_;
 };
 
 /// Fills factors at rest (all zero).

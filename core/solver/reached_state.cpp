@@ -21,12 +21,6 @@ void MechanicalSystem::look_at(const State& state, double h) {
   evaluate_reached({});
 }
 
-void MechanicalSystem::look_at(const State& state, const StrainHistory& history, std::span<const double> targets) {
-  begin_step(state, 0);
-  if (model_.points.damped) history_ = history;
-  evaluate_reached(targets);
-}
-
 void MechanicalSystem::look_back(const State& state, const State& before, const State& earlier, double dt) {
   begin_step(state, 0);
   if (model_.points.damped) {
@@ -57,6 +51,20 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
     const auto i = at(node);
     return PoseMotion{(state.v[i] - before.v[i]) * (1 / dt), (state.Q_dot[i] - before.Q_dot[i]) * (1 / dt)};
   });
+}
+
+void MechanicalSystem::read(const ReachedParts& parts, ReachedForces& out) {
+  if (parts.forces) {
+    out.gradient = gradient_;
+    out.dependent_forces = dependent_forces_;
+    out.tether_forces.clear();
+    for (const Tether& t : model_.tethers) out.tether_forces.push_back(executor_.points().tether_force(t, state_));
+  }
+  if (parts.energies) out.energies = executor_.energies();
+  if (!parts.slots) return;
+  executor_.forces(state_, history_, work_);  // products may have overwritten them
+  const std::span<const double> slots = executor_.points().sums_of_slots();
+  out.slot_sums.assign(slots.begin(), slots.end());
 }
 
 void MechanicalSystem::stand_in(const StepInProgress& step) {

@@ -26,9 +26,11 @@ class CgSolver final : public LinearSolver {
   /// @param factor  of K, for the preconditioner that asks for one
   CgSolver(TangentOperator& K, const LinearSettings& settings, FactorSolver& factor);
 
-  /// Preconditioners are made where a solve asks for them.
+  /// Preconditioners are made where a solve asks for them. Those that are kept take products with K all the same,
+  /// before the first iteration does: its matrix is assembled here.
   bool prepare() override {
     one_is_ready_ = false;
+    K_.matrix();
     return true;
   }
   LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
@@ -56,7 +58,7 @@ class CgSolver final : public LinearSolver {
   TangentOperator& K_;
   LinearSettings settings_;
   std::unique_ptr<Preconditioner> one_;  ///< that is asked for, or blocks
-  bool one_is_ready_ = false;            ///< made for K as it is
+  bool one_is_ready_ = false;            ///< for K as it is
   LevelsOfFrames levels_, material_;
   KeptLevels kept_levels_;
   BlocksOrLevels blocks_or_levels_{{}};  ///< of an automatic preconditioner

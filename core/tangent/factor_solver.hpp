@@ -21,7 +21,7 @@ class FactorSolver final : public LinearSolver {
   bool prepare() override;
   /// False where a pivot vanishes. @param definite_first  L Lᵀ, which is several times faster, is tried first
   bool prepare_any(bool definite_first = true);
-  /// Of K + s · diagonal of its material part, with the smallest s of a few that is enough. False where none is.
+  /// Takes K + s · diagonal of its material part, with the smallest s of a few that is enough. False where none is.
   bool prepare_shifted();
 
   /// Takes the terms beside K as they are now, with the factor of a K as good as the same.
@@ -34,15 +34,15 @@ class FactorSolver final : public LinearSolver {
   bool solve_refined(std::span<const double> b, std::span<double> x);
   bool iterates() const override { return false; }
 
-  /// What was prepared last is positive definite, and not shifted.
+  /// K is positive definite, as it was prepared last: not shifted.
   bool definite() const { return definite_; }
-  /// Of what was prepared last: directions of negative curvature.
+  /// Directions of negative curvature, as it was prepared last.
   int negative() const { return negative_; }
 
-  /// Of elimination; known before a factor is made.
+  /// How nodes are eliminated; known before a factor is made.
   const EliminationOrder& order();
   bool knows_order() const { return order_.has_value(); }
-  /// A factor's operations for each number of the matrix.
+  /// How many operations a factor takes for each number of the matrix.
   double flops_per_number();
   /// A factor fits into memory.
   bool fits();

@@ -19,8 +19,7 @@ struct LinearSettings {
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
   CgOptions cg;
   /// Makes a solver of the caller's own, which takes the place of these; empty: none. Systems of the processor ask it.
-  /// Where it finds the tangent not positive definite, what it returns is the direction that is taken; paths past limit
-  /// points take a factor of ours.
+  /// Where it cannot take a tangent, and on paths past limit points, a factor of ours does.
   std::function<std::unique_ptr<LinearSolver>(TangentOperator& K)> own;
 };
 

@@ -5,7 +5,7 @@
 
 namespace fascia {
 
-/// What a solve of K x = b came to.
+/// Says what a solve of K x = b came to.
 struct LinearReport {
   bool usable = true;     ///< x is the solution, or what was reached of it, or a descent direction
   bool unsolved = false;  ///< ended at its limit of iterations
@@ -19,18 +19,17 @@ struct LinearReport {
 /// Solves K x = b on the free degrees of freedom of a tangent, or of its symmetric part. It belongs to one
 /// TangentOperator, which it asks for what it needs: products, the matrix, its diagonal blocks, rigid motions.
 ///
-/// A solver of another kind is a class that derives from this one (LinearSettings::own). What the tangents of loads
-/// without a potential have beside their symmetric part, inverse iteration for the softest direction, and prescribed
-/// motions come on top of any.
+/// A solver of another kind is a class that derives from this one (LinearSettings::own). GMRES for the tangents of
+/// loads without a potential, inverse iteration for the softest direction, and prescribed motions come on top of any.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Makes ready for K as it is now. @return  false where this finds K not positive definite, or cannot take it
+  /// Makes ready for K as it is now. @return  false where this cannot take it: it is not positive definite, say
   virtual bool prepare() = 0;
 
-  /// x of a K that prepare() took. Vectors are in constraint axes; held and dependent entries of b are zero, and those
-  /// of x become zero.
+  /// Solves with a K that prepare() took. Vectors are in constraint axes; held and dependent entries of b are zero, and
+  /// those of x become zero.
   /// @param rough  a tolerance on |r| / |b| that is enough, where it is coarser than the solver's own
   virtual LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) = 0;
 

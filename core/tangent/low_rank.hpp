@@ -17,7 +17,6 @@ class LowRank {
  public:
   void set(const std::vector<RankOne>& terms, const DofFilter& filter);
   bool empty() const { return terms_.empty(); }
-  int count() const { return static_cast<int>(terms_.size()); }
   /// Negative eigenvalues of K that the terms lift, as prepare() found: each denominator below 0 is one.
   int lifted() const {
     return static_cast<int>(std::count_if(scale_.begin(), scale_.end(), [](double s) { return s < 0; }));

@@ -72,7 +72,10 @@ Stability stability_of(System& system, const typename System::Pose& end, const t
     return out;
   }
   const SoftestDirection now = softest(true);
-  if (!now.probe.usable) return out;
+  if (!now.probe.usable) {
+    system.evaluate();
+    return out;
+  }
   out.known = true;
   out.unstable = now.probe.unstable;
   std::vector<double> direction = now.direction;

@@ -2,6 +2,7 @@
 
 #include "core/base/index.hpp"
 #include "core/node/positive_inverse.hpp"
+#include "core/tangent/stability.hpp"
 
 #include <algorithm>
 
@@ -90,6 +91,11 @@ void TangentOperator::invert_diagonal(const BlockMatrix& matrix, bool whole, std
       positive_inverse(block, n);
     }
   });
+}
+
+std::span<const double> TangentOperator::lengths() {
+  if (lengths_.empty()) lengths_ = motion_lengths(model_, filter_);
+  return lengths_;
 }
 
 Multigrid::Places TangentOperator::places() const {

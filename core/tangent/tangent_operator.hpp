@@ -26,6 +26,8 @@ using Relinearize = std::function<const Linearization&(TamerTangent)>;
 class TangentOperator {
  public:
   TangentOperator(const Model& model, CpuExecutor& executor, const DofFilter& filter);
+  TangentOperator(const TangentOperator&) = delete;
+  TangentOperator& operator=(const TangentOperator&) = delete;
 
   /// @param at     is held by the caller for as long as this is asked about it
   /// @param tamer  gives tamer tangents at the same state, as long; null: there are none
@@ -34,7 +36,12 @@ class TangentOperator {
   void tame(TamerTangent kind);
   bool tamed() const { return tamed_; }
   bool has_tamer() const { return tamer_ != nullptr; }
+  /// The tamer goes, or the tangent goes too: nothing is asked of it from here on.
   void forget_tamer() { tamer_ = nullptr; }
+  void forget() {
+    tamer_ = nullptr;
+    at_ = nullptr;
+  }
   bool symmetric() const { return at_->symmetric(); }
 
   const Model& model() const { return model_; }
@@ -50,7 +57,7 @@ class TangentOperator {
     apply(x, y);
     filter_.clear_fixed(y);
   }
-  /// The same of a matrix with K's pattern.
+  /// Does so with a matrix of K's pattern.
   void apply_free(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
     apply_blocks(matrix, x, y);
     filter_.clear_fixed(y);
@@ -58,20 +65,22 @@ class TangentOperator {
   /// y = K x with all that the tangent has, of held degrees of freedom too.
   void apply_whole(std::span<const double> x, std::span<double> y);
 
-  /// K without the terms beside it; of the axes of the world.
+  /// K without the terms beside it, in the axes of the world.
   const BlockMatrix& matrix();
-  /// The same, whose values may be any.
+  /// Where it is stored; its values may be any.
   BlockMatrix& pattern();
   /// Terms of K that no matrix holds.
   LowRank& beside() { return beside_; }
   const LowRank& beside() const { return beside_; }
   /// The part of K that is definite whatever the stress. A tamer tangent must be there.
   const BlockMatrix& material_part(Entries entries = Entries::all);
-  /// Of each node the inverse of the free part of its diagonal block, with pivots kept positive; 1 where it is held.
-  /// @param whole  false: of the diagonal alone
+  /// Inverts the free part of each node's diagonal block, with pivots kept positive; 1 where it is held.
+  /// @param whole  false: the diagonal alone
   void invert_diagonal(const BlockMatrix& matrix, bool whole, std::vector<double>& out) const;
   /// K resists rigid motions of parts least: where the nodes are, and how they are turned.
   Multigrid::Places places() const;
+  /// motion_lengths(): what a unit of each degree of freedom moves [m].
+  std::span<const double> lengths();
 
  private:
   void assemble(const Linearization& at, BlockMatrix& out, Entries entries);
@@ -87,7 +96,7 @@ class TangentOperator {
   std::optional<BlockMatrix> matrix_, material_;
   bool assembled_ = false, tamed_ = false;
   LowRank beside_;
-  std::vector<double> work_;
+  std::vector<double> work_, lengths_;
 };
 
 }  // namespace fascia

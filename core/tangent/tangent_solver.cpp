@@ -94,6 +94,10 @@ void TangentSolver::take_prescribed(std::span<const double> prescribed, std::spa
 TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed,
                                    std::span<const double> b, std::span<double> x, const Relinearize& relinearize) {
   K_.take(lin, &relinearize);
+  const struct Lent {
+    TangentOperator& K;
+    ~Lent() { K.forget_tamer(); }
+  } lent{K_};
   TangentReport report;
   std::optional<TangentReport> exact;
   if (filter_.free_count() == 0) {
@@ -107,7 +111,6 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
     if (!exact) set_right_side(prescribed, b, false);
     report = exact ? *exact : descend(x);
   }
-  K_.forget_tamer();
   if (!report.usable) return report;
   if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) {
     report.usable = false;
@@ -118,24 +121,27 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
   return report;
 }
 
-/// With K as it is, or where it is indefinite as near to it as a direction of descent needs.
+/// Takes K as it is, or where it is indefinite as near to it as a direction of descent needs.
 TangentReport TangentSolver::descend(std::span<double> x) {
   if (direct()) return descend_by_factor(x);
-  LinearSolver& solver = iterative();
-  solver.prepare();
-  TangentReport report{solver.solve(rhs_, x)};
-  if (!report.trouble.empty() && !K_.model().tethers.empty()) {
+  const auto solve = [&]() -> std::optional<TangentReport> {
+    LinearSolver& solver = iterative();
+    if (!solver.prepare()) return std::nullopt;
+    TangentReport report{solver.solve(rhs_, x)};
+    if (report.trouble.empty() && report.negative > 0) report.trouble = "the tangent is not positive definite";
+    return report;
+  };
+  std::optional<TangentReport> report = solve();
+  if ((!report || !report->trouble.empty()) && !K_.model().tethers.empty()) {
     K_.tame(TamerTangent::without_tethers);
-    solver.prepare();
-    report = TangentReport{solver.solve(rhs_, x)};
+    report = solve();
   }
-  if (report.trouble.empty() && report.negative > 0) report.trouble = "the tangent is not positive definite";
-  if (!report.usable || !report.unsolved || !gives_way_to_factor(report.iterations)) return report;
+  if (!report) return descend_by_factor(x);
+  if (!report->usable || !report->unsolved || !gives_way_to_factor(report->iterations)) return *report;
   direct_ = true;
-  const int iterations = report.iterations;
-  report = descend_by_factor(x);
-  report.iterations = iterations;
-  return report;
+  TangentReport by_factor = descend_by_factor(x);
+  by_factor.iterations = report->iterations;
+  return by_factor;
 }
 
 TangentReport TangentSolver::descend_by_factor(std::span<double> x) {
@@ -172,12 +178,11 @@ std::optional<TangentReport> TangentSolver::solve_unsymmetric(std::span<double> 
   };
   if (!direct()) {
     LinearSolver& inner = iterative();
-    inner.prepare();
-    if (solve(inner, settings_.cg.tolerance)) return report;
+    const double tolerance = inner.iterates() ? settings_.cg.tolerance : kDirectTolerance;
+    if (inner.prepare() && solve(inner, tolerance)) return report;
     if (!guessed() || !factor_.fits()) {
       K_.tame(TamerTangent::material);
-      inner.prepare();
-      return solve(inner, settings_.cg.tolerance) ? std::optional(report) : std::nullopt;
+      return inner.prepare() && solve(inner, tolerance) ? std::optional(report) : std::nullopt;
     }
     direct_ = true;
   }
@@ -211,17 +216,14 @@ bool TangentSolver::solve_as_is(std::span<const double> prescribed, std::span<co
 SoftestDirection TangentSolver::softest(const Linearization& lin, long made, bool current) {
   const bool reusable = current && direct() && factor_.definite() && !K_.tamed();
   K_.take(lin);
-  const bool by_factor = reusable || direct() || (!own_ && factor_is_cheap(made));
-  LinearSolver& solver = by_factor ? factor_ : iterative();
-  bool definite = true;
-  if (reusable) {
+  const bool factor_first = reusable || direct() || (!own_ && factor_is_cheap(made));
+  const bool by_factor = factor_first || !iterative().prepare();
+  if (reusable)
     factor_.renew_terms();
-  } else if (by_factor) {
-    if (!factor_.prepare_any()) return {};
-    definite = factor_.definite();
-  } else {
-    definite = solver.prepare();
-  }
+  else if (by_factor && !factor_.prepare_any())
+    return {};
+  LinearSolver& solver = by_factor ? factor_ : iterative();
+  const bool definite = !by_factor || factor_.definite();
   if (!solver.iterates())
     return K_.symmetric() ? softest_by(solver, K_, kRoundsOfFactor) : softest_of_whole(K_, solver, definite);
   SoftestDirection found = softest_by(solver, K_, kRoundsOfCg);
@@ -234,9 +236,11 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
 const Multigrid* TangentSolver::levels(const Linearization& lin, bool material) {
   const Relinearize itself = [&](TamerTangent) -> const Linearization& { return lin; };
   K_.take(lin, &itself);
-  const bool made = cg_.make_levels(material);
-  K_.forget_tamer();
-  return made ? cg_.levels(material) : nullptr;
+  const struct Lent {
+    TangentOperator& K;
+    ~Lent() { K.forget(); }
+  } lent{K_};
+  return cg_.make_levels(material) ? cg_.levels(material) : nullptr;
 }
 
 }  // namespace fascia

@@ -70,7 +70,7 @@ class TangentSolver {
   /// A factor is used, and neither CG nor a solver of the caller's.
   bool direct();
   SolverChoice choice();
-  /// Of the tangent, which may be none yet.
+  /// The tangent that was taken last, which may be none yet.
   TangentOperator& tangent() { return K_; }
   FactorSolver& factor() { return factor_; }
   /// A factor takes less than a tenth of the time of CG so far: its operations run several times faster than those of

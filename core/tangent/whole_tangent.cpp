@@ -59,7 +59,8 @@ LinearReport solve_whole(TangentOperator& K, LinearSolver& inner, bool limit_end
     report.iterations += once.iterations;
     report.seconds += once.seconds;
     report.negative = std::max(report.negative, once.negative);
-    if (!inner.iterates()) return true;
+    if (!once.trouble.empty()) report.negative = std::max(report.negative, 1);
+    if (!inner.iterates()) return once.usable;
     return once.usable && once.trouble.empty() && !(once.unsolved && limit_ends);
   };
   GmresOptions options;
@@ -67,8 +68,8 @@ LinearReport solve_whole(TangentOperator& K, LinearSolver& inner, bool limit_end
   if (inner.iterates()) options.max_iterations = kMostIterativeSolves;
   Vector found;
   const GmresReport gmres = gmres_by_length(
-      K.vectors(), motion_lengths(K.model(), K.filter()), [&](const Vector& z, Vector& w) { K.apply_whole(z, w); },
-      precondition, b, found, options);
+      K.vectors(), K.lengths(), [&](const Vector& z, Vector& w) { K.apply_whole(z, w); }, precondition, b, found,
+      options);
   std::copy(found.begin(), found.end(), x.begin());
   report.unsolved = !gmres.converged;
   report.residual = gmres.relative_residual;

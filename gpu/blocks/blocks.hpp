@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/executor/block_executor.hpp"
 #include "gpu/blocks/points.hpp"
 #include "gpu/blocks/shells.hpp"
 #include "gpu/blocks/springs.hpp"
@@ -61,6 +62,8 @@ class Blocks {
 
   /// Quantities of each part (kinds of blocks × parts × kQuantities) of the last forces with them.
   void sum_quantities(double* out);
+  /// Energies as the last forces with quantities found them.
+  BlockEnergies energies(const PointSet& set) const;
 
  private:
   struct Summed {

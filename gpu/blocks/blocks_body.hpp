@@ -85,4 +85,42 @@ void Blocks<Space>::sum_quantities(double* out) {
   }
 }
 
+template <class Space>
+BlockEnergies Blocks<Space>::energies(const PointSet& set) const {
+  // Calls add(block, its quantities) for each used item of a kind.
+  const auto each = [&](const auto& kind, std::size_t blocks, const auto& items_of, const auto& add) {
+    if (kind.empty()) return;
+    const std::vector<int> parts = kind.item_parts(set);
+    std::vector<double> q(parts.size() * kQuantities);
+    Space::copy_out(q.data(), kind.quantities(), q.size() * sizeof(double));
+    std::size_t item = 0;
+    for (std::size_t b = 0; b < blocks; ++b)
+      for (const std::size_t end = item + at(items_of(b)); item < end; ++item)
+        if (parts[item] >= 0) add(b, q.data() + item * kQuantities);
+  };
+  const auto& [points, elements, shells] = kinds_;
+  BlockEnergies out;
+  out.groups.resize(at(set.group_count()));
+  out.stabilization.resize(out.groups.size());
+  out.blocks.resize(set.blocks.size());
+  out.shells.resize(set.shells.size());
+  out.springs.resize(set.springs.size());
+  each(
+      points, out.groups.size(), [](std::size_t) { return kGroupSize; },
+      [&](std::size_t group, const double* q) {
+        out.groups[group] += q[kElastic];
+        out.stabilization[group] += q[kStabilizing];
+      });
+  each(
+      elements, out.blocks.size(), [&](std::size_t b) { return set.blocks[b].batch_count() * kElementLanes; },
+      [&](std::size_t b, const double* q) { out.blocks[b] += q[kElastic]; });
+  each(
+      shells, out.shells.size(), [&](std::size_t b) { return set.shells[b].batch_count() * kElementLanes; },
+      [&](std::size_t b, const double* q) { out.shells[b] += q[kElastic]; });
+  each(
+      springs_, out.springs.size(), [](std::size_t) { return 1; },
+      [&](std::size_t k, const double* q) { out.springs[k] += q[kElastic]; });
+  return out;
+}
+
 }  // namespace fascia::gpu

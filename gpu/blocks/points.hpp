@@ -73,6 +73,8 @@ class Points {
   std::vector<int> item_parts(const PointSet& set) const;
   /// (items × kQuantities), of the last forces with them
   const double* quantities() const { return quantities_.data(); }
+  /// Sums as the last forces left them, for fascia::sum_of_groups().
+  std::vector<double> slot_sums() const { return wide_.slot_sums.downloaded(); }
 
   /// The gradient of the energy at a pose, for add_sums(). @param part_motion  largest motion of each part (parts) [m];
   /// quantities only where it is given

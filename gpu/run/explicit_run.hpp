@@ -4,8 +4,11 @@
 #include "core/run/explicit_dynamics.hpp"
 #include "gpu/explicit/explicit.hpp"
 #include "gpu/run/run.hpp"
+#include "gpu/system/host_system.hpp"
 
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,11 +17,13 @@ namespace fascia::gpu {
 
 /// A step whose velocities were reported.
 template <class Space>
-class ReachedExplicitStep : public DeviceStep {
+class ReachedExplicitStep final : public ReachedStep {
  public:
-  /// @param dt  of the step that led there [s]
-  ReachedExplicitStep(ExplicitSystem<Space>& system, State& state, double dt)
-      : system_(system), state_(state), dt_(dt) {}
+  /// @param host     makes a system of the host, with the factors of the step's end
+  /// @param dt       of the step that led there [s]
+  ReachedExplicitStep(ExplicitSystem<Space>& system, const std::function<MechanicalSystem&()>& host, State& state,
+                      double dt)
+      : system_(system), host_(host), state_(state), dt_(dt) {}
   InternalEnergy energy() const override { return system_.energy(); }
   const State& state() override {
     if (fetched_) return state_;
@@ -28,15 +33,18 @@ class ReachedExplicitStep : public DeviceStep {
     fetched_ = true;
     return state_;
   }
-  void show(MechanicalSystem& host, std::span<const double> factors) override {
-    host.set_factors(factors);
+  void read(const ReachedParts& parts, ReachedForces& out) override {
+    if (!parts.any()) return;
+    MechanicalSystem& host = host_();
     host.look_at(state(), dt_);
     const std::vector<PoseMotion> accelerations = system_.held_accelerations();
     host.add_support_inertia([&](int node) { return accelerations[at(system_.constraint_of(node))]; });
+    host.read(parts, out);
   }
 
  private:
   ExplicitSystem<Space>& system_;
+  const std::function<MechanicalSystem&()>& host_;
   State& state_;
   double dt_;
   bool fetched_ = false;
@@ -55,6 +63,12 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
   if (plan.automatic()) system.save();
   DeviceState<Space> good = system.pose();
   int good_step = 0, retries = 0;
+  std::optional<HostSystem> made;  // where it is first asked for
+  const auto host_at = [&](double time) -> MechanicalSystem& {
+    if (!made) made.emplace(model, solver);
+    made->system.set_factors(factors(time));
+    return made->system;
+  };
   std::vector<double> ends;  // of the steps since the motion was looked at
   Clock::time_point start = Clock::now();
   while (!plan.done()) {
@@ -96,10 +110,9 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
       system.pose().download(state);
       run.failed = std::make_shared<FailedState>(FailedState{state, {}, step});
       good.download(state);
-      ThreadPool pool(0);
-      MechanicalSystem host(model, pool, solver);
       run.status = RunStatus::diverged;
-      run.message = explicit_divergence(host, state, failed, ends[ends.size() - 1 - at(step - failed)], plan);
+      run.message =
+          explicit_divergence(host_at(state.time), state, failed, ends[ends.size() - 1 - at(step - failed)], plan);
       run.time = state.time;
       run.steps = good_step;
       return run;
@@ -110,7 +123,8 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
     if (kept && plan.automatic()) system.save();
     if (kept) retries = 0;
     if (!seen || !observe) continue;
-    ReachedExplicitStep<Space> reached(system, state, dt);
+    const std::function<MechanicalSystem&()> host = [&]() -> MechanicalSystem& { return host_at(time); };
+    ReachedExplicitStep<Space> reached(system, host, state, dt);
     if (!observe(info, reached)) {
       if (!last) run.status = RunStatus::interrupted;
       break;

@@ -8,18 +8,8 @@
 /// Runs of whole scenes on the device, for those who know nothing of spaces.
 namespace fascia::gpu {
 
-/// A step that a run on the device has reached. What is asked for is copied to the host.
-class DeviceStep {
- public:
-  virtual ~DeviceStep() = default;
-  virtual InternalEnergy energy() const = 0;
-  virtual const State& state() = 0;
-  /// Makes a system of the host stand there, as after the same step of its own. @param factors  of the step's end
-  virtual void show(MechanicalSystem& host, std::span<const double> factors) = 0;
-};
-
-/// Called after each accepted step; returns false to stop.
-using DeviceObserver = std::function<bool(const StepInfo&, DeviceStep&)>;
+/// Called after each accepted step; returns false to stop. What is asked of the step is copied to the host.
+using DeviceObserver = std::function<bool(const StepInfo&, ReachedStep&)>;
 
 /// run_statics() and run_implicit() with everything on the device. The state that was reached is copied back, also
 /// where a step did not converge; where an error was thrown, it is the last one that was looked at.
@@ -31,7 +21,7 @@ RunReport run_implicit(const Model& model, State& state, const FactorFunction& f
 
 /// run_explicit() with everything on the device. Steps are queued: whether the motion is sound is looked at every few
 /// of them, so that `observed` may be asked of steps after the one that is not, and the seconds of a step are what the
-/// host waited for.
+/// host waited for. What acts at a step that is seen is evaluated by a system of the host, where it is asked for.
 /// @throws InputError  where a node has no inertia; and as above
 RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
                        const ExplicitSettings& dynamics, const DeviceObserver& observe);

@@ -34,9 +34,9 @@ Stability end_stability(System<Space>& system, const DeviceState<Space>& end, co
 }
 
 template <class Space>
-class ReachedStep : public DeviceStep {
+class StepOfSystem final : public ReachedStep {
  public:
-  ReachedStep(System<Space>& system, const DeviceState<Space>& pose, State& state)
+  StepOfSystem(System<Space>& system, const DeviceState<Space>& pose, State& state)
       : system_(system), pose_(pose), state_(state) {}
   InternalEnergy energy() const override { return system_.internal_energy(); }
   const State& state() override {
@@ -47,10 +47,13 @@ class ReachedStep : public DeviceStep {
     fetched_ = true;
     return state_;
   }
-  void show(MechanicalSystem& host, std::span<const double> factors) override {
-    host.set_factors(factors);
-    host.look_at(state(), system_.strain_history(), system_.tether_targets());
-    host.adopt(system_.gradient(), system_.dependent_forces(), system_.internal_energy());
+  void read(const ReachedParts& parts, ReachedForces& out) override {
+    system_.read(parts, out);
+    if (!parts.forces) return;
+    const std::vector<double> targets = system_.tether_targets();
+    out.tether_forces.clear();
+    for (const Tether& t : system_.model().tethers)
+      out.tether_forces.push_back(tether_force(system_.model().points, targets, t, state()));
   }
 
  private:
@@ -68,7 +71,7 @@ RunReport run_in(const Model& model, State& state, const SolverSettings& setting
   DeviceState<Space> pose(state);
   const ObserverOf<System<Space>> watch = [&](const StepInfo& info, const DeviceState<Space>& reached,
                                               System<Space>& at) {
-    ReachedStep<Space> step(at, reached, state);
+    StepOfSystem<Space> step(at, reached, state);
     return observe(info, step);
   };
   RunReport report = run(system, pose, observe ? watch : ObserverOf<System<Space>>{});

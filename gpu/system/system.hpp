@@ -11,6 +11,7 @@
 #include "gpu/space/part_sums.hpp"
 #include "gpu/system/cg.hpp"
 #include "gpu/system/device_state.hpp"
+#include "gpu/system/host_system.hpp"
 #include "gpu/system/levels.hpp"
 #include "gpu/system/model_data.hpp"
 #include "gpu/system/operator_kernels.hpp"
@@ -51,6 +52,7 @@ class System {
   }
   Pose finish_step(double end_time, Memory& memory);
   void start_acceleration(const Pose& start, double dt, Memory& memory);
+  void look_at(const Pose& state, double h);
   void look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt);
 
   Evaluation evaluate();
@@ -75,8 +77,8 @@ class System {
   std::vector<double> gradient() const { return gradient_.downloaded(); }
   /// As MechanicalSystem::dependent_forces().
   std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
-  /// That the viscous stress of the last evaluation comes from.
-  StrainHistory strain_history() const;
+  /// Reads what acts at the last evaluation, but for tether_forces.
+  void read(const ReachedParts& parts, ReachedForces& out);
   /// As CpuExecutor::targets(); empty where nothing is tethered.
   std::vector<double> tether_targets();
   /// K d at the last evaluation, by degrees of freedom in world axes.
@@ -108,7 +110,7 @@ class System {
   PoseView pose() const { return {u_.data(), D_.data()}; }
   void rebuild_state();
   void place_dependents();
-  void evaluate_forces();
+  void evaluate_forces(bool quantities = true);
   void evaluate_loads();
   void add_other_loads();
   /// Of the surfaces' figures in the report.
@@ -120,6 +122,7 @@ class System {
   bool moves(int part, double squared_momentum) const;
   double energy_at_start();
   void predict_strain(const Memory& memory);
+  void store_strain_along_velocity(double h);
   void follow_strain(const Pose& before, const Pose& earlier, double dt);
   void note_stretches();
   void stretch_tethers(double time);
@@ -170,6 +173,8 @@ class System {
   bool host_may_solve() const;
   bool host_is_faster(int iterations);
   StepInProgress step_in_progress() const;
+  /// That the viscous stress of the last evaluation comes from.
+  StrainHistory strain_history() const;
   bool unsymmetric() const;
   std::optional<CgReport> solve_unsymmetric(const CgOptions& asked);
   void product_at_rest(double* p);
@@ -244,14 +249,8 @@ class System {
   bool prescribed_left_ = false;
   long steps_ = 0;
 
-  /// A system of the host that solves where conjugate gradients meet an indefinite tangent, or take longer than it
-  /// does.
-  struct Host {
-    ThreadPool pool{0};
-    MechanicalSystem system;
-    Host(const Model& model, const SolverSettings& settings) : system(model, pool, settings) {}
-  };
-  std::unique_ptr<Host> host_;
+  /// It solves where conjugate gradients meet an indefinite tangent, or take longer than it does.
+  std::unique_ptr<HostSystem> host_;
   bool indefinite_ = false;  ///< the last direction was the host's, and its tangent indefinite
   bool too_slow_ = false;    ///< conjugate gradients took so long that the host solves from there on
   Levels<Space> levels_;

@@ -147,13 +147,14 @@ void System<Space>::place_dependents() {
 }
 
 /// Everything that acts on the nodes, into gradient_, load_ and inertia_.
+/// @param quantities  energies of blocks too, and what else is judged
 template <class Space>
-void System<Space>::evaluate_forces() {
+void System<Space>::evaluate_forces(bool quantities) {
   const NodesView& nodes = data_.view().nodes;
   double* motion = part_motion_.data();
   node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, motion);
   Space::for_each(model_.points.part_count(), kernels::AtLeast{start_motion_.data(), motion});
-  blocks_.forces(nodes, pose(), history(), motion);
+  blocks_.forces(nodes, pose(), history(), quantities ? motion : nullptr);
   const kernels::ForceView f = force_view();
   Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f});
   add_other_loads();

@@ -99,7 +99,7 @@ MechanicalSystem& System<Space>::host() {
   if (!host_) {
     SolverSettings settings = settings_;
     settings.linear = LinearMethod::cholesky;
-    host_ = std::make_unique<Host>(model_, settings);
+    host_ = std::make_unique<HostSystem>(model_, settings);
   }
   return host_->system;
 }

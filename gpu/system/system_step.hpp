@@ -53,16 +53,47 @@ void System<Space>::predict_strain(const Memory& memory) {
     Space::for_each(count, kernels::Extrapolate{E, memory.E.data(), step_.memory_factor()});
     return;
   }
+  store_strain_along_velocity(step_.h);
+  Space::for_each(
+      count, kernels::StrainAlongVelocity{E, ahead_E_.data(), behind_E_.data(), step_.scheme == TimeScheme::newmark});
+}
+
+/// Stores strains a time h ahead of the step's start and behind it.
+template <class Space>
+void System<Space>::store_strain_along_velocity(double h) {
   moved_u_.resize(u_.size());
   moved_D_.resize(D_.size());
   for (const double sign : {1.0, -1.0}) {
     Space::for_each(model_.node_count(),
-                    kernels::MoveByVelocity{step_view(), sign * step_.h, moved_u_.data(), moved_D_.data()});
+                    kernels::MoveByVelocity{step_view(), sign * h, moved_u_.data(), moved_D_.data()});
     if (!dependents_.empty()) dependents_.place(moved_u_.data(), moved_D_.data());
     blocks_.store_strain({moved_u_.data(), moved_D_.data()}, sign > 0 ? ahead_E_.data() : behind_E_.data());
   }
-  Space::for_each(
-      count, kernels::StrainAlongVelocity{E, ahead_E_.data(), behind_E_.data(), step_.scheme == TimeScheme::newmark});
+}
+
+template <class Space>
+void System<Space>::look_at(const Pose& state, double h) {
+  begin_step(state, 0);
+  if (damped_ && h > 0) {
+    for (auto* E : {&E_, &ahead_E_, &behind_E_}) E->resize(blocks_.strain_size());
+    blocks_.store_strain(pose(), E_.data());
+    store_strain_along_velocity(h);
+    Space::for_each(static_cast<int>(E_.size()),
+                    kernels::StrainAlongVelocity{E_.data(), behind_E_.data(), ahead_E_.data(), true});
+    inverse_step_ = 1 / h;
+    // The steps to come may never need them.
+    ahead_E_ = Array<Space, double>();
+    behind_E_ = Array<Space, double>();
+    moved_u_ = Array<Space, Vec3d>();
+    moved_D_ = Array<Space, Mat3d>();
+  }
+  evaluate();
+  internal_.viscous = 0;
+  // Supports carry the mass damping of what they hold; nothing is accelerated.
+  const Vec3d* v = state.v.data();
+  const Mat3d* rate = state.Q_dot.data();
+  Space::for_each(static_cast<int>(model_.constraints.size()),
+                  kernels::SupportInertia{step_view(), v, v, rate, rate, 0, gradient_.data()});
 }
 
 template <class Space>
@@ -203,7 +234,7 @@ void System<Space>::stretch_tethers(double time) {
                                                                              {w[0], w[1], w[2]},
                                                                              points.targets().data()});
   factors_are_placed_ = false;
-  evaluate_forces();
+  evaluate_forces(false);
 }
 
 template <class Space>
@@ -243,6 +274,18 @@ StrainHistory System<Space>::strain_history() const {
   out.E.resize(E_.size());
   E_.download(out.E);
   return out;
+}
+
+template <class Space>
+void System<Space>::read(const ReachedParts& parts, ReachedForces& out) {
+  if (parts.forces) {
+    out.gradient = gradient();
+    out.dependent_forces = dependent_forces();
+  }
+  if (parts.energies) out.energies = blocks_.energies(model_.points);
+  if (!parts.slots || blocks_.points().empty()) return;
+  blocks_.points().forces(data_.view().nodes, pose(), history(), nullptr);  // products may have overwritten them
+  out.slot_sums = blocks_.points().slot_sums();
 }
 
 template <class Space>

@@ -83,7 +83,7 @@ Runs run_both(const Simulation& s, Where where, double part, int steps, bool aut
   const SolverSettings settings = app::settings_of(s.scene.solver);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   ThreadPool pool(1);
-  MechanicalSystem system(s.model, pool, settings), shown(s.model, pool, settings);
+  MechanicalSystem system(s.model, pool, settings);
   const double dt = time_step(s, system, part);
   ExplicitSettings dynamics{dt, steps, [](const StepInfo& info) { return info.step % 77 == 0; }};
   dynamics.automatic = automatic;
@@ -96,11 +96,12 @@ Runs run_both(const Simulation& s, Where where, double part, int steps, bool aut
     return true;
   });
   const auto run = where == Where::host ? gpu::run_explicit_on_host : gpu::run_explicit;
-  r.there = run(s.model, r.got, factors, settings, dynamics, [&](const StepInfo& i, gpu::DeviceStep& at) {
+  r.there = run(s.model, r.got, factors, settings, dynamics, [&](const StepInfo& i, ReachedStep& at) {
     r.seen.push_back(i.step);
     r.energy = at.energy().total();
-    at.show(shown, factors(i.time));
-    r.forces.assign(shown.gradient().begin(), shown.gradient().end());
+    ReachedForces acting;
+    at.read({true, false, false}, acting);
+    r.forces = acting.gradient;
     return true;
   });
   return r;

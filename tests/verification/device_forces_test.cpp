@@ -94,7 +94,7 @@ Simulation load() {
 
 /// What acts after a step, as numbers.
 struct Forces {
-  std::vector<double> gradient, couplings, tethers;
+  std::vector<double> gradient, couplings, tethers, blocks;
   InternalEnergy energy;
 };
 
@@ -104,30 +104,37 @@ void append(const nlohmann::ordered_json& value, std::vector<double>& out) {
   for (const auto& entry : value) append(entry, out);
 }
 
-Forces forces_at(const Simulation& s, const MechanicalSystem& system, const State& state,
-                 const InternalEnergy& energy) {
-  Forces f{{system.gradient().begin(), system.gradient().end()}, {}, {}, energy};
-  for (const auto& [name, report] : app::coupling_report(s, system, state)) append(report, f.couplings);
-  for (const Tether& tether : s.model.tethers) {
-    const Vec3d pull = system.executor().points().tether_force(tether, state);
-    f.tethers.insert(f.tethers.end(), pull.v, pull.v + 3);
-  }
+Forces forces_at(const Simulation& s, ReachedStep& reached) {
+  ReachedForces acting;
+  reached.read({true, true, true}, acting);
+  Forces f{acting.gradient, {}, {}, {}, reached.energy()};
+  for (const auto& [name, report] : app::coupling_report(s, acting, reached.state())) append(report, f.couplings);
+  for (const Vec3d& pull : acting.tether_forces) f.tethers.insert(f.tethers.end(), pull.v, pull.v + 3);
+  const BlockEnergies& e = acting.energies;
+  for (const auto* of : {&e.groups, &e.stabilization, &e.blocks, &e.shells, &e.springs})
+    f.blocks.insert(f.blocks.end(), of->begin(), of->end());
   // Of free degrees of freedom it is what Newton's method left.
-  system.filter().to_local(f.gradient);
-  system.filter().keep_fixed(f.gradient);
+  const DofFilter filter(s.model);
+  filter.to_local(f.gradient);
+  filter.keep_fixed(f.gradient);
   return f;
 }
 
-void expect_same(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {
+double largest_of(const std::vector<double>& values) {
+  double largest = 1e-300;
+  for (const double v : values) largest = std::max(largest, std::abs(v));
+  return largest;
+}
+
+/// @param size  of what differences are judged by; 0: the largest value
+void expect_same(const std::vector<double>& a, const std::vector<double>& b, const std::string& what, double size = 0) {
   constexpr double kSame = 1e-9;  // rounding, and what Newton's method leaves, through the damping
   ASSERT_EQ(a.size(), b.size()) << what;
-  double largest = 1e-300, error = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    largest = std::max(largest, std::abs(b[i]));
-    error = std::max(error, std::abs(a[i] - b[i]));
-  }
-  std::printf("  %s %8.1e", what.c_str(), error / largest);
-  EXPECT_LE(error, kSame * largest) << what;
+  if (size == 0) size = largest_of(b);
+  double error = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) error = std::max(error, std::abs(a[i] - b[i]));
+  std::printf("  %s %8.1e", what.c_str(), error / size);
+  EXPECT_LE(error, kSame * size) << what;
 }
 
 class DeviceForces : public ::testing::TestWithParam<std::tuple<Where, std::string>> {};
@@ -142,15 +149,15 @@ TEST_P(DeviceForces, AreThoseOfTheProcessor) {
   settings.tolerance = 1e-12;
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   ThreadPool pool(1);
-  MechanicalSystem system(s.model, pool, settings), shown(s.model, pool, settings);
+  MechanicalSystem system(s.model, pool, settings);
   std::vector<Forces> expected, got;
   const auto see = [&](const StepInfo&, const State& state, MechanicalSystem& at) {
-    expected.push_back(forces_at(s, at, state, at.internal_energy()));
+    SystemStep reached(at, state);
+    expected.push_back(forces_at(s, reached));
     return true;
   };
-  const auto see_there = [&](const StepInfo& step, gpu::DeviceStep& at) {
-    at.show(shown, factors(step.time));
-    got.push_back(forces_at(s, shown, at.state(), at.energy()));
+  const auto see_there = [&](const StepInfo&, ReachedStep& at) {
+    got.push_back(forces_at(s, at));
     return true;
   };
   State on_cpu = s.initial, there = s.initial;
@@ -159,12 +166,15 @@ TEST_P(DeviceForces, AreThoseOfTheProcessor) {
                                     [](const StepInfo& info) { return info.step % 100 == 0; }};
     run_explicit(system, on_cpu, factors, dynamics, see);
     (host ? gpu::run_explicit_on_host : gpu::run_explicit)(s.model, there, factors, settings, dynamics, see_there);
+  } else if (kind == "static") {
+    run_statics(system, on_cpu, factors, settings, {4}, see);
+    (host ? gpu::run_statics_on_host : gpu::run_statics)(s.model, there, factors, settings, {4}, see_there);
   } else {
     const TimeScheme scheme = kind == "midpoint"  ? TimeScheme::midpoint
                               : kind == "newmark" ? TimeScheme::newmark
                               : kind == "bdf2"    ? TimeScheme::bdf2
                                                   : TimeScheme::implicit_euler;
-    const DynamicsSettings dynamics{scheme, 0.01, 4};
+    const DynamicsSettings dynamics{scheme, 0.01, 4, 0, true};
     run_implicit(system, on_cpu, factors, settings, dynamics, see);
     (host ? gpu::run_implicit_on_host : gpu::run_implicit)(s.model, there, factors, settings, dynamics, see_there);
   }
@@ -174,7 +184,10 @@ TEST_P(DeviceForces, AreThoseOfTheProcessor) {
     std::printf("%-16s", kind.c_str());
     expect_same(got[i].gradient, expected[i].gradient, "supports");
     expect_same(got[i].couplings, expected[i].couplings, "couplings");
-    expect_same(got[i].tethers, expected[i].tethers, "tethers");
+    // At rest nothing but rounding pulls on what tethers alone hold.
+    const double support = std::max(largest_of(expected[i].tethers), largest_of(expected[i].gradient));
+    expect_same(got[i].tethers, expected[i].tethers, "tethers", kind == "static" ? support : 0);
+    expect_same(got[i].blocks, expected[i].blocks, "blocks");
     const InternalEnergy &a = got[i].energy, &b = expected[i].energy;
     expect_same({a.elastic, a.stabilization, a.viscous}, {b.elastic, b.stabilization, b.viscous}, "energies");
     std::printf("\n");
@@ -183,7 +196,7 @@ TEST_P(DeviceForces, AreThoseOfTheProcessor) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, DeviceForces,
                          ::testing::Combine(::testing::Values(Where::host, Where::device),
-                                            ::testing::Values("implicit_euler", "bdf2", "newmark", "midpoint",
+                                            ::testing::Values("static", "implicit_euler", "bdf2", "newmark", "midpoint",
                                                               "explicit")),
                          [](const auto& run) {
                            return (std::get<0>(run.param) == Where::host ? "host_" : "device_") +

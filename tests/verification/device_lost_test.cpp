@@ -38,7 +38,7 @@ class DeviceLost : public ::testing::TestWithParam<std::string> {
 
 TEST_P(DeviceLost, OnTheWayEndsTheRunWithWhatWasSeen) {
   State seen;
-  const std::optional<app::GpuRun> run = this->run("auto", [&](const StepInfo& step, gpu::DeviceStep& device) {
+  const std::optional<app::GpuRun> run = this->run("auto", [&](const StepInfo& step, ReachedStep& device) {
     seen = device.state();
     if (step.step == 3) break_device();
     return true;
@@ -64,7 +64,7 @@ TEST_P(DeviceLost, WithoutMemorySaysHowMuchThereIs) {
   }
   EXPECT_EQ(state_.u, before.u);
   give_back(taken);
-  EXPECT_TRUE(run("cuda", [](const StepInfo&, gpu::DeviceStep&) { return false; }).has_value());
+  EXPECT_TRUE(run("cuda", [](const StepInfo&, ReachedStep&) { return false; }).has_value());
 }
 
 INSTANTIATE_TEST_SUITE_P(device, DeviceLost, ::testing::Values("tumbling_box", "shell_spin", "struck_beam"),

@@ -1,7 +1,7 @@
 // A linear solver of the caller's own takes the place of conjugate gradients and of Cholesky's factor: in Newton's
 // method, beside loads without a potential, and where stability is asked for.
-#include "core/tangent/linear_solver.hpp"
 #include "core/run/drivers.hpp"
+#include "core/tangent/cg_solver.hpp"
 #include "core/tangent/tangent_operator.hpp"
 #include "tests/support/models.hpp"
 
@@ -125,6 +125,41 @@ TEST(LinearSolver, OfTheCallerPreconditionsWhatLoadsWithoutAPotentialAdd) {
   built.model.followers.push_back({0, {{0, 30, 10}}, {}, {last}, {1.0}, {{}}, {}});
   const DenseSolver::Counts counts = expect_equal(built.model);
   EXPECT_GT(counts.solves, 2 * counts.prepared);  // GMRES takes several
+}
+
+/// Levels are kept from tangent to tangent: a cycle multiplies with the one that is solved with, from the first on.
+TEST(LinearSolver, KeptLevelsTakeProductsWithThePresentTangent) {
+  BuiltModel built = held_block();
+  ThreadPool pool(1);
+  CpuExecutor executor(built.model.points, pool);
+  const DofFilter filter(built.model);
+  LinearSettings settings;
+  settings.preconditioner = PreconditionerKind::multigrid;
+  const auto dofs = static_cast<std::size_t>(built.model.dof_count());
+  std::vector<Linearization> tangents(2);
+  std::vector<double> b(dofs);
+  for (std::size_t k = 0; k < tangents.size(); ++k) {
+    const State state = random_state(built.model, 0.01 * static_cast<double>(1 + k), 0.05);
+    executor.gradient(state, {}, b);
+    executor.linearize(state, {}, Tangent::material, tangents[k]);
+  }
+  filter.clear_fixed(b);
+  std::vector<std::vector<double>> found;
+  for (const bool assembled_before : {false, true}) {
+    TangentOperator K(built.model, executor, filter);
+    FactorSolver factor(K);
+    CgSolver solver(K, settings, factor);
+    std::vector<double>& x = found.emplace_back(dofs);
+    for (const Linearization& tangent : tangents) {
+      K.take(tangent);
+      if (assembled_before) K.matrix();
+      solver.prepare();
+      const LinearReport report = solver.solve(b, x);
+      EXPECT_TRUE(report.usable && !report.unsolved) << report.trouble;
+    }
+    EXPECT_NE(solver.levels(), nullptr);
+  }
+  EXPECT_EQ(found[0], found[1]);
 }
 
 TEST(LinearSolver, NothingIsPreparedWhereNothingIsFree) {
