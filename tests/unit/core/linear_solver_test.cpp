@@ -127,6 +127,18 @@ TEST(LinearSolver, OfTheCallerPreconditionsWhatLoadsWithoutAPotentialAdd) {
   EXPECT_GT(counts.solves, 2 * counts.prepared);  // GMRES takes several
 }
 
+/// A column that gravity bends far past its critical load meets indefinite tangents on the way.
+TEST(LinearSolver, OfTheCallerNeedNotKnowIndefiniteTangents) {
+  BlockOptions o;
+  o.grid = {10, 2, 2};
+  o.size = {{8, 1, 1}};
+  BuiltModel built = block(o);
+  hold_face(built.model);
+  add_gravity(built.model, {{-0.05, 0.0005, 0}});
+  const DenseSolver::Counts counts = expect_equal(built.model);
+  EXPECT_LT(counts.solves, counts.prepared);  // some were not taken
+}
+
 /// Levels are kept from tangent to tangent: a cycle multiplies with the one that is solved with, from the first on.
 TEST(LinearSolver, KeptLevelsTakeProductsWithThePresentTangent) {
   BuiltModel built = held_block();
