@@ -158,7 +158,8 @@ TEST(Variants, OfMaterialsAndTheSolver) {
   const std::vector<Variant> solver = solver_variants(scene, facts);
   for (const Variant& v : solver) EXPECT_EQ(v.refused, "") << v.part;
   EXPECT_FALSE(find(solver, VariantKind::linear_tolerance, "solver.linear.tolerance"));  // a factorisation has none
-  EXPECT_EQ(carried_out(*find(solver, VariantKind::linear_solver, "solver.linear.kind")).solver.linear, LinearMethod::cg);
+  EXPECT_EQ(carried_out(*find(solver, VariantKind::linear_solver, "solver.linear.kind")).solver.linear,
+            LinearMethod::cg);
   EXPECT_EQ(carried_out(*find(solver, VariantKind::time_step, "solver.time_step")).solver.time_step, 0.02);
   EXPECT_EQ(find(solver, VariantKind::threads, "solver.threads")->overrides[0], "solver.threads=0");
   int looser = 0, tighter = 0;
