@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
+#include <string_view>
 #include <type_traits>
 
 namespace fascia::app {
@@ -71,6 +73,16 @@ class FieldWriter {
   std::vector<io::FieldArray>& fields_;
   std::size_t count_;
 };
+
+bool asks_for(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Some field needs strains and stresses.
+bool asks_for_tensors(const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(),
+                     [](const std::string& name) { return name != "displacement" && name != "rotation"; });
+}
 
 void set_units(std::vector<io::FieldArray>& fields) {
   for (io::FieldArray& field : fields)
@@ -134,8 +146,7 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
   const std::vector<std::string>& names = simulation_.scene.output.fields;
   FieldWriter of_nodes(mesh.point_fields, b.nodes.size());
   of_nodes.add("rest_position", [&](std::size_t i) { return b.nodes[i]; });
-  const bool tensor_fields = std::any_of(
-      names.begin(), names.end(), [](const std::string& name) { return name != "displacement" && name != "rotation"; });
+  const bool tensor_fields = asks_for_tensors(names);
   BodyTensors t = tensor_fields ? tensors(b, state) : BodyTensors{};
   const std::vector<PointTensors> means =
       tensor_fields ? cell_means(body, std::move(t.points)) : std::vector<PointTensors>{};
@@ -149,7 +160,7 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
     if (tensor_fields && !own && of_nodes.add_tensor_field(name, t.nodes)) of_cells.add_tensor_field(name, means);
   }
   const auto wanted = [&](const std::string& field) {
-    return std::find(names.begin(), names.end(), field == "to_outer_face" ? "director" : field) != names.end();
+    return asks_for(names, field == "to_outer_face" ? "director" : field);
   };
   for (BodyField& f : fields) {
     if (!wanted(f.name)) continue;
@@ -162,32 +173,36 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
 io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) {
   if (b.groups() != nullptr) return visual_mesh(b, state);
   const ModelBody& body = *b.body;
-  const BodyTensors t = tensors(b, state);
+  const std::vector<std::string>& names = simulation_.scene.output.fields;
+  const bool turns = asks_for(names, "rotation"), tensor_fields = asks_for_tensors(names);
+  const BodyTensors t = tensor_fields ? tensors(b, state) : BodyTensors{};
   const std::vector<Attachment>& surface = surface_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
   std::vector<PointValue> values;
   std::vector<PointTensors> tensors_of_values;
-  const auto add_field_value = [&](const Vec3d& X, const Attachment& a, const PointTensors& tensors_there) {
+  values.reserve(surface.size() + b.nodes.size() + body.points().size());
+  if (tensor_fields) tensors_of_values.reserve(values.capacity());
+  const auto add_field_value = [&](const Vec3d& X, const Attachment& a) {
     const FieldValue f = field_at(a, state);
-    const Mat3d D = polar_increment(f.D);
-    values.push_back({X, f.u, rotation_vector(D), Mat3d::identity() + D});
-    tensors_of_values.push_back(tensors_there);
+    const Mat3d D = turns ? polar_increment(f.D) : Mat3d{};
+    values.push_back({X, f.u, turns ? rotation_vector(D) : Vec3d{}, Mat3d::identity() + D});
   };
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    PointTensors mean;
+    add_field_value(body.surface().points[i], surface[i]);
+    if (!tensor_fields) continue;
+    PointTensors& mean = tensors_of_values.emplace_back();
     for (std::size_t k = 0; k < surface[i].nodes.size(); ++k)
       add_share(mean, t.nodes[b.index_of(surface[i].nodes[k])], surface[i].influences[k].w);
-    add_field_value(body.surface().points[i], surface[i], mean);
   }
   for (std::size_t i = 0; i < b.nodes.size(); ++i) {
     const std::size_t node = at(b.node_ids[i]);
-    const Mat3d turn =
-        simulation_.model.frame_kind[node] == FrameKind::rigid ? state.D[node] : polar_increment(state.D[node]);
-    values.push_back({b.nodes[i], state.u[node], rotation_vector(turn),
+    const bool rigid = simulation_.model.frame_kind[node] == FrameKind::rigid;
+    const Mat3d turn = rigid || !turns ? state.D[node] : polar_increment(state.D[node]);
+    values.push_back({b.nodes[i], state.u[node], turns ? rotation_vector(turn) : Vec3d{},
                       (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node]});
-    tensors_of_values.push_back(t.nodes[i]);
   }
-  for (std::size_t q = 0; q < body.points().size(); ++q)
-    add_field_value(body.points()[q].X, body.attach_point(q), t.points[q]);
+  for (std::size_t q = 0; q < body.points().size(); ++q) add_field_value(body.points()[q].X, body.attach_point(q));
+  if (tensor_fields) std::copy_n(t.nodes.begin(), b.nodes.size(), std::back_inserter(tensors_of_values));
+  tensors_of_values.insert(tensors_of_values.end(), t.points.begin(), t.points.end());
   io::VisualMesh mesh;
   for (const PointValue& v : values) mesh.points.push_back(v.rest + v.u);
   mesh.triangles = body.surface().triangles;
@@ -199,7 +214,7 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) {
   }
   FieldWriter fields(mesh.point_fields, values.size());
   fields.add("rest_position", [&](std::size_t i) { return values[i].rest; });
-  for (const std::string& name : simulation_.scene.output.fields) {
+  for (const std::string& name : names) {
     if (name == "displacement") fields.add(name, [&](std::size_t i) { return values[i].u; });
     if (name == "rotation") {
       fields.add(name, [&](std::size_t i) { return values[i].rotation; });

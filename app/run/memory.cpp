@@ -94,18 +94,18 @@ double output_bytes(const Simulation& s, const SimulatedBody& b) {
   const auto nodes = static_cast<double>(b.nodes.size()), points = static_cast<double>(body.points().size());
   const auto tensors = static_cast<double>(sizeof(PointTensors));
   const FieldBytes bytes(s.scene.output, !b.vertices);
+  const double of_tensors = bytes.of_tensors > 0 ? tensors : 0;
   if (b.groups() != nullptr) {
     const BodyCells& cells = body.cells();
     const auto corners = static_cast<double>(cells.nodes.size()), count = corners / cells.nodes_per_cell;
     const double written = nodes * (24 + bytes.of_nodes + bytes.of_tensors) + count * bytes.of_tensors + 12 * corners;
-    const double of_tensors = bytes.of_tensors > 0 ? tensors : 0;
     return std::max(points * of_tensors, (1 + kFile) * written) + (nodes + count) * of_tensors;
   }
   const auto surface = static_cast<double>(body.surface().points.size());
   const double values = surface + nodes + points;
   const double written = values * (24 + bytes.of_nodes + 72 + bytes.of_tensors) + 24.0 * (points + nodes) +
                          40.0 * static_cast<double>(body.surface().triangles.size());
-  return (nodes + points) * tensors + 1.5 * values * (144 + tensors) + (1 + kFile) * written;
+  return (nodes + points) * of_tensors + values * (144 + of_tensors) + (1 + kFile) * written;
 }
 
 /// Results keep where the points of surfaces are attached.
@@ -124,8 +124,7 @@ double attachment_bytes(const Simulation& s) {
 double recovery_bytes(const Simulation& s) {
   double bytes = 0;
   for (const SimulatedBody& b : s.bodies) {
-    const bool wanted = b.groups() == nullptr || FieldBytes(s.scene.output, true).of_tensors > 0;
-    if (!wanted || b.body->points().empty()) continue;
+    if (!(FieldBytes(s.scene.output, true).of_tensors > 0) || b.body->points().empty()) continue;
     const auto shares = static_cast<double>(b.body->points().size() * b.body->attach_point(0).nodes.size());
     bytes += shares * sizeof(NodalRecovery::Share);
   }
@@ -151,6 +150,7 @@ class Setup {
   double beyond() const { return beyond_; }
 
  private:
+  /// A run on a GPU makes a system of the processor too where it breaks off, or where the processor solves.
   void of_steps(bool on_gpu) {
     const Solver& solver = s_.scene.solver;
     system_.emplace(s_.model, pool_, settings_of(solver));

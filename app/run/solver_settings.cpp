@@ -13,6 +13,7 @@ SolverSettings settings_of(const Solver& solver) {
   s.preconditioner = solver.preconditioner;
   s.cg.max_iterations = solver.linear_max_iterations;
   s.cg.tolerance = solver.linear_tolerance;
+  s.threads = solver.threads;
   if (solver.precision == "mixed") s.precision = Precision::mixed;
   if (solver.precision == "single") s.precision = Precision::single;
   s.tangent = solver.full_tangent ? Tangent::full : Tangent::material;

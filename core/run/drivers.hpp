@@ -16,7 +16,7 @@ enum class RunStatus { converged, not_converged, diverged, interrupted, unstable
 
 /// What a driver tells after each accepted step.
 struct StepInfo {
-  int step = 0;         ///< counted from 1
+  int step = 0;         ///< counted from 1; 0: the start
   double time = 0;      ///< [s]; in statics the load factor
   double progress = 0;  ///< part of the whole [0, 1]
   NewtonReport newton;

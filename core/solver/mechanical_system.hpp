@@ -124,7 +124,8 @@ class MechanicalSystem {
   void look_back(const State& state, const State& before, const State& earlier, double dt);
 
   /// Reads what acts at the last evaluation. (reached_state.cpp)
-  void read(const ReachedParts& parts, ReachedForces& out);
+  /// @param state  that was reached, where tethers pull
+  void read(const ReachedParts& parts, const State& state, ReachedForces& out);
 
   /// Stands where another system does within its step, for direction() and levels().
   void stand_in(const StepInProgress& step);
@@ -244,7 +245,7 @@ class SystemStep final : public ReachedStep {
   SystemStep(MechanicalSystem& system, const State& state) : system_(system), state_(state) {}
   InternalEnergy energy() const override { return system_.internal_energy(); }
   const State& state() override { return state_; }
-  void read(const ReachedParts& parts, ReachedForces& out) override { system_.read(parts, out); }
+  void read(const ReachedParts& parts, ReachedForces& out) override { system_.read(parts, state_, out); }
 
  private:
   MechanicalSystem& system_;

@@ -3,6 +3,7 @@
 #include "core/executor/block_executor.hpp"
 #include "core/structure/model.hpp"
 
+#include <span>
 #include <vector>
 
 namespace fascia {
@@ -31,5 +32,8 @@ class ReachedStep {
   /// Leaves what is not among the parts.
   virtual void read(const ReachedParts& parts, ReachedForces& out) = 0;
 };
+
+/// Reads the forces of tethers at a state. @param targets  as CpuExecutor::targets()
+void read_tethers(const Model& model, std::span<const double> targets, const State& state, ReachedForces& out);
 
 }  // namespace fascia

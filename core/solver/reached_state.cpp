@@ -53,12 +53,16 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
   });
 }
 
-void MechanicalSystem::read(const ReachedParts& parts, ReachedForces& out) {
+void read_tethers(const Model& model, std::span<const double> targets, const State& state, ReachedForces& out) {
+  out.tether_forces.clear();
+  for (const Tether& t : model.tethers) out.tether_forces.push_back(tether_force(model.points, targets, t, state));
+}
+
+void MechanicalSystem::read(const ReachedParts& parts, const State& state, ReachedForces& out) {
   if (parts.forces) {
     out.gradient = gradient_;
     out.dependent_forces = dependent_forces_;
-    out.tether_forces.clear();
-    for (const Tether& t : model_.tethers) out.tether_forces.push_back(executor_.points().tether_force(t, state_));
+    read_tethers(model_, executor_.targets(), state, out);
   }
   if (parts.energies) out.energies = executor_.energies();
   if (!parts.slots) return;

@@ -19,7 +19,8 @@ constexpr double kCycle = 6;
 SoftestDirection softest_by(LinearSolver& solver, const TangentOperator& K, int rounds) {
   const auto solve = [&](std::span<const double> b, std::span<double> x) {
     const LinearReport report = solver.solve(b, x);
-    return TangentProbe{report.usable && (!report.unsolved || report.negative > 0), report.negative};
+    const int negative = std::max(report.negative, report.trouble.empty() ? 0 : 1);
+    return TangentProbe{report.usable && (!report.unsolved || negative > 0), negative};
   };
   return softest_direction(K.model(), K.filter(), solve, rounds);
 }
@@ -132,11 +133,17 @@ TangentReport TangentSolver::descend(std::span<double> x) {
     return report;
   };
   std::optional<TangentReport> report = solve();
-  if ((!report || !report->trouble.empty()) && !K_.model().tethers.empty()) {
+  if (report && !report->trouble.empty() && !K_.model().tethers.empty()) {
     K_.tame(TamerTangent::without_tethers);
     report = solve();
   }
-  if (!report) return descend_by_factor(x);
+  if (!report && factor_.fits()) return descend_by_factor(x);
+  if (!report) {
+    report.emplace();
+    report->usable = false;
+    report->trouble = "the linear solver does not take the tangent, and a factor of it would be too large";
+    return *report;
+  }
   if (!report->usable || !report->unsolved || !gives_way_to_factor(report->iterations)) return *report;
   direct_ = true;
   TangentReport by_factor = descend_by_factor(x);
@@ -179,12 +186,14 @@ std::optional<TangentReport> TangentSolver::solve_unsymmetric(std::span<double> 
   if (!direct()) {
     LinearSolver& inner = iterative();
     const double tolerance = inner.iterates() ? settings_.cg.tolerance : kDirectTolerance;
-    if (inner.prepare() && solve(inner, tolerance)) return report;
-    if (!guessed() || !factor_.fits()) {
+    const bool taken = inner.prepare();
+    if (taken && solve(inner, tolerance)) return report;
+    if ((taken && !guessed()) || !factor_.fits()) {
+      report.indefinite = report.indefinite || !taken;
       K_.tame(TamerTangent::material);
       return inner.prepare() && solve(inner, tolerance) ? std::optional(report) : std::nullopt;
     }
-    direct_ = true;
+    if (guessed()) direct_ = true;
   }
   report.indefinite = false;
   if (!factor_.prepare_any() || !solve(factor_, kDirectTolerance)) return std::nullopt;
@@ -218,12 +227,13 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
   K_.take(lin);
   const bool factor_first = reusable || direct() || (!own_ && factor_is_cheap(made));
   const bool by_factor = factor_first || !iterative().prepare();
+  if (by_factor && !factor_first && !factor_.fits()) return {};
   if (reusable)
     factor_.renew_terms();
   else if (by_factor && !factor_.prepare_any())
     return {};
   LinearSolver& solver = by_factor ? factor_ : iterative();
-  const bool definite = !by_factor || factor_.definite();
+  const bool definite = by_factor && factor_.definite();
   if (!solver.iterates())
     return K_.symmetric() ? softest_by(solver, K_, kRoundsOfFactor) : softest_of_whole(K_, solver, definite);
   SoftestDirection found = softest_by(solver, K_, kRoundsOfCg);

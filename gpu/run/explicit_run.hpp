@@ -39,7 +39,7 @@ class ReachedExplicitStep final : public ReachedStep {
     host.look_at(state(), dt_);
     const std::vector<PoseMotion> accelerations = system_.held_accelerations();
     host.add_support_inertia([&](int node) { return accelerations[at(system_.constraint_of(node))]; });
-    host.read(parts, out);
+    host.read(parts, state_, out);
   }
 
  private:

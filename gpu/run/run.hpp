@@ -8,7 +8,8 @@
 /// Runs of whole scenes on the device, for those who know nothing of spaces.
 namespace fascia::gpu {
 
-/// Called after each accepted step; returns false to stop. What is asked of the step is copied to the host.
+/// Called after each accepted step, and where DynamicsSettings ask for it at the start; returns false to stop. Copies
+/// to the host what is asked of the step.
 using DeviceObserver = std::function<bool(const StepInfo&, ReachedStep&)>;
 
 /// run_statics() and run_implicit() with everything on the device. The state that was reached is copied back, also

@@ -49,11 +49,7 @@ class StepOfSystem final : public ReachedStep {
   }
   void read(const ReachedParts& parts, ReachedForces& out) override {
     system_.read(parts, out);
-    if (!parts.forces) return;
-    const std::vector<double> targets = system_.tether_targets();
-    out.tether_forces.clear();
-    for (const Tether& t : system_.model().tethers)
-      out.tether_forces.push_back(tether_force(system_.model().points, targets, t, state()));
+    if (parts.forces) read_tethers(system_.model(), system_.tether_targets(), state(), out);
   }
 
  private:
