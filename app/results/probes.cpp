@@ -175,8 +175,19 @@ Momentum momentum(const Simulation& s, const ResolvedProbe& probe, const State& 
   return sum;
 }
 
+/// Forces by degrees of freedom that hold the constrained ones, in the axes of the world; the free ones are zero.
+std::vector<double> held_forces_of(const Simulation& s, const ReachedForces& acting) {
+  std::vector<double> forces = acting.gradient;
+  const DofFilter filter(s.model);
+  filter.to_local(forces);
+  filter.keep_fixed(forces);
+  filter.to_global(forces);
+  return forces;
+}
+
 /// Force and moment that supports (or, where nothing is held, loads) exert on the nodes.
-void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap, Vec3d& force, Vec3d& moment) {
+void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap,
+                   std::vector<double>& held_forces, Vec3d& force, Vec3d& moment) {
   std::vector<char> chosen(at(s.model.node_count()), 0);
   for (const int i : probe.nodes) chosen[at(i)] = 1;
   const auto add = [&](int node, const Vec3d& f, const Vec3d& torque) {
@@ -185,11 +196,7 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
     moment += torque + cross(x - probe.about, f);
   };
   bool held = false;
-  std::vector<double> held_forces = snap.acting->gradient;
-  const DofFilter filter(s.model);
-  filter.to_local(held_forces);
-  filter.keep_fixed(held_forces);
-  filter.to_global(held_forces);
+  if (held_forces.empty()) held_forces = held_forces_of(s, *snap.acting);
   for (const FrameConstraint& c : s.model.constraints) {
     if (chosen[at(c.node)] == 0) continue;
     held = true;
@@ -244,7 +251,7 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Snapsh
 }
 
 std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, const Snapshot& snap,
-                              TensorFields& fields) {
+                              TensorFields& fields, std::vector<double>& held_forces) {
   std::vector<double> out;
   const Quantity q = probe.probe->quantity;
   const State& state = *snap.state;
@@ -256,7 +263,7 @@ std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, c
     case Quantity::force:
     case Quantity::moment: {
       Vec3d force, moment;
-      support_force(s, probe, snap, force, moment);
+      support_force(s, probe, snap, held_forces, force, moment);
       push(out, q == Quantity::force ? force : moment);
       break;
     }
@@ -323,8 +330,9 @@ ReachedParts needed_parts(const Simulation& s) {
 
 std::vector<std::vector<double>> probe_values(const Simulation& s, const Snapshot& snap) {
   TensorFields fields;
+  std::vector<double> held_forces;  // of all probes, made for the first that asks
   std::vector<std::vector<double>> values;
-  for (const ResolvedProbe& probe : s.probes) values.push_back(values_of(s, probe, snap, fields));
+  for (const ResolvedProbe& probe : s.probes) values.push_back(values_of(s, probe, snap, fields, held_forces));
   return values;
 }
 
