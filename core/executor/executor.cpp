@@ -1,7 +1,7 @@
 #include "core/executor/executor.hpp"
 
 #include "core/base/index.hpp"
-#include "core/node/node_load.hpp"
+#include "core/step/step_loops.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +20,8 @@ constexpr int kNodeGrain = 256;
 CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
     : set_(set),
       pool_(pool),
+      space_(pool),
+      node_parts_(set.node_part, set.part_count(), space_),
       springs_(set),
       part_motion_(at(set.part_count())),
       start_motion_(at(set.part_count())),
@@ -64,21 +66,12 @@ BlockState CpuExecutor::state_of(const Linearization& lin, std::size_t block) co
           part_of(lin.kept, lin.kept_begin, block)};
 }
 
-/// The largest displacement or rotation (taken at the part's length) of each part, and at least `least`.
-void CpuExecutor::note_motion(const State& state, std::span<const double> least, std::span<double> motion) const {
-  std::copy(least.begin(), least.end(), motion.begin());
-  for (int node = 0; node < set_.node_count(); ++node) {
-    const int part = set_.node_part[at(node)];
-    const bool turns = set_.dofs.kind(node) != FrameKind::vertex;
-    const double turn = turns ? set_.part_length[at(part)] * norm(state.D[at(node)]) : 0.0;
-    motion[at(part)] = std::max({motion[at(part)], norm(state.u[at(node)]), turn});
-  }
+/// The largest displacement or rotation (taken at the part's length) of each part.
+void CpuExecutor::note_motion(const State& state, std::span<double> motion) {
+  node_parts_.sum<0, 1>(loops::NodeMotion{nodes_of(set_), {state.u.data(), state.D.data()}}, motion.data());
 }
 
-void CpuExecutor::start_from(const State& state) {
-  const std::vector<double> none(part_motion_.size(), 0.0);
-  note_motion(state, none, start_motion_);
-}
+void CpuExecutor::start_from(const State& state) { note_motion(state, start_motion_); }
 
 NodeSum CpuExecutor::sum_at(int node) {
   NodeSum sum;
@@ -120,7 +113,8 @@ void CpuExecutor::forces(const State& state, const StrainHistory& history, std::
 }
 
 InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, std::span<double> gradient) {
-  note_motion(state, start_motion_, part_motion_);
+  note_motion(state, part_motion_);
+  space_.for_each(set_.part_count(), loops::AtLeast{start_motion_.data(), part_motion_.data()});
   sum_terms(state, history, true, gradient);
   InternalEnergy energy;
   std::fill(part_rounding_.begin(), part_rounding_.end(), 0.0);

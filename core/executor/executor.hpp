@@ -8,6 +8,8 @@
 #include "core/executor/spring_executor.hpp"
 #include "core/executor/surface_tangent.hpp"
 #include "core/linear/block_matrix.hpp"
+#include "core/space/part_sums.hpp"
+#include "core/space/pool_space.hpp"
 
 #include <span>
 #include <tuple>
@@ -131,10 +133,12 @@ class CpuExecutor {
   void sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient);
   void sum_forces(const State& state, bool keep_moments, std::span<double> gradient);
   void linearize_blocks(const State& state, const StrainHistory& history, const TakenStep* taken, Linearization& out);
-  void note_motion(const State& state, std::span<const double> least, std::span<double> motion) const;
+  void note_motion(const State& state, std::span<double> motion);
 
   const PointSet& set_;
   ThreadPool& pool_;
+  PoolSpace space_;
+  PartSums<PoolSpace> node_parts_;
   Blocks blocks_;
   SpringExecutor springs_;
   std::vector<std::size_t> strain_begin_;  ///< (blocks + 1): of each in StrainHistory::E

@@ -64,15 +64,6 @@ FASCIA_HD inline void add_boundary_work(const ExplicitNode& node, double* force,
   }
 }
 
-/// The whole step of a vertex that nothing holds.
-FASCIA_HD inline void step_free_vertex(double damping, double mass, const Vec3d& load, const double* gradient,
-                                       const LeapTimes& times, Vec3d& u, Vec3d& v, ExplicitSums& sums) {
-  v = kicked_vertex(damping, mass, v, load - Vec3d{{gradient[0], gradient[1], gradient[2]}}, times.kick);
-  u += v * times.drift;
-  sums.kinetic += 0.5 * mass * squared_norm(v);
-  sums.work += dot(load, v) * times.drift;
-}
-
 /// dx/dt and dQ/dt of a node from its velocity, and back.
 FASCIA_HD inline PoseMotion pose_velocity(const ExplicitNode& node, const HalfStepVelocity& w) {
   if (node.kind != FrameKind::rigid) return {w.v, w.rate};

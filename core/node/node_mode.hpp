@@ -25,6 +25,9 @@ struct ModeNode {
 /// cells a ten thousandth of the part, large against rounding.
 inline constexpr double kModeReach = 1e-9;
 
+/// Vectors of a Lanczos basis that are kept.
+inline constexpr int kModeBasis = 5;
+
 /// v = M⁻¹ y on what is free, zero elsewhere and where M is singular. @return v · y
 FASCIA_HD inline double solve_mass(const ModeNode& node, const double* y, double* v) {
   const int n = dof_count(node.kind);

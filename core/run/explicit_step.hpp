@@ -3,6 +3,7 @@
 #include "core/run/explicit_mode.hpp"
 #include "core/run/explicit_nodes.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/step/explicit_view.hpp"
 #include "core/tangent/dependents.hpp"
 
 #include <optional>
@@ -16,6 +17,9 @@ namespace fascia {
 /// is allocated once. The state's v and Q_dot are read at the start and written by report_velocities().
 class ExplicitStepper {
  public:
+  using Space = PoolSpace;
+  using Pose = State;
+
   /// @param factors  of all schedules at the start
   ExplicitStepper(MechanicalSystem& system, State& state, double dt, std::span<const double> factors);
 
@@ -42,28 +46,40 @@ class ExplicitStepper {
   /// The kinetic energy is finite and within what was given, with room for rounding and for coarse steps.
   bool is_sound() const;
 
- private:
-  struct PlacedLoad {
-    int schedule;
-    NodeLoad load;
-  };
-
-  auto moving() {
-    return std::tie(state_, velocity_, factors_, gradient_, follower_, last_increments_, history_, stepped_, kinetic_,
-                    work_, largest_work_, last_step_, times_);
+  // What ExplicitMode asks.
+  const PoolSpace& space() const { return space_; }
+  const Model& model() const { return model_; }
+  int free_count() const { return filter_.free_count(); }
+  const State& pose() const { return state_; }
+  ExplicitView view();
+  void keep_strain() {}  // the history has it
+  void gather_acting(State& pose, double inverse_step, double* out);
+  void place_dependents(State& pose) { fascia::place_dependents(model_.points, pose); }
+  /// Calls act.operator()<Frames>().
+  template <class Act>
+  void for_nodes(const Act& act) {
+    if (model_.has_frames())
+      act.template operator()<true>();
+    else
+      act.template operator()<false>();
   }
-  void place_loads();
+
+ private:
+  auto moving() {
+    return std::tie(state_, half_v_, half_spin_, half_rate_, factors_, gradient_, load_, last_increments_, history_,
+                    stepped_, kinetic_, work_, largest_work_, last_step_, times_);
+  }
   void update_forces();
-  void add_forces(const State& state, std::vector<double>& gradient, std::vector<double>& follower);
+  void add_forces(const State& state, std::vector<double>& gradient, std::vector<double>& load);
   void start_velocities();
-  void node_force(const ExplicitNode& at_node, int node, double* load, double* force) const;
-  bool step_free_vertex(int node, ExplicitSums& sums);
-  ExplicitNode node_at(int node) const;
+  void find_increments(std::span<const double> factors);
   double tether_work(std::span<const double> factors);
 
   const Model& model_;
   CpuExecutor& executor_;
   const DofFilter& filter_;
+  const PoolSpace& space_;
+  const ModelView& seen_;
   SurfaceLoads surfaces_;
   DependentNodes dependents_;
   State& state_;
@@ -71,22 +87,22 @@ class ExplicitStepper {
   LeapTimes times_;   ///< about the present step
 
   ExplicitNodes nodes_;
-  std::vector<HalfStepVelocity> velocity_;  ///< at the last half step
-  std::vector<int> load_begin_;             ///< by node
-  std::vector<PlacedLoad> loads_, dependent_loads_;
-  /// The last: of followers, of surface loads, and what comes from dependent nodes.
-  std::vector<double> factors_, gradient_, follower_;
+  std::vector<Vec3d> half_v_, half_spin_;  ///< HalfStepVelocity at the last half step; where there are frames
+  std::vector<Mat3d> half_rate_;
+  /// Of schedules; of nodes, the last only where more than dead loads act.
+  std::vector<double> factors_, gradient_, load_;
+  std::vector<double> mode_gradient_, mode_load_;     ///< at states beside the present one
   std::vector<double> increments_, last_increments_;  ///< prescribed, in constraint axes
   std::vector<double> old_targets_;
   std::vector<Vec3d> old_forces_;  ///< of tethers
   StrainHistory history_;
-  std::vector<ExplicitSums> chunk_sums_;
   std::vector<PoseMotion> held_acceleration_;  ///< of each constraint
-  std::tuple<State, std::vector<HalfStepVelocity>, std::vector<double>, std::vector<double>, std::vector<double>,
-             std::vector<double>, StrainHistory, bool, double, double, double, double, LeapTimes>
+  std::tuple<State, std::vector<Vec3d>, std::vector<Vec3d>, std::vector<Mat3d>, std::vector<double>,
+             std::vector<double>, std::vector<double>, std::vector<double>, StrainHistory, bool, double, double, double,
+             double, LeapTimes>
       saved_;
   std::vector<double> saved_targets_;
-  std::optional<ExplicitMode> mode_;  ///< from the first stable_step() on
+  std::optional<ExplicitMode<ExplicitStepper>> mode_;  ///< from the first stable_step() on
   bool stepped_ = false;
   double kinetic_ = 0, work_ = 0, largest_work_ = 0, start_energy_ = 0;
 };

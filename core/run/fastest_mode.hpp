@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/math/tridiagonal.hpp"
+#include "core/node/node_mode.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +9,6 @@
 #include <limits>
 
 namespace fascia {
-
-/// Vectors of a Lanczos basis that are kept.
-inline constexpr int kModeBasis = 5;
 
 /// The stable step of central differences at a state that changes: the largest eigenvalue of M⁻¹ K by a few Lanczos
 /// products, from the vector that the last state had, with a little of all others. It is found from below.

@@ -2,23 +2,12 @@
 
 #include "core/math/rotation.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/step/boundary_loops.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace fascia {
-
-void prescribed_increments(const Model& model, const DofFilter& filter, const State& state,
-                           std::span<const std::array<double, 3>> turned, std::span<const double> factors,
-                           std::span<double> local) {
-  std::fill(local.begin(), local.end(), 0.0);
-  for (std::size_t k = 0; k < model.constraints.size(); ++k) {
-    const FrameConstraint& c = model.constraints[k];
-    prescribed_increment(model.kind(c.node), c, filter.fixed_of(c.node), model.motions.data(), factors.data(),
-                         model.rest_position[at(c.node)], state.u[at(c.node)], state.D[at(c.node)], turned[k].data(),
-                         local.data() + model.points.dofs.begin(c.node));
-  }
-}
 
 MotionSizes motion_sizes(const Model& model) {
   MotionSizes sizes;
@@ -58,19 +47,6 @@ double prescribed_rotation(const Model& model, std::span<const std::array<double
   return largest;
 }
 
-void move_state(const Model& model, std::span<const double> global, State& state) {
-  for (int i = 0; i < model.node_count(); ++i) {
-    const double* d = global.data() + model.points.dofs.begin(i);
-    advance_increment(model.kind(i), d, 1, state.u[at(i)], state.D[at(i)]);
-  }
-  for (std::size_t k = 0; k < model.constraints.size(); ++k) {
-    const FrameConstraint& c = model.constraints[k];
-    if (model.kind(c.node) != FrameKind::rigid) continue;
-    const double* d = global.data() + model.points.dofs.begin(c.node);
-    advance_turned(c, d, 1, state.turned[k].data());
-  }
-}
-
 void place_tethers(const Model& model, std::span<const double> factors, std::span<double> targets) {
   for (const Tether& t : model.tethers) {
     const Vec3d target = tether_target(t, model.motions.data(), factors.data());
@@ -79,20 +55,21 @@ void place_tethers(const Model& model, std::span<const double> factors, std::spa
   }
 }
 
-bool MechanicalSystem::has_prescribed_increment() const {
-  std::vector<double>& local = work_;
-  prescribed_increments(model_, filter_, state_, increment_.turned, factors_, local);
-  // Rounding of a target grows with the displacements and, for a turn, with the arm.
-  const MotionSizes sizes = motion_sizes(model_);
-  double largest_u = sizes.displacement;
-  for (std::size_t i = 0; i < state_.u.size(); ++i)
-    largest_u = std::max({largest_u, norm(state_.u[i]), norm(start_.u[i])});
-  for (const FrameConstraint& c : model_.constraints) {
-    const int first = model_.points.dofs.begin(c.node), size = model_.points.dofs.size(c.node);
-    for (int k = 0; k < size; ++k)
-      if (std::abs(local[at(first + k)]) > 1e-14 * (k < 3 ? largest_u : sizes.angle)) return true;
-  }
-  return false;
+void MechanicalSystem::find_prescribed(std::span<const double> factors, std::span<double> local) {
+  std::fill(local.begin(), local.end(), 0.0);
+  const double* turned = increment_.turned.empty() ? nullptr : increment_.turned[0].data();
+  space_.for_each(
+      static_cast<int>(model_.constraints.size()),
+      loops::FindPrescribed{data_.view(), {state_.u.data(), state_.D.data()}, turned, factors.data(), local.data()});
+}
+
+bool MechanicalSystem::has_prescribed_increment() {
+  if (model_.constraints.empty()) return false;
+  find_prescribed(factors_, prescribed_);
+  double left[3];
+  space_.sum<0, 3>(model_.node_count(), loops::PrescribedLeft{step_view(), prescribed_.data()},
+                   loops::StoreSums<0, 3>{left});
+  return motions_.lacks(left);
 }
 
 double MechanicalSystem::prescribed_rotation() const {

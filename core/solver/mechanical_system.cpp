@@ -2,8 +2,8 @@
 
 #include "core/base/index.hpp"
 #include "core/node/node_force.hpp"
-#include "core/node/node_load.hpp"
-#include "core/solver/boundary_motion.hpp"
+#include "core/solver/part_forces.hpp"
+#include "core/step/boundary_loops.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,23 +17,26 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
     : model_(model),
       settings_(settings),
       filter_(model),
+      space_(pool),
+      data_(model, filter_, zero_factors(model).size()),
+      node_parts_(model.points.node_part, model.points.part_count(), space_),
       executor_(model.points, pool),
       tangent_(model, executor_, filter_, settings),
       dependents_(model.points),
       conservative_(model.loads_are_conservative()),
       extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
       surfaces_(model),
+      motions_(motion_sizes(model)),
       masses_(part_masses(model)),
       driven_(driven_parts(model)),
       state_(State::at_rest(model)) {
-  const auto n = at(model.dof_count());
-  gradient_.resize(n);
-  load_.resize(n);
-  inertia_.resize(n);
-  direction_.resize(n);
-  work_.resize(n);
+  for (auto* vector : {&gradient_, &load_, &inertia_, &direction_, &work_, &prescribed_})
+    vector->resize(at(model.dof_count()));
+  node_energy_.resize(3 * at(model.node_count()));
+  node_sums_.resize(at(model.points.part_count()) * kNodeQuantities);
   dependent_forces_.resize(6 * model.points.dependents.size());
   factors_ = reached_factors_ = zero_factors(model);
+  data_.set_factors(factors_);
 }
 
 std::vector<double> zero_factors(const Model& model) {
@@ -45,15 +48,32 @@ std::vector<double> zero_factors(const Model& model) {
   return std::vector<double>(at(schedules), 0.0);
 }
 
-void MechanicalSystem::add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N,
-                           const Vec3d& torque) const {
-  add_node_force(model_.kind(node), state_.D[at(node)], force, N, torque, out.data() + model_.points.dofs.begin(node));
+StepView MechanicalSystem::step_view() {
+  return {.model = data_.view(),
+          .step = form_,
+          .u0 = start_.u.data(),
+          .v0 = start_.v.data(),
+          .D0 = start_.D.data(),
+          .rate0 = start_.Q_dot.data(),
+          .du = increment_.du.data(),
+          .u = state_.u.data(),
+          .Ds = increment_.Ds.data(),
+          .D = state_.D.data(),
+          .q = form_.q.data(),
+          .w = form_.w.data(),
+          .turned = increment_.turned.empty() ? nullptr : increment_.turned[0].data(),
+          .turning = model_.has_frames()};
+}
+
+ForceView MechanicalSystem::force_view() {
+  return {gradient_.data(), load_.data(), inertia_.data(), node_energy_.data()};
 }
 
 void MechanicalSystem::set_factors(std::span<const double> factors) {
   known_.reset();
   note_stretches();
   factors_.assign(factors.begin(), factors.end());
+  data_.set_factors(factors_);
   place_tethers(model_, factors_, executor_.targets());
 }
 
@@ -61,10 +81,7 @@ void MechanicalSystem::rebuild_state() {
   known_.reset();
   state_.u.resize(start_.u.size());
   if (state_.D.size() != start_.D.size()) state_.D = start_.D;
-  for (std::size_t i = 0; i < start_.u.size(); ++i) {
-    state_.u[i] = start_.u[i] + increment_.du[i];
-    state_.D[i] = incremented(model_.frame_kind[i], increment_.Ds[i], start_.D[i]);
-  }
+  space_.for_each(model_.node_count(), loops::RebuildState{step_view()});
   if (!dependents_.empty()) place_dependents_of_step();
 }
 
@@ -73,7 +90,8 @@ void MechanicalSystem::place_dependents_of_step() {
   for (const DependentNode& d : model_.points.dependents) {
     Vec3d du;
     for (std::size_t k = 0; k < d.hosts.size(); ++k) {
-      const PoseMotion host = node_motion(at(d.hosts[k]));
+      const std::size_t i = at(d.hosts[k]);
+      const PoseMotion host = motion_of(model_.frame_kind[i], increment_.du[i], increment_.Ds[i], start_.D[i]);
       du += host.u * d.w[k] + host.Q * d.b[k];
     }
     increment_.du[at(d.node)] = du;
@@ -88,21 +106,14 @@ double MechanicalSystem::energy_at_start() {
   const bool same = reached_ && !model_.has_frames() && !model_.points.damped && model_.tethers.empty() &&
                     reached_->first == start_.u;
   if (!same) return evaluate().energy;
-  add_loads();
-  add_inertia();
+  add_loads_and_inertia();
   return reached_->second + load_energy_ + inertia_energy_;
 }
 
 void MechanicalSystem::start_from_prediction() {
   const double at_old_state = energy_at_start();
   save();
-  std::vector<char> held(start_.u.size(), 0);
-  for (const FrameConstraint& c : model_.constraints) held[at(c.node)] = 1;
-  for (std::size_t i = 0; i < start_.u.size(); ++i) {
-    if (held[i] != 0) continue;
-    increment_.du[i] = start_.v[i] * form_.reach;
-    increment_.Ds[i] = increment_along(model_.frame_kind[i], start_.D[i], start_.Q_dot[i], form_.reach);
-  }
+  space_.for_each(model_.node_count(), loops::PredictIncrement{step_view()});
   rebuild_state();
   const Evaluation predicted = evaluate();
   if (predicted.energy < at_old_state)
@@ -111,104 +122,78 @@ void MechanicalSystem::start_from_prediction() {
     restore();
 }
 
-PoseMotion MechanicalSystem::node_motion(std::size_t i) const {
-  return motion_of(model_.frame_kind[i], increment_.du[i], increment_.Ds[i], start_.D[i]);
-}
-
-StepNode MechanicalSystem::step_node(std::size_t i) const {
-  return {model_.frame_kind[i], model_.inertia[i], start_.D[i], {start_.v[i], start_.Q_dot[i]},
-          increment_.du[i],     increment_.Ds[i],  form_.q[i],  form_.w[i]};
-}
-
-const FrameInertia* MechanicalSystem::damping_of(std::size_t i) const {
-  return model_.mass_damping.empty() ? nullptr : &model_.mass_damping[i];
-}
-
-/// A point mass asks for less.
-StepInertia MechanicalSystem::node_inertia(std::size_t i) const {
-  const FrameInertia* damping = damping_of(i);
-  if (model_.frame_kind[i] == FrameKind::vertex)
-    return step_inertia(form_, model_.inertia[i].mass, damping != nullptr ? damping->mass : 0, increment_.du[i],
-                        form_.q[i].u, form_.w[i].u, start_.v[i]);
-  return step_inertia(form_, step_node(i), damping, model_.points.part_length[at(model_.points.node_part[i])]);
-}
-
-void MechanicalSystem::add_loads() {
-  std::fill(load_.begin(), load_.end(), 0.0);
-  load_energy_ = 0;
-  for (const DeadLoad& load : model_.loads) {
-    const double s = factors_[at(load.schedule)];
-    for (const NodeLoad& n : load.nodes) {
-      const Mat3d& D = state_.D[at(n.node)];
-      load_energy_ -= s * dead_load_work(n, state_.u[at(n.node)], D);
-      add_dead_load(model_.kind(n.node), n, s, D, load_.data() + model_.points.dofs.begin(n.node));
-    }
-  }
+/// Potentials of both at the present state.
+void MechanicalSystem::add_loads_and_inertia() {
+  double energies[2];
+  space_.sum<2>(model_.node_count(), loops::StoreLoadsAndInertia{step_view(), force_view()},
+                loops::StoreSums<2, 0>{energies});
+  load_energy_ = energies[0];
+  inertia_energy_ = energies[1];
   for (const FollowerLoad& load : model_.followers)
     for_each_share(load, state_, factors_[at(load.schedule)],
                    [&](int node, const Vec3d& force, const Mat3d& couple, const Vec3d& torque) {
-                     add(load_, node, force, couple, torque);
+                     add_node_force(model_.kind(node), state_.D[at(node)], force, couple, torque,
+                                    load_.data() + model_.points.dofs.begin(node));
                    });
   load_energy_ += surfaces_.add_forces(state_, factors_, load_);
 }
 
-void MechanicalSystem::add_inertia() {
-  std::fill(inertia_.begin(), inertia_.end(), 0.0);
-  inertia_energy_ = 0;
-  inertia_cancelled_.assign(at(model_.points.part_count()), 0.0);
-  if (form_.h <= 0) return;
-  for (int i = 0; i < model_.node_count(); ++i) {
-    const StepInertia f = node_inertia(at(i));
-    inertia_energy_ += f.energy;
-    inertia_energy_ += f.damping_energy;
-    add(inertia_, i, f.force, f.moment, {});
-    inertia_cancelled_[at(model_.points.node_part[at(i)])] += f.cancelled_force * f.cancelled_force;
-  }
-}
-
 /// @param turning  false leaves out how forces on dependent nodes turn their hosts, tethers' pull among them
-void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) const {
+void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) {
   const bool full = lin.tangent == Tangent::full;
-  const DofLayout& dofs = model_.points.dofs;
   if (full) {
-    for (const DeadLoad& load : model_.loads) {
-      const double s = factors_[at(load.schedule)];
-      for (const NodeLoad& n : load.nodes) {
-        if (!rigid(at(n.node))) continue;
-        add_dead_load_block(n, s, lin.Q[at(n.node)], lin.node_blocks.data() + dofs.block_begin(n.node));
-        if (squared_norm(n.torque) > 0) lin.torques.push_back({n.node, n.torque * s});
-      }
-    }
+    for (const DeadLoad& load : model_.loads)
+      for (const NodeLoad& n : load.nodes)
+        if (model_.kind(n.node) == FrameKind::rigid && squared_norm(n.torque) > 0)
+          lin.torques.push_back({n.node, n.torque * factors_[at(load.schedule)]});
     for (const FollowerLoad& load : model_.followers)
       lin.followers.emplace_back(load, state_, factors_[at(load.schedule)]);
     if (turning) dependents_.add_turning(dependent_forces_, lin.node_blocks);
   }
   surfaces_.linearize(state_, factors_, lin);
   for (RankOne& term : lin.low_rank) dependents_.transfer(term.g);
-  if (form_.h <= 0) return;
-  for (int i = 0; i < model_.node_count(); ++i)
-    add_step_inertia_block(form_, step_node(at(i)), damping_of(at(i)), lin.Q[at(i)], full,
-                           lin.node_blocks.data() + dofs.block_begin(i));
+  if (form_.h > 0 || (full && !model_.loads.empty()))
+    space_.for_each(model_.node_count(),
+                    loops::AddLoadAndInertiaBlocks{step_view(), lin.Q.data(), lin.node_blocks.data(), full});
 }
 
 Evaluation MechanicalSystem::evaluate() {
   if (known_) return *std::exchange(known_, std::nullopt);
   internal_ = executor_.gradient(state_, history_, gradient_);
   evaluate_loads();
-  add_inertia();
-  for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] += inertia_[i] - load_[i];
+  const NodesView& nodes = data_.view().nodes;
+  space_.for_each(nodes.count, loops::AddInertiaAndLoads{nodes, force_view()});
   dependents_.transfer(gradient_, dependent_forces_);
   Evaluation e;
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
-  sum_squares();
   e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
-  judge(part_forces(), model_.points.part_whole, settings_.tolerance, e);
+  judge(forces_of_parts(), model_.points.part_whole, settings_.tolerance, e);
   return e;
+}
+
+/// What the verdict on the present state is made from.
+std::vector<PartForces> MechanicalSystem::forces_of_parts() {
+  node_parts_.sum<kNodeQuantities>(loops::NodeReport{data_.view(), force_view()}, node_sums_.data());
+  std::vector<PartForces> parts;
+  parts.reserve(masses_.size());
+  for (std::size_t p = 0; p < masses_.size(); ++p) {
+    const int part = static_cast<int>(p);
+    const PartSizes sizes{.rounding = executor_.rounding(part),
+                          .of_surfaces = surfaces_.rounding(part),
+                          .tether = executor_.points().squared_tether_force(part),
+                          .leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p],
+                          .mass = masses_[p],
+                          .driven = driven_[p] != 0};
+    parts.push_back(
+        part_forces(node_sums_.data() + p * kNodeQuantities, sizes, form_.h, [&] { return executor_.motion(part); }));
+    if (!kept_loads_.empty()) parts.back().load = std::max(parts.back().load, kept_loads_[p]);
+  }
+  return parts;
 }
 
 /// After a step, the work that its loads did and that their potential does not show.
 void MechanicalSystem::evaluate_loads() {
-  add_loads();
+  add_loads_and_inertia();
   if (applied_ != 0) load_work_ += 0.5 * applied_ * (start_power_ + load_power()) + load_energy_ - start_potential_;
   applied_ = 0;
 }
@@ -225,7 +210,7 @@ DirectionReport MechanicalSystem::direction() {
   std::vector<double> rhs(gradient_.size()), prescribed;
   for (std::size_t i = 0; i < rhs.size(); ++i) rhs[i] = -gradient_[i];
   filter_.to_local(rhs);
-  if (has_prescribed_increment()) prescribed = work_;
+  if (has_prescribed_increment()) prescribed = prescribed_;
   Linearization fallback;
   const TangentReport solved = tangent_.solve(
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
@@ -242,11 +227,14 @@ DirectionReport MechanicalSystem::direction() {
   report.unsolved = solved.unsolved;
   report.linear_residual = solved.residual;
   report.cg_seconds = solved.seconds;
-  filter_.to_global(direction_);
+  double sums[3];
+  double* d = direction_.data();
+  space_.sum<1, 2>(model_.node_count(), loops::TakeDirection<double>{data_.view(), d, nullptr, gradient_.data(), d},
+                   loops::StoreSums<1, 2>{sums});
   dependents_.expand(direction_);
   surfaces_.aim(lin_, direction_);
-  for (std::size_t i = 0; i < direction_.size(); ++i) report.slope += gradient_[i] * direction_[i];
-  report.largest_rotation = std::max(largest_rotation_in(direction_), executor_.largest_spin(direction_));
+  report.slope = sums[0];
+  report.largest_rotation = std::max(sums[1], executor_.largest_spin(direction_));
   if (!conservative_) {
     start_power_ = load_power();
     start_potential_ = load_energy_;
@@ -323,17 +311,9 @@ void MechanicalSystem::apply(double step) {
   note_step(step);
   if (!conservative_) applied_ = step;
   surfaces_.approach(step);
-  for (int i = 0; i < model_.node_count(); ++i) {
-    const double* d = direction_.data() + model_.points.dofs.begin(i);
-    advance_increment(model_.kind(i), d, step, increment_.du[at(i)], increment_.Ds[at(i)]);
-  }
-  for (std::size_t k = 0; k < model_.constraints.size(); ++k) {
-    const FrameConstraint& c = model_.constraints[k];
-    if (!rigid(at(c.node))) continue;
-    const double* d = direction_.data() + model_.points.dofs.begin(c.node);
-    advance_turned(c, d, step, increment_.turned[k].data());
-  }
-  rebuild_state();
+  known_.reset();
+  space_.for_each(model_.node_count(), loops::Advance{step_view(), direction_.data(), step});
+  if (!dependents_.empty()) place_dependents_of_step();
 }
 
 void MechanicalSystem::save() {

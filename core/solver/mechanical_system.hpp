@@ -1,11 +1,15 @@
 #pragma once
 
 #include "core/executor/executor.hpp"
-#include "core/node/node_step.hpp"
 #include "core/node/time_scheme.hpp"
+#include "core/solver/boundary_motion.hpp"
 #include "core/solver/newton.hpp"
 #include "core/solver/reached.hpp"
 #include "core/solver/surface_loads.hpp"
+#include "core/space/part_sums.hpp"
+#include "core/space/pool_space.hpp"
+#include "core/step/model_data.hpp"
+#include "core/step/step_view.hpp"
 #include "core/structure/inertia.hpp"
 #include "core/structure/model.hpp"
 #include "core/tangent/dependents.hpp"
@@ -74,7 +78,7 @@ class MechanicalSystem {
   void apply(double step);
   void save();
   void restore();
-  bool has_prescribed_increment() const;
+  bool has_prescribed_increment();
   bool conservative() const { return conservative_; }
   /// Of loads without a potential, the energy of an evaluation has the work that they did since the start of the step.
   static constexpr bool compares_energies() { return true; }
@@ -105,7 +109,8 @@ class MechanicalSystem {
     for (const FrameConstraint& c : model_.constraints) {
       const PoseMotion a = acceleration(c.node);
       const InertiaForce f = inertia_force(model_.inertia[at(c.node)], a.u, a.Q);
-      add(gradient_, c.node, f.force, f.moment, {});
+      add_node_force(model_.kind(c.node), state_.D[at(c.node)], f.force, f.moment, {},
+                     gradient_.data() + model_.points.dofs.begin(c.node));
     }
   }
 
@@ -159,6 +164,9 @@ class MechanicalSystem {
   CpuExecutor& executor() { return executor_; }
   const Model& model() const { return model_; }
   const DofFilter& filter() const { return filter_; }
+  /// Where loops over nodes run, and what they see; with the factors of the last evaluation.
+  const PoolSpace& space() const { return space_; }
+  const ModelView& nodes() const { return data_.view(); }
   /// At the state of the last evaluation.
   const SurfaceLoads& surfaces() const { return surfaces_; }
   TangentSolver& linear() { return tangent_; }
@@ -170,40 +178,43 @@ class MechanicalSystem {
     FrameMatrices Ds;
     std::vector<std::array<double, 3>> turned;  ///< as in State
   };
-  std::vector<PartForces> part_forces() const;
+  std::vector<PartForces> forces_of_parts();
   double energy_at_start();
   void rebuild_state();
   void note_step(double step);
   void evaluate_loads();
   double load_power() const;
   void place_dependents_of_step();
-  void add_loads();
-  void add_inertia();
-  void sum_squares();
-  void add(std::vector<double>& out, int node, const Vec3d& force, const Mat3d& N, const Vec3d& torque) const;
+  void add_loads_and_inertia();
   void predict_strain(const StepMemory& memory);
   void store_strain_at(State state, StrainHistory& history);
+  /// Runs a loop over the strains of a history.
+  template <class Loop>
+  void for_strains(const Loop& loop) {
+    space_.for_each(static_cast<int>(history_.E.size()), loop);
+  }
   void evaluate_reached(std::span<const double> targets);
+  void add_support_inertia(const State& state, const State& before, double inverse_dt);
   void note_stretches();
-  State moved_by_velocity(double time) const;
-  void follow_boundaries(State& end, const std::vector<PoseMotion>& before, StepMemory& memory) const;
-  void finish_middle(State& end, std::vector<PoseMotion>& motion) const;
-  bool rigid(std::size_t node) const { return model_.frame_kind[node] == FrameKind::rigid; }
-  PoseMotion node_motion(std::size_t node) const;  ///< since the start of the step
-  StepNode step_node(std::size_t node) const;
-  StepInertia node_inertia(std::size_t node) const;
-  const FrameInertia* damping_of(std::size_t node) const;  ///< null: none
+  State moved_by_velocity(double time);
+  void find_prescribed(std::span<const double> factors, std::span<double> local);
+  StepView step_view();
+  ForceView force_view();
   double largest_rotation_in(std::span<const double> vector) const;
-  void add_node_blocks(Linearization& lin, bool turning = true) const;
+  void add_node_blocks(Linearization& lin, bool turning = true);
 
   const Model& model_;
   SolverSettings settings_;
   DofFilter filter_;
+  PoolSpace space_;
+  ModelData<PoolSpace> data_;
+  PartSums<PoolSpace> node_parts_;
   CpuExecutor executor_;
   TangentSolver tangent_;
   DependentNodes dependents_;  ///< at the present state
   bool conservative_, extrapolates_;
   SurfaceLoads surfaces_;
+  MotionSizes motions_;
   std::vector<double> masses_;  ///< part_masses()
   std::vector<char> driven_;    ///< driven_parts()
 
@@ -218,15 +229,12 @@ class MechanicalSystem {
   TakenStep taken_;
   bool has_taken_ = false;  ///< a step of Newton's method led to the present state
 
-  std::vector<double> gradient_, load_, inertia_, direction_, dependent_forces_;
-  std::array<std::vector<double>, 3> local_;  ///< room for vectors in constraint axes
-  mutable std::vector<double> work_;
-  std::vector<double> inertia_cancelled_;  ///< by part: squares of what cancels in the inertia [N²]
-  struct PartSquares {
-    std::vector<double> load, inertia, residual, reaction;
-    std::vector<double> turned;  ///< loads that constraints with axes of their own carry, of which rounding leaves some
-  } part_squares_;
-  std::vector<double> kept_loads_;  ///< by part, see keep_loads(); empty: none [N²]
+  std::vector<double> gradient_, load_, inertia_, direction_, dependent_forces_, work_;
+  std::vector<double> node_energy_;  ///< as in ForceView
+  std::vector<double> node_sums_;    ///< (parts × kNodeQuantities)
+  std::vector<double> prescribed_;   ///< what is still to go, in constraint axes
+  std::vector<PoseMotion> before_;   ///< motion in the step before
+  std::vector<double> kept_loads_;   ///< by part, see keep_loads(); empty: none [N²]
   /// Displacements at the end of the last step, and the internal energy there; of implicit Euler on vertices [J].
   std::optional<std::pair<std::vector<Vec3d>, double>> reached_;
   std::optional<Evaluation> known_;  ///< of the present state, where evaluate() would repeat itself

@@ -1,5 +1,5 @@
-#include "core/solver/boundary_motion.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/step/step_loops.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,10 @@
 namespace fascia {
 
 double MechanicalSystem::largest_rotation_in(std::span<const double> vector) const {
-  double largest = 0;
-  const DofLayout& dofs = model_.points.dofs;
-  for (int node = 0; node < model_.node_count(); ++node)
-    largest = std::max(largest, rotation_in(dofs.kind(node), vector.data() + dofs.begin(node)));
-  return largest;
+  double largest[1];
+  space_.sum<0, 1>(model_.node_count(), loops::LargestRotation{data_.view().nodes, vector.data()},
+                   loops::StoreSums<0, 1>{largest});
+  return largest[0];
 }
 
 PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, std::span<const double> behind,
@@ -29,16 +28,18 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   out.d_f.resize(n);
   for (std::size_t i = 0; i < n; ++i) rhs[i] = -gradient_[i];
   filter_.to_local(rhs);
-  prescribed_increments(model_, filter_, state_, increment_.turned, factors_, prescribed);
+  find_prescribed(factors_, prescribed);
   out.usable = tangent_.solve_as_is(prescribed, rhs, out.d_r);
 
   // Loads are linear in their factors: −∂r/∂λ is the load of the factors' slopes.
   const std::vector<double> present = factors_;
   for (std::size_t k = 0; k < present.size(); ++k) factors_[k] = (ahead[k] - behind[k]) / width;
-  add_loads();
+  data_.set_factors(factors_);
+  add_loads_and_inertia();
   rhs = load_;
   factors_ = present;
-  add_loads();
+  data_.set_factors(factors_);
+  add_loads_and_inertia();
   const bool moving_tethers =
       std::any_of(model_.tethers.begin(), model_.tethers.end(), [](const Tether& t) { return t.motion >= 0; });
   if (moving_tethers) {
@@ -51,8 +52,8 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   }
   dependents_.transfer(rhs);
   filter_.to_local(rhs);
-  prescribed_increments(model_, filter_, state_, increment_.turned, ahead, prescribed);
-  prescribed_increments(model_, filter_, state_, increment_.turned, behind, other);
+  find_prescribed(ahead, prescribed);
+  find_prescribed(behind, other);
   for (std::size_t i = 0; i < n; ++i) prescribed[i] = (prescribed[i] - other[i]) / width;
   out.usable = tangent_.solve_as_is(prescribed, rhs, out.d_f) && out.usable;
   filter_.to_global(out.d_r);
@@ -64,8 +65,9 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
 }
 
 void MechanicalSystem::keep_loads() {
-  kept_loads_.resize(part_squares_.load.size(), 0.0);
-  for (std::size_t p = 0; p < kept_loads_.size(); ++p) kept_loads_[p] = std::max(kept_loads_[p], part_squares_.load[p]);
+  kept_loads_.resize(masses_.size(), 0.0);
+  for (std::size_t p = 0; p < kept_loads_.size(); ++p)
+    kept_loads_[p] = std::max(kept_loads_[p], node_sums_[p * kNodeQuantities + kLoad]);
 }
 
 double MechanicalSystem::steer(const PathDirections& directions, double weight, double rate) {

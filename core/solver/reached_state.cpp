@@ -1,6 +1,5 @@
-#include "core/solver/boundary_motion.hpp"
 #include "core/solver/mechanical_system.hpp"
-#include "core/structure/inertia.hpp"
+#include "core/step/boundary_loops.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,10 +14,11 @@ void MechanicalSystem::look_at(const State& state, double h) {
     executor_.store_strain(moved_by_velocity(h), ahead);
     executor_.store_strain(moved_by_velocity(-h), behind);
     executor_.store_strain(state_, history_);
-    for (std::size_t k = 0; k < history_.E.size(); ++k) history_.E[k] -= 0.5 * (ahead.E[k] - behind.E[k]);
+    for_strains(loops::StrainAlongVelocity{history_.E.data(), behind.E.data(), ahead.E.data(), true});
     history_.inverse_step = 1 / h;
   }
   evaluate_reached({});
+  add_support_inertia(state, state, 0);
 }
 
 void MechanicalSystem::look_back(const State& state, const State& before, const State& earlier, double dt) {
@@ -28,10 +28,7 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
     store_strain_at(before, last);
     if (!earlier.u.empty()) store_strain_at(earlier, first);
     executor_.store_strain(state_, history_);
-    for (std::size_t k = 0; k < history_.E.size(); ++k) {
-      const double increment = history_.E[k] - last.E[k];
-      history_.E[k] -= first.E.empty() ? increment : end_increment(increment, last.E[k] - first.E[k]);
-    }
+    for_strains(loops::StrainFromSteps{history_.E.data(), last.E.data(), first.E.empty() ? nullptr : first.E.data()});
     history_.inverse_step = 1 / dt;
   }
   std::vector<double> targets;
@@ -47,10 +44,16 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
     }
   }
   evaluate_reached(targets);
-  add_support_inertia([&](int node) {
-    const auto i = at(node);
-    return PoseMotion{(state.v[i] - before.v[i]) * (1 / dt), (state.Q_dot[i] - before.Q_dot[i]) * (1 / dt)};
-  });
+  add_support_inertia(state, before, 1 / dt);
+}
+
+/// With the mass damping of what is held.
+/// @param state   with the velocities there
+/// @param before  a time 1/inverse_dt before
+void MechanicalSystem::add_support_inertia(const State& state, const State& before, double inverse_dt) {
+  space_.for_each(static_cast<int>(model_.constraints.size()),
+                  loops::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
+                                        before.Q_dot.data(), inverse_dt, gradient_.data()});
 }
 
 void read_tethers(const Model& model, std::span<const double> targets, const State& state, ReachedForces& out) {
@@ -107,12 +110,6 @@ void MechanicalSystem::evaluate_reached(std::span<const double> targets) {
     executor_.forces(state_, history_, gradient_);
     for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] -= load_[i];
     dependents_.transfer(gradient_, dependent_forces_);
-  }
-  if (model_.mass_damping.empty()) return;
-  for (const FrameConstraint& c : model_.constraints) {
-    const std::size_t i = at(c.node);
-    const InertiaForce f = inertia_force(model_.mass_damping[i], start_.v[i], start_.Q_dot[i]);
-    add(gradient_, c.node, f.force, f.moment, {});
   }
 }
 

@@ -24,6 +24,9 @@ class FrameMatrices {
   }
   /// By node; empty where no node turns.
   std::span<const Mat3d> values() const { return values_; }
+  /// Null where no node turns.
+  Mat3d* data() { return values_.empty() ? nullptr : values_.data(); }
+  const Mat3d* data() const { return values_.empty() ? nullptr : values_.data(); }
   void set_zero() { values_.assign(values_.size(), Mat3d{}); }
   std::vector<Mat3d>::iterator begin() { return values_.begin(); }
   std::vector<Mat3d>::iterator end() { return values_.end(); }

@@ -1,5 +1,5 @@
 #include "gpu/actions/surfaces_body.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 
 namespace fascia::gpu {
 

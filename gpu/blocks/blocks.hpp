@@ -5,7 +5,7 @@
 #include "gpu/blocks/shells.hpp"
 #include "gpu/blocks/springs.hpp"
 #include "gpu/elements/elements.hpp"
-#include "gpu/space/part_sums.hpp"
+#include "core/space/part_sums.hpp"
 
 #include <tuple>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "core/base/index.hpp"
 #include "gpu/blocks/point_kernels.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 
 #include <algorithm>
 

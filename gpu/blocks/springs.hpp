@@ -2,7 +2,7 @@
 
 #include "core/physics/point_physics.hpp"
 #include "core/structure/point_set.hpp"
-#include "gpu/space/array.hpp"
+#include "core/space/array.hpp"
 #include "gpu/space/views.hpp"
 
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "core/math/polar.hpp"
 #include "gpu/elements/element_state.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 
 /// Loops over elements, and over the points and corners of those with several points: what passes between these loops
 /// is in points_buffer.

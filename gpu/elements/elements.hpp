@@ -3,7 +3,7 @@
 #include "core/physics/point_physics.hpp"
 #include "core/solver/settings.hpp"
 #include "core/structure/point_set.hpp"
-#include "gpu/space/array.hpp"
+#include "core/space/array.hpp"
 #include "gpu/space/views.hpp"
 
 #include <type_traits>

@@ -1,16 +1,16 @@
 #pragma once
 
 #include "core/run/drivers.hpp"
+#include "core/run/explicit_mode.hpp"
 #include "core/run/explicit_nodes.hpp"
 #include "core/run/explicit_plan.hpp"
+#include "core/step/model_data.hpp"
 #include "gpu/actions/followers.hpp"
 #include "gpu/actions/surfaces.hpp"
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/blocks/dependents.hpp"
 #include "gpu/explicit/explicit_kernels.hpp"
-#include "gpu/explicit/explicit_mode.hpp"
 #include "gpu/system/device_state.hpp"
-#include "gpu/system/model_data.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -21,9 +21,11 @@ namespace fascia::gpu {
 
 /// Steps of central differences with everything in the memory of a space: the counterpart of ExplicitStepper. Steps
 /// are queued one after the other, and nothing comes back before it is asked for.
-template <class Space>
+template <class MemorySpace>
 class ExplicitSystem {
  public:
+  using Space = MemorySpace;
+  using Pose = DeviceState<Space>;
   using Progress = kernels::ExplicitProgress;
 
   /// @param state    with velocities, at the start
@@ -47,33 +49,34 @@ class ExplicitSystem {
 
   /// Waits for the steps and says how they went.
   Progress progress() const { return progress_.downloaded()[0]; }
-  const DeviceState<Space>& pose() const { return pose_; }
+  const Pose& pose() const { return pose_; }
   /// At the present step, without viscous stress.
   InternalEnergy energy();
   /// Of each constrained node, at the last report_velocities().
   std::vector<PoseMotion> held_accelerations() const { return held_acceleration_.downloaded(); }
   int constraint_of(int node) const { return nodes_.constraint[at(node)]; }
 
-  // What ExplicitMode asks of the present state.
+  // What ExplicitMode asks.
+  Space space() const { return {}; }
   const Model& model() const { return model_; }
   int free_count() const { return filter_.free_count(); }
-  std::size_t strain_size() const { return blocks_.strain_size(); }
-  void store_strain(double* E) { blocks_.store_strain(pose_view(), E); }
-  void place_dependents(Vec3d* u, Mat3d* D) {
-    if (!dependents_.empty()) dependents_.place(u, D);
+  /// The nodes at the present state.
+  kernels::ExplicitBlocksView view() { return view(next_); }
+  void keep_strain();
+  void gather_acting(Pose& pose, double inverse_step, double* out);
+  void place_dependents(Pose& pose) {
+    if (!dependents_.empty()) dependents_.place(pose.u.data(), pose.D.data());
   }
-  kernels::ExplicitView present_view() { return view(next_); }
-  /// What acts on the nodes at the pose of a view, with the sign of a gradient, but for mass damping.
-  /// @param out  by degrees of freedom
-  void gather_acting(kernels::ExplicitView s, const HistoryView& history, double* out);
   /// Calls act.operator()<Frames>().
   template <class Act>
   void for_nodes(const Act& act);
 
  private:
+  using View = kernels::ExplicitBlocksView;
+
   /// What steps change.
   struct Moving {
-    DeviceState<Space> pose;
+    Pose pose;
     Array<Space, Vec3d> half_v, half_spin;
     Array<Space, Mat3d> half_rate;
     Array<Space, double> last_increments, E, present, next, targets;
@@ -84,7 +87,7 @@ class ExplicitSystem {
   /// Calls act(what changes, what is kept of it).
   template <class Act>
   void for_moving(const Act& act);
-  kernels::ExplicitView view(const Array<Space, double>& factors);
+  kernels::ExplicitBlocksView view(const Array<Space, double>& factors);
   PoseView pose_view() const { return {pose_.u.data(), pose_.D.data()}; }
   void upload_nodes();
   void start_velocities();
@@ -92,7 +95,7 @@ class ExplicitSystem {
   void place_tethers();
   void queue_factors();
   void update_forces(const Array<Space, double>& factors);
-  void update_forces(const kernels::ExplicitView& s, const HistoryView& history);
+  void update_forces(const kernels::ExplicitBlocksView& s, const HistoryView& history);
   void find_prescribed(const double* factors, Array<Space, double>& out);
   void step();
 
@@ -111,7 +114,7 @@ class ExplicitSystem {
   Followers<Space> followers_;
   Surfaces<Space> surfaces_;
   typename Space::Loop loop_;
-  DeviceState<Space> pose_;
+  Pose pose_;
   int schedules_, queued_from_ = 0, queued_ = 0;
   std::uint64_t record_ = 0;  ///< changes with the times that a recorded step has in it
 
@@ -125,12 +128,13 @@ class ExplicitSystem {
   Array<Space, Vec3d> half_v_, half_spin_;
   Array<Space, Mat3d> half_rate_;
   Array<Space, double> load_, gradient_, increments_, last_increments_, E_;
+  Array<Space, double> mode_E_;                  ///< of the state whose mode is looked for
   Array<Space, double> table_, present_, next_;  ///< factors: queued, at the present step, at the end of the next
   Array<Space, double> still_, energies_;
   Array<Space, PoseMotion> held_acceleration_;
   Array<Space, Progress> progress_;
   Moving saved_;
-  std::unique_ptr<ExplicitMode<Space, ExplicitSystem>> mode_;  ///< of automatic steps
+  std::unique_ptr<ExplicitMode<ExplicitSystem>> mode_;  ///< of automatic steps
 };
 
 }  // namespace fascia::gpu

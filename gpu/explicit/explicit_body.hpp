@@ -2,8 +2,8 @@
 
 #include "core/run/explicit_dynamics.hpp"
 #include "core/solver/boundary_motion.hpp"
+#include "core/step/boundary_loops.hpp"
 #include "gpu/explicit/explicit.hpp"
-#include "gpu/system/step_kernels.hpp"
 
 #include <limits>
 #include <utility>
@@ -56,8 +56,7 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, co
     dependents_.place_rates(pose_.v.data(), pose_.Q_dot.data());
   }
   start_velocities();
-  if (plan.automatic() && filter_.free_count() > 0)
-    mode_ = std::make_unique<ExplicitMode<Space, ExplicitSystem>>(*this);
+  if (plan.automatic() && filter_.free_count() > 0) mode_ = std::make_unique<ExplicitMode<ExplicitSystem>>(*this);
 }
 
 template <class Space>
@@ -85,8 +84,8 @@ void ExplicitSystem<Space>::for_nodes(const Act& act) {
 
 /// @param factors  at the state
 template <class Space>
-kernels::ExplicitView ExplicitSystem<Space>::view(const Array<Space, double>& factors) {
-  kernels::ExplicitView s;
+kernels::ExplicitBlocksView ExplicitSystem<Space>::view(const Array<Space, double>& factors) {
+  kernels::ExplicitBlocksView s;
   s.m = data_.view();
   s.m.factors = factors.data();
   s.blocks = blocks_.view();
@@ -119,7 +118,7 @@ template <class Space>
 void ExplicitSystem<Space>::store_start_strain() {
   Array<Space, Vec3d> u(pose_.u.size());
   Array<Space, Mat3d> D(pose_.D.size());
-  Space::for_each(model_.node_count(), kernels::StepBack{view(next_), u.data(), D.data()});
+  Space::for_each(model_.node_count(), loops::StepBack{view(next_), u.data(), D.data()});
   E_.resize(blocks_.strain_size());
   blocks_.store_strain({u.data(), D.data()}, E_.data());
   Space::synchronize();
@@ -142,8 +141,8 @@ void ExplicitSystem<Space>::start_velocities() {
   const double internal = energy().total();
   update_forces(next_);
   for_nodes([&]<bool Frames>() {
-    Space::template sum<1>(model_.node_count(), kernels::StartVelocity<Frames>{view(next_)},
-                           kernels::StoreSums<1, 0>{&progress_.data()->given});
+    Space::template sum<1>(model_.node_count(), loops::StartVelocity<View, Frames>{view(next_)},
+                           loops::StoreSums<1, 0>{&progress_.data()->given});
   });
   Progress start = progress();
   start.given += internal + nodes_.rounding_energy;
@@ -174,7 +173,7 @@ void ExplicitSystem<Space>::update_forces(const Array<Space, double>& factors) {
 
 /// The same at the pose of a view.
 template <class Space>
-void ExplicitSystem<Space>::update_forces(const kernels::ExplicitView& s, const HistoryView& history) {
+void ExplicitSystem<Space>::update_forces(const kernels::ExplicitBlocksView& s, const HistoryView& history) {
   const NodesView& nodes = data_.view().nodes;
   const PoseView pose{s.u, s.D};
   blocks_.forces(nodes, pose, history, nullptr);
@@ -189,16 +188,26 @@ void ExplicitSystem<Space>::update_forces(const kernels::ExplicitView& s, const 
 }
 
 template <class Space>
-void ExplicitSystem<Space>::gather_acting(kernels::ExplicitView s, const HistoryView& history, double* out) {
+void ExplicitSystem<Space>::keep_strain() {
+  if (!model_.points.damped) return;
+  mode_E_.resize(blocks_.strain_size());
+  blocks_.store_strain(pose_view(), mode_E_.data());
+}
+
+template <class Space>
+void ExplicitSystem<Space>::gather_acting(Pose& pose, double inverse_step, double* out) {
+  View s = view(next_);
+  s.u = pose.u.data();
+  s.D = pose.D.data();
   s.uneven = nullptr;
-  update_forces(s, history);
-  for_nodes([&]<bool Frames>() { Space::for_each(model_.node_count(), kernels::GatherActing<Frames>{s, out}); });
+  update_forces(s, {mode_E_.data(), mode_E_.empty() ? 0.0 : inverse_step});
+  for_nodes([&]<bool Frames>() { Space::for_each(model_.node_count(), loops::GatherActing<View, Frames>{s, out}); });
 }
 
 template <class Space>
 void ExplicitSystem<Space>::find_prescribed(const double* factors, Array<Space, double>& out) {
   Space::for_each(static_cast<int>(model_.constraints.size()),
-                  kernels::ExplicitPrescribed{view(next_), factors, out.data()});
+                  loops::FindPrescribed{data_.view(), pose_view(), pose_.turned.data(), factors, out.data()});
 }
 
 template <class Space>
@@ -268,7 +277,7 @@ void ExplicitSystem<Space>::step() {
   if (!E_.empty()) blocks_.store_strain(pose_view(), E_.data());
   find_prescribed(next_.data(), increments_);
   for_nodes([&]<bool Frames>() {
-    Space::template sum<2>(model_.node_count(), kernels::KickAndDrift<Frames>{view(present_)},
+    Space::template sum<2>(model_.node_count(), loops::KickAndDrift<View, Frames>{view(present_)},
                            kernels::EndNodes{progress, tethers_.empty()});
   });
   if (!dependents_.empty()) dependents_.place(pose_.u.data(), pose_.D.data());
@@ -285,14 +294,14 @@ void ExplicitSystem<Space>::report_velocities() {
   queue_factors();
   update_forces(next_);
   find_prescribed(table_.data() + at((plan_.taken() - queued_from_) * schedules_), increments_);
-  kernels::ExplicitView present = view(next_);
+  View present = view(next_);
   present.times = LeapTimes::between(last_step_, plan_.step());
   for_nodes([&]<bool Frames>() {
-    Space::for_each(model_.node_count(), kernels::ReportVelocity<Frames>{present, held_acceleration_.data()});
+    Space::for_each(model_.node_count(), loops::ReportVelocity<View, Frames>{present, held_acceleration_.data()});
   });
   if (!dependents_.empty()) dependents_.place_rates(pose_.v.data(), pose_.Q_dot.data());
   Space::template sum<1>(model_.node_count(), kernels::SizeOfMotion{view(next_)},
-                         kernels::StoreSums<1, 0>{&progress_.data()->motion});
+                         loops::StoreSums<1, 0>{&progress_.data()->motion});
 }
 
 template <class Space>

@@ -2,7 +2,7 @@
 
 #include "gpu/space/cuda_check.hpp"
 #include "gpu/space/device.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 
 #include <cuda_runtime.h>
 
@@ -91,6 +91,7 @@ __global__ void __launch_bounds__(256) sum_lanes(int count, Body body, End end) 
 /// The default device; all loops of a thread follow each other on one stream, and what tiles do on the default stream.
 struct CudaSpace {
   static constexpr bool kHasTiles = true;
+  static constexpr bool kSeesHost = false;
   static cudaStream_t stream();
   static void* allocate(std::size_t bytes);
   static void release(void* memory) noexcept;

@@ -1,31 +1,9 @@
 #pragma once
 
-#include "core/structure/dof_layout.hpp"
+#include "core/step/model_view.hpp"
 
-#include <cstddef>
-
-/// What kernels see: pointers into a space and values, copied into each kernel.
+/// What kernels of blocks see: pointers into a space and values, copied into each kernel.
 namespace fascia::gpu {
-
-/// Nodes of the model.
-struct NodesView {
-  int count = 0;
-  const FrameKind* kind = nullptr;
-  const int* dof = nullptr;             ///< first degree of freedom
-  const std::size_t* block = nullptr;   ///< where the node's own square block starts among all of them
-  const int* part = nullptr;            ///< connected part
-  const double* part_length = nullptr;  ///< of each part [m]
-
-  FASCIA_HD int size(int node) const { return dof[node + 1] - dof[node]; }
-};
-
-/// Displacement and Q − I or A − I of each node. Where no node turns there is no D.
-struct PoseView {
-  const Vec3d* u = nullptr;
-  const Mat3d* D = nullptr;
-
-  FASCIA_HD Mat3d D_of(int node) const { return D == nullptr ? Mat3d{} : D[node]; }
-};
 
 /// A small motion of all nodes: by degrees of freedom, and as (dx, dA) of each node.
 /// @tparam T  scalar of products, V  of vectors (core/solver/settings.hpp, Precision)

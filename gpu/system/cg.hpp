@@ -3,8 +3,8 @@
 #include "core/base/index.hpp"
 #include "core/levels/multigrid.hpp"
 #include "core/linear/cg.hpp"
-#include "gpu/space/array.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/array.hpp"
+#include "core/space/space.hpp"
 #include "gpu/space/views.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "core/node/time_scheme.hpp"
 #include "core/structure/model.hpp"
-#include "gpu/space/array.hpp"
+#include "core/space/array.hpp"
 
 #include <array>
 

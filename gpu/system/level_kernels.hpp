@@ -2,7 +2,7 @@
 
 #include "core/levels/block_rows.hpp"
 #include "core/levels/multigrid.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 
 /// Loops of a cycle through levels of rigid frames.
 namespace fascia::gpu::kernels {

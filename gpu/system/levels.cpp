@@ -1,4 +1,4 @@
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 #include "gpu/system/levels_body.hpp"
 
 namespace fascia::gpu {

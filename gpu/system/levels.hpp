@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/levels/multigrid.hpp"
-#include "gpu/space/array.hpp"
+#include "core/space/array.hpp"
 #include "gpu/space/views.hpp"
 #include "gpu/system/level_kernels.hpp"
 

@@ -3,7 +3,7 @@
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/space/lanes.hpp"
 #include "gpu/system/cg.hpp"
-#include "gpu/system/model_data.hpp"
+#include "core/step/model_data.hpp"
 
 /// Loops over nodes of a product with the tangent.
 namespace fascia::gpu::kernels {

@@ -4,16 +4,16 @@
 #include "core/levels/kept_levels.hpp"
 #include "core/run/drivers.hpp"
 #include "core/solver/boundary_motion.hpp"
+#include "core/space/part_sums.hpp"
+#include "core/step/model_data.hpp"
 #include "gpu/actions/followers.hpp"
 #include "gpu/actions/surfaces.hpp"
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/blocks/dependents.hpp"
-#include "gpu/space/part_sums.hpp"
 #include "gpu/system/cg.hpp"
 #include "gpu/system/device_state.hpp"
 #include "gpu/system/host_system.hpp"
 #include "gpu/system/levels.hpp"
-#include "gpu/system/model_data.hpp"
 #include "gpu/system/operator_kernels.hpp"
 #include "gpu/system/step_kernels.hpp"
 #include "gpu/tiles/tile_solver.hpp"
@@ -95,8 +95,8 @@ class System {
   static constexpr int kPatience = 20;
   BlocksOrLevels::Costs costs_of_levels() const;
 
-  kernels::StepView step_view();
-  kernels::ForceView force_view();
+  StepView step_view();
+  ForceView force_view();
   /// Calls act.operator()<T, V>() with the scalars of products and of the vectors of solves.
   template <class Act>
   decltype(auto) with_scalars(const Act& act) {
@@ -119,7 +119,6 @@ class System {
         .subspan(report_values_.size() - 3 - surfaces_.figure_count(), surfaces_.figure_count());
   }
   Evaluation judge();
-  bool moves(int part, double squared_momentum) const;
   double energy_at_start();
   void predict_strain(const Memory& memory);
   void store_strain_along_velocity(double h);

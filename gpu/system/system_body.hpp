@@ -1,7 +1,8 @@
 #pragma once
 
+#include "core/solver/part_forces.hpp"
+#include "core/step/boundary_loops.hpp"
 #include "gpu/space/device.hpp"
-#include "gpu/system/boundary_kernels.hpp"
 #include "gpu/system/system.hpp"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   }
   if (!model.tethers.empty()) tether_L_.resize(n);
   tethers_.upload(model.tethers);
-  report_.resize(parts * kernels::kNodeQuantities + blocks_.report_size() + surfaces_.figure_count() + 3);
+  report_.resize(parts * kNodeQuantities + blocks_.report_size() + surfaces_.figure_count() + 3);
   report_.set_zero();
   report_values_.resize(report_.size());
   node_blocks_.resize(model.points.dofs.block_total());
@@ -120,20 +121,20 @@ void System<Space>::make_tiles() {
 }
 
 template <class Space>
-kernels::StepView System<Space>::step_view() {
+StepView System<Space>::step_view() {
   return {data_.view(), step_,      start_.u.data(), start_.v.data(), start_.D.data(), start_.Q_dot.data(), du_.data(),
           u_.data(),    Ds_.data(), D_.data(),       q_.data(),       w_.data(),       turned_.data(),      turning_};
 }
 
 template <class Space>
-kernels::ForceView System<Space>::force_view() {
-  return {gradient_.data(), load_.data(), inertia_.data(), node_energy_.data(), L_.data(), tether_L_.data()};
+ForceView System<Space>::force_view() {
+  return {gradient_.data(), load_.data(), inertia_.data(), node_energy_.data()};
 }
 
 template <class Space>
 void System<Space>::rebuild_state() {
   known_.reset();
-  Space::for_each(model_.node_count(), kernels::RebuildState{step_view()});
+  Space::for_each(model_.node_count(), loops::RebuildState{step_view()});
   place_dependents();
 }
 
@@ -152,13 +153,13 @@ template <class Space>
 void System<Space>::evaluate_forces(bool quantities) {
   const NodesView& nodes = data_.view().nodes;
   double* motion = part_motion_.data();
-  node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, motion);
-  Space::for_each(model_.points.part_count(), kernels::AtLeast{start_motion_.data(), motion});
+  node_parts_.template sum<0, 1>(loops::NodeMotion{nodes, pose()}, motion);
+  Space::for_each(model_.points.part_count(), loops::AtLeast{start_motion_.data(), motion});
   blocks_.forces(nodes, pose(), history(), quantities ? motion : nullptr);
-  const kernels::ForceView f = force_view();
-  Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f});
+  const ForceView f = force_view();
+  Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f, L_.data(), tether_L_.data()});
   add_other_loads();
-  Space::for_each(model_.dof_count(), kernels::AddInertiaAndLoads{f});
+  Space::for_each(nodes.count, loops::AddInertiaAndLoads{nodes, f});
   if (!dependents_.empty()) dependents_.transfer(nodes, gradient_.data(), dependent_forces_.data());
 }
 
@@ -176,31 +177,23 @@ void System<Space>::add_other_loads() {
 /// What the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
 template <class Space>
 void System<Space>::find_prescribed() {
+  const ModelView& m = data_.view();
   double* out = report_.data() + report_.size() - 3;
   Space::for_each(static_cast<int>(model_.constraints.size()),
-                  kernels::FindPrescribed{step_view(), prescribed_.data()});
-  Space::template sum<0, 3>(model_.node_count(), kernels::PrescribedLeft{step_view(), prescribed_.data()},
-                            kernels::StoreSums<0, 3>{out});
+                  loops::FindPrescribed{m, pose(), turned_.data(), m.factors, prescribed_.data()});
+  Space::template sum<0, 3>(model_.node_count(), loops::PrescribedLeft{step_view(), prescribed_.data()},
+                            loops::StoreSums<0, 3>{out});
 }
 
 template <class Space>
 Evaluation System<Space>::evaluate() {
   if (known_) return *std::exchange(known_, std::nullopt);
   evaluate_forces();
-  node_parts_.template sum<kernels::kNodeQuantities>(kernels::NodeReport{data_.view(), force_view()}, report_.data());
-  blocks_.sum_quantities(report_.data() + at(model_.points.part_count()) * kernels::kNodeQuantities);
+  node_parts_.template sum<kNodeQuantities>(loops::NodeReport{data_.view(), force_view()}, report_.data());
+  blocks_.sum_quantities(report_.data() + at(model_.points.part_count()) * kNodeQuantities);
   if (!model_.constraints.empty()) find_prescribed();
   report_.download(report_values_);
   return judge();
-}
-
-/// Whether a part's momentum over the step's square is more than rounding of its displacement makes.
-template <class Space>
-bool System<Space>::moves(int part, double squared_momentum) const {
-  double motion = 0;
-  Space::copy_out(&motion, part_motion_.data() + part, sizeof motion);
-  const double still = kAtRest * masses_[at(part)] * motion / (step_.h * step_.h);
-  return squared_momentum > still * still;
 }
 
 /// From the numbers of an evaluation, as MechanicalSystem::evaluate().
@@ -208,65 +201,54 @@ template <class Space>
 Evaluation System<Space>::judge() {
   const std::size_t parts = at(model_.points.part_count());
   const double* nodes = report_values_.data();
-  const double* blocks = nodes + parts * kernels::kNodeQuantities;
+  const double* blocks = nodes + parts * kNodeQuantities;
   const std::size_t block_kinds = blocks_.report_size() / (parts * kQuantities);
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   Evaluation e;
   internal_ = {};
   load_energy_ = inertia_energy_ = 0;
   std::vector<PartForces> forces(parts);
   for (std::size_t p = 0; p < parts; ++p) {
-    const double* q = nodes + p * kernels::kNodeQuantities;
-    double rounding = 0, tethers = 0;
+    const double* q = nodes + p * kNodeQuantities;
+    double rounding = 0;
+    PartSizes sizes{.leverage = dependents_.leverage()[p], .mass = masses_[p], .driven = driven_[p] != 0};
     for (std::size_t b = 0; b < block_kinds; ++b) {
       const double* own = blocks + (b * parts + p) * kQuantities;
       internal_.elastic += own[kElastic];
       internal_.stabilization += own[kStabilizing];
       internal_.viscous += own[kViscous];
       rounding += own[kRounding];
-      tethers += own[kTether];
+      sizes.tether += own[kTether];
     }
-    load_energy_ += q[kernels::kLoadEnergy];
-    inertia_energy_ += q[kernels::kInertiaEnergy];
-    const double leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p];
-    // 4: sums of a few terms of the estimated size in each entry.
-    const double of_surfaces = surfaces_.empty() ? 0.0 : surfaces_.rounding(static_cast<int>(p), figures());
-    forces[p] = {
-        .residual = q[kernels::kResidual],
-        .load = squared_load(q[kernels::kLoad], q[kernels::kTurnedLoad]),
-        .inertia = q[kernels::kInertia],
-        .reaction = q[kernels::kReaction],
-        .tether = tethers,
-        .momentum = q[kernels::kCancelled],
-        .rounding =
-            4 * leverage *
-            std::hypot(kEpsilon * std::sqrt(rounding + q[kernels::kCancelled] + q[kernels::kTurnedLoad]), of_surfaces)};
-    forces[p].driven = driven_[p] != 0;
-    forces[p].adrift = step_.h > 0 && forces[p].load == 0 && forces[p].reaction == 0 && tethers == 0 &&
-                       forces[p].momentum > 0 && moves(static_cast<int>(p), forces[p].momentum);
+    load_energy_ += q[kLoadEnergy];
+    inertia_energy_ += q[kInertiaEnergy];
+    sizes.rounding = std::numeric_limits<double>::epsilon() * std::sqrt(rounding);
+    if (!surfaces_.empty()) sizes.of_surfaces = surfaces_.rounding(static_cast<int>(p), figures());
+    forces[p] = part_forces(q, sizes, step_.h, [&] {
+      double motion = 0;
+      Space::copy_out(&motion, part_motion_.data() + p, sizeof motion);
+      return motion;
+    });
   }
   if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
   e.energy = internal_.total() + load_energy_ + inertia_energy_;
   e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
   fascia::judge(forces, model_.points.part_whole, settings_.tolerance, e);
-  prescribed_left_ = false;
-  if (model_.constraints.empty()) return e;
-  const double* left = report_values_.data() + report_values_.size() - 3;
-  prescribed_left_ = left[1] > 1e-14 * std::max(left[0], motions_.displacement) || left[2] > 1e-14 * motions_.angle;
+  prescribed_left_ = !model_.constraints.empty() && motions_.lacks(report_values_.data() + report_values_.size() - 3);
   return e;
 }
 
 /// Potentials of loads and inertia at the present state, where the internal energy is known.
 template <class Space>
 void System<Space>::evaluate_loads() {
-  Space::for_each(model_.node_count(), kernels::NodeForces{step_view(), BlocksView{}, force_view()});
+  Space::for_each(model_.node_count(),
+                  kernels::NodeForces{step_view(), BlocksView{}, force_view(), L_.data(), tether_L_.data()});
   add_other_loads();
-  node_parts_.template sum<kernels::kNodeQuantities>(kernels::NodeReport{data_.view(), force_view()}, report_.data());
+  node_parts_.template sum<kNodeQuantities>(loops::NodeReport{data_.view(), force_view()}, report_.data());
   report_.download(report_values_);
   load_energy_ = inertia_energy_ = 0;
   for (std::size_t p = 0; p < at(model_.points.part_count()); ++p) {
-    load_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kLoadEnergy];
-    inertia_energy_ += report_values_[p * kernels::kNodeQuantities + kernels::kInertiaEnergy];
+    load_energy_ += report_values_[p * kNodeQuantities + kLoadEnergy];
+    inertia_energy_ += report_values_[p * kNodeQuantities + kInertiaEnergy];
   }
   if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
 }
@@ -280,7 +262,7 @@ void System<Space>::apply(double step) {
     taken_length_ = step;
   }
   if (!surfaces_.empty()) surfaces_.approach(step);
-  Space::for_each(model_.node_count(), kernels::Advance{step_view(), direction_.data(), step});
+  Space::for_each(model_.node_count(), loops::Advance{step_view(), direction_.data(), step});
   place_dependents();
 }
 

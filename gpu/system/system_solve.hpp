@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/clock.hpp"
-#include "gpu/system/boundary_kernels.hpp"
+#include "core/step/boundary_loops.hpp"
 #include "gpu/system/system.hpp"
 
 #include <algorithm>
@@ -148,7 +148,7 @@ CgReport System<Space>::solve_in_tiles(const CgOptions& options) {
   CgReport report = tiles_->solve(cg_.rhs(), cg_.solution(), options);
   tiles_->multiply(cg_.solution(), world_y_.data());
   Space::template sum<2>(model_.dof_count(), kernels::LinearResidual{cg_.rhs(), world_y_.data()},
-                         kernels::StoreSums<2, 0>{slope_.data()});
+                         loops::StoreSums<2, 0>{slope_.data()});
   double squares[3];
   slope_.download(squares);
   if (squares[1] > 0) report.relative_norm = std::sqrt(squares[0] / squares[1]);
@@ -288,10 +288,10 @@ DirectionReport System<Space>::direction() {
   }
   with_scalars([&]<class T, class V>() {
     const double* prescribed = prescribed_left_ ? prescribed_.data() : nullptr;
-    Space::template sum<1, 2>(n,
-                              kernels::TakeDirection<V>{data_.view(), solver<V>().solution(), prescribed,
-                                                        gradient_.data(), direction_.data()},
-                              kernels::StoreSums<1, 2>{slope_.data()});
+    Space::template sum<1, 2>(
+        n,
+        loops::TakeDirection<V>{data_.view(), solver<V>().solution(), prescribed, gradient_.data(), direction_.data()},
+        loops::StoreSums<1, 2>{slope_.data()});
   });
   if (!dependents_.empty()) dependents_.expand(data_.view().nodes, direction_.data(), nullptr, nullptr, Q_.data());
   if (!surfaces_.empty()) surfaces_.aim(direction_.data());

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "core/solver/boundary_motion.hpp"
-#include "gpu/system/boundary_kernels.hpp"
+#include "core/step/boundary_loops.hpp"
 #include "gpu/system/system.hpp"
+#include "gpu/system/tether_kernels.hpp"
 
 /// The start and the end of a step of System.
 namespace fascia::gpu {
@@ -27,15 +28,15 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
   step_ = StepConstants::of(scheme, dt, memory.step);
   inverse_step_ = 0;
   if (dt > 0) {
-    Space::for_each(model_.node_count(), kernels::Predict{step_view(), memory.motion.data(), memory.velocity.data(),
-                                                          memory.acceleration.data()});
+    Space::for_each(model_.node_count(), loops::Predict{step_view(), memory.motion.data(), memory.velocity.data(),
+                                                        memory.acceleration.data()});
     if (damped_) predict_strain(memory);
   } else {
     q_.set_zero();
     w_.set_zero();
   }
   rebuild_state();
-  node_parts_.template sum<0, 1>(kernels::NodeMotion{step_view()}, start_motion_.data());
+  node_parts_.template sum<0, 1>(loops::NodeMotion{data_.view().nodes, pose()}, start_motion_.data());
 }
 
 template <class Space>
@@ -50,12 +51,12 @@ void System<Space>::predict_strain(const Memory& memory) {
   double* E = E_.data();
   const int count = static_cast<int>(E_.size());
   if (step_.scheme == TimeScheme::bdf2) {
-    Space::for_each(count, kernels::Extrapolate{E, memory.E.data(), step_.memory_factor()});
+    Space::for_each(count, loops::Extrapolate{E, memory.E.data(), step_.memory_factor()});
     return;
   }
   store_strain_along_velocity(step_.h);
   Space::for_each(
-      count, kernels::StrainAlongVelocity{E, ahead_E_.data(), behind_E_.data(), step_.scheme == TimeScheme::newmark});
+      count, loops::StrainAlongVelocity{E, ahead_E_.data(), behind_E_.data(), step_.scheme == TimeScheme::newmark});
 }
 
 /// Stores strains a time h ahead of the step's start and behind it.
@@ -65,7 +66,7 @@ void System<Space>::store_strain_along_velocity(double h) {
   moved_D_.resize(D_.size());
   for (const double sign : {1.0, -1.0}) {
     Space::for_each(model_.node_count(),
-                    kernels::MoveByVelocity{step_view(), sign * h, moved_u_.data(), moved_D_.data()});
+                    loops::MoveByVelocity{step_view(), sign * h, moved_u_.data(), moved_D_.data()});
     if (!dependents_.empty()) dependents_.place(moved_u_.data(), moved_D_.data());
     blocks_.store_strain({moved_u_.data(), moved_D_.data()}, sign > 0 ? ahead_E_.data() : behind_E_.data());
   }
@@ -79,7 +80,7 @@ void System<Space>::look_at(const Pose& state, double h) {
     blocks_.store_strain(pose(), E_.data());
     store_strain_along_velocity(h);
     Space::for_each(static_cast<int>(E_.size()),
-                    kernels::StrainAlongVelocity{E_.data(), behind_E_.data(), ahead_E_.data(), true});
+                    loops::StrainAlongVelocity{E_.data(), behind_E_.data(), ahead_E_.data(), true});
     inverse_step_ = 1 / h;
     // The steps to come may never need them.
     ahead_E_ = Array<Space, double>();
@@ -93,7 +94,7 @@ void System<Space>::look_at(const Pose& state, double h) {
   const Vec3d* v = state.v.data();
   const Mat3d* rate = state.Q_dot.data();
   Space::for_each(static_cast<int>(model_.constraints.size()),
-                  kernels::SupportInertia{step_view(), v, v, rate, rate, 0, gradient_.data()});
+                  loops::SupportInertia{step_view(), v, v, rate, rate, 0, gradient_.data()});
 }
 
 template <class Space>
@@ -128,7 +129,7 @@ template <class Space>
 void System<Space>::start_from_prediction() {
   const double at_old_state = energy_at_start();
   save();
-  Space::for_each(model_.node_count(), kernels::PredictIncrement{step_view()});
+  Space::for_each(model_.node_count(), loops::PredictIncrement{step_view()});
   rebuild_state();
   const Evaluation predicted = evaluate();
   if (predicted.energy < at_old_state)
@@ -157,19 +158,17 @@ typename System<Space>::Pose System<Space>::finish_step(double end_time, Memory&
     memory.velocity.resize(u_.size());
     if (step_.scheme == TimeScheme::newmark) memory.acceleration.resize(u_.size());
   }
-  const PoseMotion* before = remembers && same_step ? before_.data() : nullptr;
-  const int n = model_.node_count();
-  if (solves_for_middle() && step_.h > 0) {
-    end.turned.copy_from(start_.turned);
-    Space::for_each(n, kernels::FinishMiddle{step_view(), end.u.data(), end.v.data(), end.D.data(), end.Q_dot.data(),
-                                             memory.motion.data(), memory.velocity.data(), end.turned.data()});
-    Space::for_each(n, kernels::FinishHeld{step_view(), end.u.data(), end.v.data(), end.D.data(), end.Q_dot.data(),
-                                           memory.motion.data(), before, end.turned.data()});
-  } else {
-    PoseMotion* a = step_.scheme == TimeScheme::newmark ? memory.acceleration.data() : nullptr;
-    Space::for_each(n, kernels::FinishStep{step_view(), end.u.data(), end.v.data(), end.D.data(), end.Q_dot.data(),
-                                           memory.motion.data(), memory.velocity.data(), a, before, remembers});
-  }
+  if (solves_for_middle() && step_.h > 0) end.turned.copy_from(start_.turned);
+  loops::finish_step(Space(), step_view(),
+                     {.u = end.u.data(),
+                      .v = end.v.data(),
+                      .D = end.D.data(),
+                      .Q_dot = end.Q_dot.data(),
+                      .turned = end.turned.data(),
+                      .motion = remembers ? memory.motion.data() : nullptr,
+                      .velocity = remembers ? memory.velocity.data() : nullptr,
+                      .acceleration = step_.scheme == TimeScheme::newmark ? memory.acceleration.data() : nullptr,
+                      .before = remembers && same_step ? before_.data() : nullptr});
   if (!dependents_.empty()) {
     dependents_.place(end.u.data(), end.D.data());
     dependents_.place_rates(end.v.data(), end.Q_dot.data());
@@ -189,13 +188,13 @@ void System<Space>::start_acceleration(const Pose& start, double dt, Memory& mem
   memory.acceleration.set_zero();
   begin_step(start, dt, TimeScheme::newmark, memory);
   // Nothing has moved yet, see MechanicalSystem: E + h dE/dt becomes E − h dE/dt.
-  if (damped_) Space::for_each(static_cast<int>(E_.size()), kernels::Extrapolate{E_.data(), start_E_.data(), -2});
+  if (damped_) Space::for_each(static_cast<int>(E_.size()), loops::Extrapolate{E_.data(), start_E_.data(), -2});
   step_.h = 0;  // forces without inertia
   evaluate_forces();
-  Space::for_each(model_.node_count(), kernels::ForceOfAcceleration{step_view(), force_view(), world_y_.data()});
+  Space::for_each(model_.node_count(), loops::ForceOfAcceleration{step_view(), force_view(), world_y_.data()});
   if (!dependents_.empty()) dependents_.transfer(data_.view().nodes, world_y_.data(), nullptr);
   Space::for_each(model_.node_count(),
-                  kernels::StartAcceleration{step_view(), world_y_.data(), memory.acceleration.data()});
+                  loops::StartAcceleration{step_view(), world_y_.data(), memory.acceleration.data()});
 }
 
 template <class Space>
@@ -206,8 +205,8 @@ void System<Space>::look_back(const Pose& state, const Pose& before, const Pose&
   internal_.viscous = 0;
   if (!middles_.empty()) stretch_tethers(state.time);
   Space::for_each(static_cast<int>(model_.constraints.size()),
-                  kernels::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
-                                          before.Q_dot.data(), 1 / dt, gradient_.data()});
+                  loops::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
+                                        before.Q_dot.data(), 1 / dt, gradient_.data()});
 }
 
 /// Before the factors of the end take the place of those of the middle.
@@ -251,7 +250,7 @@ void System<Space>::follow_strain(const Pose& before, const Pose& earlier, doubl
   store_strain_at(before, behind_E_);
   if (second) store_strain_at(earlier, ahead_E_);
   Space::for_each(static_cast<int>(E_.size()),
-                  kernels::StrainFromSteps{E_.data(), behind_E_.data(), second ? ahead_E_.data() : nullptr});
+                  loops::StrainFromSteps{E_.data(), behind_E_.data(), second ? ahead_E_.data() : nullptr});
   inverse_step_ = 1 / dt;
 }
 

@@ -38,8 +38,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 /// Rooms of a folder from the ground up: each may include those before it, none after.
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"core",
-     {"base", "math", "geometry", "physics", "structure", "body", "node", "linear", "levels", "executor", "tangent",
-      "solver", "run"}},
+     {"base", "space", "math", "geometry", "physics", "structure", "body", "node", "step", "linear", "levels",
+      "executor", "tangent", "solver", "run"}},
     {"gpu", {"space", "tiles", "elements", "blocks", "actions", "system", "explicit", "run"}}};
 
 /// Sources and headers of a room.

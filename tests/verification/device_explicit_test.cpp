@@ -5,7 +5,7 @@
 #include "gpu/explicit/explicit.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 #include "tests/support/small_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -167,7 +167,7 @@ TEST_P(ExplicitEnergies, AreThoseOfTheProcessor) {
   const double dt = time_step(s, system, 0.5);
   State state = s.initial;
   ExplicitStepper expected(system, state, dt, factors(0));
-  gpu::ExplicitSystem<gpu::HostSpace> got(s.model, s.initial, ExplicitPlan({dt, 200, {}}, 0), factors);
+  gpu::ExplicitSystem<HostSpace> got(s.model, s.initial, ExplicitPlan({dt, 200, {}}, 0), factors);
   for (int step = 1; step <= 200; ++step) {
     expected.advance(factors(step * dt));
     got.advance();

@@ -10,7 +10,7 @@ namespace fascia::elements_test {
 namespace {
 
 using namespace test;
-using HostElements = gpu::Elements<gpu::HostSpace>;
+using HostElements = gpu::Elements<HostSpace>;
 
 struct Case {
   std::string name;

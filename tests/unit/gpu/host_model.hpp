@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/executor/executor.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 #include "gpu/space/views.hpp"
 #include "tests/support/models.hpp"
 
@@ -38,11 +38,11 @@ class HostModel {
 
   const Model& model() const { return model_; }
   const State& state() const { return state_; }
-  gpu::NodesView nodes() const {
+  NodesView nodes() const {
     const PointSet& set = model_.points;
     return {set.node_count(), kind_.data(), dof_.data(), block_.data(), set.node_part.data(), set.part_length.data()};
   }
-  gpu::PoseView pose() const { return {state_.u.data(), D_.data()}; }
+  PoseView pose() const { return {state_.u.data(), D_.data()}; }
   const double* part_motion() const { return motion_.data(); }
   const Mat3d* Q() const { return Q_.data(); }
 

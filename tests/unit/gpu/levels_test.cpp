@@ -1,7 +1,7 @@
 #include "gpu/system/levels.hpp"
 
 #include "core/math/rotation.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/space.hpp"
 #include "tests/support/dependent_models.hpp"
 #include "tests/support/shell_models.hpp"
 #include "tests/support/tangent_at_rest.hpp"

@@ -10,7 +10,7 @@ namespace fascia::shells_test {
 namespace {
 
 using namespace test;
-using HostShells = gpu::Shells<gpu::HostSpace>;
+using HostShells = gpu::Shells<HostSpace>;
 
 struct Case {
   std::string name;

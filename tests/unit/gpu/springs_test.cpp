@@ -7,7 +7,7 @@ namespace fascia::springs_test {
 namespace {
 
 using namespace test;
-using HostSprings = gpu::Springs<gpu::HostSpace>;
+using HostSprings = gpu::Springs<HostSpace>;
 
 /// Frames of each kind in two parts, on springs of all kinds; rigid ones take some along by arms.
 Model frames_on_springs() {

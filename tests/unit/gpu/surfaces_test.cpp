@@ -43,7 +43,7 @@ struct Case {
 
 class SurfacesTest : public testing::TestWithParam<Case> {
  protected:
-  using Own = gpu::Surfaces<gpu::HostSpace>;
+  using Own = gpu::Surfaces<HostSpace>;
   SurfacesTest()
       : built_(make()),
         executor_(built_.model.points, pool_),
@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(, SurfacesTest, testing::ValuesIn(cases()),
 
 TEST(Surfaces, AreNone) {
   const Loaded built = elements(ElementShape::hex8);
-  gpu::Surfaces<gpu::HostSpace> none(built.model);
+  gpu::Surfaces<HostSpace> none(built.model);
   EXPECT_TRUE(none.empty());
   EXPECT_EQ(none.terms(), 0);
   EXPECT_EQ(none.potential({}), 0);

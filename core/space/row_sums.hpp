@@ -1,16 +1,16 @@
 #pragma once
 
 #include "core/base/index.hpp"
-#include "gpu/space/array.hpp"
-#include "gpu/space/space.hpp"
+#include "core/space/array.hpp"
+#include "core/space/space.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
 
-namespace fascia::gpu {
+namespace fascia {
 
-namespace kernels {
+namespace loops {
 
 /// Sums over a range of items.
 template <int K, int M, class Item>
@@ -52,7 +52,7 @@ struct EndRow {
   FASCIA_HD void operator()(int row) const { end(row, range(row)); }
 };
 
-}  // namespace kernels
+}  // namespace loops
 
 /// Sums over the items of each row, in a fixed order: items are sorted by row; rows with many are cut into pieces, and
 /// those into pieces, so that one long row does not run on one thread.
@@ -62,7 +62,8 @@ class RowSums {
   RowSums() = default;
   /// @param row_of_item  −1: in none
   /// @param most         sums of a call that takes no memory, as where loops are recorded
-  RowSums(const std::vector<int>& row_of_item, int rows, int most = 0) : rows_(rows) {
+  RowSums(const std::vector<int>& row_of_item, int rows, int most = 0, Space space = Space())
+      : space_(space), rows_(rows) {
     std::vector<int> begin(at(rows) + 1, 0);
     for (const int row : row_of_item)
       if (row >= 0) ++begin[at(row) + 1];
@@ -83,22 +84,22 @@ class RowSums {
   template <int K, int M = 0, class Item, class End>
   void sum(const Item& item, const End& end) {
     using Total = Sums<K, M>;
-    using Pieces = kernels::PieceRange<K, M>;
+    using Pieces = loops::PieceRange<K, M>;
     if (levels_.empty()) {
-      const kernels::ItemRange<K, M, Item> range{order_.data(), row_begin_.data(), item};
-      Space::for_each(rows_, kernels::EndRow<decltype(range), End>{range, end});
+      const loops::ItemRange<K, M, Item> range{order_.data(), row_begin_.data(), item};
+      space_.for_each(rows_, loops::EndRow<decltype(range), End>{range, end});
       return;
     }
     scratch_.resize(std::max(scratch_.size(), at(pieces_) * (sizeof(Total) / sizeof(double))));
     auto* out = reinterpret_cast<Total*>(scratch_.data());
-    const kernels::ItemRange<K, M, Item> items{order_.data(), levels_[0].data(), item};
-    Space::for_each(count(0), kernels::StorePiece<K, M, decltype(items)>{items, out});
+    const loops::ItemRange<K, M, Item> items{order_.data(), levels_[0].data(), item};
+    space_.for_each(count(0), loops::StorePiece<K, M, decltype(items)>{items, out});
     for (std::size_t l = 1; l < levels_.size(); ++l) {
       Total* below = out;
       out += count(l - 1);
-      Space::for_each(count(l), kernels::StorePiece<K, M, Pieces>{{levels_[l].data(), below}, out});
+      space_.for_each(count(l), loops::StorePiece<K, M, Pieces>{{levels_[l].data(), below}, out});
     }
-    Space::for_each(rows_, kernels::EndRow<Pieces, End>{{row_begin_.data(), out}, end});
+    space_.for_each(rows_, loops::EndRow<Pieces, End>{{row_begin_.data(), out}, end});
   }
 
  private:
@@ -122,10 +123,11 @@ class RowSums {
     return true;
   }
 
+  Space space_;
   int rows_ = 0, pieces_ = 0;
   Array<Space, int> order_, row_begin_;
   std::vector<Array<Space, int>> levels_;  ///< where pieces begin: among items, then among the pieces before
   Array<Space, double> scratch_;
 };
 
-}  // namespace fascia::gpu
+}  // namespace fascia

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace fascia::gpu {
+namespace fascia {
 
 /// Values in the memory of a space (space.hpp), of a type that is copied byte by byte. Growing loses the contents.
 template <class Space, class T>
@@ -75,4 +75,24 @@ class Array {
   std::size_t size_ = 0, room_ = 0;
 };
 
-}  // namespace fascia::gpu
+/// Values of the host for loops of a space: themselves where it sees the host's memory, else a copy.
+template <class Space, class T>
+class Shown {
+ public:
+  /// @param values  stay where they are as long as the space looks at them
+  /// @return  null where there are none
+  const T* show(std::span<const T> values) {
+    if (values.empty()) return nullptr;
+    if constexpr (Space::kSeesHost) {
+      return values.data();
+    } else {
+      copy_.upload(values);
+      return copy_.data();
+    }
+  }
+
+ private:
+  Array<Space, T> copy_;
+};
+
+}  // namespace fascia

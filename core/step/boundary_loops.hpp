@@ -1,19 +1,24 @@
 #pragma once
 
-#include "gpu/system/step_kernels.hpp"
+#include "core/node/node_finish.hpp"
+#include "core/node/prescribed.hpp"
+#include "core/node/small_factor.hpp"
+#include "core/step/step_loops.hpp"
 
-/// Loops over constraints, and over nodes at the end of a step.
-namespace fascia::gpu::kernels {
+/// Loops over constraints, and over nodes at the start and the end of a step.
+namespace fascia::loops {
 
-/// What the prescribed degrees of freedom still lack, in constraint axes. Of other nodes it stays zero.
+/// What the prescribed degrees of freedom still lack, in constraint axes. Goes over constraints; of other nodes it
+/// stays zero.
 struct FindPrescribed {
-  StepView s;
+  ModelView m;
+  PoseView pose;
+  const double *turned, *factors;  ///< (constraints × 3); where the boundary goes
   double* local;
   FASCIA_HD void operator()(int k) const {
-    const ModelView& m = s.model;
     const FrameConstraint& c = m.constraints[k];
-    prescribed_increment(m.nodes.kind[c.node], c, m.fixed[c.node], m.motions, m.factors, m.rest_position[c.node],
-                         s.u[c.node], s.D_now(c.node), s.turned + 3 * k, local + m.nodes.dof[c.node]);
+    prescribed_increment(m.nodes.kind[c.node], c, m.fixed[c.node], m.motions, factors, m.rest_position[c.node],
+                         pose.u[c.node], pose.D_of(c.node), turned + 3 * k, local + m.nodes.dof[c.node]);
   }
 };
 
@@ -70,61 +75,60 @@ struct TakeDirection {
   }
 };
 
-/// Poses and velocities at the end of a step, and what the scheme keeps of it.
+/// Where a step ends, and what its scheme keeps of it.
+struct StepEnd {
+  Vec3d *u = nullptr, *v = nullptr;
+  Mat3d *D = nullptr, *Q_dot = nullptr;
+  double* turned = nullptr;  ///< as the step has it; of a midpoint step as its start has it
+  PoseMotion *motion = nullptr, *velocity = nullptr, *acceleration = nullptr;  ///< none where they are not kept
+  const PoseMotion* before = nullptr;  ///< motion in a step before of the same length, or none
+};
+
+/// Of a scheme that solves for the end.
 struct FinishStep {
   StepView s;
-  Vec3d *u, *v;
-  Mat3d *D, *Q_dot;
-  PoseMotion *motion, *velocity, *acceleration;
-  const PoseMotion* before;  ///< motion in a step before of the same length, or none
-  bool remembers;
+  StepEnd end;
 
   FASCIA_HD void operator()(int i) const {
     const StepNode n = s.node(i);
     const PoseMotion x = motion_of(n);
-    const bool has_before = before != nullptr;
-    const Vec3d last = has_before ? before[i].u : x.u;
-    u[i] = s.u[i];
-    Mat3d D_end = s.D_now(i);
-    if (n.rigid()) D_end = orthonormalized_increment(D_end);
+    end.u[i] = s.u[i];
+    Mat3d D = s.D_now(i);
+    if (n.rigid()) D = orthonormalized_increment(D);
     EndRates rates;
-    if (s.step.h > 0) rates = rates_at_end(s.step, n, D_end);
+    if (s.step.h > 0) rates = rates_at_end(s.step, n, D);
     const FrameConstraint* held = s.model.held(i);
     if (s.step.h > 0 && held != nullptr && s.step.scheme == TimeScheme::newmark)
-      follow_boundary(s.step, n.kind, *held, x, last, D_end, rates);
-    v[i] = rates.v.u;
+      follow_boundary(s.step, n.kind, *held, x, end.before != nullptr ? end.before[i].u : x.u, D, rates);
+    end.v[i] = rates.v.u;
     if (s.turning) {
-      D[i] = D_end;
-      Q_dot[i] = rates.v.Q;
+      end.D[i] = D;
+      end.Q_dot[i] = rates.v.Q;
     }
-    if (!remembers) return;
-    motion[i] = x;
-    velocity[i] = n.v;
-    if (acceleration != nullptr) acceleration[i] = rates.a;
+    if (end.motion != nullptr) end.motion[i] = x;
+    if (end.velocity != nullptr) end.velocity[i] = n.v;
+    if (end.acceleration != nullptr) end.acceleration[i] = rates.a;
   }
 };
 
-/// The same of the midpoint rule, without what is prescribed.
+/// Of the midpoint rule, without what is prescribed.
 struct FinishMiddle {
   StepView s;
-  Vec3d *u, *v;
-  Mat3d *D, *Q_dot;
-  PoseMotion *motion, *velocity;
-  double* turned;
+  StepEnd end;
 
   FASCIA_HD void operator()(int i) const {
     const StepNode n = s.node(i);
     const int c = s.model.constraint[i];
-    const MiddleEnd end = finish_middle(s.step, n, s.model.held(i), s.D_now(i));
-    motion[i] = end.motion;
-    velocity[i] = n.v;
-    u[i] = s.u0[i] + end.motion.u;
-    v[i] = end.v.u;
+    const MiddleEnd middle = finish_middle(s.step, n, s.model.held(i), s.D_now(i));
+    end.motion[i] = middle.motion;
+    end.velocity[i] = n.v;
+    end.u[i] = s.u0[i] + middle.motion.u;
+    end.v[i] = middle.v.u;
     if (s.turning) {
-      D[i] = n.D + end.motion.Q;
-      Q_dot[i] = end.v.Q;
+      end.D[i] = n.D + middle.motion.Q;
+      end.Q_dot[i] = middle.v.Q;
     }
-    for (int a = 0; c >= 0 && a < 3; ++a) turned[3 * c + a] = 2 * s.turned[3 * c + a] - turned[3 * c + a];
+    for (int a = 0; c >= 0 && a < 3; ++a) end.turned[3 * c + a] = 2 * s.turned[3 * c + a] - end.turned[3 * c + a];
   }
 };
 
@@ -132,40 +136,48 @@ struct FinishMiddle {
 /// is prescribed the velocity of its motion.
 struct FinishHeld {
   StepView s;
-  Vec3d *u, *v;
-  Mat3d *D, *Q_dot;
-  PoseMotion* motion;
-  const PoseMotion* before;
-  double* turned;
+  StepEnd end;
 
   FASCIA_HD void operator()(int i) const {
     const ModelView& m = s.model;
     const FrameKind kind = m.nodes.kind[i];
     const int k = m.constraint[i];
-    Mat3d D_end = s.turning ? D[i] : Mat3d{};
+    Mat3d D = s.turning ? end.D[i] : Mat3d{};
     if (k >= 0) {
       const FrameConstraint& c = m.constraints[k];
       double d[kMostDofs] = {};
-      prescribed_increment(kind, c, m.fixed[i], m.motions, m.factors, m.rest_position[i], u[i], D_end, turned + 3 * k,
-                           d);
+      double* turned = end.turned + 3 * k;
+      prescribed_increment(kind, c, m.fixed[i], m.motions, m.factors, m.rest_position[i], end.u[i], D, turned, d);
       m.to_global(i, d);
       Mat3d Ds;
-      advance_increment(kind, d, 1, u[i], Ds);
-      D_end = incremented(kind, Ds, D_end);
-      if (kind == FrameKind::rigid) advance_turned(c, d, 1, turned + 3 * k);
-      motion[i] = {u[i] - s.u0[i], D_end - s.D_at_start(i)};
+      advance_increment(kind, d, 1, end.u[i], Ds);
+      D = incremented(kind, Ds, D);
+      if (kind == FrameKind::rigid) advance_turned(c, d, 1, turned);
+      end.motion[i] = {end.u[i] - s.u0[i], D - s.D_at_start(i)};
     }
-    if (kind == FrameKind::rigid) D_end = orthonormalized_increment(D_end);
+    if (kind == FrameKind::rigid) D = orthonormalized_increment(D);
     if (k >= 0) {
-      const Vec3d last = before != nullptr ? before[i].u : motion[i].u;
-      EndRates rates{{v[i], s.turning ? Q_dot[i] : Mat3d{}}, {}};
-      follow_boundary(s.step, kind, m.constraints[k], motion[i], last, D_end, rates);
-      v[i] = rates.v.u;
-      if (s.turning) Q_dot[i] = rates.v.Q;
+      const Vec3d last = end.before != nullptr ? end.before[i].u : end.motion[i].u;
+      EndRates rates{{end.v[i], s.turning ? end.Q_dot[i] : Mat3d{}}, {}};
+      follow_boundary(s.step, kind, m.constraints[k], end.motion[i], last, D, rates);
+      end.v[i] = rates.v.u;
+      if (s.turning) end.Q_dot[i] = rates.v.Q;
     }
-    if (s.turning) D[i] = D_end;
+    if (s.turning) end.D[i] = D;
   }
 };
+
+/// The end of a step. A midpoint step needs the factors of its end, and keeps motions and velocities.
+template <class Space>
+void finish_step(const Space& space, const StepView& s, const StepEnd& end) {
+  const int n = s.model.nodes.count;
+  if (s.step.h > 0 && s.step.scheme == TimeScheme::midpoint) {
+    space.for_each(n, FinishMiddle{s, end});
+    space.for_each(n, FinishHeld{s, end});
+  } else {
+    space.for_each(n, FinishStep{s, end});
+  }
+}
 
 /// Newmark's first acceleration of a node, from the gradient of the internal energy and the loads.
 struct StartAcceleration {
@@ -184,15 +196,14 @@ struct StartAcceleration {
     for (int k = 0; k < n; ++k)
       if (m.is_fixed(i, k)) a[k] = 0;
     double block[kMostDofs * kMostDofs];
-    free_mass_block(kind, m.inertia[i], Mat3d::identity() + D, m.turn[i] < 0 ? nullptr : m.turns + m.turn[i],
-                    m.fixed[i], block);
+    free_mass_block(kind, m.inertia[i], Mat3d::identity() + D, m.turn_of(i), m.fixed[i], block);
     SmallFactor factor;
     if (factor.factorize(block, n))
       factor.solve(a);
     else
       for (int k = 0; k < n; ++k) a[k] = 0;
     m.to_global(i, a);
-    acceleration[i] = acceleration_of(kind, a, D, s.turning ? s.rate0[i] : Mat3d{});
+    acceleration[i] = acceleration_of(kind, a, D, s.rate_at_start(i));
   }
 };
 
@@ -207,50 +218,10 @@ struct ForceOfAcceleration {
     const int first = m.nodes.dof[i], n = m.nodes.size(i);
     double g[kMostDofs];
     for (int k = 0; k < n; ++k) g[k] = -f.gradient[first + k];
-    const PoseMotion v{s.v0[i], s.turning ? s.rate0[i] : Mat3d{}};
+    const PoseMotion v{s.v0[i], s.rate_at_start(i)};
     const InertiaForce in = inertia_of_velocity(kind, m.inertia[i], m.damping_of(i), s.D_now(i), v);
     add_node_force(kind, s.D_now(i), -in.force, in.moment * -1.0, {}, g);
     for (int k = 0; k < n; ++k) force[first + k] = g[k];
-  }
-};
-
-/// From the place that a tether holds to its target, as CpuExecutor::tether_stretch().
-FASCIA_HD inline Vec3d tether_stretch(const PointsView& points, const PoseView& pose, const Tether& t,
-                                      const double* targets) {
-  Vec3d stretch;
-  for (int k = 0; k < 3; ++k) stretch[k] = targets[at(points.rule[t.group].axes * 3 + k) * kGroupSize + at(t.lane)];
-  for (int slot = points.slot_begin[t.group]; slot < points.slot_begin[t.group + 1]; ++slot) {
-    const double* shape = points.shape + at(slot) * 13 * kGroupSize + t.lane;
-    const Vec3d lever{{shape[4 * kGroupSize], shape[7 * kGroupSize], shape[10 * kGroupSize]}};
-    stretch -= pose.u[points.slot_node[slot]] * shape[kGroupSize] + pose.D_of(points.slot_node[slot]) * lever;
-  }
-  return stretch;
-}
-
-/// That of all.
-struct NoteStretches {
-  const Tether* tethers;
-  PointsView points;
-  PoseView pose;
-  const double* targets;
-  Vec3d* stretch;
-  FASCIA_HD void operator()(int i) const { stretch[i] = tether_stretch(points, pose, tethers[i], targets); }
-};
-
-/// Moves targets so that tethers are stretched as a sum of what they were in the middles of steps.
-struct StretchTethers {
-  const Tether* tethers;
-  PointsView points;
-  PoseView pose;
-  const Vec3d* stretch[3];
-  double weight[3];
-  double* targets;
-  FASCIA_HD void operator()(int i) const {
-    const Tether& t = tethers[i];
-    Vec3d more = tether_stretch(points, pose, t, targets) * -1.0;
-    for (int k = 0; k < 3; ++k)
-      if (weight[k] != 0) more += stretch[k][i] * weight[k];
-    move_target(t, points.rule[t.group].axes, more, targets);
   }
 };
 
@@ -275,4 +246,4 @@ struct SupportInertia {
   }
 };
 
-}  // namespace fascia::gpu::kernels
+}  // namespace fascia::loops

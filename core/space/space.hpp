@@ -8,12 +8,12 @@
 #include <cstring>
 #include <new>
 
-/// Where arrays live and loops run. Everything that steps a scene on the device is written once, for a space:
-/// CudaSpace (cuda_space.cuh), or HostSpace, which runs the same formulas in the same order on the processor and serves
-/// as their test where there is no device.
+/// Where arrays live and loops run. A loop over the nodes of a model is written once, for a space: PoolSpace
+/// (pool_space.hpp), the threads of a processor; CudaSpace (gpu/space/cuda_space.cuh), a device; or HostSpace, one
+/// thread, which serves as the device's test where there is none.
 ///
 /// A loop's body is a function object of values and pointers into the space, called for each index in any order.
-namespace fascia::gpu {
+namespace fascia {
 
 /// K sums and M maxima of values that are not negative, which a loop builds up.
 template <int K, int M = 0>
@@ -34,8 +34,9 @@ struct Sums {
 /// Lanes of a loop whose items are eight each, as groups of points are.
 inline constexpr int kSpaceLanes = 8;
 
-struct HostSpace {
-  static constexpr bool kHasTiles = false;
+/// The memory of a processor.
+struct HostMemory {
+  static constexpr bool kSeesHost = true;  ///< pointers to values of the host are pointers into the space
 
   static void* allocate(std::size_t bytes) { return bytes == 0 ? nullptr : ::operator new(bytes, kAlignment); }
   static void release(void* memory) noexcept { ::operator delete(memory, kAlignment); }
@@ -47,6 +48,17 @@ struct HostSpace {
   static void set_zero(void* memory, std::size_t bytes) {
     if (bytes > 0) std::memset(memory, 0, bytes);
   }
+
+ private:
+  static constexpr std::align_val_t kAlignment{64};
+};
+
+/// Items that a sum adds one after the other; such chunks are added in their order.
+inline constexpr int kSumChunk = 256;
+
+struct HostSpace : HostMemory {
+  static constexpr bool kHasTiles = false;
+
   static void synchronize() {}
 
   /// body(i) for i < count.
@@ -58,11 +70,10 @@ struct HostSpace {
   /// body(i, sums) for i < count, then once end(totals). The order of additions depends on the count alone.
   template <int K, int M = 0, class Body, class End>
   static void sum(int count, const Body& body, const End& end) {
-    constexpr int kChunk = 256;
     Sums<K, M> total;
-    for (int begin = 0; begin < count; begin += kChunk) {
+    for (int begin = 0; begin < count; begin += kSumChunk) {
       Sums<K, M> part;
-      for (int i = begin; i < std::min(count, begin + kChunk); ++i) body(i, part);
+      for (int i = begin; i < std::min(count, begin + kSumChunk); ++i) body(i, part);
       total.add(part);
     }
     end(total);
@@ -89,9 +100,6 @@ struct HostSpace {
       for (int i = 0; i < limit && *done == 0; ++i) body();
     }
   };
-
- private:
-  static constexpr std::align_val_t kAlignment{64};
 };
 
-}  // namespace fascia::gpu
+}  // namespace fascia

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "gpu/space/row_sums.hpp"
+#include "core/space/row_sums.hpp"
 
 #include <vector>
 
-namespace fascia::gpu {
+namespace fascia {
 
-namespace kernels {
+namespace loops {
 
 /// The items of one part, in their order.
 template <int K, int M, class Item>
@@ -16,7 +16,7 @@ struct ItemOf {
   FASCIA_HD void operator()(int i, Sums<K, M>& sums) const { item(order[i], sums); }
 };
 
-}  // namespace kernels
+}  // namespace loops
 
 /// Sums over the items of each connected part, in a fixed order: of a few parts one after the other, each over all of
 /// the device; of many all at once.
@@ -24,9 +24,9 @@ template <class Space>
 class PartSums {
  public:
   /// @param part_of_item  −1: in none
-  PartSums(const std::vector<int>& part_of_item, int parts) {
+  PartSums(const std::vector<int>& part_of_item, int parts, Space space = Space()) : space_(space) {
     if (parts > kFew) {
-      rows_ = RowSums<Space>(part_of_item, parts);
+      rows_ = RowSums<Space>(part_of_item, parts, 0, space);
       return;
     }
     std::vector<int> order;
@@ -46,8 +46,8 @@ class PartSums {
       return;
     }
     for (std::size_t part = 0; part + 1 < begin_.size(); ++part)
-      Space::template sum<K, M>(begin_[part + 1] - begin_[part],
-                                kernels::ItemOf<K, M, Item>{order_.data() + begin_[part], item},
+      space_.template sum<K, M>(begin_[part + 1] - begin_[part],
+                                loops::ItemOf<K, M, Item>{order_.data() + begin_[part], item},
                                 StoreOne<K, M>{{out}, static_cast<int>(part)});
   }
 
@@ -68,9 +68,10 @@ class PartSums {
 
  private:
   static constexpr int kFew = 8;
+  Space space_;
   std::vector<int> begin_{0};
   Array<Space, int> order_;
   RowSums<Space> rows_;
 };
 
-}  // namespace fascia::gpu
+}  // namespace fascia

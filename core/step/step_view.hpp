@@ -1,0 +1,106 @@
+#pragma once
+
+#include "core/node/node_step.hpp"
+#include "core/step/model_view.hpp"
+
+/// An implicit step at the nodes of a model, as loops see it.
+namespace fascia {
+
+/// Where a step starts, and how far it has gone.
+struct StepView {
+  ModelView model;
+  StepConstants step;
+  const Vec3d *u0 = nullptr, *v0 = nullptr;
+  const Mat3d *D0 = nullptr, *rate0 = nullptr;
+  Vec3d *du = nullptr, *u = nullptr;
+  Mat3d *Ds = nullptr, *D = nullptr;
+  PoseMotion *q = nullptr, *w = nullptr;
+  double* turned = nullptr;  ///< (constraints × 3)
+  bool turning = false;      ///< any node is a frame: there are D, Ds and rates
+
+  FASCIA_HD Mat3d D_at_start(int i) const { return turning ? D0[i] : Mat3d{}; }
+  FASCIA_HD Mat3d D_now(int i) const { return turning ? D[i] : Mat3d{}; }
+  FASCIA_HD Mat3d rate_at_start(int i) const { return turning ? rate0[i] : Mat3d{}; }
+  FASCIA_HD StepNode node(int i) const {
+    StepNode n;
+    n.kind = model.nodes.kind[i];
+    n.inertia = model.inertia[i];
+    n.v.u = v0[i];
+    n.du = du[i];
+    n.q = q[i];
+    n.w = w[i];
+    if (turning) {
+      n.D = D0[i];
+      n.v.Q = rate0[i];
+      n.Ds = Ds[i];
+    }
+    return n;
+  }
+  /// Inertia of the step. A point mass asks for less.
+  FASCIA_HD StepInertia inertia(int i) const {
+    const FrameInertia* damping = model.damping_of(i);
+    if (model.nodes.kind[i] == FrameKind::vertex)
+      return step_inertia(step, model.inertia[i].mass, damping != nullptr ? damping->mass : 0, du[i], q[i].u, w[i].u,
+                          v0[i]);
+    return step_inertia(step, node(i), damping, model.nodes.part_length[model.nodes.part[i]]);
+  }
+};
+
+/// Vectors of an evaluation, by degrees of freedom.
+struct ForceView {
+  double *gradient = nullptr, *load = nullptr, *inertia = nullptr;
+  double* node_energy = nullptr;  ///< (nodes × 3): of loads, of inertia [J], square of the inertia that cancels [N²]
+};
+
+/// Stores what acts on a node beside its blocks: dead loads and the step's inertia.
+FASCIA_HD inline void store_loads_and_inertia(const StepView& s, const ForceView& f, int i) {
+  const ModelView& m = s.model;
+  const FrameKind kind = m.nodes.kind[i];
+  const int first = m.nodes.dof[i], n = m.nodes.size(i);
+  const bool loaded = m.load_begin[i]<m.load_begin[i + 1], accelerated = s.step.h> 0;
+  double load[kMostDofs] = {}, inertia[kMostDofs] = {};
+  double potential = 0, energy = 0, cancelled = 0;
+  if (loaded || accelerated) {
+    const Mat3d D = s.D_now(i);
+    m.add_dead_loads(i, D, load);
+    for (int k = m.load_begin[i]; k < m.load_begin[i + 1]; ++k)
+      potential -= m.factors[m.loads[k].schedule] * dead_load_work(m.loads[k].load, s.u[i], D);
+    if (accelerated) {
+      const StepInertia in = s.inertia(i);
+      add_node_force(kind, D, in.force, in.moment, {}, inertia);
+      energy = in.energy + in.damping_energy;
+      cancelled = in.cancelled_force;
+    }
+  }
+  for (int k = 0; k < n; ++k) {
+    f.load[first + k] = load[k];
+    f.inertia[first + k] = inertia[k];
+  }
+  f.node_energy[3 * i] = potential;
+  f.node_energy[3 * i + 1] = energy;
+  f.node_energy[3 * i + 2] = cancelled * cancelled;
+}
+
+/// Adds what dead loads and the step's inertia are in the tangent of a node. @param Q  its present I + D
+FASCIA_HD inline void add_loads_and_inertia_block(const StepView& s, int i, const Mat3d& Q, bool full, double* block) {
+  const ModelView& m = s.model;
+  if (full && m.nodes.kind[i] == FrameKind::rigid)
+    for (int k = m.load_begin[i]; k < m.load_begin[i + 1]; ++k)
+      add_dead_load_block(m.loads[k].load, m.factors[m.loads[k].schedule], Q, block);
+  if (s.step.h > 0) add_step_inertia_block(s.step, s.node(i), m.damping_of(i), Q, full, block);
+}
+
+/// Squares that a residual is judged by, torques divided by the part's length, and energies [J].
+enum NodeQuantity {
+  kLoad,
+  kInertia,
+  kResidual,
+  kReaction,
+  kLoadEnergy,
+  kInertiaEnergy,
+  kCancelled,
+  kTurnedLoad,  ///< that constraints with axes of their own carry
+  kNodeQuantities
+};
+
+}  // namespace fascia
