@@ -111,7 +111,7 @@ RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunct
     if (!seen || !observe) continue;
     system.set_factors(present);
     system.look_at(state, dt);
-    system.add_support_inertia([&](int node) { return stepper.held_acceleration(node); });
+    system.add_held_inertia(stepper.held_accelerations());
     if (!observe(info, state, system)) {
       if (!last) run.status = RunStatus::interrupted;
       return run;

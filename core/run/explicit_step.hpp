@@ -37,8 +37,8 @@ class ExplicitStepper {
   /// step
   void report_velocities(std::span<const double> factors);
 
-  /// Of a node that is held, at the last call of report_velocities().
-  PoseMotion held_acceleration(int node) const { return held_acceleration_[at(nodes_.constraint[at(node)])]; }
+  /// Of each constraint's node, at the last call of report_velocities().
+  std::span<const PoseMotion> held_accelerations() const { return held_acceleration_; }
 
   double kinetic_energy() const { return kinetic_; }  ///< of nodes that nothing holds, at the last half step [J]
   /// Energy at the start, and the most that loads, boundaries and tethers have added [J].

@@ -103,16 +103,8 @@ class MechanicalSystem {
   std::span<const Vec3d> step_displacement() const { return increment_.du; }
 
   /// Adds to the gradient what accelerated supports carry of their own mass, which a state at rest does not show.
-  /// @param acceleration  of a node (of its origin and Q or A)
-  template <class Acceleration>
-  void add_support_inertia(const Acceleration& acceleration) {
-    for (const FrameConstraint& c : model_.constraints) {
-      const PoseMotion a = acceleration(c.node);
-      const InertiaForce f = inertia_force(model_.inertia[at(c.node)], a.u, a.Q);
-      add_node_force(model_.kind(c.node), state_.D[at(c.node)], f.force, f.moment, {},
-                     gradient_.data() + model_.points.dofs.begin(c.node));
-    }
-  }
+  /// @param acceleration  of each constraint: of its node's origin and Q or A
+  void add_held_inertia(std::span<const PoseMotion> acceleration);
 
   /// K d at the state of the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);

@@ -56,6 +56,11 @@ void MechanicalSystem::add_support_inertia(const State& state, const State& befo
                                         before.Q_dot.data(), inverse_dt, gradient_.data()});
 }
 
+void MechanicalSystem::add_held_inertia(std::span<const PoseMotion> acceleration) {
+  space_.for_each(static_cast<int>(acceleration.size()),
+                  loops::HeldInertia{step_view(), acceleration.data(), gradient_.data()});
+}
+
 void read_tethers(const Model& model, std::span<const double> targets, const State& state, ReachedForces& out) {
   out.tether_forces.clear();
   for (const Tether& t : model.tethers) out.tether_forces.push_back(tether_force(model.points, targets, t, state));

@@ -246,4 +246,17 @@ struct SupportInertia {
   }
 };
 
+/// Adds what supports carry of their own mass that the accelerations of their nodes ask for. Goes over constraints.
+struct HeldInertia {
+  StepView s;
+  const PoseMotion* acceleration;  ///< of each constraint: of its node's origin and Q or A
+  double* gradient;
+  FASCIA_HD void operator()(int k) const {
+    const ModelView& m = s.model;
+    const int i = m.constraints[k].node;
+    const InertiaForce f = inertia_force(m.inertia[i], acceleration[k].u, acceleration[k].Q);
+    add_node_force(m.nodes.kind[i], s.D_now(i), f.force, f.moment, {}, gradient + m.nodes.dof[i]);
+  }
+};
+
 }  // namespace fascia::loops

@@ -52,9 +52,8 @@ class ExplicitSystem {
   const Pose& pose() const { return pose_; }
   /// At the present step, without viscous stress.
   InternalEnergy energy();
-  /// Of each constrained node, at the last report_velocities().
-  std::vector<PoseMotion> held_accelerations() const { return held_acceleration_.downloaded(); }
-  int constraint_of(int node) const { return nodes_.constraint[at(node)]; }
+  /// Of each constraint's node, at the last report_velocities().
+  const Array<Space, PoseMotion>& held_accelerations() const { return held_acceleration_; }
 
   // What ExplicitMode asks.
   Space space() const { return {}; }

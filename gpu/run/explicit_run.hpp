@@ -5,9 +5,9 @@
 #include "gpu/explicit/explicit.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/system/host_system.hpp"
+#include "gpu/system/system.hpp"
 
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,15 +15,39 @@
 /// The body of explicit runs, for the files that instantiate it.
 namespace fascia::gpu {
 
+/// What acts at states of an explicit run, looked at by a system beside it, which is made when it is first asked for:
+/// steps know neither energies nor what supports carry.
+template <class Space>
+class ExplicitLooker {
+ public:
+  ExplicitLooker(const Model& model, const FactorFunction& factors) : model_(model), factors_(factors) {}
+
+  /// At the state that the run has reached, with velocities. @param dt  of the step that led there [s]
+  System<Space>& look_at(const ExplicitSystem<Space>& run, double dt) {
+    if (!system_) {
+      SolverSettings settings;
+      settings.preconditioner = PreconditionerKind::jacobi;  // no tiles, which only solves need
+      system_.emplace(model_, settings);
+    }
+    system_->set_factors(factors_(run.pose().time));
+    system_->look_at(run.pose(), dt);
+    system_->add_held_inertia(run.held_accelerations());
+    return *system_;
+  }
+
+ private:
+  const Model& model_;
+  const FactorFunction& factors_;
+  std::optional<System<Space>> system_;
+};
+
 /// A step whose velocities were reported.
 template <class Space>
 class ReachedExplicitStep final : public ReachedStep {
  public:
-  /// @param host     makes a system of the host, with the factors of the step's end
-  /// @param dt       of the step that led there [s]
-  ReachedExplicitStep(ExplicitSystem<Space>& system, const std::function<MechanicalSystem&()>& host, State& state,
-                      double dt)
-      : system_(system), host_(host), state_(state), dt_(dt) {}
+  /// @param dt  of the step that led there [s]
+  ReachedExplicitStep(ExplicitSystem<Space>& system, ExplicitLooker<Space>& looker, State& state, double dt)
+      : system_(system), looker_(looker), state_(state), dt_(dt) {}
   InternalEnergy energy() const override { return system_.energy(); }
   const State& state() override {
     if (fetched_) return state_;
@@ -35,16 +59,14 @@ class ReachedExplicitStep final : public ReachedStep {
   }
   void read(const ReachedParts& parts, ReachedForces& out) override {
     if (!parts.any()) return;
-    MechanicalSystem& host = host_();
-    host.look_at(state(), dt_);
-    const std::vector<PoseMotion> accelerations = system_.held_accelerations();
-    host.add_support_inertia([&](int node) { return accelerations[at(system_.constraint_of(node))]; });
-    host.read(parts, state_, out);
+    System<Space>& looker = looker_.look_at(system_, dt_);
+    looker.read(parts, out);
+    if (parts.forces) read_tethers(looker.model(), looker.tether_targets(), state(), out);
   }
 
  private:
   ExplicitSystem<Space>& system_;
-  const std::function<MechanicalSystem&()>& host_;
+  ExplicitLooker<Space>& looker_;
   State& state_;
   double dt_;
   bool fetched_ = false;
@@ -63,12 +85,7 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
   if (plan.automatic()) system.save();
   DeviceState<Space> good = system.pose();
   int good_step = 0, retries = 0;
-  std::optional<HostSystem> made;  // where it is first asked for
-  const auto host_at = [&](double time) -> MechanicalSystem& {
-    if (!made) made.emplace(model, solver);
-    made->system.set_factors(factors(time));
-    return made->system;
-  };
+  ExplicitLooker<Space> looker(model, factors);
   std::vector<double> ends;  // of the steps since the motion was looked at
   Clock::time_point start = Clock::now();
   while (!plan.done()) {
@@ -111,8 +128,9 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
       run.failed = std::make_shared<FailedState>(FailedState{state, {}, step});
       good.download(state);
       run.status = RunStatus::diverged;
-      run.message =
-          explicit_divergence(host_at(state.time), state, failed, ends[ends.size() - 1 - at(step - failed)], plan);
+      HostSystem host(model, solver);
+      host.system.set_factors(factors(state.time));
+      run.message = explicit_divergence(host.system, state, failed, ends[ends.size() - 1 - at(step - failed)], plan);
       run.time = state.time;
       run.steps = good_step;
       return run;
@@ -123,8 +141,7 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
     if (kept && plan.automatic()) system.save();
     if (kept) retries = 0;
     if (!seen || !observe) continue;
-    const std::function<MechanicalSystem&()> host = [&]() -> MechanicalSystem& { return host_at(time); };
-    ReachedExplicitStep<Space> reached(system, host, state, dt);
+    ReachedExplicitStep<Space> reached(system, looker, state, dt);
     if (!observe(info, reached)) {
       if (!last) run.status = RunStatus::interrupted;
       break;

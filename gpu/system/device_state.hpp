@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/node/time_scheme.hpp"
-#include "core/structure/model.hpp"
 #include "core/space/array.hpp"
+#include "core/structure/model.hpp"
 
 #include <array>
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "core/step/model_data.hpp"
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/space/lanes.hpp"
 #include "gpu/system/cg.hpp"
-#include "core/step/model_data.hpp"
 
 /// Loops over nodes of a product with the tangent.
 namespace fascia::gpu::kernels {

@@ -53,6 +53,8 @@ class System {
   Pose finish_step(double end_time, Memory& memory);
   void start_acceleration(const Pose& start, double dt, Memory& memory);
   void look_at(const Pose& state, double h);
+  /// As MechanicalSystem::add_held_inertia().
+  void add_held_inertia(const Array<Space, PoseMotion>& acceleration);
   void look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt);
 
   Evaluation evaluate();

@@ -98,6 +98,12 @@ void System<Space>::look_at(const Pose& state, double h) {
 }
 
 template <class Space>
+void System<Space>::add_held_inertia(const Array<Space, PoseMotion>& acceleration) {
+  Space::for_each(static_cast<int>(acceleration.size()),
+                  loops::HeldInertia{step_view(), acceleration.data(), gradient_.data()});
+}
+
+template <class Space>
 void System<Space>::set_factors(std::span<const double> factors) {
   known_.reset();
   note_stretches();
