@@ -67,6 +67,7 @@ concept IsBlockExecutor = requires(B& block, const B& same, const BlockState& st
   { B::kSeesMotions } -> std::convertible_to<bool>;       ///< of directions; otherwise d
   { B::kSeesTranslations } -> std::convertible_to<bool>;  ///< likewise
   { B::kSeesStateAgain } -> std::convertible_to<bool>;    ///< products need more of a state than what it kept
+  { same.empty() } -> std::same_as<bool>;
   { same.strain_size() } -> std::same_as<std::size_t>;
   block.store_strain(state, out);
   /// The gradient of the energy, for add_sums(). `true`: energies, and rounding by the parts' motion, too.

@@ -9,7 +9,8 @@
 
 namespace fascia {
 
-static_assert(IsBlockExecutor<PointExecutor> && IsBlockExecutor<ElementExecutor> && IsBlockExecutor<ShellExecutor>);
+static_assert(IsBlockExecutor<PointExecutor> && IsBlockExecutor<ElementExecutor> && IsBlockExecutor<ShellExecutor> &&
+              IsBlockExecutor<UserExecutor>);
 
 namespace {
 
@@ -31,10 +32,11 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
   for (const ElementBlock& block : set.blocks)
     std::get<Several<ElementExecutor>>(blocks_).emplace_back(block, set, pool);
   for (const ShellBlock& shell : set.shells) std::get<Several<ShellExecutor>>(blocks_).emplace_back(shell, set, pool);
+  for (const auto& block : set.user_blocks) std::get<Several<UserExecutor>>(blocks_).emplace_back(*block, set, pool);
   strain_begin_.push_back(0);
   for_each_block([&]<class Kind>(Kind& block, std::size_t) {
     strain_begin_.push_back(strain_begin_.back() + block.strain_size());
-    if (block.strain_size() == 0) return;
+    if (block.empty()) return;
     see_motions_ = see_motions_ || Kind::kSeesMotions;
     see_translations_ = see_translations_ || Kind::kSeesTranslations;
     see_state_again_ = see_state_again_ || Kind::kSeesStateAgain;

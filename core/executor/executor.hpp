@@ -7,6 +7,7 @@
 #include "core/executor/shell_executor.hpp"
 #include "core/executor/spring_executor.hpp"
 #include "core/executor/surface_tangent.hpp"
+#include "core/executor/user_executor.hpp"
 #include "core/linear/block_matrix.hpp"
 #include "core/space/part_sums.hpp"
 #include "core/space/pool_space.hpp"
@@ -108,7 +109,8 @@ class CpuExecutor {
   template <class Kind>
   using Several = std::vector<Kind>;
   /// Kinds of blocks, in the order in which their strains and what they keep lie, and in which nodes sum them.
-  using Blocks = std::tuple<Several<PointExecutor>, Several<ElementExecutor>, Several<ShellExecutor>>;
+  using Blocks =
+      std::tuple<Several<PointExecutor>, Several<ElementExecutor>, Several<ShellExecutor>, Several<UserExecutor>>;
   template <class Kind>
   const Several<Kind>& of_kind() const {
     return std::get<Several<Kind>>(blocks_);

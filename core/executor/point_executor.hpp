@@ -28,6 +28,7 @@ class PointExecutor {
   /// Where tethers pull to: (groups with axes × 3 × 8) [m]. Zero at first.
   std::span<double> targets() { return targets_; }
 
+  bool empty() const { return set_.group_count() == 0; }
   std::size_t strain_size() const { return at(set_.group_count()) * 6 * kGroupSize; }
   void store_strain(const BlockState& state, std::span<double> E);
   void compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion);

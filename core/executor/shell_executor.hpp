@@ -18,6 +18,7 @@ class ShellExecutor {
 
   static constexpr bool kSeesMotions = false, kSeesTranslations = false, kSeesStateAgain = true;
 
+  bool empty() const { return block_.count == 0; }
   /// (batches × 12 × 8)
   std::size_t strain_size() const { return at(block_.batch_count()) * 12 * kElementLanes; }
   void store_strain(const BlockState& state, std::span<double> e);

@@ -27,6 +27,7 @@ void for_each_block(const PointSet& set, const Act& act) {
   act(PointGroups{set});
   for (const ElementBlock& block : set.blocks) act(block);
   for (const ShellBlock& shell : set.shells) act(shell);
+  for (const auto& block : set.user_blocks) act(*block);
 }
 
 /// Calls act(nodes, stiffness [Pa]) for each of their cells: all that ties nodes to one another by matter.

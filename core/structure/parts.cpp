@@ -96,6 +96,8 @@ std::vector<double> part_lengths(const PointSet& set, int parts, const std::vect
     block.for_each_element([&](std::span<const int> element) { weigh_cell(element[0], block.length); });
   for (const ShellBlock& shell : set.shells)
     for (int e = 0; e < shell.count; ++e) weigh_cell(shell.element(e)[0], shell.length);
+  for (const auto& block : set.user_blocks)
+    block->for_each_cell([&](std::span<const int> cell, double) { weigh_cell(cell[0], block->length); });
   for (const Joint& joint : joints) {
     if (joint.nodes.empty()) continue;
     double& largest = of_joints[at(set.node_part[at(joint.nodes[0])])];

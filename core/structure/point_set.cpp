@@ -1,6 +1,7 @@
 #include "core/structure/point_set.hpp"
 
 #include "core/base/coloring.hpp"
+#include "core/base/errors.hpp"
 #include "core/base/index.hpp"
 #include "core/physics/solid_law.hpp"
 #include "core/structure/blocks.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace fascia {
@@ -86,6 +88,18 @@ void PointSetBuilder::add_own_constants(std::span<const PointSample> points, Gro
 void PointSetBuilder::add_shell(ShellBlock shell) {
   set_.damped = set_.damped || shell.damped;
   set_.shells.push_back(std::move(shell));
+}
+
+void PointSetBuilder::add_user_block(std::shared_ptr<const UserBlock> block) {
+  for (int c = 0; c < block->count; ++c) {
+    const std::span<const int> nodes = block->cell(c);
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      if (std::find(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(a), nodes[a]) !=
+          nodes.begin() + static_cast<std::ptrdiff_t>(a))
+        throw InputError("cell " + std::to_string(c) + " of a user block names node " + std::to_string(nodes[a]) +
+                         " twice; a node may stand once in a cell");
+  }
+  set_.user_blocks.push_back(std::move(block));
 }
 
 void PointSetBuilder::add_elements(ElementBlock block) {

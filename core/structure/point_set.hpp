@@ -9,7 +9,9 @@
 #include "core/structure/dof_layout.hpp"
 #include "core/structure/element_block.hpp"
 #include "core/structure/shell_block.hpp"
+#include "core/structure/user_block.hpp"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -70,6 +72,7 @@ struct PointSet {
 
   std::vector<ElementBlock> blocks;  ///< finite elements
   std::vector<ShellBlock> shells;
+  std::vector<std::shared_ptr<const UserBlock>> user_blocks;
   std::vector<Spring> springs;
   std::vector<DependentNode> dependents;  ///< each behind those of its hosts that depend on others
 
@@ -123,6 +126,9 @@ class PointSetBuilder {
   void add_shell(ShellBlock shell);
 
   int shell_count() const { return static_cast<int>(set_.shells.size()); }
+
+  /// @throws InputError  where a cell names a node twice
+  void add_user_block(std::shared_ptr<const UserBlock> block);
 
   int spring_count() const { return static_cast<int>(set_.springs.size()); }
 

@@ -17,9 +17,10 @@ void place_dependent_rates(const PointSet& set, State& state);
 /// Some dependent node has a host that is a rigid frame, which forces on the node turn: add_turning() has what to add.
 bool forces_turn_hosts(const PointSet& set);
 /// Newton's tangent extrapolates stresses. Forces on dependent nodes are those of the state, and what these do to the
-/// turning of hosts must not meet extrapolated stresses elsewhere: such models keep the stresses of the state.
+/// turning of hosts must not meet extrapolated stresses elsewhere: such models keep the stresses of the state. So do
+/// those with user blocks, which know no others.
 inline bool extrapolates_stresses(const PointSet& set, Tangent tangent) {
-  return tangent == Tangent::full && !forces_turn_hosts(set);
+  return tangent == Tangent::full && set.user_blocks.empty() && !forces_turn_hosts(set);
 }
 
 /// The dependent nodes of a model at a state, where small motions of their hosts move them by

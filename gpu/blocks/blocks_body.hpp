@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/errors.hpp"
 #include "gpu/blocks/blocks.hpp"
 
 /// The bodies of Blocks, for the files that instantiate it. A kind that the model does not have costs nothing.
@@ -10,6 +11,7 @@ Blocks<Space>::Blocks(const PointSet& set, Precision precision)
     : kinds_(Points<Space>(set, precision), Elements<Space>(set, precision), Shells<Space>(set, precision)),
       springs_(set),
       parts_(set.part_count()) {
+  if (!set.user_blocks.empty()) throw InputError("user blocks are computed on processors alone; run this model there");
   for_each_kind([&](const auto& kind, std::size_t begin) {
     sum_kind(kind, set);
     strain_size_ = begin + kind.strain_size();

@@ -1,6 +1,7 @@
 #include "tests/support/derivatives.hpp"
 #include "core/executor/executor.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "tests/support/user_blocks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,6 +72,28 @@ BuiltModel mixture() {
   return built;
 }
 
+/// Rigid frames and affine ones, which bonds of the caller's own tie together.
+BuiltModel bonded() {
+  BlockOptions rigid, affine;
+  rigid.grid = affine.grid = {2, 3, 2};
+  affine.affine = true;
+  affine.drilling = 0.003;
+  affine.translation = {{0.5, 0.1, 0}};
+  BuiltModel built;
+  PointSetBuilder points;
+  built.bodies.emplace_back(block_spec(rigid), built.model, points);
+  built.bodies.emplace_back(block_spec(affine), built.model, points);
+  const int of_rigid = 12, nodes = built.model.node_count();
+  std::vector<Bonds::Bond> bonds;
+  for (int a = 0; a < of_rigid; a += 2)
+    for (const int b : {of_rigid + a, nodes - 1 - a})
+      bonds.push_back({{a, b}, {{{0.1, 0.02 * a, 0.3}}, {{-0.2, 0.1, 0.01 * b}}}});
+  bonds.push_back({{3, 1}, {{{0.1, 0.2, 0.3}}, {{-0.2, 0.1, 0.4}}}});
+  points.add_user_block(std::make_shared<Bonds>(bonds, 2e4));
+  built.model.points = std::move(points).finish(built.model.frame_kind);
+  return built;
+}
+
 /// Every kind of term: drilling or not, both blends, selective points, viscosity, affine frames, thin laws, tethers.
 std::vector<Case> cases() {
   BlockOptions plain;
@@ -114,7 +137,8 @@ std::vector<Case> cases() {
           {"affine sheet", thin({4, 3}, affine)},
           {"affine line", thin({5}, affine)},
           {"scattered", [plain] { return build_cloud(scattered_spec(plain, 0.4, 1)); }},
-          {"mixture", mixture}};
+          {"mixture", mixture},
+          {"bonded", bonded}};
 }
 
 class Derivatives : public DerivativeTest<Case, BuiltModel> {

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "core/base/index.hpp"
+#include "core/math/mat3.hpp"
+#include "core/physics/point_physics.hpp"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace fascia {
+
+/// A node as a cell of a UserBlock sees it: its displacement [m], and Q − I or A − I (zero of a vertex).
+struct CellPose {
+  Vec3d u{};
+  Mat3d D{};
+};
+/// A small motion of a node: of its place and of Q or A.
+struct CellMotion {
+  Vec3d dx{};
+  Mat3d dA{};
+};
+/// What is conjugate to it: ∂ψ/∂u [N] and ∂ψ/∂D [N m].
+struct CellForce {
+  Vec3d force{};
+  Mat3d N{};
+};
+
+/// Matter of the caller's own between nodes: cells with an energy of the poses of their nodes. It goes with the points,
+/// elements and shells of a model through statics, dynamics, modes and paths on the processor. Rotations of rigid
+/// frames need no care: the energy is one of u and D, and the derivatives are those with respect to their entries.
+///
+/// Cells are computed on all threads: the functions of a cell are const, and must not throw.
+class UserBlock {
+ public:
+  /// @param cell_nodes   of a cell
+  /// @param cells        of the model (cells × nodes); no node twice in a cell
+  /// @param cell_length  compares torques with forces [m]
+  UserBlock(int cell_nodes, std::vector<int> cells, double cell_length)
+      : nodes(cell_nodes),
+        count(static_cast<int>(cells.size()) / cell_nodes),
+        length(cell_length),
+        cells_(std::move(cells)) {}
+  virtual ~UserBlock() = default;
+  UserBlock(const UserBlock&) = delete;
+  UserBlock& operator=(const UserBlock&) = delete;
+
+  /// The energy of a cell [J]. Adds its gradient. @param poses, gradient  (nodes)
+  virtual double forces(int cell, std::span<const CellPose> poses, std::span<CellForce> gradient) const = 0;
+  /// Adds the second derivative times a motion: symmetric. Of Tangent::material, a part of it that is never negative.
+  virtual void product(int cell, std::span<const CellPose> poses, Tangent tangent, std::span<const CellMotion> motions,
+                       std::span<CellForce> out) const = 0;
+  /// What an elastic modulus of its matter would be: tells stiff parts from soft ones, and large forces from rounding
+  /// [Pa].
+  virtual double stiffness(int cell) const = 0;
+
+  std::span<const int> cell(int index) const { return std::span(cells_).subspan(at(index) * at(nodes), at(nodes)); }
+  /// As all blocks have it (blocks.hpp).
+  template <class Act>
+  void for_each_cell(const Act& act) const {
+    for (int c = 0; c < count; ++c) act(cell(c), stiffness(c));
+  }
+  double stiffness_sum() const {
+    double sum = 0;
+    for (int c = 0; c < count; ++c) sum += stiffness(c) * length;
+    return sum;
+  }
+
+  const int nodes, count;
+  const double length;
+  static constexpr bool averaged = false;  ///< as ElementBlock has it
+
+ private:
+  std::vector<int> cells_;
+};
+
+}  // namespace fascia

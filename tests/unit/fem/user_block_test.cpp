@@ -1,0 +1,138 @@
+// A block of the caller's own, known to the library by its energy and derivatives alone, does what a block of the
+// library does: statics by each solver, dynamics, explicit steps, modes; and what it cannot do is said.
+#include "core/base/errors.hpp"
+#include "core/run/explicit_dynamics.hpp"
+#include "core/run/modes.hpp"
+#include "tests/support/user_blocks.hpp"
+#include "tests/unit/fem/element_models.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fascia::user_block_test {
+namespace {
+
+using namespace test;
+
+/// A slab of tetrahedra, held on one side, and its twin, whose tetrahedra are the caller's.
+struct Twins {
+  ElementModel built;
+  Model twin;
+
+  Twins() {
+    ElementOptions o;
+    o.cells = {3, 2, 2};
+    built = element_model(o);
+    for (int i = 0; i < built.model.node_count(); ++i)
+      if (built.model.rest_position[at(i)][0] < 0.06) {
+        FrameConstraint c;
+        c.node = i;
+        c.translations = 3;
+        built.model.constraints.push_back(c);
+      }
+    add_gravity(built.model, {{0, -3, 1}});
+    twin = built.model;
+    const ElementBlock& block = built.model.points.blocks[0];
+    std::vector<int> cells;
+    block.for_each_element([&](std::span<const int> e) { cells.insert(cells.end(), e.begin(), e.end()); });
+    for (std::size_t c = 0; c < cells.size(); c += 4) {
+      const auto X = [&](std::size_t a) { return twin.rest_position[at(cells[c + a])]; };
+      if (determinant(Mat3d::from_columns(X(1) - X(0), X(2) - X(0), X(3) - X(0))) < 0)
+        std::swap(cells[c + 2], cells[c + 3]);
+    }
+    PointSetBuilder points;
+    points.add_user_block(std::make_shared<PlainTetrahedra>(cells, twin.rest_position,
+                                                            Lame::from_young(o.young, o.poisson), block.length));
+    twin.points = std::move(points).finish(twin.frame_kind);
+  }
+};
+
+double difference(const State& a, const State& b) {
+  double largest = 0, apart = 0;
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    largest = std::max(largest, norm(a.u[i]));
+    apart = std::max(apart, norm(a.u[i] - b.u[i]));
+  }
+  EXPECT_GT(largest, 1e-3);
+  return apart / largest;
+}
+
+struct Solved {
+  State end;
+  RunReport run;
+};
+
+Solved statics(const Model& model, const SolverSettings& settings) {
+  ThreadPool pool(2);
+  MechanicalSystem system(model, pool, settings);
+  Solved out{State::at_rest(model), {}};
+  out.run = run_statics(system, out.end, kRamp, settings, {}, nullptr);
+  EXPECT_EQ(out.run.status, RunStatus::converged) << out.run.message;
+  return out;
+}
+
+TEST(UserBlock, EqualsTheElementsOfTheLibraryInStatics) {
+  const Twins twins;
+  for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::cg}) {
+    for (const PreconditionerKind kind : {PreconditionerKind::block_jacobi, PreconditionerKind::multigrid}) {
+      SolverSettings settings;
+      settings.linear = method;
+      settings.preconditioner = kind;
+      settings.tolerance = 1e-9;
+      settings.cg.tolerance = 1e-10;
+      const Solved own = statics(twins.twin, settings), usual = statics(twins.built.model, settings);
+      EXPECT_LT(difference(usual.end, own.end), 1e-8);
+      EXPECT_EQ(own.run.stability.unstable, usual.run.stability.unstable);
+    }
+  }
+}
+
+TEST(UserBlock, EqualsThemInDynamicsAndInModes) {
+  const Twins twins;
+  const auto moved = [](const Model& model, bool by_explicit) {
+    ThreadPool pool(2);
+    SolverSettings settings;
+    settings.tolerance = 1e-10;
+    MechanicalSystem system(model, pool, settings);
+    State state = State::at_rest(model);
+    if (by_explicit) {
+      const ExplicitSettings steps{0.5 * stable_time_step(system), 200, {}};
+      run_explicit(system, state, kAlways, steps, nullptr);
+    } else {
+      DynamicsSettings steps;
+      steps.time_step = 0.01;
+      steps.steps = 10;
+      run_implicit(system, state, kAlways, settings, steps, nullptr);
+    }
+    return state;
+  };
+  EXPECT_LT(difference(moved(twins.built.model, false), moved(twins.twin, false)), 1e-8);
+  EXPECT_LT(difference(moved(twins.built.model, true), moved(twins.twin, true)), 1e-8);
+  ThreadPool pool(2);
+  const Modes usual = natural_modes(twins.built.model, pool, 6), own = natural_modes(twins.twin, pool, 6);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(own.frequency[k], usual.frequency[k], 1e-8 * usual.frequency[k]);
+}
+
+TEST(UserBlock, ResultsDoNotDependOnThreads) {
+  const Twins twins;
+  const auto forces = [&](int threads) {
+    ThreadPool pool(threads);
+    CpuExecutor executor(twins.twin.points, pool);
+    std::vector<double> g(at(twins.twin.dof_count()));
+    executor.gradient(random_state(twins.twin, 0.02, 0), {}, g);
+    return g;
+  };
+  EXPECT_EQ(forces(1), forces(3));
+}
+
+TEST(UserBlock, ACellThatNamesANodeTwiceIsRefused) {
+  PointSetBuilder points;
+  try {
+    points.add_user_block(std::make_shared<Bonds>(std::vector<Bonds::Bond>{{{0, 1}, {}}, {{2, 2}, {}}}, 1.0));
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(), "cell 1 of a user block names node 2 twice; a node may stand once in a cell");
+  }
+}
+
+}  // namespace
+}  // namespace fascia::user_block_test
