@@ -9,9 +9,7 @@ namespace fascia {
 
 DofFilter::DofFilter(const Model& model)
     : dofs_(model.points.dofs), turn_of_node_(at(model.node_count()), -1), fixed_(at(model.dof_count()), false) {
-  held_.assign(turn_of_node_.size(), 0);
   for (const FrameConstraint& c : model.constraints) {
-    held_[at(c.node)] = 1;
     const bool identity = c.translation_axes == Mat3d::identity() && c.rotation_axes == Mat3d::identity();
     if (!identity) {
       turn_of_node_[at(c.node)] = static_cast<int>(turns_.size());
@@ -32,7 +30,6 @@ DofFilter::DofFilter(const Model& model)
   for (const FrameConstraint& c : model.constraints) carried_[at(c.node)] = fixed_of(c.node);
   for (const DependentNode& d : model.points.dependents) {
     assert(!fixed_[at(dofs_.begin(d.node))]);  // a rotation that stays its own may be held
-    held_[at(d.node)] = 1;
     for (int k = 0; k < dependent_dofs(d, dofs_); ++k) fixed_[at(dofs_.begin(d.node) + k)] = true;
   }
   for (std::size_t i = 0; i < fixed_.size(); ++i)

@@ -16,7 +16,6 @@ class DofFilter {
 
   bool turns() const { return !turns_.empty(); }  ///< constraint axes are not those of the world
   bool is_fixed(std::size_t dof) const { return fixed_[dof]; }
-  bool holds(int node) const { return held_[static_cast<std::size_t>(node)] != 0; }  ///< any of its degrees is fixed
   int free_count() const { return free_count_; }
   std::size_t size() const { return fixed_.size(); }
 
@@ -46,7 +45,6 @@ class DofFilter {
   std::vector<int> turn_of_node_;  ///< −1: none
   std::vector<bool> fixed_;
   std::vector<std::size_t> fixed_list_;
-  std::vector<char> held_;         ///< (nodes)
   std::vector<unsigned> carried_;  ///< (nodes); empty: no constraint
   int free_count_ = 0;
 };

@@ -2,7 +2,7 @@
 
 #include "core/structure/model.hpp"
 
-/// What boundary motions prescribe at one node or tether, as functions of plain values.
+/// Boundary motions at one node or tether, as functions of plain values.
 namespace fascia {
 
 /// The prescribed entries of A − I of an affine frame, in constraint axes. @param local  (9), by columns
@@ -19,7 +19,8 @@ FASCIA_HD inline void prescribed_affine(const FrameConstraint& c, const Prescrib
     for (int i = 0; i < 3; ++i) local[3 * q + i] = missing(i, q);
 }
 
-/// What the prescribed degrees of freedom of a node still lack to where boundary motions take them, in constraint axes.
+/// Finds what the prescribed degrees of freedom of a node still lack to where boundary motions take them, in constraint
+/// axes.
 /// @param fixed   bit k: the degree of freedom k is fixed
 /// @param turned  rotation done about the constraint's axes [rad] (3)
 /// @param local   entries of the node; only those that may be prescribed are written

@@ -18,7 +18,8 @@ namespace fascia {
 ///   space(), model(), free_count(), view(), for_nodes(act)
 ///   pose()                                 the present state
 ///   keep_strain()                          viscous stress is against that of the present state from here on
-///   gather_acting(pose, inverse_step, out) what acts on the nodes there, with the sign of a gradient, but for mass
+///   gather_acting(pose, inverse_step, out) finds what acts on the nodes there, with the sign of a gradient, but for
+///   mass
 ///                                          damping; with the viscous stress of that 1/dt
 ///   place_dependents(pose)
 template <class System>
@@ -26,6 +27,10 @@ class ExplicitMode {
  public:
   explicit ExplicitMode(System& system)
       : system_(system), space_(system.space()), dofs_(system.model().dof_count()), moved_(system.pose()) {
+    // Of the pose that moves, displacements and D alone are used.
+    moved_.v = {};
+    moved_.Q_dot = {};
+    moved_.turned = {};
     for (auto* vector : {&base_, &v_, &w_}) vector->resize(at(dofs_));
     for (auto& y : basis_) {
       y.resize(at(dofs_));
@@ -42,8 +47,7 @@ class ExplicitMode {
 
   void begin(double inverse_step) {
     inverse_step_ = inverse_step;
-    moved_ = system_.pose();
-    system_.gather_acting(moved_, inverse_step_, base_.data());
+    system_.gather_acting(system_.pose(), inverse_step_, base_.data());
   }
   void add_noise(double part) {
     const double each = part / std::sqrt(static_cast<double>(std::max(1, system_.free_count())));

@@ -70,7 +70,7 @@ ExplicitView ExplicitStepper::view() {
   return s;
 }
 
-/// What the prescribed degrees of freedom lack. @param factors  of where the boundary goes
+/// Finds what the prescribed degrees of freedom lack. @param factors  of where the boundary goes
 void ExplicitStepper::find_increments(std::span<const double> factors) {
   const double* turned = state_.turned.empty() ? nullptr : state_.turned[0].data();
   space_.for_each(
@@ -102,7 +102,7 @@ void ExplicitStepper::update_forces() {
   if (model_.points.damped) executor_.store_strain(state_, history_);
 }
 
-/// Of the internal energy with the viscous stress of the history, and of loads; on hosts of dependent nodes.
+/// Forces of the internal energy, with the viscous stress of the history, and of loads; on hosts of dependent nodes.
 /// @param load  empty where only dead loads act
 void ExplicitStepper::add_forces(const State& state, std::vector<double>& gradient, std::vector<double>& load) {
   executor_.forces(state, history_, gradient);

@@ -46,11 +46,11 @@ class ExplicitStepper {
   /// The kinetic energy is finite and within what was given, with room for rounding and for coarse steps.
   bool is_sound() const;
 
-  // What ExplicitMode asks.
+  // ExplicitMode asks for these.
   const PoolSpace& space() const { return space_; }
   const Model& model() const { return model_; }
   int free_count() const { return filter_.free_count(); }
-  const State& pose() const { return state_; }
+  State& pose() { return state_; }
   ExplicitView view();
   void keep_strain() {}  // the history has it
   void gather_acting(State& pose, double inverse_step, double* out);
@@ -58,7 +58,7 @@ class ExplicitStepper {
   /// Calls act.operator()<Frames>().
   template <class Act>
   void for_nodes(const Act& act) {
-    if (model_.has_frames())
+    if (state_.D.data() != nullptr)
       act.template operator()<true>();
     else
       act.template operator()<false>();
@@ -87,9 +87,9 @@ class ExplicitStepper {
   LeapTimes times_;   ///< about the present step
 
   ExplicitNodes nodes_;
-  std::vector<Vec3d> half_v_, half_spin_;  ///< HalfStepVelocity at the last half step; where there are frames
+  std::vector<Vec3d> half_v_, half_spin_;  ///< HalfStepVelocity at the last half step; the first alone of vertices
   std::vector<Mat3d> half_rate_;
-  /// Of schedules; of nodes, the last only where more than dead loads act.
+  /// Those of schedules; of nodes, the last only where more than dead loads act.
   std::vector<double> factors_, gradient_, load_;
   std::vector<double> mode_gradient_, mode_load_;     ///< at states beside the present one
   std::vector<double> increments_, last_increments_;  ///< prescribed, in constraint axes

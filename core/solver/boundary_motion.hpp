@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/node/dof_filter.hpp"
 #include "core/node/prescribed.hpp"
 #include "core/structure/model.hpp"
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -62,7 +61,7 @@ StepView MechanicalSystem::step_view() {
           .q = form_.q.data(),
           .w = form_.w.data(),
           .turned = increment_.turned.empty() ? nullptr : increment_.turned[0].data(),
-          .turning = model_.has_frames()};
+          .turning = state_.D.data() != nullptr};
 }
 
 ForceView MechanicalSystem::force_view() {
@@ -161,8 +160,7 @@ Evaluation MechanicalSystem::evaluate() {
   if (known_) return *std::exchange(known_, std::nullopt);
   internal_ = executor_.gradient(state_, history_, gradient_);
   evaluate_loads();
-  const NodesView& nodes = data_.view().nodes;
-  space_.for_each(nodes.count, loops::AddInertiaAndLoads{nodes, force_view()});
+  space_.for_each(model_.dof_count(), loops::AddInertiaAndLoads{force_view()});
   dependents_.transfer(gradient_, dependent_forces_);
   Evaluation e;
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
@@ -171,7 +169,7 @@ Evaluation MechanicalSystem::evaluate() {
   return e;
 }
 
-/// What the verdict on the present state is made from.
+/// Collects what the verdict on the present state is made from.
 std::vector<PartForces> MechanicalSystem::forces_of_parts() {
   node_parts_.sum<kNodeQuantities>(loops::NodeReport{data_.view(), force_view()}, node_sums_.data());
   std::vector<PartForces> parts;

@@ -156,7 +156,7 @@ class MechanicalSystem {
   CpuExecutor& executor() { return executor_; }
   const Model& model() const { return model_; }
   const DofFilter& filter() const { return filter_; }
-  /// Where loops over nodes run, and what they see; with the factors of the last evaluation.
+  /// Where loops over nodes run, and the view that they have, with the factors set last.
   const PoolSpace& space() const { return space_; }
   const ModelView& nodes() const { return data_.view(); }
   /// At the state of the last evaluation.
@@ -186,7 +186,7 @@ class MechanicalSystem {
     space_.for_each(static_cast<int>(history_.E.size()), loop);
   }
   void evaluate_reached(std::span<const double> targets);
-  void add_support_inertia(const State& state, const State& before, double inverse_dt);
+  void add_support_inertia(const State& before, double inverse_dt);
   void note_stretches();
   State moved_by_velocity(double time);
   void find_prescribed(std::span<const double> factors, std::span<double> local);

@@ -8,7 +8,7 @@
 
 namespace fascia {
 
-/// What judges a connected part beside the sums over its nodes.
+/// All that judges a connected part beside the sums over its nodes.
 struct PartSizes {
   double rounding = 0;     ///< that is left in the forces of its blocks [N]
   double of_surfaces = 0;  ///< likewise of surface loads [N]

@@ -18,7 +18,7 @@ void MechanicalSystem::look_at(const State& state, double h) {
     history_.inverse_step = 1 / h;
   }
   evaluate_reached({});
-  add_support_inertia(state, state, 0);
+  add_support_inertia(state, 0);
 }
 
 void MechanicalSystem::look_back(const State& state, const State& before, const State& earlier, double dt) {
@@ -44,16 +44,15 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
     }
   }
   evaluate_reached(targets);
-  add_support_inertia(state, before, 1 / dt);
+  add_support_inertia(before, 1 / dt);
 }
 
 /// With the mass damping of what is held.
-/// @param state   with the velocities there
-/// @param before  a time 1/inverse_dt before
-void MechanicalSystem::add_support_inertia(const State& state, const State& before, double inverse_dt) {
-  space_.for_each(static_cast<int>(model_.constraints.size()),
-                  loops::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
-                                        before.Q_dot.data(), inverse_dt, gradient_.data()});
+/// @param before  a time 1/inverse_dt before the state
+void MechanicalSystem::add_support_inertia(const State& before, double inverse_dt) {
+  space_.for_each(
+      static_cast<int>(model_.constraints.size()),
+      loops::SupportInertia{step_view(), before.v.data(), before.Q_dot.data(), inverse_dt, gradient_.data()});
 }
 
 void MechanicalSystem::add_held_inertia(std::span<const PoseMotion> acceleration) {

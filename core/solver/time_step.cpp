@@ -110,11 +110,11 @@ void MechanicalSystem::start_acceleration(const State& start, double dt, StepMem
   form_.h = 0;  // forces without inertia
   executor_.gradient(state_, history_, gradient_);
   add_loads_and_inertia();
-  const NodesView& nodes = data_.view().nodes;
-  space_.for_each(nodes.count, loops::AddInertiaAndLoads{nodes, force_view()});
-  space_.for_each(nodes.count, loops::ForceOfAcceleration{step_view(), force_view(), work_.data()});
+  const int nodes = model_.node_count();
+  space_.for_each(model_.dof_count(), loops::AddInertiaAndLoads{force_view()});
+  space_.for_each(nodes, loops::ForceOfAcceleration{step_view(), force_view(), work_.data()});
   dependents_.transfer(work_);
-  space_.for_each(nodes.count, loops::StartAcceleration{step_view(), work_.data(), memory.acceleration.data()});
+  space_.for_each(nodes, loops::StartAcceleration{step_view(), work_.data(), memory.acceleration.data()});
 }
 
 }  // namespace fascia

@@ -8,21 +8,25 @@
 namespace fascia {
 
 /// The processor's memory, and loops on the threads of a pool; without one on the thread that calls. Sums are added in
-/// the order of HostSpace: they do not depend on the number of threads. Loops of few items wake no other thread.
+/// the order of HostSpace: they do not depend on the number of threads. Loops over few items wake no other thread.
 class PoolSpace : public HostMemory {
  public:
   PoolSpace() = default;
   explicit PoolSpace(ThreadPool& pool) : pool_(&pool) {}
 
-  /// As HostSpace::for_each().
+  /// body(i) for i < count.
   template <class Body>
   void for_each(int count, const Body& body) const {
-    for_ranges(count, kGrain, [&](int begin, int end) {
+    const auto range = [&](int begin, int end) {
       for (int i = begin; i < end; ++i) body(i);
-    });
+    };
+    if (pool_ == nullptr)
+      range(0, count);
+    else
+      pool_->for_ranges(count, kGrain, range);
   }
 
-  /// As HostSpace::sum().
+  /// body(i, sums) for i < count, then once end(totals).
   template <int K, int M = 0, class Body, class End>
   void sum(int count, const Body& body, const End& end) const {
     using Total = Sums<K, M>;
@@ -34,14 +38,12 @@ class PoolSpace : public HostMemory {
       return part;
     };
     Total total;
-    if (pool_ == nullptr || count <= kGrain) {
+    if (pool_ == nullptr || chunks <= 1) {
       for (int c = 0; c < chunks; ++c) total.add(of_chunk(c));
     } else {
       sums_.resize(std::max(sums_.size(), static_cast<std::size_t>(chunks) * (sizeof(Total) / sizeof(double))));
       auto* parts = reinterpret_cast<Total*>(sums_.data());
-      for_ranges(chunks, kGrain / kSumChunk, [&](int begin, int stop) {
-        for (int c = begin; c < stop; ++c) parts[c] = of_chunk(c);
-      });
+      pool_->for_chunks(chunks, [&](int c) { parts[c] = of_chunk(c); });
       for (int c = 0; c < chunks; ++c) total.add(parts[c]);
     }
     end(total);
@@ -49,14 +51,6 @@ class PoolSpace : public HostMemory {
 
  private:
   static constexpr int kGrain = 1024;  ///< items that one thread takes at once
-
-  template <class Work>
-  void for_ranges(int count, int grain, const Work& work) const {
-    if (pool_ == nullptr)
-      work(0, count);
-    else
-      pool_->for_ranges(count, grain, work);
-  }
 
   ThreadPool* pool_ = nullptr;
   mutable std::vector<double> sums_;  ///< of chunks

@@ -8,8 +8,8 @@
 /// Loops over constraints, and over nodes at the start and the end of a step.
 namespace fascia::loops {
 
-/// What the prescribed degrees of freedom still lack, in constraint axes. Goes over constraints; of other nodes it
-/// stays zero.
+/// Finds what the prescribed degrees of freedom still lack, in constraint axes. Goes over constraints; of other nodes
+/// it stays zero.
 struct FindPrescribed {
   ModelView m;
   PoseView pose;
@@ -84,7 +84,7 @@ struct StepEnd {
   const PoseMotion* before = nullptr;  ///< motion in a step before of the same length, or none
 };
 
-/// Of a scheme that solves for the end.
+/// Ends a step of a scheme that solves for the end.
 struct FinishStep {
   StepView s;
   StepEnd end;
@@ -111,7 +111,7 @@ struct FinishStep {
   }
 };
 
-/// Of the midpoint rule, without what is prescribed.
+/// Ends a midpoint step, without what is prescribed.
 struct FinishMiddle {
   StepView s;
   StepEnd end;
@@ -227,18 +227,19 @@ struct ForceOfAcceleration {
 
 /// Adds what accelerated supports carry of their own mass, and its damping.
 struct SupportInertia {
-  StepView s;
-  const Vec3d *v, *v_before;
-  const Mat3d *rate, *rate_before;
-  double inverse_dt;
+  StepView s;  ///< at its start
+  const Vec3d* v_before;
+  const Mat3d* rate_before;
+  double inverse_dt;  ///< from those velocities to the present ones
   double* gradient;
   FASCIA_HD void operator()(int k) const {
     const ModelView& m = s.model;
     const int i = m.constraints[k].node;
-    const Mat3d rate_change = s.turning ? (rate[i] - rate_before[i]) * inverse_dt : Mat3d{};
-    InertiaForce f = inertia_force(m.inertia[i], (v[i] - v_before[i]) * inverse_dt, rate_change);
+    const Mat3d rate = s.rate_at_start(i);
+    const Mat3d rate_change = s.turning ? (rate - rate_before[i]) * inverse_dt : Mat3d{};
+    InertiaForce f = inertia_force(m.inertia[i], (s.v0[i] - v_before[i]) * inverse_dt, rate_change);
     if (const FrameInertia* damping = m.damping_of(i); damping != nullptr) {
-      const InertiaForce drag = inertia_force(*damping, v[i], s.turning ? rate[i] : Mat3d{});
+      const InertiaForce drag = inertia_force(*damping, s.v0[i], rate);
       f.force += drag.force;
       f.moment += drag.moment;
     }

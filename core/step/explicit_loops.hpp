@@ -4,7 +4,7 @@
 #include "core/step/explicit_view.hpp"
 
 /// Loops over nodes of a step of central differences. A View is an ExplicitView, or one with forces() of its own.
-/// Frames: the model has nodes that turn; its vertices go as those of other models.
+/// Frames: the model has nodes that turn.
 namespace fascia::loops {
 
 /// Dead loads by degrees of freedom, where others join them.
@@ -15,11 +15,11 @@ struct StoreDeadLoads {
   FASCIA_HD void operator()(int i) const {
     double* own = load + m.nodes.dof[i];
     for (int k = 0; k < m.nodes.size(i); ++k) own[k] = 0;
-    m.add_dead_loads(i, pose.D_of(i), own);
+    m.add_dead_loads(m.nodes.kind[i], i, pose.D_of(i), own);
   }
 };
 
-/// A kick and a drift. Sums: kinetic energy and work.
+/// A kick and a drift; vertices beside frames go as those of other models. Sums: kinetic energy and work.
 template <class View, bool Frames>
 struct KickAndDrift {
   View s;
@@ -100,7 +100,7 @@ struct ReportVelocity {
   }
 };
 
-/// What acts on the nodes, with the sign of a gradient.
+/// Gathers what acts on the nodes, with the sign of a gradient.
 template <class View, bool Frames>
 struct GatherActing {
   View s;  ///< where blocks and loads were evaluated

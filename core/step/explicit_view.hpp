@@ -76,14 +76,14 @@ struct ExplicitView {
     return {v[i], {}};
   }
 
-  /// What loads do on a node, and all that acts on it.
+  /// Finds what loads do on a node, and all that acts on it.
   /// @param w  its velocity
   /// @param g  its entries of the gradient
   FASCIA_HD void act(const ExplicitNode& n, int i, const HalfStepVelocity& w, const double* g, double* acting_load,
                      double* force) const {
     const int count = dof_count(n.kind), first = m.nodes.dof[i];
     for (int k = 0; k < count; ++k) acting_load[k] = load == nullptr ? 0 : load[first + k];
-    if (load == nullptr) m.add_dead_loads(i, n.D, acting_load);
+    if (load == nullptr) m.add_dead_loads(n.kind, i, n.D, acting_load);
     for (int k = 0; k < count; ++k) force[k] = acting_load[k] - g[k];
     if (uneven != nullptr && n.kind != FrameKind::vertex) add_uneven_damping(n, uneven[i], w, force);
   }

@@ -21,7 +21,10 @@ class ModelData {
   ModelData& operator=(const ModelData&) = delete;
 
   const ModelView& view() const { return view_; }
-  void set_factors(std::span<const double> factors) { factors_.upload(factors); }
+  void set_factors(std::span<const double> factors) {
+    factors_.upload(factors);
+    view_.factors = factors_.data();
+  }
 
  private:
   Shown<Space, FrameKind> kind_;
@@ -85,8 +88,7 @@ ModelData<Space>::ModelData(const Model& model, const DofFilter& filter, std::si
            .rest_position = rest_position_.show(model.rest_position),
            .load_begin = load_begin_.data(),
            .loads = loads_.data(),
-           .factors = factors_.data(),
-           .constraint_count = static_cast<int>(model.constraints.size())};
+           .factors = factors_.data()};
 }
 
 }  // namespace fascia

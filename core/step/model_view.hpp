@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-/// What loops over the nodes of a model see: pointers into a space (core/space/space.hpp) and values, copied into each
+/// Loops over the nodes of a model see these: pointers into a space (core/space/space.hpp) and values, copied into each
 /// loop.
 namespace fascia {
 
@@ -42,7 +42,7 @@ struct ScheduledLoad {
   NodeLoad load;
 };
 
-/// What a model says of its nodes.
+/// All that a model says of its nodes.
 struct ModelView {
   NodesView nodes;
   const FrameInertia *inertia = nullptr, *damping = nullptr;  ///< damping: none where nothing is damped
@@ -56,7 +56,6 @@ struct ModelView {
   const int* load_begin = nullptr;  ///< (nodes + 1)
   const ScheduledLoad* loads = nullptr;
   const double* factors = nullptr;  ///< of schedules
-  int constraint_count = 0;
 
   FASCIA_HD void to_local(int node, double* v) const { turn_axes(node, false, v); }
   FASCIA_HD void to_global(int node, double* v) const { turn_axes(node, true, v); }
@@ -67,9 +66,9 @@ struct ModelView {
   FASCIA_HD const FrameInertia* damping_of(int node) const { return damping == nullptr ? nullptr : damping + node; }
   FASCIA_HD const DofTurn* turn_of(int node) const { return turn[node] < 0 ? nullptr : turns + turn[node]; }
   /// Adds dead loads to the entries of a node. @param D  its present A − I
-  FASCIA_HD void add_dead_loads(int node, const Mat3d& D, double* entries) const {
+  FASCIA_HD void add_dead_loads(FrameKind kind, int node, const Mat3d& D, double* entries) const {
     for (int k = load_begin[node]; k < load_begin[node + 1]; ++k)
-      add_dead_load(nodes.kind[node], loads[k].load, factors[loads[k].schedule], D, entries);
+      add_dead_load(kind, loads[k].load, factors[loads[k].schedule], D, entries);
   }
 
  private:

@@ -64,16 +64,13 @@ struct StoreLoadsAndInertia {
   }
 };
 
-/// gradient += inertia − load, once all loads are there.
+/// gradient += inertia − load, by degrees of freedom, once all loads are there.
 struct AddInertiaAndLoads {
-  NodesView nodes;
   ForceView f;
-  FASCIA_HD void operator()(int i) const {
-    for (int k = nodes.dof[i]; k < nodes.dof[i + 1]; ++k) f.gradient[k] += f.inertia[k] - f.load[k];
-  }
+  FASCIA_HD void operator()(int k) const { f.gradient[k] += f.inertia[k] - f.load[k]; }
 };
 
-/// What a residual is judged by.
+/// Sums that a residual is judged by.
 struct NodeReport {
   ModelView m;
   ForceView f;
@@ -170,7 +167,7 @@ struct StrainFromSteps {
   }
 };
 
-/// What dead loads and inertia add to the nodes' own blocks.
+/// Adds what dead loads and inertia are to the nodes' own blocks.
 struct AddLoadAndInertiaBlocks {
   StepView s;
   const Mat3d* Q;

@@ -62,7 +62,7 @@ FASCIA_HD inline void store_loads_and_inertia(const StepView& s, const ForceView
   double potential = 0, energy = 0, cancelled = 0;
   if (loaded || accelerated) {
     const Mat3d D = s.D_now(i);
-    m.add_dead_loads(i, D, load);
+    m.add_dead_loads(kind, i, D, load);
     for (int k = m.load_begin[i]; k < m.load_begin[i + 1]; ++k)
       potential -= m.factors[m.loads[k].schedule] * dead_load_work(m.loads[k].load, s.u[i], D);
     if (accelerated) {

@@ -50,12 +50,13 @@ class ExplicitSystem {
   /// Waits for the steps and says how they went.
   Progress progress() const { return progress_.downloaded()[0]; }
   const Pose& pose() const { return pose_; }
+  Pose& pose() { return pose_; }
   /// At the present step, without viscous stress.
   InternalEnergy energy();
   /// Of each constraint's node, at the last report_velocities().
   const Array<Space, PoseMotion>& held_accelerations() const { return held_acceleration_; }
 
-  // What ExplicitMode asks.
+  // ExplicitMode asks for these.
   Space space() const { return {}; }
   const Model& model() const { return model_; }
   int free_count() const { return filter_.free_count(); }

@@ -159,7 +159,7 @@ void System<Space>::evaluate_forces(bool quantities) {
   const ForceView f = force_view();
   Space::for_each(nodes.count, kernels::NodeForces{step_view(), blocks_.view(), f, L_.data(), tether_L_.data()});
   add_other_loads();
-  Space::for_each(nodes.count, loops::AddInertiaAndLoads{nodes, f});
+  Space::for_each(model_.dof_count(), loops::AddInertiaAndLoads{f});
   if (!dependents_.empty()) dependents_.transfer(nodes, gradient_.data(), dependent_forces_.data());
 }
 

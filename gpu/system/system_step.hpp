@@ -91,10 +91,8 @@ void System<Space>::look_at(const Pose& state, double h) {
   evaluate();
   internal_.viscous = 0;
   // Supports carry the mass damping of what they hold; nothing is accelerated.
-  const Vec3d* v = state.v.data();
-  const Mat3d* rate = state.Q_dot.data();
   Space::for_each(static_cast<int>(model_.constraints.size()),
-                  loops::SupportInertia{step_view(), v, v, rate, rate, 0, gradient_.data()});
+                  loops::SupportInertia{step_view(), state.v.data(), state.Q_dot.data(), 0, gradient_.data()});
 }
 
 template <class Space>
@@ -211,8 +209,7 @@ void System<Space>::look_back(const Pose& state, const Pose& before, const Pose&
   internal_.viscous = 0;
   if (!middles_.empty()) stretch_tethers(state.time);
   Space::for_each(static_cast<int>(model_.constraints.size()),
-                  loops::SupportInertia{step_view(), state.v.data(), before.v.data(), state.Q_dot.data(),
-                                        before.Q_dot.data(), 1 / dt, gradient_.data()});
+                  loops::SupportInertia{step_view(), before.v.data(), before.Q_dot.data(), 1 / dt, gradient_.data()});
 }
 
 /// Before the factors of the end take the place of those of the middle.
