@@ -22,6 +22,8 @@ class ExplicitStepper {
 
   /// @param factors  of all schedules at the start
   ExplicitStepper(MechanicalSystem& system, State& state, double dt, std::span<const double> factors);
+  ExplicitStepper(const ExplicitStepper&) = delete;
+  ExplicitStepper& operator=(const ExplicitStepper&) = delete;
 
   /// How long the next step and those after it are [s].
   void set_step(double dt) { times_ = LeapTimes::between(last_step_, dt); }
