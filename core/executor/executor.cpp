@@ -4,6 +4,7 @@
 #include "core/step/step_loops.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -103,7 +104,16 @@ void CpuExecutor::sum_forces(const State& state, bool keep_moments, std::span<do
   });
 }
 
+namespace {
+
+std::atomic<long> evaluations_so_far{0};
+
+}  // namespace
+
+long CpuExecutor::evaluations() { return evaluations_so_far; }
+
 void CpuExecutor::sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient) {
+  ++evaluations_so_far;
   for_each_block(
       [&](auto& block, std::size_t b) { block.compute_forces(state_of(state, history, b), all, part_motion_); });
   sum_forces(state, all, gradient);

@@ -105,6 +105,9 @@ class CpuExecutor {
 
   ThreadPool& pool() { return pool_; }
 
+  /// Evaluations of forces by all executors of this process so far: a run on a GPU makes none.
+  static long evaluations();
+
  private:
   template <class Kind>
   using Several = std::vector<Kind>;

@@ -36,12 +36,12 @@ constexpr int kChunkRows = N == 3 ? 8192 : 2048;
 /// What blocks of a row do: sum += A x_j, and y_j += Aᵀ x_i. Rows of a block are read a register at a time; what
 /// exceeds the row, the beginning of the next, meets zeros of x, or lands in numbers of y that nothing reads.
 template <int N>
-struct RowSums {
+struct UpperRowSums {
   static constexpr int kParities = N == 3 ? 2 : 1;  ///< of even and odd blocks: one addition need not wait for another
   Wide<N> sum[kParities][N] = {};
   Wide<N> x[N];
 
-  explicit RowSums(const double* xi) {
+  explicit UpperRowSums(const double* xi) {
     for (int i = 0; i < N; ++i) x[i] = Wide<N>{} + xi[i];
   }
   template <int Parity>
@@ -106,7 +106,7 @@ void BlockMatrix::multiply_chunk(int chunk) const {
     const int first = diagonal(row), last = row_begin(row + 1);
     const int* column = column_.data();
     const double* b = block(first);
-    RowSums<N> sums(x + W * row);
+    UpperRowSums<N> sums(x + W * row);
     sums.template add<0>(b, x + W * row);
     b += B;
     int k = first + 1;

@@ -157,7 +157,9 @@ TEST_P(DeviceForces, AreThoseOfTheProcessor) {
     return true;
   };
   const auto see_there = [&](const StepInfo&, ReachedStep& at) {
+    const long before = CpuExecutor::evaluations();
     got.push_back(forces_at(s, at));
+    EXPECT_EQ(CpuExecutor::evaluations(), before) << "the processor evaluated what the device had";
     return true;
   };
   State on_cpu = s.initial, there = s.initial;
