@@ -3,7 +3,8 @@
 #include "core/space/space.hpp"
 #include "core/step/explicit_view.hpp"
 
-/// Loops over nodes of a step of central differences. A View is an ExplicitView, or one with forces() of its own.
+/// Loops over nodes of a step of central differences. A View is an ExplicitView, or one with forces() and
+/// vertex_gradient() of its own.
 /// Frames: the model has nodes that turn.
 namespace fascia::loops {
 
@@ -28,13 +29,20 @@ struct KickAndDrift {
     ExplicitSums own;
     if (Frames && !s.is_vertex(i))
       step<Frames>(i, own);
-    else
+    else if (s.m.constraint[i] >= 0)
       step<false>(i, own);
+    else
+      step_free_vertex(i, own);
     sums.v[0] += own.kinetic;
     sums.v[1] += own.work;
   }
 
  private:
+  FASCIA_HD void step_free_vertex(int i, ExplicitSums& own) const {
+    const Vec3d load = s.vertex_load(i);
+    fascia::step_free_vertex(0.5 * s.times.kick * s.damping[i], s.m.inertia[i].mass, load, load - s.vertex_gradient(i),
+                             s.times, s.u[i], s.half_v[i], own);
+  }
   template <bool Turns>
   FASCIA_HD void step(int i, ExplicitSums& own) const {
     const ExplicitNode node = s.template node<Turns>(i);

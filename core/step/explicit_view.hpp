@@ -29,6 +29,10 @@ struct ExplicitView {
 
   FASCIA_HD bool skips(int i) const { return follows != nullptr && follows[i] != 0; }
   FASCIA_HD bool is_vertex(int i) const { return m.nodes.kind[i] == FrameKind::vertex; }
+  FASCIA_HD Vec3d vertex_load(int i) const {
+    return load == nullptr ? m.vertex_load(i) : vector_at(load + m.nodes.dof[i]);
+  }
+  FASCIA_HD Vec3d vertex_gradient(int i) const { return vector_at(gradient + m.nodes.dof[i]); }
 
   /// @tparam Frames  the node may be a frame, here and below
   template <bool Frames>
@@ -91,6 +95,9 @@ struct ExplicitView {
                         double* force) const {
     act(n, i, w, gradient + m.nodes.dof[i], acting_load, force);
   }
+
+ private:
+  FASCIA_HD static Vec3d vector_at(const double* v) { return {{v[0], v[1], v[2]}}; }
 };
 
 }  // namespace fascia

@@ -65,6 +65,13 @@ struct ModelView {
   }
   FASCIA_HD const FrameInertia* damping_of(int node) const { return damping == nullptr ? nullptr : damping + node; }
   FASCIA_HD const DofTurn* turn_of(int node) const { return turn[node] < 0 ? nullptr : turns + turn[node]; }
+  /// Sum of the dead loads on a vertex.
+  FASCIA_HD Vec3d vertex_load(int node) const {
+    Vec3d sum;
+    for (int k = load_begin[node]; k < load_begin[node + 1]; ++k)
+      sum += loads[k].load.force * factors[loads[k].schedule];
+    return sum;
+  }
   /// Adds dead loads to the entries of a node. @param D  its present A − I
   FASCIA_HD void add_dead_loads(FrameKind kind, int node, const Mat3d& D, double* entries) const {
     for (int k = load_begin[node]; k < load_begin[node + 1]; ++k)

@@ -36,13 +36,11 @@ struct StepView {
     }
     return n;
   }
-  /// Inertia of the step. A point mass asks for less.
-  FASCIA_HD StepInertia inertia(int i) const {
+  /// Inertia of the step at a vertex: a point mass asks for less than a frame.
+  FASCIA_HD StepInertia vertex_inertia(int i) const {
     const FrameInertia* damping = model.damping_of(i);
-    if (model.nodes.kind[i] == FrameKind::vertex)
-      return step_inertia(step, model.inertia[i].mass, damping != nullptr ? damping->mass : 0, du[i], q[i].u, w[i].u,
-                          v0[i]);
-    return step_inertia(step, node(i), damping, model.nodes.part_length[model.nodes.part[i]]);
+    return step_inertia(step, model.inertia[i].mass, damping != nullptr ? damping->mass : 0, du[i], q[i].u, w[i].u,
+                        v0[i]);
   }
 };
 
@@ -56,25 +54,35 @@ struct ForceView {
 FASCIA_HD inline void store_loads_and_inertia(const StepView& s, const ForceView& f, int i) {
   const ModelView& m = s.model;
   const FrameKind kind = m.nodes.kind[i];
-  const int first = m.nodes.dof[i], n = m.nodes.size(i);
-  const bool loaded = m.load_begin[i]<m.load_begin[i + 1], accelerated = s.step.h> 0;
-  double load[kMostDofs] = {}, inertia[kMostDofs] = {};
   double potential = 0, energy = 0, cancelled = 0;
-  if (loaded || accelerated) {
+  double *load = f.load + m.nodes.dof[i], *inertia = f.inertia + m.nodes.dof[i];
+  if (kind == FrameKind::vertex) {
+    const Vec3d acting = m.vertex_load(i);
+    potential = -dot(acting, s.u[i]);
+    StepInertia in;
+    if (s.step.h > 0) in = s.vertex_inertia(i);
+    energy = in.energy + in.damping_energy;
+    cancelled = in.cancelled_force;
+    for (int k = 0; k < 3; ++k) {
+      load[k] = acting[k];
+      inertia[k] = in.force[k];
+    }
+  } else {
     const Mat3d D = s.D_now(i);
-    m.add_dead_loads(kind, i, D, load);
+    double acting[kMostDofs] = {}, slowing[kMostDofs] = {};
+    m.add_dead_loads(kind, i, D, acting);
     for (int k = m.load_begin[i]; k < m.load_begin[i + 1]; ++k)
       potential -= m.factors[m.loads[k].schedule] * dead_load_work(m.loads[k].load, s.u[i], D);
-    if (accelerated) {
-      const StepInertia in = s.inertia(i);
-      add_node_force(kind, D, in.force, in.moment, {}, inertia);
+    if (s.step.h > 0) {
+      const StepInertia in = step_inertia(s.step, s.node(i), m.damping_of(i), m.nodes.part_length[m.nodes.part[i]]);
+      add_node_force(kind, D, in.force, in.moment, {}, slowing);
       energy = in.energy + in.damping_energy;
       cancelled = in.cancelled_force;
     }
-  }
-  for (int k = 0; k < n; ++k) {
-    f.load[first + k] = load[k];
-    f.inertia[first + k] = inertia[k];
+    for (int k = 0; k < dof_count(kind); ++k) {
+      load[k] = acting[k];
+      inertia[k] = slowing[k];
+    }
   }
   f.node_energy[3 * i] = potential;
   f.node_energy[3 * i + 1] = energy;

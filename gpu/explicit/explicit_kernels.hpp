@@ -39,6 +39,13 @@ struct ExplicitBlocksView : ExplicitView {
     if (kind == FrameKind::rigid)
       for (int k = 0; k < 3; ++k) g[3 + k] += sums.torque[k];
   }
+  FASCIA_HD Vec3d vertex_gradient(int i) const {
+    if (gradient != nullptr) return ExplicitView::vertex_gradient(i);
+    NodeSums sums;
+    blocks.add_sums(i, sums);
+    if (blocks.has_springs) blocks.springs.add_sums(i, sums);
+    return sums.force;
+  }
   FASCIA_HD void forces(const ExplicitNode& n, int i, const HalfStepVelocity& w, double* acting_load,
                         double* force) const {
     if (gradient != nullptr) return ExplicitView::forces(n, i, w, acting_load, force);
