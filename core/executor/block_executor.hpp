@@ -27,10 +27,10 @@ struct InternalEnergy {
   }
 };
 
-/// Holds the elastic energy of each group of points, block of elements, shell and spring, and the stabilisation of
-/// groups [J].
+/// Holds the elastic energy of each group of points, block of elements, shell, user block and spring, and the
+/// stabilisation of groups [J].
 struct BlockEnergies {
-  std::vector<double> groups, stabilization, blocks, shells, springs;
+  std::vector<double> groups, stabilization, blocks, shells, user_blocks, springs;
 };
 
 /// An assembly must fill all entries, or at least those of the diagonal.

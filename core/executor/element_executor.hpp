@@ -17,8 +17,8 @@ class ElementExecutor {
 
   static constexpr bool kSeesMotions = false, kSeesTranslations = true, kSeesStateAgain = true;
 
-  /// (batches × points × 6 × 8)
   bool empty() const { return block_.count == 0; }
+  /// (batches × points × 6 × 8)
   std::size_t strain_size() const;
   void store_strain(const BlockState& state, std::span<double> E);
   /// Sums forces by patch.

@@ -153,6 +153,7 @@ BlockEnergies CpuExecutor::energies() const {
   out.stabilization.assign(points().group_stabilization().begin(), points().group_stabilization().end());
   for (const ElementExecutor& block : of_kind<ElementExecutor>()) out.blocks.push_back(block.energy().elastic);
   for (const ShellExecutor& shell : of_kind<ShellExecutor>()) out.shells.push_back(shell.energy().elastic);
+  for (const UserExecutor& block : of_kind<UserExecutor>()) out.user_blocks.push_back(block.energy().elastic);
   out.springs.assign(springs_.energies().begin(), springs_.energies().end());
   return out;
 }

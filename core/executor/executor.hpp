@@ -105,7 +105,7 @@ class CpuExecutor {
 
   ThreadPool& pool() { return pool_; }
 
-  /// Evaluations of forces by all executors of this process so far: a run on a GPU makes none.
+  /// Evaluations of forces by all executors of this process so far. Tests see by it where results were evaluated.
   static long evaluations();
 
  private:

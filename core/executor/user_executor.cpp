@@ -10,6 +10,7 @@ namespace fascia {
 namespace {
 
 constexpr int kGrain = 16;
+constexpr int kAssembledAtOnce = 256;  ///< cells whose matrices wait to be added
 
 }  // namespace
 
@@ -20,6 +21,7 @@ UserExecutor::UserExecutor(const UserBlock& block, const PointSet& set, ThreadPo
       slot_sums_(at(block.count) * at(block.nodes)),
       poses_(slot_sums_.size()),
       motions_(slot_sums_.size()),
+      dx_(slot_sums_.size()),
       node_slot_begin_(at(set.node_count()) + 1),
       cell_energy_(at(block.count)),
       cell_rounding_(at(block.count)) {
@@ -35,9 +37,9 @@ UserExecutor::UserExecutor(const UserBlock& block, const PointSet& set, ThreadPo
 }
 
 template <class Act>
-void UserExecutor::for_each_cell(const Act& act) {
-  pool_.for_ranges(block_.count, kGrain, [&](int begin, int end) {
-    for (int cell = begin; cell < end; ++cell) act(cell);
+void UserExecutor::for_cells(int begin, int end, const Act& act) {
+  pool_.for_ranges(end - begin, kGrain, [&](int first, int last) {
+    for (int cell = begin + first; cell < begin + last; ++cell) act(cell);
   });
 }
 
@@ -49,22 +51,25 @@ std::span<const CellPose> UserExecutor::take_poses(const BlockState& state, int 
   return poses;
 }
 
+/// Rounding is that of the forces, and of the nodes' motion, of whichever part moves most.
 void UserExecutor::compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion) {
-  for_each_cell([&](int cell) {
+  for_cells(0, block_.count, [&](int cell) {
     const std::span<CellForce> out = of_cell(slot_sums_, cell);
     std::fill(out.begin(), out.end(), CellForce{});
     const double energy = block_.forces(cell, take_poses(state, cell), out);
     if (!energies) return;
     cell_energy_[at(cell)] = energy;
-    const double motion = part_motion[at(set_.node_part[at(block_.cell(cell)[0])])];
+    double motion = 0, squares = 0;
+    for (const int node : block_.cell(cell)) motion = std::max(motion, part_motion[at(set_.node_part[at(node)])]);
+    for (const CellForce& f : out) squares += squared_norm(f.force);
     const double force = block_.stiffness(cell) * block_.length * motion;
-    cell_rounding_[at(cell)] = force * force;
+    cell_rounding_[at(cell)] = squares + force * force;
   });
   if (energies) energy_ = std::accumulate(cell_energy_.begin(), cell_energy_.end(), 0.0);
 }
 
 void UserExecutor::compute_product(const BlockState& state, const BlockDirection& direction) {
-  for_each_cell([&](int cell) {
+  for_cells(0, block_.count, [&](int cell) {
     const std::span<CellForce> out = of_cell(slot_sums_, cell);
     std::fill(out.begin(), out.end(), CellForce{});
     const std::span<CellMotion> motions = of_cell(motions_, cell);
@@ -87,57 +92,93 @@ void UserExecutor::add_sums(int node, NodeSum& sum) const {
   }
 }
 
+/// A cell may tie parts of different stiffness together: each of them has its rounding.
 void UserExecutor::add_rounding(std::span<double> squares_of_parts) const {
-  for (int cell = 0; cell < block_.count; ++cell)
-    squares_of_parts[at(set_.node_part[at(block_.cell(cell)[0])])] += cell_rounding_[at(cell)];
+  for (int cell = 0; cell < block_.count; ++cell) {
+    const std::span<const int> nodes = block_.cell(cell);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const int part = set_.node_part[at(nodes[a])];
+      const auto same = [&](int node) { return set_.node_part[at(node)] == part; };
+      if (std::find_if(nodes.begin(), nodes.end(), same) == nodes.begin() + static_cast<std::ptrdiff_t>(a))
+        squares_of_parts[at(part)] += cell_rounding_[at(cell)];
+    }
+  }
 }
 
-/// By rows, over the degrees of freedom of the cell's nodes.
-std::vector<double> UserExecutor::matrix_of_cell(const BlockState& state, int cell) {
+double UserExecutor::largest_spin(const BlockDirection& direction) {
+  double largest = 0;
+  for (int cell = 0; cell < block_.count; ++cell) {
+    const std::span<Vec3d> dx = of_cell(dx_, cell);
+    for (std::size_t a = 0; a < dx.size(); ++a) dx[a] = direction.dx[at(block_.cell(cell)[a])];
+    largest = std::max(largest, block_.spin(cell, dx));
+  }
+  return largest;
+}
+
+int UserExecutor::dofs_of_cell(int cell) const {
+  int sum = 0;
+  for (const int node : block_.cell(cell)) sum += set_.dofs.size(node);
+  return sum;
+}
+
+void UserExecutor::fill_matrix(const BlockState& state, int cell, std::span<double> K) {
   const std::span<const int> nodes = block_.cell(cell);
   const std::span<const CellPose> poses = take_poses(state, cell);
-  std::vector<int> begin{0};
-  for (const int node : nodes) begin.push_back(begin.back() + set_.dofs.size(node));
-  const int n = begin.back();
-  std::vector<double> K(at(n) * at(n));
-  std::vector<CellMotion> motions(nodes.size());
-  std::vector<CellForce> out(nodes.size());
+  const std::span<CellMotion> motions = of_cell(motions_, cell);
+  const std::span<CellForce> out = of_cell(slot_sums_, cell);
+  const int n = dofs_of_cell(cell);
+  std::fill(motions.begin(), motions.end(), CellMotion{});
+  int column = 0;
   for (std::size_t b = 0; b < nodes.size(); ++b) {
-    for (int k = 0; k < set_.dofs.size(nodes[b]); ++k) {
+    for (int k = 0; k < set_.dofs.size(nodes[b]); ++k, ++column) {
       double unit[kMostDofs] = {};
       unit[k] = 1;
       motions[b] = {Vec3d{{unit[0], unit[1], unit[2]}},
                     frame_variation(set_.dofs.kind(nodes[b]), unit + 3, Mat3d::identity() + poses[b].D)};
       std::fill(out.begin(), out.end(), CellForce{});
       block_.product(cell, poses, state.tangent, motions, out);
+      int row = 0;
       for (std::size_t a = 0; a < nodes.size(); ++a) {
-        double column[kMostDofs] = {out[a].force[0], out[a].force[1], out[a].force[2]};
-        add_moment(set_.dofs.kind(nodes[a]), out[a].N, Mat3d::identity() + poses[a].D, column + 3);
-        for (int i = 0; i < set_.dofs.size(nodes[a]); ++i) K[at(n * (begin[a] + i) + begin[b] + k)] = column[i];
+        double entries[kMostDofs] = {out[a].force[0], out[a].force[1], out[a].force[2]};
+        add_moment(set_.dofs.kind(nodes[a]), out[a].N, Mat3d::identity() + poses[a].D, entries + 3);
+        for (int i = 0; i < set_.dofs.size(nodes[a]); ++i, ++row) K[at(n * row + column)] = entries[i];
       }
     }
     motions[b] = {};
   }
-  return K;
 }
 
-void UserExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Entries /*entries*/) {
-  std::vector<std::vector<double>> K(at(block_.count));
-  for_each_cell([&](int cell) { K[at(cell)] = matrix_of_cell(state, cell); });
-  for (int cell = 0; cell < block_.count; ++cell) {
-    const std::span<const int> nodes = block_.cell(cell);
-    std::vector<int> begin{0};
-    for (const int node : nodes) begin.push_back(begin.back() + set_.dofs.size(node));
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      for (std::size_t b = 0; b < nodes.size(); ++b) {
-        const bool filled = matrix.fills_upper() ? nodes[a] <= nodes[b] : nodes[a] >= nodes[b];
-        if (!filled) continue;
-        double* block = matrix.block(matrix.find(nodes[a], nodes[b]));
-        const int rows = begin[a + 1] - begin[a], columns = begin[b + 1] - begin[b];
-        for (int i = 0; i < rows; ++i)
-          for (int j = 0; j < columns; ++j)
-            block[columns * i + j] += K[at(cell)][at(begin.back() * (begin[a] + i) + begin[b] + j)];
+void UserExecutor::add_matrix(int cell, std::span<const double> K, Entries entries, BlockMatrix& matrix) const {
+  const std::span<const int> nodes = block_.cell(cell);
+  const int n = dofs_of_cell(cell);
+  int row = 0;
+  for (const int a : nodes) {
+    int column = 0;
+    for (const int b : nodes) {
+      const bool asked = entries == Entries::all || a == b;
+      if (asked && (matrix.fills_upper() ? a <= b : a >= b)) {
+        double* block = matrix.block(matrix.find(a, b));
+        for (int i = 0; i < set_.dofs.size(a); ++i)
+          for (int j = 0; j < set_.dofs.size(b); ++j)
+            block[set_.dofs.size(b) * i + j] += K[at(n * (row + i) + column + j)];
       }
+      column += set_.dofs.size(b);
+    }
+    row += set_.dofs.size(a);
+  }
+}
+
+/// Overwrites the sums of the last forces or product.
+void UserExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Entries entries) {
+  int most = 0;
+  for (int cell = 0; cell < block_.count; ++cell) most = std::max(most, dofs_of_cell(cell));
+  const std::size_t size = at(most) * at(most);
+  std::vector<double> K(size * at(std::min(block_.count, kAssembledAtOnce)));
+  const auto of = [&](int cell, int begin) { return std::span(K).subspan(at(cell - begin) * size, size); };
+  for (int begin = 0; begin < block_.count; begin += kAssembledAtOnce) {
+    const int end = std::min(block_.count, begin + kAssembledAtOnce);
+    for_cells(begin, end, [&](int cell) { fill_matrix(state, cell, of(cell, begin)); });
+    for (int cell = begin; cell < end; ++cell) add_matrix(cell, of(cell, begin), entries, matrix);
   }
 }
 

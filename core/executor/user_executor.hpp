@@ -15,7 +15,7 @@ class UserExecutor {
  public:
   UserExecutor(const UserBlock& block, const PointSet& set, ThreadPool& pool);
 
-  static constexpr bool kSeesMotions = true, kSeesTranslations = false, kSeesStateAgain = false;
+  static constexpr bool kSeesMotions = true, kSeesTranslations = true, kSeesStateAgain = false;
 
   bool empty() const { return block_.count == 0; }
   static std::size_t strain_size() { return 0; }
@@ -28,7 +28,7 @@ class UserExecutor {
   void add_sums(int node, NodeSum& sum) const;
   InternalEnergy energy() const { return {energy_, 0, 0}; }
   void add_rounding(std::span<double> squares_of_parts) const;
-  static double largest_spin(const BlockDirection&) { return 0; }
+  double largest_spin(const BlockDirection& direction);
 
  private:
   std::span<const CellPose> take_poses(const BlockState& state, int cell);
@@ -37,10 +37,13 @@ class UserExecutor {
   std::span<T> of_cell(std::vector<T>& by_slot, int cell) {
     return std::span(by_slot).subspan(at(block_.nodes * cell), at(block_.nodes));
   }
-  std::vector<double> matrix_of_cell(const BlockState& state, int cell);
-  /// Calls act(cell) on all threads.
+  /// Fills the matrix of a cell by rows, over the degrees of freedom of its nodes.
+  void fill_matrix(const BlockState& state, int cell, std::span<double> K);
+  void add_matrix(int cell, std::span<const double> K, Entries entries, BlockMatrix& matrix) const;
+  int dofs_of_cell(int cell) const;
+  /// Calls act(cell) for a range on all threads.
   template <class Act>
-  void for_each_cell(const Act& act);
+  void for_cells(int begin, int end, const Act& act);
 
   const UserBlock& block_;
   const PointSet& set_;
@@ -48,6 +51,7 @@ class UserExecutor {
   std::vector<CellForce> slot_sums_;  ///< (cells × nodes)
   std::vector<CellPose> poses_;
   std::vector<CellMotion> motions_;
+  std::vector<Vec3d> dx_;
   std::vector<int> node_slot_begin_, node_slot_;  ///< slots of each node of the model, ascending
   std::vector<double> cell_energy_, cell_rounding_;
   double energy_ = 0;

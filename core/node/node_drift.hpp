@@ -67,10 +67,11 @@ FASCIA_HD inline void add_boundary_work(const ExplicitNode& node, double* force,
 /// The whole step of a vertex that nothing holds. @param force  all that acts on it
 FASCIA_HD inline void step_free_vertex(double damping, double mass, const Vec3d& load, const Vec3d& force,
                                        const LeapTimes& times, Vec3d& u, Vec3d& v, ExplicitSums& sums) {
-  v = kicked_vertex(damping, mass, v, force, times.kick);
-  u += v * times.drift;
-  sums.kinetic += 0.5 * mass * squared_norm(v);
-  sums.work += dot(load, v) * times.drift;
+  const Vec3d next = kicked_vertex(damping, mass, v, force, times.kick);  // read back from v, it would wait for it
+  v = next;
+  u += next * times.drift;
+  sums.kinetic += 0.5 * mass * squared_norm(next);
+  sums.work += dot(load, next) * times.drift;
 }
 
 /// dx/dt and dQ/dt of a node from its velocity, and back.

@@ -18,16 +18,15 @@ namespace fascia {
 ///   space(), model(), free_count(), view(), for_nodes(act)
 ///   pose()                                 the present state
 ///   keep_strain()                          viscous stress is against that of the present state from here on
-///   gather_acting(pose, inverse_step, out) finds what acts on the nodes there, with the sign of a gradient, but for
-///   mass
-///                                          damping; with the viscous stress of that 1/dt
+///   gather_acting(pose, inverse_step, out) finds forces there, with the sign of a gradient and the viscous stress of
+///                                          that 1/dt, without mass damping
 ///   place_dependents(pose)
 template <class System>
 class ExplicitMode {
  public:
   explicit ExplicitMode(System& system)
       : system_(system), space_(system.space()), dofs_(system.model().dof_count()), moved_(system.pose()) {
-    // Of the pose that moves, displacements and D alone are used.
+    // Nothing but displacements and D is used of the pose that moves.
     moved_.v = {};
     moved_.Q_dot = {};
     moved_.turned = {};

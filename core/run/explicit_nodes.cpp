@@ -30,9 +30,8 @@ ExplicitNodes::ExplicitNodes(const Model& model, double dt) {
   center.resize(n);
   damping.resize(n);
   affine.resize(n);
-  constraint.assign(n, -1);
-  for (std::size_t k = 0; k < model.constraints.size(); ++k)
-    constraint[at(model.constraints[k].node)] = static_cast<int>(k);
+  std::vector<char> held(n, 0);
+  for (const FrameConstraint& c : model.constraints) held[at(c.node)] = 1;
   const std::vector<DependentNode>& dependents = model.points.dependents;
   if (!dependents.empty()) follows.assign(n, 0);
   for (const DependentNode& d : dependents)
@@ -51,7 +50,7 @@ ExplicitNodes::ExplicitNodes(const Model& model, double dt) {
     }
     const double still = 1e-10 * model.points.part_length[at(model.points.node_part[i])] / dt;
     rounding_energy += inertia.mass * still * still;
-    if (constraint[i] >= 0) continue;
+    if (held[i] != 0) continue;
     if (model.frame_kind[i] == FrameKind::rigid) {
       turning[i] = SpinInertia(inertia);
       if (massive) center[i] = inertia.first * (1 / inertia.mass);

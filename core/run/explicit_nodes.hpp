@@ -14,7 +14,6 @@ struct ExplicitNodes {
   std::vector<double> damping;       ///< α [1/s]
   /// Mass damping of hosts beyond α times their inertia: what they carry may be damped otherwise. Empty: none.
   std::vector<FrameInertia> uneven_damping;
-  std::vector<int> constraint;                       ///< of each node, −1: none
   std::vector<std::array<double, 16>> inverse_mass;  ///< of free affine frames: (origin, axes)²
   std::vector<int> affine;                           ///< index into it
   std::vector<char> follows;                         ///< nodes all of which depends on others; empty: none

@@ -39,7 +39,7 @@ class ExplicitStepper {
   /// step
   void report_velocities(std::span<const double> factors);
 
-  /// Of each constraint's node, at the last call of report_velocities().
+  /// Accelerations of each constraint's node, at the last call of report_velocities().
   std::span<const PoseMotion> held_accelerations() const { return held_acceleration_; }
 
   double kinetic_energy() const { return kinetic_; }  ///< of nodes that nothing holds, at the last half step [J]

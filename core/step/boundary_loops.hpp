@@ -227,7 +227,7 @@ struct ForceOfAcceleration {
 
 /// Adds what accelerated supports carry of their own mass, and its damping.
 struct SupportInertia {
-  StepView s;  ///< at its start
+  StepView s;  ///< of no length, which starts at the state
   const Vec3d* v_before;
   const Mat3d* rate_before;
   double inverse_dt;  ///< from those velocities to the present ones

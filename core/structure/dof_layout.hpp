@@ -38,7 +38,7 @@ class DofLayout {
   /// Where a frame's own square block starts in an array of such blocks.
   std::size_t block_begin(int node) const { return block_begin_[at(node)]; }
   std::size_t block_total() const { return block_begin_.back(); }
-  // The same by node; begins also have where a next node would be.
+  // Arrays of these by node; begins also have where a next node would be.
   const std::vector<FrameKind>& kinds() const { return kind_; }
   const std::vector<int>& begins() const { return begin_; }
   const std::vector<std::size_t>& block_begins() const { return block_begin_; }

@@ -28,8 +28,8 @@ bool Model::has_frames() const {
 }
 
 bool Model::is_linear() const {
-  return !has_frames() && points.point_count == 0 && points.springs.empty() && points.dependents.empty() &&
-         followers.empty() && surfaces.empty() &&
+  return !has_frames() && points.point_count == 0 && points.springs.empty() && points.user_blocks.empty() &&
+         points.dependents.empty() && followers.empty() && surfaces.empty() &&
          std::all_of(points.blocks.begin(), points.blocks.end(),
                      [](const ElementBlock& block) { return block.law == Law::linear; });
 }

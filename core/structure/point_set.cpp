@@ -91,14 +91,7 @@ void PointSetBuilder::add_shell(ShellBlock shell) {
 }
 
 void PointSetBuilder::add_user_block(std::shared_ptr<const UserBlock> block) {
-  for (int c = 0; c < block->count; ++c) {
-    const std::span<const int> nodes = block->cell(c);
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      if (std::find(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(a), nodes[a]) !=
-          nodes.begin() + static_cast<std::ptrdiff_t>(a))
-        throw InputError("cell " + std::to_string(c) + " of a user block names node " + std::to_string(nodes[a]) +
-                         " twice; a node may stand once in a cell");
-  }
+  if (!block) throw InputError("a user block is missing; give one");
   set_.user_blocks.push_back(std::move(block));
 }
 
@@ -120,6 +113,15 @@ void transpose_incidence(PointSet& set) {
     const auto node = static_cast<std::size_t>(set.slot_node[static_cast<std::size_t>(slot)]);
     set.node_slot[static_cast<std::size_t>(next[node]++)] = slot;
   }
+}
+
+void check_user_blocks(const PointSet& set) {
+  for (const auto& block : set.user_blocks)
+    for (int c = 0; c < block->count; ++c)
+      for (const int node : block->cell(c))
+        if (node >= set.node_count())
+          throw InputError("cell " + std::to_string(c) + " of a user block names node " + std::to_string(node) +
+                           "; the model has " + std::to_string(set.node_count()));
 }
 
 /// Puts each dependent node behind those of its hosts that depend on others.
@@ -156,6 +158,7 @@ void sort_dependents(PointSet& set) {
 
 PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   set_.dofs = DofLayout(std::move(frames));
+  check_user_blocks(set_);
   transpose_incidence(set_);
   sort_dependents(set_);
   find_parts(set_, group_length_, joints_);

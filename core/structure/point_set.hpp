@@ -127,7 +127,6 @@ class PointSetBuilder {
 
   int shell_count() const { return static_cast<int>(set_.shells.size()); }
 
-  /// @throws InputError  where a cell names a node twice
   void add_user_block(std::shared_ptr<const UserBlock> block);
 
   int spring_count() const { return static_cast<int>(set_.springs.size()); }
@@ -139,6 +138,7 @@ class PointSetBuilder {
 
   void join(std::vector<int> nodes, double length) { joints_.push_back({std::move(nodes), length}); }
 
+  /// @throws InputError  where a user block names a node that there is not
   PointSet finish(std::vector<FrameKind> frames) &&;
 
  private:

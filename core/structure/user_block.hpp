@@ -5,7 +5,6 @@
 #include "core/physics/point_physics.hpp"
 
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace fascia {
@@ -20,42 +19,43 @@ struct CellMotion {
   Vec3d dx{};
   Mat3d dA{};
 };
-/// What is conjugate to it: ∂ψ/∂u [N] and ∂ψ/∂D [N m].
+/// Conjugate to it: ∂ψ/∂u [N] and ∂ψ/∂D [N m].
 struct CellForce {
   Vec3d force{};
   Mat3d N{};
 };
 
 /// Matter of the caller's own between nodes: cells with an energy of the poses of their nodes. It goes with the points,
-/// elements and shells of a model through statics, dynamics, modes and paths on the processor. Rotations of rigid
-/// frames need no care: the energy is one of u and D, and the derivatives are those with respect to their entries.
+/// elements and shells of a model through statics, dynamics, explicit steps and modes on the processor. Rotations of
+/// rigid frames need no care: the energy is one of u and D, and the derivatives are those with respect to their
+/// entries.
 ///
-/// Cells are computed on all threads: the functions of a cell are const, and must not throw.
+/// Cells are computed on all threads: the functions of a cell change nothing, and must not throw.
 class UserBlock {
  public:
-  /// @param cell_nodes   of a cell
-  /// @param cells        of the model (cells × nodes); no node twice in a cell
-  /// @param cell_length  compares torques with forces [m]
-  UserBlock(int cell_nodes, std::vector<int> cells, double cell_length)
-      : nodes(cell_nodes),
-        count(static_cast<int>(cells.size()) / cell_nodes),
-        length(cell_length),
-        cells_(std::move(cells)) {}
+  /// @param cell_nodes   number of nodes of a cell
+  /// @param cells        nodes of the model, cell after cell; no node twice in a cell
+  /// @param cell_length  distance of a cell's nodes: its cube weighs the cell in the length of its part, which compares
+  ///                     torques with forces; times stiffness() it is the cell's stiffness in N/m
+  /// @throws InputError  where these do not fit together
+  UserBlock(int cell_nodes, std::vector<int> cells, double cell_length);
   virtual ~UserBlock() = default;
   UserBlock(const UserBlock&) = delete;
   UserBlock& operator=(const UserBlock&) = delete;
 
   /// The energy of a cell [J]. Adds its gradient. @param poses, gradient  (nodes)
   virtual double forces(int cell, std::span<const CellPose> poses, std::span<CellForce> gradient) const = 0;
-  /// Adds the second derivative times a motion: symmetric. Of Tangent::material, a part of it that is never negative.
+  /// Adds the second derivative times a motion: symmetric. For Tangent::material a part of it that is never negative.
   virtual void product(int cell, std::span<const CellPose> poses, Tangent tangent, std::span<const CellMotion> motions,
                        std::span<CellForce> out) const = 0;
-  /// What an elastic modulus of its matter would be: tells stiff parts from soft ones, and large forces from rounding
-  /// [Pa].
+  /// The elastic modulus that its matter would have [Pa]: tells stiff parts from soft ones, and forces from rounding.
   virtual double stiffness(int cell) const = 0;
+  /// Rotation of a cell by small displacements of its nodes [rad], as far as frames do not show it: Newton's method
+  /// takes no step that turns one by more than a right angle or so.
+  virtual double spin(int /*cell*/, std::span<const Vec3d> /*dx*/) const { return 0; }
 
   std::span<const int> cell(int index) const { return std::span(cells_).subspan(at(index) * at(nodes), at(nodes)); }
-  /// As all blocks have it (blocks.hpp).
+  /// Calls act(nodes, stiffness [Pa]) for each cell, as all blocks do (blocks.hpp).
   template <class Act>
   void for_each_cell(const Act& act) const {
     for (int c = 0; c < count; ++c) act(cell(c), stiffness(c));

@@ -6,12 +6,18 @@
 /// The bodies of Blocks, for the files that instantiate it. A kind that the model does not have costs nothing.
 namespace fascia::gpu {
 
+/// Refuses what has no kind here, before anything is made.
+inline const PointSet& known_blocks(const PointSet& set) {
+  if (!set.user_blocks.empty()) throw InputError("user blocks are computed on processors alone; run this model there");
+  return set;
+}
+
 template <class Space>
 Blocks<Space>::Blocks(const PointSet& set, Precision precision)
-    : kinds_(Points<Space>(set, precision), Elements<Space>(set, precision), Shells<Space>(set, precision)),
+    : kinds_(Points<Space>(known_blocks(set), precision), Elements<Space>(set, precision),
+             Shells<Space>(set, precision)),
       springs_(set),
       parts_(set.part_count()) {
-  if (!set.user_blocks.empty()) throw InputError("user blocks are computed on processors alone; run this model there");
   for_each_kind([&](const auto& kind, std::size_t begin) {
     sum_kind(kind, set);
     strain_size_ = begin + kind.strain_size();

@@ -53,7 +53,7 @@ class ExplicitSystem {
   Pose& pose() { return pose_; }
   /// At the present step, without viscous stress.
   InternalEnergy energy();
-  /// Of each constraint's node, at the last report_velocities().
+  /// Accelerations of each constraint's node, at the last report_velocities().
   const Array<Space, PoseMotion>& held_accelerations() const { return held_acceleration_; }
 
   // ExplicitMode asks for these.

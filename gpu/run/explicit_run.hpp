@@ -4,6 +4,7 @@
 #include "core/run/explicit_dynamics.hpp"
 #include "gpu/explicit/explicit.hpp"
 #include "gpu/run/run.hpp"
+#include "gpu/space/device.hpp"
 #include "gpu/system/host_system.hpp"
 #include "gpu/system/system.hpp"
 
@@ -15,30 +16,51 @@
 /// The body of explicit runs, for the files that instantiate it.
 namespace fascia::gpu {
 
-/// What acts at states of an explicit run, looked at by a system beside it, which is made when it is first asked for:
-/// steps know neither energies nor what supports carry.
+/// Looks at what acts at states of an explicit run, by a system beside it, which is made when it is first asked for:
+/// steps know neither energies of blocks nor what supports carry. Where the space has no room for it, the host looks.
 template <class Space>
 class ExplicitLooker {
  public:
-  ExplicitLooker(const Model& model, const FactorFunction& factors) : model_(model), factors_(factors) {}
+  ExplicitLooker(const Model& model, const FactorFunction& factors, const SolverSettings& settings)
+      : model_(model), factors_(factors), settings_(settings) {}
 
-  /// At the state that the run has reached, with velocities. @param dt  of the step that led there [s]
-  System<Space>& look_at(const ExplicitSystem<Space>& run, double dt) {
+  /// Reads the state that the run has reached, with velocities. @param dt  of the step that led there [s]
+  void read(const ExplicitSystem<Space>& run, const State& state, double dt, const ReachedParts& parts,
+            ReachedForces& out) {
+    if (!host_) {
+      try {
+        return read_in_space(run, state, dt, parts, out);
+      } catch (const DeviceMemoryError&) {
+        system_.reset();
+      }
+      host_.emplace(model_, settings_);
+    }
+    host_->system.set_factors(factors_(state.time));
+    host_->system.look_at(state, dt);
+    host_->system.add_held_inertia(run.held_accelerations().downloaded());
+    host_->system.read(parts, state, out);
+  }
+
+ private:
+  void read_in_space(const ExplicitSystem<Space>& run, const State& state, double dt, const ReachedParts& parts,
+                     ReachedForces& out) {
     if (!system_) {
       SolverSettings settings;
       settings.preconditioner = PreconditionerKind::jacobi;  // no tiles, which only solves need
       system_.emplace(model_, settings);
     }
-    system_->set_factors(factors_(run.pose().time));
+    system_->set_factors(factors_(state.time));
     system_->look_at(run.pose(), dt);
     system_->add_held_inertia(run.held_accelerations());
-    return *system_;
+    system_->read(parts, out);
+    if (parts.forces) read_tethers(model_, system_->tether_targets(), state, out);
   }
 
- private:
   const Model& model_;
   const FactorFunction& factors_;
+  const SolverSettings& settings_;
   std::optional<System<Space>> system_;
+  std::optional<HostSystem> host_;
 };
 
 /// A step whose velocities were reported.
@@ -58,10 +80,7 @@ class ReachedExplicitStep final : public ReachedStep {
     return state_;
   }
   void read(const ReachedParts& parts, ReachedForces& out) override {
-    if (!parts.any()) return;
-    System<Space>& looker = looker_.look_at(system_, dt_);
-    looker.read(parts, out);
-    if (parts.forces) read_tethers(looker.model(), looker.tether_targets(), state(), out);
+    if (parts.any()) looker_.read(system_, state(), dt_, parts, out);
   }
 
  private:
@@ -85,7 +104,7 @@ RunReport run_explicit_in(const Model& model, State& state, const FactorFunction
   if (plan.automatic()) system.save();
   DeviceState<Space> good = system.pose();
   int good_step = 0, retries = 0;
-  ExplicitLooker<Space> looker(model, factors);
+  ExplicitLooker<Space> looker(model, factors, solver);
   std::vector<double> ends;  // of the steps since the motion was looked at
   Clock::time_point start = Clock::now();
   while (!plan.done()) {

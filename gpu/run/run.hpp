@@ -22,8 +22,8 @@ RunReport run_implicit(const Model& model, State& state, const FactorFunction& f
 
 /// run_explicit() with everything on the device. Steps are queued: whether the motion is sound is looked at every few
 /// of them, so that `observed` may be asked of steps after the one that is not, and the seconds of a step are what the
-/// host waited for. What acts at a step that is seen is
-/// evaluated by a second system of the device, where it is asked for.
+/// host waited for. What acts at a step that is seen is evaluated by a second system of the device, where it is asked
+/// for; by one of the host where the device has no room for it.
 /// @throws InputError  where a node has no inertia; and as above
 RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
                        const ExplicitSettings& dynamics, const DeviceObserver& observe);

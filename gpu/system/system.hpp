@@ -53,7 +53,7 @@ class System {
   Pose finish_step(double end_time, Memory& memory);
   void start_acceleration(const Pose& start, double dt, Memory& memory);
   void look_at(const Pose& state, double h);
-  /// As MechanicalSystem::add_held_inertia().
+  /// Adds what supports carry of their own mass, see MechanicalSystem.
   void add_held_inertia(const Array<Space, PoseMotion>& acceleration);
   void look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt);
 

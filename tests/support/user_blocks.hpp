@@ -16,8 +16,10 @@ class Bonds final : public UserBlock {
     int nodes[2];
     Vec3d b[2];  ///< from the node to the place
   };
-  Bonds(const std::vector<Bond>& bonds, double stiffness)
-      : UserBlock(2, nodes_of(bonds), 1), bonds_(bonds), stiffness_(stiffness) {}
+  /// @param stiffness  k [N/m]
+  /// @param spacing    of the nodes [m]
+  Bonds(const std::vector<Bond>& bonds, double stiffness, double spacing)
+      : UserBlock(2, nodes_of(bonds), spacing), bonds_(bonds), stiffness_(stiffness) {}
 
   double forces(int cell, std::span<const CellPose> poses, std::span<CellForce> gradient) const override {
     const Bond& bond = bonds_[at(cell)];
@@ -30,7 +32,7 @@ class Bonds final : public UserBlock {
     const Bond& bond = bonds_[at(cell)];
     pull(bond, motions[0].dx + motions[0].dA * bond.b[0] - motions[1].dx - motions[1].dA * bond.b[1], out);
   }
-  double stiffness(int) const override { return stiffness_; }
+  double stiffness(int) const override { return stiffness_ / length; }
 
  private:
   static std::vector<int> nodes_of(const std::vector<Bond>& bonds) {
@@ -87,6 +89,11 @@ class PlainTetrahedra final : public UserBlock {
     for (std::size_t a = 0; a < 4; ++a) out[a].force += dP * t.g[a] * t.volume;
   }
   double stiffness(int) const override { return lame_.lambda + 2 * lame_.mu; }
+  double spin(int cell, std::span<const Vec3d> dx) const override {
+    Mat3d slope;
+    for (std::size_t a = 0; a < 4; ++a) slope += outer(dx[a], all_[at(cell)].g[a]);
+    return norm(axl(slope)) * 0.5;
+  }
 
  private:
   struct Tetrahedron {

@@ -72,12 +72,12 @@ BuiltModel mixture() {
   return built;
 }
 
-/// Rigid frames and affine ones, which bonds of the caller's own tie together.
-BuiltModel bonded() {
+/// Rigid frames and others, which bonds of the caller's own tie together.
+BuiltModel bonded(bool affine_others) {
   BlockOptions rigid, affine;
   rigid.grid = affine.grid = {2, 3, 2};
-  affine.affine = true;
-  affine.drilling = 0.003;
+  affine.affine = affine_others;
+  if (affine_others) affine.drilling = 0.003;
   affine.translation = {{0.5, 0.1, 0}};
   BuiltModel built;
   PointSetBuilder points;
@@ -89,7 +89,7 @@ BuiltModel bonded() {
     for (const int b : {of_rigid + a, nodes - 1 - a})
       bonds.push_back({{a, b}, {{{0.1, 0.02 * a, 0.3}}, {{-0.2, 0.1, 0.01 * b}}}});
   bonds.push_back({{3, 1}, {{{0.1, 0.2, 0.3}}, {{-0.2, 0.1, 0.4}}}});
-  points.add_user_block(std::make_shared<Bonds>(bonds, 2e4));
+  points.add_user_block(std::make_shared<Bonds>(bonds, 2e4, 0.5));
   built.model.points = std::move(points).finish(built.model.frame_kind);
   return built;
 }
@@ -138,7 +138,8 @@ std::vector<Case> cases() {
           {"affine line", thin({5}, affine)},
           {"scattered", [plain] { return build_cloud(scattered_spec(plain, 0.4, 1)); }},
           {"mixture", mixture},
-          {"bonded", bonded}};
+          {"bonded", [] { return bonded(false); }},
+          {"bonded to affine", [] { return bonded(true); }}};
 }
 
 class Derivatives : public DerivativeTest<Case, BuiltModel> {

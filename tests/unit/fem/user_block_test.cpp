@@ -1,5 +1,5 @@
 // A block of the caller's own, known to the library by its energy and derivatives alone, does what a block of the
-// library does: statics by each solver, dynamics, explicit steps, modes; and what it cannot do is said.
+// library does: statics by each solver, dynamics, explicit steps, modes; and what does not fit is refused.
 #include "core/base/errors.hpp"
 #include "core/run/explicit_dynamics.hpp"
 #include "core/run/modes.hpp"
@@ -72,18 +72,20 @@ Solved statics(const Model& model, const SolverSettings& settings) {
 
 TEST(UserBlock, EqualsTheElementsOfTheLibraryInStatics) {
   const Twins twins;
-  for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::cg}) {
-    for (const PreconditionerKind kind : {PreconditionerKind::block_jacobi, PreconditionerKind::multigrid}) {
-      SolverSettings settings;
-      settings.linear = method;
-      settings.preconditioner = kind;
-      settings.tolerance = 1e-9;
-      settings.cg.tolerance = 1e-10;
-      const Solved own = statics(twins.twin, settings), usual = statics(twins.built.model, settings);
-      EXPECT_LT(difference(usual.end, own.end), 1e-8);
-      EXPECT_EQ(own.run.stability.unstable, usual.run.stability.unstable);
-    }
-  }
+  EXPECT_FALSE(twins.twin.is_linear());
+  const auto expect_equal = [&](LinearMethod method, PreconditionerKind kind) {
+    SolverSettings settings;
+    settings.linear = method;
+    settings.preconditioner = kind;
+    settings.tolerance = 1e-9;
+    settings.cg.tolerance = 1e-10;
+    const Solved own = statics(twins.twin, settings), usual = statics(twins.built.model, settings);
+    EXPECT_LT(difference(usual.end, own.end), 1e-8);
+    EXPECT_EQ(own.run.stability.unstable, usual.run.stability.unstable);
+  };
+  expect_equal(LinearMethod::cholesky, PreconditionerKind::automatic);
+  expect_equal(LinearMethod::cg, PreconditionerKind::block_jacobi);
+  expect_equal(LinearMethod::cg, PreconditionerKind::multigrid);
 }
 
 TEST(UserBlock, EqualsThemInDynamicsAndInModes) {
@@ -124,14 +126,58 @@ TEST(UserBlock, ResultsDoNotDependOnThreads) {
   EXPECT_EQ(forces(1), forces(3));
 }
 
-TEST(UserBlock, ACellThatNamesANodeTwiceIsRefused) {
+/// A vertex that dependent nodes and frames have nothing to do with, on a bond to a rigid frame.
+TEST(UserBlock, TiesAVertexToAFrame) {
+  BlockOptions o;
+  o.grid = {2, 2, 2};
+  BuiltModel built;
   PointSetBuilder points;
+  built.bodies.emplace_back(block_spec(o), built.model, points);
+  const int frame = 7, vertex = built.model.node_count();
+  const Vec3d arm{{0.2, 0.1, 0}};
+  Model& model = built.model;
+  model.rest_position.push_back(model.rest_position[at(frame)] + arm);
+  model.rest_orientation.push_back(Mat3d::identity());
+  model.frame_kind.push_back(FrameKind::vertex);
+  model.inertia.push_back({});
+  model.inertia.back().mass = 3;
+  points.add_user_block(std::make_shared<Bonds>(std::vector<Bonds::Bond>{{{frame, vertex}, {arm, {}}}}, 1e4, 0.5));
+  model.points = std::move(points).finish(model.frame_kind);
+  hold_face(model);
+  add_gravity(model, {{0, 0, -10}});
+  SolverSettings settings;
+  settings.tolerance = 1e-10;
+  const State end = statics(model, settings).end;
+  const Vec3d apart = end.u[at(vertex)] - end.u[at(frame)] - end.D[at(frame)] * arm;
+  EXPECT_NEAR(apart[2], -30 / 1e4, 1e-9);  // the weight over the bond's stiffness
+  EXPECT_NEAR(apart[0], 0, 1e-9);
+}
+
+template <class Act>
+std::string refusal(const Act& act) {
   try {
-    points.add_user_block(std::make_shared<Bonds>(std::vector<Bonds::Bond>{{{0, 1}, {}}, {{2, 2}, {}}}, 1.0));
-    FAIL();
+    act();
   } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(), "cell 1 of a user block names node 2 twice; a node may stand once in a cell");
+    return e.what();
   }
+  return "none";
+}
+
+TEST(UserBlock, WhatDoesNotFitIsRefused) {
+  const auto tetrahedra = [](std::vector<int> cells) {
+    return refusal([&] {
+      PointSetBuilder points;
+      points.add_user_block(std::make_shared<PlainTetrahedra>(std::move(cells), std::vector<Vec3d>(5), Lame{1, 1}, 1));
+      std::move(points).finish(std::vector<FrameKind>(4, FrameKind::vertex));
+    });
+  };
+  EXPECT_EQ(tetrahedra({0, 1, 2, 3, 0, 1, 2, 2}),
+            "cell 1 of a user block names node 2 twice; a node may stand once in a cell");
+  EXPECT_EQ(tetrahedra({0, 1, 2}), "a user block has cells of 4 nodes and 3 nodes in all; give whole cells");
+  EXPECT_EQ(tetrahedra({0, 1, 2, -1}), "cell 0 of a user block names node -1");
+  EXPECT_EQ(tetrahedra({0, 1, 2, 4}), "cell 0 of a user block names node 4; the model has 4");
+  EXPECT_EQ(refusal([] { Bonds({}, 1, 0); }), "a user block has cells of length 0.000000; it must be positive");
+  EXPECT_EQ(refusal([] { PointSetBuilder().add_user_block(nullptr); }), "a user block is missing; give one");
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "gpu/blocks/springs.hpp"
+#include "core/base/errors.hpp"
 #include "core/physics/spring_law.hpp"
+#include "gpu/blocks/blocks.hpp"
+#include "tests/support/user_blocks.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 
 /// Springs of the GPU backend, run on the processor, against the executor.
@@ -55,6 +58,18 @@ TEST(GpuSprings, AgreeWithTheExecutor) {
     std::vector<double> blocks(lin.node_blocks.size());
     own.add_blocks(host.nodes(), host.pose(), tangent, blocks.data());
     expect_near(blocks, lin.node_blocks, "blocks");
+  }
+}
+
+TEST(GpuBlocks, RefuseUserBlocksByName) {
+  PointSetBuilder points;
+  points.add_user_block(std::make_shared<Bonds>(std::vector<Bonds::Bond>{{{0, 1}, {}}}, 1.0, 1.0));
+  const PointSet set = std::move(points).finish({FrameKind::vertex, FrameKind::vertex});
+  try {
+    const gpu::Blocks<HostSpace> blocks(set);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(), "user blocks are computed on processors alone; run this model there");
   }
 }
 
