@@ -1,5 +1,5 @@
-#include "gpu/actions/followers_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/actions/followers_body.hpp"
 
 namespace fascia::gpu {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/structure/model.hpp"
 #include "core/space/array.hpp"
 #include "core/space/row_sums.hpp"
+#include "core/structure/model.hpp"
 #include "gpu/space/views.hpp"
 
 namespace fascia::gpu {

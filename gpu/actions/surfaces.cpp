@@ -1,5 +1,5 @@
-#include "gpu/actions/surfaces_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/actions/surfaces_body.hpp"
 
 namespace fascia::gpu {
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/physics/point_physics.hpp"
-#include "core/structure/model.hpp"
-#include "core/structure/surface_face.hpp"
 #include "core/space/array.hpp"
 #include "core/space/row_sums.hpp"
+#include "core/structure/model.hpp"
+#include "core/structure/surface_face.hpp"
 #include "gpu/space/views.hpp"
 
 #include <span>

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "core/executor/block_executor.hpp"
+#include "core/space/part_sums.hpp"
 #include "gpu/blocks/points.hpp"
 #include "gpu/blocks/shells.hpp"
 #include "gpu/blocks/springs.hpp"
 #include "gpu/elements/elements.hpp"
-#include "core/space/part_sums.hpp"
 
 #include <tuple>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/structure/point_set.hpp"
 #include "core/space/array.hpp"
 #include "core/space/row_sums.hpp"
+#include "core/structure/point_set.hpp"
 #include "gpu/space/views.hpp"
 
 #include <vector>

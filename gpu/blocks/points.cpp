@@ -1,5 +1,5 @@
-#include "gpu/blocks/points_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/blocks/points_body.hpp"
 
 namespace fascia::gpu {
 

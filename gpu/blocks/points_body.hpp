@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/base/index.hpp"
-#include "gpu/blocks/point_kernels.hpp"
 #include "core/space/space.hpp"
+#include "gpu/blocks/point_kernels.hpp"
 
 #include <algorithm>
 

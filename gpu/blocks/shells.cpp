@@ -1,5 +1,5 @@
-#include "gpu/blocks/shells_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/blocks/shells_body.hpp"
 
 namespace fascia::gpu {
 

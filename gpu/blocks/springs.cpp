@@ -1,5 +1,5 @@
-#include "gpu/blocks/springs_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/blocks/springs_body.hpp"
 
 namespace fascia::gpu {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/physics/point_physics.hpp"
-#include "core/structure/point_set.hpp"
 #include "core/space/array.hpp"
+#include "core/structure/point_set.hpp"
 #include "gpu/space/views.hpp"
 
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/math/polar.hpp"
-#include "gpu/elements/element_state.hpp"
 #include "core/space/space.hpp"
+#include "gpu/elements/element_state.hpp"
 
 /// Loops over elements, and over the points and corners of those with several points: what passes between these loops
 /// is in points_buffer.

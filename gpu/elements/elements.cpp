@@ -1,5 +1,5 @@
-#include "gpu/elements/elements_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/elements/elements_body.hpp"
 
 namespace fascia::gpu {
 

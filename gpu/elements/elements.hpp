@@ -2,8 +2,8 @@
 
 #include "core/physics/point_physics.hpp"
 #include "core/solver/settings.hpp"
-#include "core/structure/point_set.hpp"
 #include "core/space/array.hpp"
+#include "core/structure/point_set.hpp"
 #include "gpu/space/views.hpp"
 
 #include <type_traits>

@@ -1,5 +1,5 @@
-#include "gpu/explicit/explicit_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/explicit/explicit_body.hpp"
 
 namespace fascia::gpu {
 

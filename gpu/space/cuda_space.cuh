@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/space/space.hpp"
 #include "gpu/space/cuda_check.hpp"
 #include "gpu/space/device.hpp"
-#include "core/space/space.hpp"
 
 #include <cuda_runtime.h>
 

@@ -1,5 +1,5 @@
-#include "gpu/blocks/blocks_body.hpp"
 #include "core/space/space.hpp"
+#include "gpu/blocks/blocks_body.hpp"
 #include "gpu/system/system_body.hpp"
 #include "gpu/system/system_host.hpp"
 #include "gpu/system/system_levels.hpp"

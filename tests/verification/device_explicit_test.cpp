@@ -2,10 +2,10 @@
 #include "app/run/backend.hpp"
 #include "app/run/solver_settings.hpp"
 #include "core/run/explicit_step.hpp"
+#include "core/space/space.hpp"
 #include "gpu/explicit/explicit.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"
-#include "core/space/space.hpp"
 #include "tests/support/small_scenes.hpp"
 
 #include <gtest/gtest.h>
