@@ -20,19 +20,17 @@ struct StoreDeadLoads {
   }
 };
 
-/// A kick and a drift; vertices beside frames go as those of other models. Sums: kinetic energy and work.
+/// A kick and a drift; free vertices beside frames go as those of other models. Sums: kinetic energy and work.
 template <class View, bool Frames>
 struct KickAndDrift {
   View s;
   FASCIA_HD void operator()(int i, Sums<2>& sums) const {
     if (s.skips(i)) return;
     ExplicitSums own;
-    if (Frames && !s.is_vertex(i))
-      step<Frames>(i, own);
-    else if (s.m.constraint[i] >= 0)
-      step<false>(i, own);
-    else
+    if ((!Frames || s.is_vertex(i)) && s.m.constraint[i] < 0)
       step_free_vertex(i, own);
+    else
+      step(i, own);
     sums.v[0] += own.kinetic;
     sums.v[1] += own.work;
   }
@@ -43,18 +41,17 @@ struct KickAndDrift {
     fascia::step_free_vertex(0.5 * s.times.kick * s.damping[i], s.m.inertia[i].mass, load, load - s.vertex_gradient(i),
                              s.times, s.u[i], s.half_v[i], own);
   }
-  template <bool Turns>
   FASCIA_HD void step(int i, ExplicitSums& own) const {
-    const ExplicitNode node = s.template node<Turns>(i);
+    const ExplicitNode node = s.template node<Frames>(i);
     double load[kMostDofs], force[kMostDofs];
-    const HalfStepVelocity old = s.template velocity<Turns>(i);
+    const HalfStepVelocity old = s.template velocity<Frames>(i);
     s.forces(node, i, old, load, force);
-    const HalfStepVelocity next = s.template kick<Turns>(node, old, force);
-    s.template set_velocity<Turns>(i, next);
+    const HalfStepVelocity next = s.template kick<Frames>(node, old, force);
+    s.template set_velocity<Frames>(i, next);
     double* turned = node.held == nullptr ? nullptr : s.turned + 3 * s.m.constraint[i];
     Mat3d D = node.D;
     drift(node, next, s.times.drift, load, s.u[i], D, turned, own);
-    if constexpr (Turns) s.D[i] = D;
+    if (Frames && node.kind != FrameKind::vertex) s.D[i] = D;
     if (node.held != nullptr) add_boundary_work(node, force, s.last_increments + s.m.nodes.dof[i], own);
   }
 };
