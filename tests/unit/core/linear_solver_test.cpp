@@ -3,7 +3,7 @@
 #include "core/run/drivers.hpp"
 #include "core/tangent/cg_solver.hpp"
 #include "core/tangent/tangent_operator.hpp"
-#include "tests/support/models.hpp"
+#include "tests/support/statics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -68,20 +68,6 @@ class DenseSolver final : public LinearSolver {
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
   int negative_ = 0;
 };
-
-struct Solved {
-  State end;
-  RunReport run;
-};
-
-Solved solved(const Model& model, const SolverSettings& settings) {
-  ThreadPool pool(2);
-  MechanicalSystem system(model, pool, settings);
-  Solved out{State::at_rest(model), {}};
-  out.run = run_statics(system, out.end, kRamp, settings, {}, nullptr);
-  EXPECT_EQ(out.run.status, RunStatus::converged) << out.run.message;
-  return out;
-}
 
 /// With the solver of its own, and with Cholesky's factor; the counts are those of the first.
 DenseSolver::Counts expect_equal(const Model& model) {

@@ -210,14 +210,14 @@ int negative_eigenvalues(const Model& model, ThreadPool& pool, const State& stat
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < n; ++i)
     if (!filter.is_fixed(i)) free.push_back(i);
-  const auto size = static_cast<Eigen::Index>(free.size());
+  const int size = static_cast<int>(free.size());
   Eigen::MatrixXd K(size, size);
-  for (Eigen::Index c = 0; c < size; ++c) {
+  for (int c = 0; c < size; ++c) {
     std::fill(d.begin(), d.end(), 0.0);
     d[free[at(c)]] = 1;
     executor.multiply(lin, d, Kd);
     add_unsymmetric_product(lin, model.points.dofs, d, Kd);
-    for (Eigen::Index r = 0; r < size; ++r) K(r, c) = Kd[free[at(r)]];
+    for (int r = 0; r < size; ++r) K(r, c) = Kd[free[at(r)]];
   }
   const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(K, false).eigenvalues();
   int negative = 0;

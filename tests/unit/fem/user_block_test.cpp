@@ -3,6 +3,7 @@
 #include "core/base/errors.hpp"
 #include "core/run/explicit_dynamics.hpp"
 #include "core/run/modes.hpp"
+#include "tests/support/statics.hpp"
 #include "tests/support/user_blocks.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
@@ -56,20 +57,6 @@ double difference(const State& a, const State& b) {
   return apart / largest;
 }
 
-struct Solved {
-  State end;
-  RunReport run;
-};
-
-Solved statics(const Model& model, const SolverSettings& settings) {
-  ThreadPool pool(2);
-  MechanicalSystem system(model, pool, settings);
-  Solved out{State::at_rest(model), {}};
-  out.run = run_statics(system, out.end, kRamp, settings, {}, nullptr);
-  EXPECT_EQ(out.run.status, RunStatus::converged) << out.run.message;
-  return out;
-}
-
 TEST(UserBlock, EqualsTheElementsOfTheLibraryInStatics) {
   const Twins twins;
   EXPECT_FALSE(twins.twin.is_linear());
@@ -79,7 +66,7 @@ TEST(UserBlock, EqualsTheElementsOfTheLibraryInStatics) {
     settings.preconditioner = kind;
     settings.tolerance = 1e-9;
     settings.cg.tolerance = 1e-10;
-    const Solved own = statics(twins.twin, settings), usual = statics(twins.built.model, settings);
+    const Solved own = solved(twins.twin, settings), usual = solved(twins.built.model, settings);
     EXPECT_LT(difference(usual.end, own.end), 1e-8);
     EXPECT_EQ(own.run.stability.unstable, usual.run.stability.unstable);
   };
@@ -147,7 +134,7 @@ TEST(UserBlock, TiesAVertexToAFrame) {
   add_gravity(model, {{0, 0, -10}});
   SolverSettings settings;
   settings.tolerance = 1e-10;
-  const State end = statics(model, settings).end;
+  const State end = solved(model, settings).end;
   const Vec3d apart = end.u[at(vertex)] - end.u[at(frame)] - end.D[at(frame)] * arm;
   EXPECT_NEAR(apart[2], -30 / 1e4, 1e-9);  // the weight over the bond's stiffness
   EXPECT_NEAR(apart[0], 0, 1e-9);
