@@ -1,5 +1,6 @@
 #include "core/executor/user_executor.hpp"
 
+#include "core/base/incidence.hpp"
 #include "core/linear/block_matrix.hpp"
 
 #include <algorithm>
@@ -22,18 +23,13 @@ UserExecutor::UserExecutor(const UserBlock& block, const PointSet& set, ThreadPo
       poses_(slot_sums_.size()),
       motions_(slot_sums_.size()),
       dx_(slot_sums_.size()),
-      node_slot_begin_(at(set.node_count()) + 1),
       cell_energy_(at(block.count)),
       cell_rounding_(at(block.count)) {
   const auto for_each_slot = [&](const auto& act) {
     for (int c = 0; c < block_.count; ++c)
       for (int a = 0; a < block_.nodes; ++a) act(block_.cell(c)[at(a)], block_.nodes * c + a);
   };
-  for_each_slot([&](int node, int) { ++node_slot_begin_[at(node) + 1]; });
-  std::partial_sum(node_slot_begin_.begin(), node_slot_begin_.end(), node_slot_begin_.begin());
-  node_slot_.resize(slot_sums_.size());
-  std::vector<int> next(node_slot_begin_.begin(), node_slot_begin_.end() - 1);
-  for_each_slot([&](int node, int slot) { node_slot_[at(next[at(node)]++)] = slot; });
+  list_by_node(set.node_count(), for_each_slot, node_slot_begin_, node_slot_);
 }
 
 template <class Act>

@@ -63,7 +63,7 @@ ExplicitView ExplicitStepper::view() {
   s.v = state_.v.data();
   s.D = state_.D.data();
   s.Q_dot = state_.Q_dot.data();
-  if (!state_.turned.empty()) s.turned = state_.turned[0].data();
+  s.turned = loops::flat(state_.turned);
   s.half_v = half_v_.data();
   s.half_spin = half_spin_.data();
   s.half_rate = half_rate_.data();
@@ -72,10 +72,10 @@ ExplicitView ExplicitStepper::view() {
 
 /// Finds what the prescribed degrees of freedom lack. @param factors  of where the boundary goes
 void ExplicitStepper::find_increments(std::span<const double> factors) {
-  const double* turned = state_.turned.empty() ? nullptr : state_.turned[0].data();
   space_.for_each(
       static_cast<int>(model_.constraints.size()),
-      loops::FindPrescribed{seen_, {state_.u.data(), state_.D.data()}, turned, factors.data(), increments_.data()});
+      loops::FindPrescribed{
+          seen_, {state_.u.data(), state_.D.data()}, loops::flat(state_.turned), factors.data(), increments_.data()});
 }
 
 /// Half a step back, so that the mean of both sides is the velocity given.

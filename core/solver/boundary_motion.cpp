@@ -57,10 +57,11 @@ void place_tethers(const Model& model, std::span<const double> factors, std::spa
 
 void MechanicalSystem::find_prescribed(std::span<const double> factors, std::span<double> local) {
   std::fill(local.begin(), local.end(), 0.0);
-  const double* turned = increment_.turned.empty() ? nullptr : increment_.turned[0].data();
-  space_.for_each(
-      static_cast<int>(model_.constraints.size()),
-      loops::FindPrescribed{data_.view(), {state_.u.data(), state_.D.data()}, turned, factors.data(), local.data()});
+  space_.for_each(static_cast<int>(model_.constraints.size()), loops::FindPrescribed{data_.view(),
+                                                                                     {state_.u.data(), state_.D.data()},
+                                                                                     loops::flat(increment_.turned),
+                                                                                     factors.data(),
+                                                                                     local.data()});
 }
 
 bool MechanicalSystem::has_prescribed_increment() {

@@ -60,7 +60,7 @@ StepView MechanicalSystem::step_view() {
           .D = state_.D.data(),
           .q = form_.q.data(),
           .w = form_.w.data(),
-          .turned = increment_.turned.empty() ? nullptr : increment_.turned[0].data(),
+          .turned = loops::flat(increment_.turned),
           .turning = state_.D.data() != nullptr};
 }
 

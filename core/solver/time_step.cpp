@@ -89,7 +89,7 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
                       .v = end.v.data(),
                       .D = end.D.data(),
                       .Q_dot = end.Q_dot.data(),
-                      .turned = end.turned.empty() ? nullptr : end.turned[0].data(),
+                      .turned = loops::flat(end.turned),
                       .motion = remembers ? memory.motion.data() : nullptr,
                       .velocity = remembers ? memory.velocity.data() : nullptr,
                       .acceleration = form_.scheme == TimeScheme::newmark ? memory.acceleration.data() : nullptr,

@@ -5,8 +5,17 @@
 #include "core/node/small_factor.hpp"
 #include "core/step/step_loops.hpp"
 
+#include <array>
+#include <vector>
+
 /// Loops over constraints, and over nodes at the start and the end of a step.
 namespace fascia::loops {
+
+/// State::turned as loops see it: three numbers a constraint, or null.
+inline double* flat(std::vector<std::array<double, 3>>& turned) { return turned.empty() ? nullptr : turned[0].data(); }
+inline const double* flat(const std::vector<std::array<double, 3>>& turned) {
+  return turned.empty() ? nullptr : turned[0].data();
+}
 
 /// Finds what the prescribed degrees of freedom still lack, in constraint axes. Goes over constraints; of other nodes
 /// it stays zero.

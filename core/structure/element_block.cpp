@@ -1,6 +1,7 @@
 #include "core/structure/element_block.hpp"
 
 #include "core/base/coloring.hpp"
+#include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
 #include "core/physics/solid_law.hpp"
 
@@ -123,14 +124,10 @@ LawConstants ElementBlock::constants_of(int element) const {
 }
 
 void finish_element_block(ElementBlock& block, int nodes_of_model) {
-  block.node_slot_begin.assign(at(nodes_of_model) + 1, 0);
-  for (const int node : block.patch_node) ++block.node_slot_begin[at(node) + 1];
-  for (std::size_t i = 1; i < block.node_slot_begin.size(); ++i)
-    block.node_slot_begin[i] += block.node_slot_begin[i - 1];
-  block.node_slot.resize(block.patch_node.size());
-  std::vector<int> next(block.node_slot_begin.begin(), block.node_slot_begin.end() - 1);
-  for (int slot = 0; slot < block.slot_count(); ++slot)
-    block.node_slot[at(next[at(block.patch_node[at(slot)])]++)] = slot;
+  const auto for_each_slot = [&](const auto& act) {
+    for (int slot = 0; slot < block.slot_count(); ++slot) act(block.patch_node[at(slot)], slot);
+  };
+  list_by_node(nodes_of_model, for_each_slot, block.node_slot_begin, block.node_slot);
   Coloring colors =
       color_items(block.patch_count(), nodes_of_model, [&](int patch) { return block.nodes_of_patch(patch); });
   block.color_begin = std::move(colors.begin);

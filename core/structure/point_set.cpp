@@ -2,6 +2,7 @@
 
 #include "core/base/coloring.hpp"
 #include "core/base/errors.hpp"
+#include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
 #include "core/physics/solid_law.hpp"
 #include "core/structure/blocks.hpp"
@@ -103,16 +104,10 @@ void PointSetBuilder::add_elements(ElementBlock block) {
 namespace {
 
 void transpose_incidence(PointSet& set) {
-  std::vector<int>& begin = set.node_slot_begin;
-  begin.assign(static_cast<std::size_t>(set.node_count()) + 1, 0);
-  for (const int node : set.slot_node) ++begin[static_cast<std::size_t>(node) + 1];
-  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  set.node_slot.resize(set.slot_node.size());
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for (int slot = 0; slot < set.slot_count(); ++slot) {
-    const auto node = static_cast<std::size_t>(set.slot_node[static_cast<std::size_t>(slot)]);
-    set.node_slot[static_cast<std::size_t>(next[node]++)] = slot;
-  }
+  const auto for_each_slot = [&](const auto& act) {
+    for (int slot = 0; slot < set.slot_count(); ++slot) act(set.slot_node[at(slot)], slot);
+  };
+  list_by_node(set.node_count(), for_each_slot, set.node_slot_begin, set.node_slot);
 }
 
 void check_user_blocks(const PointSet& set) {

@@ -1,10 +1,10 @@
 #include "core/structure/shell_block.hpp"
 
 #include "core/base/coloring.hpp"
+#include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace fascia {
@@ -87,14 +87,11 @@ double ShellBlock::stiffness_sum() const {
 }
 
 void finish_shell_block(ShellBlock& block, int nodes_of_model) {
-  block.node_slot_begin.assign(at(nodes_of_model) + 1, 0);
-  for (int e = 0; e < block.count; ++e)
-    for (const int node : block.element(e)) ++block.node_slot_begin[at(node) + 1];
-  std::partial_sum(block.node_slot_begin.begin(), block.node_slot_begin.end(), block.node_slot_begin.begin());
-  block.node_slot.resize(3 * at(block.count));
-  std::vector<int> next(block.node_slot_begin.begin(), block.node_slot_begin.end() - 1);
-  for (int e = 0; e < block.count; ++e)
-    for (int a = 0; a < 3; ++a) block.node_slot[at(next[at(block.element(e)[at(a)])]++)] = 3 * e + a;
+  const auto for_each_corner = [&](const auto& act) {
+    for (int e = 0; e < block.count; ++e)
+      for (int a = 0; a < 3; ++a) act(block.element(e)[at(a)], 3 * e + a);
+  };
+  list_by_node(nodes_of_model, for_each_corner, block.node_slot_begin, block.node_slot);
   Coloring colors = color_items(block.batch_count(), nodes_of_model,
                                 [&](int batch) { return std::span(block.nodes_of(batch), 3 * kElementLanes); });
   block.color_begin = std::move(colors.begin);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/base/errors.hpp"
+#include "core/base/incidence.hpp"
 #include "gpu/blocks/shell_kernels.hpp"
-#include "gpu/space/incidence.hpp"
 
 #include <limits>
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "core/base/incidence.hpp"
 #include "core/node/node_force.hpp"
 #include "core/physics/spring_law.hpp"
 #include "gpu/blocks/springs.hpp"
-#include "gpu/space/incidence.hpp"
 
 /// The bodies of Springs, for the files that instantiate it.
 namespace fascia::gpu {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/base/errors.hpp"
+#include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
 #include "core/physics/element_law.hpp"
 #include "gpu/elements/elements.hpp"
-#include "gpu/space/incidence.hpp"
 
 #include <limits>
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace fascia::gpu {
+namespace fascia {
 
 /// Lists of what lies about each node, ascending. @param for_each  calls act(node, value) for all, in the same order
 template <class ForEach>
@@ -18,4 +18,4 @@ void list_by_node(int nodes, const ForEach& for_each, std::vector<int>& begin, s
   for_each([&](int node, int what) { value[at(next[at(node)]++)] = what; });
 }
 
-}  // namespace fascia::gpu
+}  // namespace fascia
