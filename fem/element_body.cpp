@@ -71,21 +71,36 @@ Law ElementBody::law(int element) const {
   return points_[first].law;
 }
 
+namespace {
+
+/// Volumes averaged about nodes take one viscosity, of all the stiffness.
+bool take_averages(const std::vector<PointMaterialSpec>& materials) {
+  const std::shared_ptr<const Viscosity>& first = materials[0].viscosity;
+  return !(first && first->shear_only) &&
+         std::all_of(materials.begin(), materials.end(),
+                     [&](const PointMaterialSpec& m) { return fade_alike(m.viscosity, first); });
+}
+
+}  // namespace
+
 void ElementBody::choose_formulation(const ElementBodySpec& spec) {
   const bool nearly = std::any_of(material_.begin(), material_.end(),
-                                  [](const PointMaterialSpec& m) { return m.poisson() > kLockingPoisson; });
+                                  [](const PointMaterialSpec& m) { return largest_poisson(m) > kLockingPoisson; });
   const bool can_average = mesh().shape == ElementShape::tet4 && formulation_ == ElementFormulation::large_strain;
-  averaged_ =
-      spec.locking == ElementLocking::averaged || (spec.locking == ElementLocking::automatic && nearly && can_average);
+  const bool fading = take_averages(material_);
+  averaged_ = spec.locking == ElementLocking::averaged ||
+              (spec.locking == ElementLocking::automatic && nearly && can_average && fading);
   if (averaged_ && !can_average)
     throw InputError("locking = \"f-bar\" is for linear tetrahedra of large strain; must be \"none\" here");
   if (averaged_ && spec.locking == ElementLocking::automatic)
     choices_.push_back(
         "Poisson ratio above 0.45: the volumetric strain is averaged about the nodes (locking = \"f-bar\")");
   if (nearly && !averaged_ && order_of(mesh().shape) == 1)
-    messages_.push_back(
-        "linear elements lock at a Poisson ratio above 0.45: much too stiff; use order = 2" +
-        std::string(mesh().shape == ElementShape::tet4 ? ", or locking = \"f-bar\" with large strain" : ""));
+    messages_.push_back("linear elements lock at a Poisson ratio above 0.45: much too stiff; use order = 2" +
+                        std::string(mesh().shape != ElementShape::tet4 ? ""
+                                    : fading                           ? ", or locking = \"f-bar\" with large strain"
+                                             : "; volumes are averaged only where all materials have one "
+                                               "viscosity with relax = \"all\""));
 }
 
 void ElementBody::number_nodes(Model& model) {
@@ -155,6 +170,7 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
       }
       const PointMaterialSpec& m = material_[e];
       block.material.push_back({m, m.stiffness_damping, spec.penalty});
+      block.source.push_back(static_cast<int>(e));
     }
     builder.add_elements(make_element_block(block));
   }

@@ -78,7 +78,7 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
       for (const int node : mesh().element(e)) {
         theta[at(node)] += strain * points_[e].volume;
         volume[at(node)] += points_[e].volume;
-        modulus[at(node)].add(volumetric_modulus(law, points_[e]), points_[e].volume);
+        modulus[at(node)].add(volumetric_modulus(law, lasting_constants(points_[e])), points_[e].volume);
       }
     }
     for (std::size_t e = 0; e < mesh().size(); ++e) {
@@ -93,32 +93,33 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
   return result;
 }
 
-PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Strained& element,
+/// @param Q  what the point remembers, added to what never fades
+PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Mat3d& Q, const Strained& element,
                                      const std::optional<Averaged>& averaged) const {
-  const BodyPoint& p = points_[point];
+  const LawConstants p = lasting_constants(points_[point]);
   const double pull = penalty_ * element.swelling * std::abs(element.swelling);
   const double penalty_energy = penalty_ * std::pow(std::abs(element.swelling), 3) / 3;
   const StVenantKirchhoff<double> law{p.lambda, p.mu};
   PointTensors t;
   t.strain = green_strain(H);
   if (formulation_ == ElementFormulation::linear) {
-    t.stress = law.second_piola(sym(H));
+    t.stress = law.second_piola(sym(H)) + Q;
     t.energy_density = law.energy_density(sym(H));
   } else if (formulation_ == ElementFormulation::corotational) {
     const Mat3d R = Mat3d::identity() + element.turn;
     const Mat3d strain = sym(transpose(element.turn) + H + transpose_times(element.turn, H));
-    t.stress = times_transpose(R * law.second_piola(strain), R);
+    t.stress = times_transpose(R * (law.second_piola(strain) + Q), R);
     t.energy_density = law.energy_density(strain);
   } else {
     const Mat3d F = Mat3d::identity() + H;
-    const Mat3d S = with_solid_law(p.law, [&]<Law L>() {
+    const Mat3d S = with_solid_law(points_[point].law, [&]<Law L>() {
       using Solid = SolidLaw<L, double>;
       const auto solid = make_law<Solid>(p);
       t.energy_density = averaged ? solid.shear_energy(H) + averaged->energy_density : energy_density(solid, H);
       const double pressure = averaged ? averaged->pressure : solid.volumetric_modulus() * Solid::volumetric_strain(H);
       return solid.second_piola(typename Solid::At(H), t.strain, pressure);
     });
-    t.stress = times_transpose(F * S, F) * (1 / determinant(F));
+    t.stress = times_transpose(F * (S + Q), F) * (1 / determinant(F));
   }
   t.stress += Mat3d::diagonal(pull);
   t.energy_density += penalty_energy;
@@ -133,7 +134,7 @@ std::vector<PointTensors> ElementBody::tensors(const State& state) const {
   for (std::size_t e = 0; e < mesh().size(); ++e) {
     const Strained element = strained(e, state);
     for (std::size_t q = points * e; q < points * (e + 1); ++q)
-      all.push_back(tensors_of(q, field_at(attach_point(q), state).H, element,
+      all.push_back(tensors_of(q, field_at(attach_point(q), state).H, remembered(q, state), element,
                                average.empty() ? std::nullopt : std::optional(average[e])));
   }
   return all;
@@ -145,7 +146,7 @@ PointTensors ElementBody::tensors_at(const Attachment& place, std::size_t neares
 
 TensorField ElementBody::tensor_field(const State& state) const {
   return [this, &state, average = averages(state)](const Attachment& place, std::size_t nearest) {
-    return tensors_of(nearest, field_at(place, state).H, strained(at(place.cell), state),
+    return tensors_of(nearest, field_at(place, state).H, remembered(nearest, state), strained(at(place.cell), state),
                       average.empty() ? std::nullopt : std::optional(average[at(place.cell)]));
   };
 }

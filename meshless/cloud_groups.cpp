@@ -104,13 +104,14 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
     const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine) || !point_places_[q].stabilized;
     const double stabilization = none ? 0.0 : spec.stabilization * p.mu;
-    PointSample s{{thin_lame(p.law, p), p.own},
+    PointSample s{{thin_lame(p.law, p), p.own, p.viscosity},
                   p.X,
                   p.volume,
                   stabilization,
                   spec.material(p.middle).stiffness_damping,
                   {},
-                  p.axes < 0 ? Mat3d{} : axes_[at(p.axes)]};
+                  p.axes < 0 ? Mat3d{} : axes_[at(p.axes)],
+                  static_cast<int>(q)};
     const Attachment& a = attachments[q];
     for (const int node : nodes) {
       const auto k = std::lower_bound(a.nodes.begin(), a.nodes.end(), node) - a.nodes.begin();

@@ -25,7 +25,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
   bool nearly_incompressible = false;
   for (const Sample& s : samples) {
     materials.push_back(spec.material(to_world(s.x)));
-    nearly_incompressible = nearly_incompressible || materials.back().poisson() > kSelectivePoisson;
+    nearly_incompressible = nearly_incompressible || largest_poisson(materials.back()) > kSelectivePoisson;
     if (spec.integration == IntegrationKind::selective && materials.back().lambda < 0)
       throw InputError("selective integration needs a Poisson ratio that is not negative; use integration = \"full\"");
   }
@@ -53,9 +53,19 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
   };
 
   // Points that share their frames, in the order of the cells (and tetrahedra).
-  std::map<std::tuple<int, std::array<int, 3>, Law>, std::vector<std::size_t>> groups;
+  std::map<std::tuple<int, std::array<int, 3>, Law, std::size_t>, std::vector<std::size_t>> groups;
+  std::vector<std::shared_ptr<const Viscosity>> viscosities;  // those that differ
+  const auto number_of = [&](const std::shared_ptr<const Viscosity>& viscosity) {
+    const auto known = std::find_if(viscosities.begin(), viscosities.end(),
+                                    [&](const auto& other) { return fade_alike(other, viscosity); });
+    const auto number = static_cast<std::size_t>(known - viscosities.begin());
+    if (known == viscosities.end()) viscosities.push_back(viscosity);
+    return number;
+  };
   for (std::size_t q = 0; q < samples.size(); ++q)
-    groups[{cells_[at(samples[q].cell)].owner, samples[q].tetrahedron, materials[q].law}].push_back(q);
+    groups[{cells_[at(samples[q].cell)].owner, samples[q].tetrahedron, materials[q].law,
+            number_of(materials[q].viscosity)}]
+        .push_back(q);
   for (const auto& [key, members] : groups) {
     std::vector<PointSample> points;
     std::vector<int> nodes;
@@ -68,11 +78,19 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       const double stabilization = stabilization_of(m, a);
       points_.push_back({m, X, s.volume, X, m.law});
       point_cells_.push_back({a.cell, s.tetrahedron});
-      points.push_back({m, X, s.volume, stabilization, m.stiffness_damping, std::move(a.influences), {}});
+      points.push_back({m,
+                        X,
+                        s.volume,
+                        stabilization,
+                        m.stiffness_damping,
+                        std::move(a.influences),
+                        {},
+                        static_cast<int>(points_.size()) - 1});
       if (selective_) points.back().lambda = 0;
       nodes = a.nodes;
       volumetric.volume += s.volume;
       volumetric.own.assign(m.own.size(), 0.0);
+      volumetric.viscosity = m.viscosity;
       volumetric.lambda += s.volume * m.lambda;
       volumetric.stiffness_damping += s.volume * m.stiffness_damping;
     }
@@ -82,6 +100,7 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
       const int cell = std::get<int>(key);
       const Attachment a = attach_local(cells_[at(cell)].center, cell, nullptr);
       volumetric.influences = a.influences;
+      volumetric.source = PointSample::kVolumetric;
       points.push_back(volumetric);
     }
     builder.add_points(

@@ -122,6 +122,8 @@ void ShellBody::add_triangles(const ShellBodySpec& spec, PointSetBuilder& builde
     e.axes = triangle_axes_[t];
     e.constants = spec.stiffness(p, s);
     e.stiffness_damping = material_[t].stiffness_damping;
+    e.viscosity = material_[t].viscosity;
+    e.source = static_cast<int>(t);
     elements.push_back(e);
     BodyPoint point;
     for (const int node : mesh_.triangles[t]) point.X += mesh_.nodes[at(node)] * (1.0 / 3);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/geometry/triangle_tree.hpp"
+#include "core/physics/shell_triangle.hpp"
 #include "shells/shell_mesh.hpp"
 #include "shells/shell_stiffness.hpp"
 
@@ -51,13 +52,15 @@ class ShellBody final : public ModelBody {
   /// Membrane strain (E₁₁, E₂₂, 2E₁₂) and curvature of a triangle at a state, and where its axes are.
   struct Strained {
     std::array<double, 3> membrane{}, curvature{};
-    std::array<double, 3> stretch{};  ///< U₁₁, U₁₂, U₂₂
+    std::array<double, 3> acting_membrane{}, acting_curvature{};  ///< the same where stresses fade: strains that act
+    std::array<double, 3> stretch{};                              ///< U₁₁, U₁₂, U₂₂
     Mat3d rest_axes, axes;
   };
   PlaneTriangle corners(std::size_t triangle) const;
   ShellSection section(std::size_t triangle) const;
   Attachment attachment(std::size_t triangle, const std::array<double, 3>& L, double offset) const;
   Strained strained(std::size_t triangle, const std::array<double, 3>& L, const State& state) const;
+  ShellStrain<double> acting_strain(std::size_t triangle, const ShellStrain<double>& strain, const State& state) const;
   std::array<double, 3> membrane_stress(std::size_t triangle, const std::array<double, 3>& strain) const;
   Mat3d cauchy(std::size_t triangle, const Strained& s, double offset) const;
   BodyField node_means(const BodyField& cells) const;

@@ -41,6 +41,22 @@ std::array<double, 3> at_height(const std::array<double, 3>& membrane, const std
 
 }  // namespace
 
+/// The strain whose stress acts: the part that never fades, and what is left of the rest.
+ShellStrain<double> ShellBody::acting_strain(std::size_t t, const ShellStrain<double>& strain,
+                                             const State& state) const {
+  if (points_[t].viscosity == nullptr) return strain;
+  ShellStrain<double> e = strain * points_[t].viscosity->long_term();
+  const std::array<int, 3>& nodes = mesh_.triangles[t];
+  for (int k = 0; k < 3; ++k) e.membrane[k] += remembered_strain(t, k, state);
+  for (int a = 0; a < 3; ++a) {
+    int place = 0;  // corners of the mechanics are in ascending order
+    for (const int other : nodes) place += other < nodes[at(a)] ? 1 : 0;
+    e.membrane[3 + a] += remembered_strain(t, 3 + place, state);
+    for (int j = 0; j < 2; ++j) e.bending[2 * a + j] += remembered_strain(t, 6 + 2 * place + j, state);
+  }
+  return e;
+}
+
 ShellBody::Strained ShellBody::strained(std::size_t t, const std::array<double, 3>& L, const State& state) const {
   const PlaneTriangle p = corners(t);
   const LinearGradients linear = linear_gradients(p);
@@ -59,11 +75,15 @@ ShellBody::Strained ShellBody::strained(std::size_t t, const std::array<double, 
   const ShellStrain<double>& e = triangle.strain();
   const auto drilling = drilling_strains(p);
   const PlateStrains plate = plate_strains(p, section(t), L);
-  for (std::size_t i = 0; i < 3; ++i) {
-    s.membrane[i] = e.membrane[i];
-    for (std::size_t a = 0; a < 3; ++a) s.membrane[i] += drilling[i][a] * e.membrane[3 + a];
-    for (std::size_t k = 0; k < 6; ++k) s.curvature[i] += plate.curvature[i][k] * e.bending[k];
-  }
+  const auto resolve = [&](const ShellStrain<double>& strain, auto& membrane, auto& curvature) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      membrane[i] = strain.membrane[i];
+      for (std::size_t a = 0; a < 3; ++a) membrane[i] += drilling[i][a] * strain.membrane[3 + a];
+      for (std::size_t k = 0; k < 6; ++k) curvature[i] += plate.curvature[i][k] * strain.bending[k];
+    }
+  };
+  resolve(e, s.membrane, s.curvature);
+  resolve(acting_strain(t, e, state), s.acting_membrane, s.acting_curvature);
   s.axes = s.rest_axes + s.rest_axes * triangle.turned();
   s.stretch = {triangle.stretch()[0], triangle.stretch()[1], triangle.stretch()[2]};
   return s;
@@ -80,7 +100,8 @@ std::array<double, 3> ShellBody::membrane_stress(std::size_t t, const std::array
 /// F S Fᵀ / det F, with the thickness that plane stress leaves.
 Mat3d ShellBody::cauchy(std::size_t t, const Strained& s, double offset) const {
   const std::array<double, 3> E = at_height(s.membrane, s.curvature, offset);
-  const std::array<double, 3> tau = pushed(s.stretch, membrane_stress(t, E));
+  const std::array<double, 3> acting = at_height(s.acting_membrane, s.acting_curvature, offset);
+  const std::array<double, 3> tau = pushed(s.stretch, membrane_stress(t, acting));
   const double nu = section(t).poisson, thinning = 1 - 2 * nu / (1 - nu) * (E[0] + E[1]);
   const double J = (s.stretch[0] * s.stretch[2] - s.stretch[1] * s.stretch[1]) * std::sqrt(std::max(1e-6, thinning));
   return in_plane(s.axes, tau[0] / J, tau[1] / J, tau[2] / J);
@@ -88,8 +109,9 @@ Mat3d ShellBody::cauchy(std::size_t t, const Strained& s, double offset) const {
 
 PointTensors ShellBody::tensors_of(std::size_t t, const Strained& s, double offset) const {
   const std::array<double, 3> E = at_height(s.membrane, s.curvature, offset), S = membrane_stress(t, E);
+  const double lasting = points_[t].viscosity ? points_[t].viscosity->long_term() : 1.0;
   return {in_plane(s.rest_axes, E[0], E[1], 0.5 * E[2]), cauchy(t, s, offset),
-          0.5 * (E[0] * S[0] + E[1] * S[1] + E[2] * S[2])};
+          0.5 * lasting * (E[0] * S[0] + E[1] * S[1] + E[2] * S[2])};
 }
 
 std::vector<PointTensors> ShellBody::tensors(const State& state) const {
@@ -137,7 +159,7 @@ std::vector<BodyField> ShellBody::own_fields(const State& state) const {
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const Strained s = strained(t, kMiddle, state);
     const double h = thickness_[t], stiffness = h * h * h / 12;
-    const std::array<double, 3> S = membrane_stress(t, s.membrane), M = membrane_stress(t, s.curvature);
+    const std::array<double, 3> S = membrane_stress(t, s.acting_membrane), M = membrane_stress(t, s.acting_curvature);
     append(force.values, in_plane(s.axes, h * S[0], h * S[1], h * S[2]));
     append(moment.values, in_plane(s.axes, stiffness * M[0], stiffness * M[1], stiffness * M[2]));
     const Mat3d out = cauchy(t, s, 0.5 * h), in = cauchy(t, s, -0.5 * h);

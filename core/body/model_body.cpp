@@ -1,6 +1,7 @@
 #include "core/body/model_body.hpp"
 
 #include "core/base/index.hpp"
+#include "core/physics/element_law.hpp"
 
 #include <algorithm>
 
@@ -10,7 +11,7 @@ namespace {
 
 /// The point's material as the mechanics use it, without stabilisation and damping.
 ThinMaterial<double> stress_material(const BodyPoint& p, const Mat3d& axes) {
-  const Lame lame = thin_lame(p.law, p);
+  const Lame lame = thin_lame(p.law, lasting_constants(p));
   ThinMaterial<double> m{};
   m.volume = p.volume;
   m.lambda = lame.lambda;
@@ -24,19 +25,21 @@ ThinMaterial<double> stress_material(const BodyPoint& p, const Mat3d& axes) {
 Mat3d cauchy(const Mat3d& F, const Mat3d& S) { return times_transpose(F * S, F) * (1 / determinant(F)); }
 
 /// @param Hv  where the volumetric strain is taken; H without selective integration
-PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, const Mat3d& H, const Mat3d& Hv) {
+/// @param Q, Qv  what the point remembers, and of its volumetric strain
+PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, const Mat3d& H, const Mat3d& Hv,
+                        const Mat3d& Q, const Mat3d& Qv) {
   const Mat3d E = green_strain(H), F = Mat3d::identity() + H, Fv = Mat3d::identity() + Hv;
   if (is_thin(p.law)) {
     const ThinMaterial<double> m = stress_material(p, axes[at(p.axes)]);
-    return {E, cauchy(F, second_piola(m, E)), energy_density(m, E)};
+    return {E, cauchy(F, second_piola(m, E) + Q), energy_density(m, E)};
   }
   return with_solid_law(p.law, [&]<Law L>() -> PointTensors {
     LawConstants without_lambda = p, lambda_alone = p;
     without_lambda.lambda = lambda_alone.mu = 0;
     std::fill(lambda_alone.own.begin(), lambda_alone.own.end(), 0.0);
-    const auto shear = make_law<SolidLaw<L, double>>(without_lambda),
-               volume = make_law<SolidLaw<L, double>>(lambda_alone);
-    return {E, cauchy(F, second_piola(shear, H)) + cauchy(Fv, second_piola(volume, Hv)),
+    const auto shear = make_law<SolidLaw<L, double>>(lasting_constants(without_lambda)),
+               volume = make_law<SolidLaw<L, double>>(lasting_constants(lambda_alone));
+    return {E, cauchy(F, second_piola(shear, H) + Q) + cauchy(Fv, second_piola(volume, Hv) + Qv),
             energy_density(shear, H) + energy_density(volume, Hv)};
   });
 }
@@ -86,7 +89,74 @@ TensorField ModelBody::tensor_field(const State& state) const {
 
 PointTensors ModelBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {
   const Mat3d H = field_at(place, state).H;
-  return tensors_of(points_[nearest], axes_, H, selective() ? field_at(attach_volumetric(place), state).H : H);
+  const Mat3d Hv = selective() ? field_at(attach_volumetric(place), state).H : H;
+  return tensors_of(points_[nearest], axes_, H, Hv, remembered(nearest, state), remembered_volumetric(nearest, state));
+}
+
+LawConstants lasting_constants(LawConstants constants) {
+  if (constants.viscosity == nullptr) return constants;
+  const double lasting = constants.viscosity->long_term();
+  scale_constants(LawFactors<double>{lasting, constants.viscosity->shear_only ? 1 : lasting}, constants);
+  return constants;
+}
+
+double largest_poisson(const LawConstants& constants) {
+  return std::max(constants.poisson(), lasting_constants(constants).poisson());
+}
+
+double ModelBody::branch_sum(std::size_t lane, int row, const State& state) const {
+  double sum = 0;
+  for (std::size_t first = memory_stride_; first < state.memory.size(); first += memory_stride_)
+    sum += state.memory[first + MemoryLayout::place(lane, 6, row)];
+  return sum;
+}
+
+Mat3d ModelBody::remembered_at(const std::vector<std::size_t>& lanes, std::size_t point, const State& state) const {
+  Mat3d Q;
+  if (lanes.empty() || lanes[point] == kNoLane) return Q;
+  for (int c = 0; c < 6; ++c)
+    Q(kSymmetricPlaces[c][0], kSymmetricPlaces[c][1]) = Q(kSymmetricPlaces[c][1], kSymmetricPlaces[c][0]) =
+        branch_sum(lanes[point], c, state);
+  return Q;
+}
+
+void ModelBody::find_memories(const PointSet& set) {
+  memory_stride_ = set.memory.lanes() * 6;
+  if (std::none_of(points_.begin(), points_.end(), [](const BodyPoint& p) { return p.viscosity != nullptr; })) return;
+  memory_lane_.assign(points_.size(), kNoLane);
+  if (!set.source.empty()) find_lanes_of_points(set);
+  find_lanes_of_elements(set);
+}
+
+void ModelBody::find_lanes_of_points(const PointSet& set) {
+  std::vector<std::size_t> since_volumetric;
+  for (std::size_t lane = at(first_group) * kGroupSize; lane < at(first_group + group_count) * kGroupSize; ++lane) {
+    const int source = set.source[lane];
+    if (source >= 0) {
+      memory_lane_[at(source)] = lane;
+      since_volumetric.push_back(at(source));
+    } else if (source == PointSample::kVolumetric) {
+      volumetric_lane_.resize(points_.size(), kNoLane);
+      for (const std::size_t point : since_volumetric) volumetric_lane_[point] = lane;
+      since_volumetric.clear();
+    }
+  }
+}
+
+void ModelBody::find_lanes_of_elements(const PointSet& set) {
+  const std::vector<std::size_t>& begin = set.memory.begin;  // of the groups of points, of elements, of shells
+  for (int b = first_block; b < first_block + block_count; ++b) {
+    const ElementBlock& block = set.blocks[at(b)];
+    for (int e = 0; e < block.count && !block.viscosity.empty(); ++e)
+      for (int q = 0; q < block.points; ++q)
+        memory_lane_[at(block.source[at(e)] * block.points + q)] =
+            begin[at(1 + b)] + at((e / kElementLanes * block.points + q) * kElementLanes + e % kElementLanes);
+  }
+  for (int b = first_shell; b < first_shell + shell_count; ++b) {
+    const ShellBlock& shell = set.shells[at(b)];
+    for (int t = 0; t < shell.count && !shell.viscosity.empty(); ++t)
+      memory_lane_[at(shell.source[at(t)])] = begin[1 + set.blocks.size() + at(b)] + ShellBlock::memory_lane(t);
+  }
 }
 
 Mat3d ModelBody::strain_at(const Attachment& place, const State& state) const {

@@ -106,6 +106,8 @@ class ModelBody {
   int first_group = 0, group_count = 0;  ///< in the model's point set; set by who closes the set
   int first_block = 0, block_count = 0;  ///< of elements, likewise
   int first_shell = 0, shell_count = 0;  ///< blocks of shells, likewise
+  /// Finds where a state has what its points remember of stresses. Once the set is closed and the ranges are known.
+  void find_memories(const PointSet& set);
   const std::vector<BodyGroup>& groups() const { return groups_; }
   const BodyCells& cells() const { return cells_; }
   /// Weight of each node over its mass, where a static load of gravity is not shared as the mass is; else empty [kg].
@@ -157,6 +159,21 @@ class ModelBody {
   ModelBody& operator=(const ModelBody&) = default;
   ModelBody& operator=(ModelBody&&) = default;
 
+  /// The stress left in the branches of a point adds to that of the law with lasting_constants().
+  Mat3d remembered(std::size_t point, const State& state) const { return remembered_at(memory_lane_, point, state); }
+  /// A triangle of a shell remembers strains: these are left in its branches, of its membrane (0 to 5)
+  /// and bending (6 to 11).
+  double remembered_strain(std::size_t triangle, int row, const State& state) const {
+    const bool known = !memory_lane_.empty() && memory_lane_[triangle] != kNoLane;
+    return known ? branch_sum(memory_lane_[triangle] + static_cast<std::size_t>(row / 6 * MemoryLayout::kLanes),
+                              row % 6, state)
+                 : 0;
+  }
+  /// This one is of its volumetric strain, where that is taken elsewhere (selective integration).
+  Mat3d remembered_volumetric(std::size_t point, const State& state) const {
+    return remembered_at(volumetric_lane_, point, state);
+  }
+
   double volume_ = 0, mass_ = 0, size_ = 0;
   int first_node_ = 0, node_count_ = 0;
   std::vector<int> shared_;
@@ -168,6 +185,21 @@ class ModelBody {
   std::vector<BodyGroup> groups_;
   BodyCells cells_;
   std::vector<double> weights_;
+
+ private:
+  static constexpr std::size_t kNoLane = static_cast<std::size_t>(-1);
+  double branch_sum(std::size_t lane, int row, const State& state) const;
+  Mat3d remembered_at(const std::vector<std::size_t>& lanes, std::size_t point, const State& state) const;
+  void find_lanes_of_points(const PointSet& set);
+  void find_lanes_of_elements(const PointSet& set);
+  /// By points: their lanes, and those of their volumetric strain; empty where nothing fades.
+  std::vector<std::size_t> memory_lane_, volumetric_lane_;
+  std::size_t memory_stride_ = 0;  ///< numbers of a branch in a state
 };
+
+/// The constants with which a law gives the stress that never fades.
+LawConstants lasting_constants(LawConstants constants);
+/// Poisson's ratio at once or in the long term, whichever is larger: elements and points lock by it.
+double largest_poisson(const LawConstants& constants);
 
 }  // namespace fascia

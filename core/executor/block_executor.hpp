@@ -5,6 +5,7 @@
 #include "core/physics/point_physics.hpp"
 #include "core/structure/model.hpp"
 
+#include <cmath>
 #include <concepts>
 #include <span>
 #include <vector>
@@ -19,6 +20,8 @@ class BlockMatrix;
 struct InternalEnergy {
   double elastic = 0, stabilization = 0, viscous = 0;  ///< springs count as elastic, tethers as stabilisation
   double total() const { return elastic + stabilization + viscous; }
+  /// The sizes of its terms add up; those of stresses that fade have any sign.
+  double size() const { return std::abs(elastic + stabilization) + std::abs(viscous); }
   InternalEnergy& operator+=(const InternalEnergy& other) {
     elastic += other.elastic;
     stabilization += other.stabilization;
@@ -43,7 +46,8 @@ struct BlockState {
   std::span<const double> E;  ///< of the block: strains at the start of the step, or empty
   double inverse_step = 0;    ///< of damping [1/s]
   Tangent tangent = Tangent::full;
-  std::span<const double> kept{};  ///< of the block: what linearize() kept of this state
+  std::span<const double> kept{};   ///< of the block: what linearize() kept of this state
+  std::span<const double> given{};  ///< of the block: rows of its lanes by GivenRow, or empty
 };
 
 /// A motion of all nodes.
@@ -70,6 +74,8 @@ concept IsBlockExecutor = requires(B& block, const B& same, const BlockState& st
   { same.empty() } -> std::same_as<bool>;
   { same.strain_size() } -> std::same_as<std::size_t>;
   block.store_strain(state, out);
+  /// Blocks that remember it store what fades, as strains lie: second Piola-Kirchhoff stress, shells their strains.
+  block.store_stress(state, out);
   /// The gradient of the energy, for add_sums(). `true`: energies, and rounding by the parts' motion, too.
   block.compute_forces(state, true, part_motion);
   /// Keeps what products need of a state. @param start, step  where a step led to it: stresses are extrapolated along

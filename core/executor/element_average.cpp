@@ -55,12 +55,13 @@ void ElementExecutor::average_of(const BlockState& state, std::span<const Vec3d>
       }
     }
   });
+  const double factor = bulk_factor(state);
   pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       double sum = 0;
       for (int k = block_.node_slot_begin[at(node)]; k < block_.node_slot_begin[at(node + 1)]; ++k)
         sum += slot_theta_[at(block_.node_slot[at(k)])];
-      out[at(node)] = sum == 0 ? 0.0 : node_modulus_[at(node)] * sum / node_volume_[at(node)];
+      out[at(node)] = sum == 0 ? 0.0 : factor * node_modulus_[at(node)] * sum / node_volume_[at(node)];
     }
   });
 }
@@ -83,12 +84,17 @@ void ElementExecutor::average_direction(const BlockState& state, std::span<const
   });
 }
 
-double ElementExecutor::average_energy() const {
+double ElementExecutor::average_energy(const BlockState& state) const {
   double energy = 0;
   for (std::size_t i = 0; i < node_pressure_.size(); ++i)
     if (node_modulus_[i] != 0)
       energy += 0.5 * node_volume_[i] * node_pressure_[i] * node_pressure_[i] / node_modulus_[i];
-  return energy;
+  return energy / bulk_factor(state);
+}
+
+/// This part of what acts in a step never fades.
+double ElementExecutor::lasting_part(const BlockState& state) {
+  return state.given.empty() ? 1.0 : state.given[(kLastingFactors + 1) * kElementLanes] / bulk_factor(state);
 }
 
 /// Σ k_a V_a G_a G_aᵀ with G_a = ∂θ_a/∂x, which reaches all nodes of the elements around a.
@@ -134,13 +140,14 @@ void ElementExecutor::assemble_average(const BlockState& state, BlockMatrix& mat
       }
     ++e;
   });
+  const double factor = bulk_factor(state);
   for (std::size_t a = 0; a < around.size(); ++a) {
     for (const auto& [i, gi] : around[a]) {
       for (const auto& [j, gj] : around[a]) {
         if (matrix.fills_upper() ? j < i : j > i) continue;
         double* block = matrix.block(matrix.find(i, j));
         const int stride = matrix.dofs().size(j);
-        const Mat3d part = outer(gi, gj) * (node_modulus_[a] / node_volume_[a]);
+        const Mat3d part = outer(gi, gj) * (factor * node_modulus_[a] / node_volume_[a]);
         for (int r = 0; r < 3; ++r)
           for (int c = 0; c < 3; ++c) block[stride * r + c] += part(r, c);
       }

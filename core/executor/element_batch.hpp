@@ -18,7 +18,7 @@ class BatchTangent {
   BatchTangent(const ElementBlock& block, int batch, int half, const Vec3<Lanes>* u, const BlockState& state,
                const Lanes& pressure)
       : points(block, batch, half, u),
-        m(element_material<L>(block, batch, half, state.inverse_step)),
+        m(element_material<L>(block, batch, half, state)),
         full_(state.tangent == Tangent::full),
         k_(block.averaged ? Lanes(0) : m.law().volumetric_modulus()),
         element_(points.mean(points.H), points.safe_volume(), full_) {
@@ -26,10 +26,12 @@ class BatchTangent {
       const Mat3<Lanes> old = old_strain(block, state.E, batch, q, half);
       if constexpr (kTurns) {
         sigma_[q] = element_.stress(element_.strain(points.H[q]), m, old, block.damped);
+        if (!state.given.empty()) sigma_[q] += given_stress(block, state, batch, q, half);
         element_.add_point(points.H[q], sigma_[q], points.v(q));
       } else {
         const Lanes p = block.averaged ? pressure : k_ * SolidLaw<L, Lanes>::volumetric_strain(points.H[q]);
         point_[q] = ElasticPoint<L, Lanes>(points.H[q], m, p, old, block.damped);
+        if (!state.given.empty()) point_[q].S += given_stress(block, state, batch, q, half);
         if (!state.kept.empty())
           point_[q].set_stress(symmetric_matrix(state.kept.data() + symmetric_row(block, batch, q), 0, half));
       }
@@ -38,6 +40,13 @@ class BatchTangent {
   }
 
   const ElasticPoint<L, Lanes>& point(int q) const { return point_[q]; }
+  /// Second Piola-Kirchhoff stress, viscous too; of the co-rotational law in the element's axes.
+  Mat3<Lanes> stress(int q) const {
+    if constexpr (kTurns)
+      return sigma_[q];
+    else
+      return point_[q].S + point_[q].S_viscous;
+  }
   /// k of dp; it is 0 where p is an average.
   const Lanes& volumetric_modulus() const { return k_; }
 

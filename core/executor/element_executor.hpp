@@ -21,6 +21,7 @@ class ElementExecutor {
   /// (batches × points × 6 × 8)
   std::size_t strain_size() const;
   void store_strain(const BlockState& state, std::span<double> E);
+  void store_stress(const BlockState& state, std::span<double> S);
   /// Sums forces by patch.
   void compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion);
   /// Stresses that are extrapolated, in the layout of strains; empty: those of the state.
@@ -51,6 +52,8 @@ class ElementExecutor {
   void assemble_patch(const BlockState& state, int patch, BlockMatrix& matrix);
   template <Law L, int N>
   void strain_of_patch(int patch, std::span<double> E) const;
+  template <Law L, int N>
+  void stress_of_patch(const BlockState& state, int patch, std::span<double> S) const;
   template <int N>
   double spin_of_patch(int patch) const;
   template <Law L, int N>
@@ -64,7 +67,8 @@ class ElementExecutor {
 
   // Node-averaged volumetric strain (element_average.cpp).
   void prepare_average();
-  double average_energy() const;
+  double average_energy(const BlockState& state) const;
+  static double lasting_part(const BlockState& state);
   void average(const BlockState& state);
   void average_direction(const BlockState& state, std::span<const Vec3d> dx);
   template <class Theta>
@@ -86,6 +90,7 @@ class ElementExecutor {
   std::vector<double> node_volume_, node_modulus_;  ///< of averaging: Σ V/4 [m³], mean k [Pa]
   std::vector<double> slot_theta_;                  ///< Σ V θ/4 by patch
   std::vector<double> node_pressure_, node_theta_;  ///< k times the mean of θ, and of its derivative [Pa]
+  std::vector<double> kept_pressure_;               ///< while stresses are stored
 };
 
 }  // namespace fascia

@@ -1,4 +1,4 @@
-#include "core/executor/element_kernels.hpp"
+#include "core/executor/element_batch.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -78,13 +78,14 @@ template <Law L, int N>
   const auto nodes = block_.nodes_of_patch(patch);
   std::fill_n(slot_sum_.begin() + static_cast<std::ptrdiff_t>(first), nodes.size(), Vec3d{});
   const int n = nodes_of<N>(block_);
+  const bool remembers = !state.given.empty();
   PatchSums sums;
   for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
     for (int half = 0; half < kBatches; ++half) {
       Vec3<Lanes> u[kRoom<N>], f[kRoom<N>];
       gather<N>(block_, batch, half, slot_u_.data() + first, u);
       const BatchPoints<N> points(block_, batch, half, u);
-      const auto m = element_material<L>(block_, batch, half, state.inverse_step);
+      const auto m = element_material<L>(block_, batch, half, state);
       const bool mixed = energies && !lane_part_.empty();
       const Lanes motion = mixed ? lane_motion(batch, half, part_motion) : patch_motion;
       Lanes rounding;
@@ -104,6 +105,13 @@ template <Law L, int N>
           sums.viscous += lane_sum(points.v(q) * m.viscosity *
                                    StVenantKirchhoff<Lanes>{m.lambda, m.mu}.energy_density(viscous_strain));
       };
+      // Where points remember stresses, what never fades is elastic, and the rest of the step's potential viscous.
+      const auto split = [&](int q, const Lanes& acting, const auto& density, const Mat3<Lanes>& strain) {
+        const Lanes fading = acting - density(element_material<L>(block_, batch, half, state, kLastingFactors));
+        const Mat3<Lanes> given = given_stress(block_, state, batch, q, half);
+        sums.elastic -= lane_sum(points.v(q) * fading);
+        sums.viscous += lane_sum(points.v(q) * (fading + contract(given, strain)));
+      };
       const Lanes swelling = points.swelling, pull = m.penalty * swelling * abs(swelling);
       if (block_.penalised && energies)
         sums.elastic += lane_sum(points.volume * m.penalty * swelling * swelling * abs(swelling) * Lanes(1.0 / 3));
@@ -116,8 +124,16 @@ template <Law L, int N>
         for (int q = 0; q < points.count(); ++q) {
           const Mat3<Lanes> strain = element.strain(points.H[q]), old = old_strain(block_, state.E, batch, q, half);
           sigma[q] = element.stress(strain, m, old, block_.damped);
-          if (N != 4 || block_.damped) element.add_point(points.H[q], sigma[q], points.v(q));
+          if (remembers) sigma[q] += given_stress(block_, state, batch, q, half);
+          if (N != 4 || block_.damped || remembers) element.add_point(points.H[q], sigma[q], points.v(q));
           energy(q, StVenantKirchhoff<Lanes>{m.lambda, m.mu}.energy_density(strain), strain - old);
+          if (remembers && energies)
+            split(
+                q, StVenantKirchhoff<Lanes>{m.lambda, m.mu}.energy_density(strain),
+                [&](const auto& lasting) {
+                  return StVenantKirchhoff<Lanes>{lasting.lambda, lasting.mu}.energy_density(strain);
+                },
+                strain);
         }
         element.close();
         for (int q = 0; q < points.count(); ++q) add(q, with_penalty(q, element.first_piola(sigma[q])));
@@ -132,11 +148,15 @@ template <Law L, int N>
             theta = SolidLaw<L, Lanes>::volumetric_strain(H);
             p = m.law().volumetric_modulus() * theta;
           }
-          const ElasticPoint<L, Lanes> point(H, m, p, old, block_.damped);
+          ElasticPoint<L, Lanes> point(H, m, p, old, block_.damped);
+          if (remembers) point.S += given_stress(block_, state, batch, q, half);
           add(q, with_penalty(q, point.first_piola()));
-          if (energies)
-            energy(q, m.law().shear_energy(H) + Lanes(0.5) * m.law().volumetric_modulus() * theta * theta,
-                   SolidLaw<L, Lanes>::strain(H) - old);
+          const auto density = [&](const auto& constants) {
+            const auto law = constants.law();
+            return law.shear_energy(H) + Lanes(0.5) * law.volumetric_modulus() * theta * theta;
+          };
+          if (energies) energy(q, density(m), SolidLaw<L, Lanes>::strain(H) - old);
+          if (remembers && energies) split(q, density(m), density, SolidLaw<L, Lanes>::strain(H));
         }
       }
       scatter<N>(block_, batch, half, f, slot_sum_.data() + first);
@@ -161,7 +181,11 @@ void ElementExecutor::compute_forces(const BlockState& state, bool energies, std
     elastic_ += s.elastic;
     viscous_ += s.viscous;
   }
-  if (block_.averaged) elastic_ += average_energy();
+  if (block_.averaged) {
+    const double acting = average_energy(state), elastic = acting * lasting_part(state);
+    elastic_ += elastic;
+    viscous_ += acting - elastic;
+  }
 }
 
 void ElementExecutor::add_rounding(std::span<double> squares_of_parts) const {
@@ -190,6 +214,35 @@ void ElementExecutor::strain_of_patch(int patch, std::span<double> E) const {
       }
     }
   }
+}
+
+template <Law L, int N>
+void ElementExecutor::stress_of_patch(const BlockState& state, int patch, std::span<double> S) const {
+  const auto first = at(block_.patch_begin[at(patch)]);
+  const auto nodes = block_.nodes_of_patch(patch);
+  for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
+    for (int half = 0; half < kBatches; ++half) {
+      Vec3<Lanes> u[kRoom<N>];
+      gather<N>(block_, batch, half, slot_u_.data() + first, u);
+      const Lanes pressure = block_.averaged ? mean_pressure(block_, batch, half, nodes, node_pressure_) : Lanes(0);
+      const BatchTangent<L, N> tangent(block_, batch, half, u, state, pressure);
+      for (int q = 0; q < tangent.points.count(); ++q)
+        store_symmetric(S.data() + symmetric_row(block_, batch, q), 0, half, tangent.stress(q));
+    }
+  }
+}
+
+/// Products go on with the pressures of the last forces.
+void ElementExecutor::store_stress(const BlockState& state, std::span<double> S) {
+  kept_pressure_ = node_pressure_;
+  if (block_.averaged) average(state);
+  with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
+    pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
+      gather_patch(state.u, patch, slot_u_);
+      stress_of_patch<L, N>(state, patch, S);
+    });
+  });
+  node_pressure_.swap(kept_pressure_);
 }
 
 void ElementExecutor::store_strain(const BlockState& state, std::span<double> E) {

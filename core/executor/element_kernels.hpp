@@ -62,16 +62,31 @@ inline Mat3<Lanes> displacement_gradient(const ElementBlock& block, const double
   return H;
 }
 
+/// Rows of what a step gives the points of a batch; only where they remember stresses.
+inline const double* given_rows(const ElementBlock& block, const BlockState& state, int batch, int q) {
+  return given_rows(state.given, at(batch) * at(block.points) + at(q));
+}
+/// S₀ of a point, which stays during the step.
+inline Mat3<Lanes> given_stress(const ElementBlock& block, const BlockState& state, int batch, int q, int half) {
+  return symmetric_matrix(given_rows(block, state, batch, q), kGivenStress, half);
+}
+/// Factor on the volumetric modulus, of blocks whose elements fade alike.
+inline double bulk_factor(const BlockState& state) {
+  return state.given.empty() ? 1.0 : state.given[(kGivenFactors + 1) * kElementLanes];
+}
+
 template <Law L>
-ElementSolid<L, Lanes> element_material(const ElementBlock& block, int batch, int half, double inverse_step) {
+ElementSolid<L, Lanes> element_material(const ElementBlock& block, int batch, int half, const BlockState& state,
+                                        GivenRow factors = kGivenFactors) {
   const double* base = block.material_of(batch);
   ElementSolid<L, Lanes> m;
   m.lambda = row(base, ElementBlock::kLambda, half);
   m.mu = row(base, ElementBlock::kMu, half);
-  m.viscosity = row(base, ElementBlock::kStiffnessDamping, half) * Lanes(inverse_step);
+  m.viscosity = row(base, ElementBlock::kStiffnessDamping, half) * Lanes(state.inverse_step);
   m.penalty = row(base, ElementBlock::kPenalty, half);
   if constexpr (constexpr int kOwn = SolidLaw<L, Lanes>::kOwn; kOwn > 0)
     for (int k = 0; k < kOwn; ++k) m.own[k] = row(base, ElementBlock::kOwnConstants + k, half);
+  if (!state.given.empty()) scale_constants(law_factors(given_rows(block, state, batch, 0), factors, half), m);
   return m;
 }
 

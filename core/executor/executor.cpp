@@ -48,16 +48,20 @@ CpuExecutor::CpuExecutor(const PointSet& set, ThreadPool& pool)
 namespace {
 
 /// A block's part of an array over all; empty where there is no such array.
-std::span<const double> part_of(const AlignedVector<double>& all, const std::vector<std::size_t>& begin,
-                                std::size_t block) {
+std::span<const double> part_of(std::span<const double> all, const std::vector<std::size_t>& begin, std::size_t block,
+                                std::size_t size = 1) {
   if (all.empty()) return {};
-  return std::span(all).subspan(begin[block], begin[block + 1] - begin[block]);
+  return all.subspan(begin[block] * size, (begin[block + 1] - begin[block]) * size);
 }
 
 }  // namespace
 
 BlockState CpuExecutor::state_of(const State& state, const StrainHistory& history, std::size_t block) const {
-  return {state.u, state.D.values(), part_of(history.E, strain_begin_, block), history.inverse_step};
+  return {.u = state.u,
+          .D = state.D.values(),
+          .E = part_of(history.E, strain_begin_, block),
+          .inverse_step = history.inverse_step,
+          .given = part_of(history.given, set_.memory.begin, block, kGivenRows)};
 }
 
 BlockState CpuExecutor::state_of(const Linearization& lin, std::size_t block) const {
@@ -66,7 +70,8 @@ BlockState CpuExecutor::state_of(const Linearization& lin, std::size_t block) co
           part_of(lin.E, strain_begin_, block),
           lin.inverse_step,
           lin.tangent,
-          part_of(lin.kept, lin.kept_begin, block)};
+          part_of(lin.kept, lin.kept_begin, block),
+          part_of(lin.given, set_.memory.begin, block, kGivenRows)};
 }
 
 /// The largest displacement or rotation (taken at the part's length) of each part.
@@ -144,6 +149,16 @@ void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
   for_each_block([&](auto& block, std::size_t b) {
     block.store_strain(state_of(state, {}, b),
                        std::span(history.E).subspan(strain_begin_[b], strain_begin_[b + 1] - strain_begin_[b]));
+  });
+}
+
+void CpuExecutor::store_stress(const State& state, std::span<const double> given, std::span<double> out) {
+  StrainHistory history;
+  history.given = given;
+  const std::vector<std::size_t>& begin = set_.memory.begin;
+  for_each_block([&](auto& block, std::size_t b) {
+    if (begin[b + 1] == begin[b]) return;
+    block.store_stress(state_of(state, history, b), out.subspan(begin[b] * 6, (begin[b + 1] - begin[b]) * 6));
   });
 }
 

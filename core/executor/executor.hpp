@@ -18,12 +18,13 @@
 
 namespace fascia {
 
-/// Strains at the start of a time step, for stiffness damping.
+/// Strains at the start of a time step, for stiffness damping, and what points that remember stresses add.
 struct StrainHistory {
   /// By blocks, in their order: (groups × 6 × 8, then points of element batches × 6 × 8): 11 22 33 23 13 12; then
   /// batches of shells × 12 × 8; or empty
   AlignedVector<double> E;
-  double inverse_step = 0;  ///< 1/dt [1/s]; 0 switches the viscous stress off
+  double inverse_step = 0;          ///< 1/dt [1/s]; 0 switches the viscous stress off
+  std::span<const double> given{};  ///< (lanes × kGivenRows) of the caller's, see StressMemory; empty: nothing fades
 };
 
 /// A step of Newton's method, along which stresses are extrapolated for the tangent where it ends.
@@ -42,6 +43,7 @@ struct Linearization {
   std::vector<Vec3d> u;             ///< displacements
   std::vector<Mat3d> D;             ///< rotations − I
   AlignedVector<double> E;          ///< StrainHistory::E, where blocks look at the state again
+  AlignedVector<double> given;      ///< StrainHistory::given
   AlignedVector<double> kept;       ///< what blocks keep of the state, in their order
   std::vector<std::size_t> kept_begin;     ///< (blocks + 1)
   std::vector<SurfaceTangent> surfaces;    ///< of surface loads; added by who knows them, as to node_blocks
@@ -90,6 +92,10 @@ class CpuExecutor {
 
   /// Keeps the strains of a state.
   void store_strain(const State& state, StrainHistory& history);
+  /// Stores what fades of points that remember it: second Piola-Kirchhoff stress, of shells strains.
+  /// @param given  with these rows
+  /// @param out    (lanes × 6)
+  void store_stress(const State& state, std::span<const double> given, std::span<double> out);
 
   /// Energies as the last call of gradient() found them.
   BlockEnergies energies() const;

@@ -70,6 +70,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   out.u = state.u;
   out.D.assign(state.D.values().begin(), state.D.values().end());
   if (see_state_again_) out.E = history.E;
+  out.given.assign(history.given.begin(), history.given.end());
 }
 
 /// Blocks keep what they need; where stresses are extrapolated, what they do to turning frames is kept too.
@@ -90,7 +91,9 @@ void CpuExecutor::linearize_blocks(const State& state, const StrainHistory& hist
     const std::span<double> kept =
         std::span(out.kept).subspan(out.kept_begin[b], out.kept_begin[b + 1] - out.kept_begin[b]);
     if (taken == nullptr) return block.linearize(now, nullptr, nullptr, kept);
-    const BlockState start{taken->u, taken->D.values(), now.E, now.inverse_step};
+    BlockState start = now;
+    start.u = taken->u;
+    start.D = taken->D.values();
     block.linearize(now, &start, &step, kept);
   });
   if (taken == nullptr || !see_motions_) return;

@@ -45,17 +45,26 @@ inline void store_symmetric(double* base, int first_row, int batch, const Mat3<L
   for (int k = 0; k < 6; ++k) store(base, first_row + k, batch, m(kSymmetricPlaces[k][0], kSymmetricPlaces[k][1]));
 }
 
+/// Rows of what a step gives a group, or a batch of points of elements (GivenRow).
+inline const double* given_rows(std::span<const double> given, std::size_t group) {
+  return given.data() + group * kGivenRows * kGroupSize;
+}
+inline LawFactors<Lanes> law_factors(const double* rows, GivenRow first, int batch) {
+  return {row(rows, first, batch), row(rows, first + 1, batch)};
+}
+
 /// @param targets  of tethers: (groups with axes × 3 × 8) [m]
+/// @param factors  of points that remember stresses: those of the step, or of what never fades
 template <PointKind Kind>
-inline auto material(const PointSet& set, int group, int batch, double inverse_step,
-                     const AlignedVector<double>& targets) {
+inline auto material(const PointSet& set, int group, int batch, const BlockState& state,
+                     const AlignedVector<double>& targets, GivenRow factors = kGivenFactors) {
   const double* base = set.material_of_group(group);
   MaterialOf<Kind.law, Lanes> m;
   m.volume = row(base, kVolume, batch);
   m.lambda = row(base, kLambda, batch);
   m.mu = row(base, kMu, batch);
   m.stabilization = row(base, kStabilization, batch);
-  m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(inverse_step);
+  m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(state.inverse_step);
   if constexpr (!is_thin(Kind.law)) {
     if constexpr (constexpr int kOwn = SolidLaw<Kind.law, Lanes>::kOwn; kOwn > 0)
       for (int k = 0; k < kOwn; ++k) m.own[k] = row(set.own_of_group(group), k, batch);
@@ -68,6 +77,7 @@ inline auto material(const PointSet& set, int group, int batch, double inverse_s
     if (m.law == Law::tether)
       for (int k = 0; k < 3; ++k) m.target[k] = row(targets.data() + index * 3 * kGroupSize, k, batch);
   }
+  if (!state.given.empty()) scale_constants(law_factors(given_rows(state.given, at(group)), factors, batch), m);
   return m;
 }
 
@@ -135,6 +145,13 @@ inline const Mat3d& turn_of(const BlockState& state, int node) {
 inline Mat3<Lanes> old_strain(const BlockState& state, int group, int batch) {
   if (state.E.empty()) return {};
   return symmetric_matrix(state.E.data() + static_cast<std::size_t>(group) * 6 * kGroupSize, 0, batch);
+}
+
+inline Mat3<Lanes> first_piola(const Mat3<Lanes>& H, const Mat3<Lanes>& S) { return S + H * S; }
+
+/// S₀ of a group's batch: a stress that stays during the step. Only where there is one.
+inline Mat3<Lanes> given_stress(const BlockState& state, int group, int batch) {
+  return symmetric_matrix(given_rows(state.given, at(group)), kGivenStress, batch);
 }
 
 }  // namespace fascia::kernels

@@ -35,6 +35,17 @@ PointExecutor::PointExecutor(const PointSet& set, ThreadPool& pool)
   }
 }
 
+/// Where points remember stresses, what never fades is elastic, and the rest of the step's potential viscous.
+template <PointKind Kind>
+void PointExecutor::split_energy(const BlockState& state, int group, int batch, const PointMotion<Lanes>& x,
+                                 PointEnergy<Lanes>& energy) const {
+  const auto lasting = material<Kind>(set_, group, batch, state, targets_, kLastingFactors);
+  const Lanes elastic = point_energy<Kind.stabilization>(x, lasting, {}).elastic;
+  const Mat3<Lanes> E = green_strain(x.H);
+  energy.viscous += energy.elastic - elastic + lasting.volume * contract(given_stress(state, group, batch), E);
+  energy.elastic = elastic;
+}
+
 template <PointKind Kind>
 void PointExecutor::forces_of_group(const BlockState& state, int group, bool energies,
                                     std::span<const double> part_motion) {
@@ -49,13 +60,15 @@ void PointExecutor::forces_of_group(const BlockState& state, int group, bool ene
     for (std::size_t s = 0; s < nodes.size(); ++s)
       add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(state.u[at(nodes[s])]),
                        broadcast(turn_of(state, nodes[s])), x);
-    const auto m = material<Kind>(set_, group, b, state.inverse_step, targets_);
+    const auto m = material<Kind>(set_, group, b, state, targets_);
     const Mat3<Lanes> E_old = old_strain(state, group, b);
-    const PointStress<Lanes> stress = point_stress<Kind.stabilization>(x, m, E_old);
+    PointStress<Lanes> stress = point_stress<Kind.stabilization>(x, m, E_old);
+    if (!state.given.empty()) stress.P += first_piola(x.H, given_stress(state, group, b));
     P[b] = stress.P * m.volume;
     Y[b] = stress.Y * m.volume;
     if (!energies) continue;
-    const PointEnergy<Lanes> energy = point_energy<Kind.stabilization>(x, m, E_old);
+    PointEnergy<Lanes> energy = point_energy<Kind.stabilization>(x, m, E_old);
+    if (!state.given.empty()) split_energy<Kind>(state, group, b, x, energy);
     elastic += lane_sum(energy.elastic);
     stabilizing += lane_sum(energy.stabilization);
     viscous += lane_sum(energy.viscous);
@@ -160,6 +173,28 @@ Vec3d tether_force(const PointSet& set, std::span<const double> targets, const T
     for (int j = 0; j < 3; ++j)
       force[i] += set.axes[(index * 9 + at(3 * i + j)) * kGroupSize + at(tether.lane)] * stretch[j];
   return force * set.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
+}
+
+template <PointKind Kind>
+void PointExecutor::stress_of_group(const BlockState& state, int group, std::span<double> S) const {
+  const auto nodes = set_.nodes(group);
+  for (int b = 0; b < kBatches; ++b) {
+    PointMotion<Lanes> x;
+    for (std::size_t s = 0; s < nodes.size(); ++s)
+      add_slot<false>(set_.shape_of_slot(set_.slot_begin[at(group)] + static_cast<int>(s)), b,
+                      broadcast(state.u[at(nodes[s])]), broadcast(turn_of(state, nodes[s])), x);
+    const auto m = material<Kind>(set_, group, b, state, targets_);
+    Mat3<Lanes> stress;
+    if (!is_tether(m)) stress = tangent_stress<Stabilization::none>(x, m, {}).S + given_stress(state, group, b);
+    store_symmetric(S.data() + at(group) * 6 * kGroupSize, 0, b, stress);
+  }
+}
+
+void PointExecutor::store_stress(const BlockState& state, std::span<double> S) {
+  pool_.for_ranges(set_.group_count(), kGrain, [&](int begin, int end) {
+    for (int group = begin; group < end; ++group)
+      with_kind(rule_of(group), [&]<PointKind Kind>() { stress_of_group<Kind>(state, group, S); });
+  });
 }
 
 void PointExecutor::store_strain(const BlockState& state, std::span<double> E) {

@@ -31,6 +31,7 @@ class PointExecutor {
   bool empty() const { return set_.group_count() == 0; }
   std::size_t strain_size() const { return at(set_.group_count()) * 6 * kGroupSize; }
   void store_strain(const BlockState& state, std::span<double> E);
+  void store_stress(const BlockState& state, std::span<double> S);
   void compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion);
   std::size_t kept_size(bool /*extrapolated*/) const { return at(set_.group_count()) * kRows * kGroupSize; }
   /// Where a step led there, add_sums() gives what acts with extrapolated stresses.
@@ -63,6 +64,11 @@ class PointExecutor {
  private:
   template <PointKind Kind>
   void forces_of_group(const BlockState& state, int group, bool energies, std::span<const double> part_motion);
+  template <PointKind Kind>
+  void split_energy(const BlockState& state, int group, int batch, const PointMotion<Lanes>& x,
+                    PointEnergy<Lanes>& energy) const;
+  template <PointKind Kind>
+  void stress_of_group(const BlockState& state, int group, std::span<double> S) const;
   template <PointKind Kind>
   void linearize_group(const BlockState& now, const BlockState* start, const BlockDirection* step, int group,
                        std::span<double> kept);

@@ -46,11 +46,12 @@ void PointExecutor::linearize_group(const BlockState& now, const BlockState* sta
       add_slot<true>(shape, b, broadcast(d), broadcast(stored_matrix(d + 3)), x_step);
     }
     const Mat3<Lanes> E_old = old_strain(now, group, b);
-    const auto m = material<Kind>(set_, group, b, now.inverse_step, targets_);
+    const auto m = material<Kind>(set_, group, b, now, targets_);
     TangentStress<Lanes> stress;
     if (!is_tether(m))
       stress = start == nullptr ? tangent_stress<Kind.stabilization>(x, m, E_old)
                                 : extrapolated_stress<Kind.stabilization>(x_start, x_step, m, E_old);
+    if (!now.given.empty()) stress.S += given_stress(now, group, b);
     store_matrix(rows, 0, b, x.H);
     store_matrix(rows, 9, b, x.Dbar);
     store_symmetric(rows, 18, b, stress.S);
@@ -88,7 +89,7 @@ void PointExecutor::product_of_group(const BlockState& state, int group, const B
       add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(d),
                        broadcast(stored_matrix(d + 3)), motion);
     }
-    const auto m = material<Kind>(set_, group, b, state.inverse_step, targets_);
+    const auto m = material<Kind>(set_, group, b, state, targets_);
     const auto r = point_stress_differential<Kind.stabilization>(motion_of(state, group, b), stress_of(state, group, b),
                                                                  m, state.tangent, motion);
     dP[b] = r.dP * m.volume;
@@ -173,7 +174,7 @@ void PointExecutor::assemble_group(const BlockState& state, int group, Entries e
   std::array<Mat3d, kMaxSlots> Q;
   for (int a = 0; a < n; ++a) Q[at(a)] = Mat3d::identity() + turn_of(state, nodes[at(a)]);
   for (int batch = 0; batch < kBatches; ++batch) {
-    const auto m = material<Kind>(set_, group, batch, state.inverse_step, targets_);
+    const auto m = material<Kind>(set_, group, batch, state, targets_);
     const PointMotion<Lanes> x = motion_of(state, group, batch);
     const TangentStress<Lanes> stress = stress_of(state, group, batch);
     for (int a = 0; a < n; ++a)

@@ -27,12 +27,16 @@ struct ShellBatch {
   ShellConstants<Lanes> constants;
   Mat3<Lanes> axes;
   Lanes viscosity;  ///< β / dt
+  bool remembers;   ///< what fades: stresses are those of `factor` times the strain and of `given`
+  Lanes factor{1.0}, lasting{1.0};
+  ShellStrain<Lanes> given{};
   const int* node;  ///< of the first lane
   Vec3<Lanes> u[3];
   Mat3<Lanes> D[3];
 
   ShellBatch(const ShellBlock& block, int batch, int half, const BlockState& state)
-      : node(block.nodes_of(batch) + half * kBatchWidth) {
+      : remembers(!state.given.empty()), node(block.nodes_of(batch) + half * kBatchWidth) {
+    if (remembers) load_given(given_rows(state.given, at(2 * batch)), half);
     const double* rows = block.constants_of(batch);
     for (int a = 0; a < 3; ++a)
       for (int j = 0; j < 2; ++j) constants.g[a][j] = row(rows, ShellBlock::kGradients + 2 * a + j, half);
@@ -59,6 +63,17 @@ struct ShellBatch {
     }
   }
   int node_of(int corner, int lane) const { return node[corner * kElementLanes + lane]; }
+
+ private:
+  void load_given(const double* membrane, int half) {
+    const double* bending = membrane + kGivenRows * kElementLanes;
+    factor = row(membrane, kGivenFactors, half);
+    lasting = row(membrane, kLastingFactors, half);
+    for (int k = 0; k < 6; ++k) {
+      given.membrane[k] = row(membrane, kGivenStress + k, half);
+      given.bending[k] = row(bending, kGivenStress + k, half);
+    }
+  }
 };
 
 /// Strains or stresses of a batch; zero where there are none.
@@ -84,6 +99,8 @@ void store_strain_of(const ShellStrain<Lanes>& strain, std::span<double> e, int 
 /// Elastic and viscous stress.
 ShellStrain<Lanes> total_stress(const ShellBatch& batch, const ShellStrain<Lanes>& strain,
                                 const ShellStrain<Lanes>& old) {
+  if (batch.remembers)
+    return shell_stress(batch.constants, strain * batch.factor + (strain - old) * batch.viscosity + batch.given);
   return shell_stress(batch.constants, strain + (strain - old) * batch.viscosity);
 }
 
@@ -141,7 +158,14 @@ void ShellExecutor::forces_of_batch(const BlockState& state, int batch, bool ene
     const Mat3<Lanes> axes = shell.axes + shell.axes * triangle.turned();
     store_corners(axes, f, slot_sums_.data() + (at(batch) * kElementLanes + at(half * kBatchWidth)) * kElementDofs);
     if (!energies) continue;
-    sums.elastic += 0.5 * lane_sum(contract(e, shell_stress(shell.constants, e)));
+    if (shell.remembers) {  // what never fades is elastic, and the rest of the step's potential viscous
+      const ShellStrain<Lanes> stress = shell_stress(shell.constants, e);
+      const Lanes energy = contract(e, stress) * Lanes(0.5);
+      sums.elastic += lane_sum(shell.lasting * energy);
+      sums.viscous += lane_sum((shell.factor - shell.lasting) * energy + contract(shell.given, stress));
+    } else {
+      sums.elastic += 0.5 * lane_sum(contract(e, shell_stress(shell.constants, e)));
+    }
     if (block_.damped) {
       const ShellStrain<Lanes> flow = e - old;
       sums.viscous += 0.5 * lane_sum(contract(flow, shell_stress(shell.constants, flow)) * shell.viscosity);
@@ -205,7 +229,7 @@ struct BatchProducts {
       : shell(block, batch, half, state),
         triangle(shell.constants, shell.u, shell.D),
         axes(shell.axes + shell.axes * triangle.turned()),
-        stiffness(Lanes(1) + shell.viscosity),
+        stiffness(shell.factor + shell.viscosity),
         full(state.tangent == Tangent::full) {
     triangle.prepare_products(state.kept.empty()
                                   ? total_stress(shell, triangle.strain(), load_strain(state.E, batch, half))

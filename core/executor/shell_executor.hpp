@@ -22,6 +22,7 @@ class ShellExecutor {
   /// (batches × 12 × 8)
   std::size_t strain_size() const { return at(block_.batch_count()) * 12 * kElementLanes; }
   void store_strain(const BlockState& state, std::span<double> e);
+  void store_stress(const BlockState& state, std::span<double> e) { store_strain(state, e); }
   /// By triangle.
   void compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion);
   /// Stresses that are extrapolated, in the layout of strains; empty: those of the state.

@@ -20,6 +20,7 @@ class UserExecutor {
   bool empty() const { return block_.count == 0; }
   static std::size_t strain_size() { return 0; }
   static void store_strain(const BlockState&, std::span<double>) {}
+  static void store_stress(const BlockState&, std::span<double>) {}
   void compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion);
   static std::size_t kept_size(bool) { return 0; }
   static void linearize(const BlockState&, const BlockState*, const BlockDirection*, std::span<double>) {}

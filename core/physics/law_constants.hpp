@@ -1,7 +1,9 @@
 #pragma once
 
 #include "core/base/portability.hpp"
+#include "core/physics/viscosity.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace fascia {
@@ -26,8 +28,11 @@ struct Lame {
 /// of stiffness and rounding are made; a law that needs more has them of its own, in its own order.
 struct LawConstants : Lame {
   std::vector<double> own{};
+  std::shared_ptr<const Viscosity> viscosity{};  ///< shares of the stress that fade; null where none does
 
-  friend bool operator==(const LawConstants&, const LawConstants&) = default;
+  friend bool operator==(const LawConstants& a, const LawConstants& b) {
+    return static_cast<const Lame&>(a) == b && a.own == b.own && fade_alike(a.viscosity, b.viscosity);
+  }
 };
 
 /// The own constants of a law in a kernel: none, or `own[N]`.

@@ -80,6 +80,9 @@ constexpr int own_constant_count(Law law) {
 }
 /// @throws InputError  the record lacks constants that its law has
 void check_own_constants(Law law, const LawConstants& constants);
+/// @param stiffness_damping  β [s], which a material that fades has none of
+/// @throws InputError  shares or times that no material has, or that the law does not take
+void check_viscosity(Law law, const Viscosity& viscosity, double stiffness_damping);
 
 /// ψ [J/m³]
 template <class T, template <class> class L>

@@ -17,7 +17,8 @@ namespace fascia {
 /// @tparam System  steps a state by central differences. It has the types Space and Pose, and
 ///   space(), model(), free_count(), view(), for_nodes(act)
 ///   pose()                                 the present state
-///   keep_strain()                          viscous stress is against that of the present state from here on
+///   keep_strain()                          viscous stress is against that of the present state from here on, and
+///                                          stresses that fade grow in full from there
 ///   gather_acting(pose, inverse_step, out) finds forces there, with the sign of a gradient and the viscous stress of
 ///                                          that 1/dt, without mass damping
 ///   place_dependents(pose)
@@ -30,6 +31,7 @@ class ExplicitMode {
     moved_.v = {};
     moved_.Q_dot = {};
     moved_.turned = {};
+    moved_.memory = {};
     for (auto* vector : {&base_, &v_, &w_}) vector->resize(at(dofs_));
     for (auto& y : basis_) {
       y.resize(at(dofs_));

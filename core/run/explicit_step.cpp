@@ -25,7 +25,8 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       last_step_(dt),
       times_{dt, dt},
       nodes_(system.model(), dt),
-      factors_(factors.begin(), factors.end()) {
+      factors_(factors.begin(), factors.end()),
+      memory_(system.model().points.memory, system.space()) {
   require_inertia(model_, filter_);
   const auto n = at(model_.node_count());
   state_.turned.resize(model_.constraints.size());
@@ -35,10 +36,14 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
   half_rate_.resize(half_spin_.size());
   gradient_.resize(at(model_.dof_count()));
   if (!model_.followers.empty() || !model_.surfaces.empty() || !dependents_.empty()) load_.resize(gradient_.size());
+  const bool remembers = !state_.memory.empty();
+  state_.memory.resize(memory_.size());
+  fading_.resize(memory_.stress_size());
   increments_.resize(gradient_.size());
   last_increments_.resize(gradient_.size());
   place_dependents(state_);
   place_dependent_rates(model_.points, state_);
+  if (!remembers) keep_memory({});
   start_velocities();
 }
 
@@ -88,7 +93,7 @@ void ExplicitStepper::start_velocities() {
   }
   place_tethers(model_, factors_, executor_.targets());
   start_energy_ = executor_.gradient(state_, {}, gradient_).total();
-  update_forces();
+  update_forces({});
   double kinetic[1];
   for_nodes([&]<bool Frames>() {
     space_.sum<1>(model_.node_count(), loops::StartVelocity<ExplicitView, Frames>{view()},
@@ -97,9 +102,20 @@ void ExplicitStepper::start_velocities() {
   start_energy_ += kinetic[0];
 }
 
-void ExplicitStepper::update_forces() {
+/// @param fading  since the last forces; points that remember stresses then do so from here on
+void ExplicitStepper::update_forces(const Fading& fading) {
+  memory_.prepare(fading);
+  if (!memory_.empty()) history_.given = {memory_.give(state_.memory.data()), memory_.given_size()};
   add_forces(state_, gradient_, load_);
   if (model_.points.damped) executor_.store_strain(state_, history_);
+  if (fading.of != Fading::Of::reached) keep_memory(fading);
+}
+
+void ExplicitStepper::keep_memory(const Fading& fading) {
+  if (memory_.empty()) return;
+  memory_.prepare(fading);
+  executor_.store_stress(state_, {memory_.relaxing(), memory_.given_size()}, fading_);
+  memory_.keep(state_.memory.data(), fading_.data());
 }
 
 /// Forces of the internal energy, with the viscous stress of the history, and of loads; on hosts of dependent nodes.
@@ -119,6 +135,14 @@ void ExplicitStepper::add_forces(const State& state, std::vector<double>& gradie
   dependents_.turn(state.D);
   dependents_.transfer(gradient);
   dependents_.transfer(load);
+}
+
+/// Strains are in the history. Points that remember stresses are taken as stiff as they are at once: what fades along a
+/// mode that changes its sign in every step gives it no rest.
+void ExplicitStepper::keep_strain() {
+  if (memory_.empty()) return;
+  memory_.prepare({Fading::Of::at_once, 0});
+  history_.given = {memory_.give(state_.memory.data()), memory_.given_size()};
 }
 
 void ExplicitStepper::gather_acting(State& pose, double inverse_step, double* out) {
@@ -170,7 +194,7 @@ void ExplicitStepper::advance(std::span<const double> factors) {
   last_step_ = times_.drift;
   times_ = {last_step_, last_step_};
   history_.inverse_step = model_.points.damped ? 1 / last_step_ : 0.0;
-  update_forces();
+  update_forces(Fading::over(last_step_));
 }
 
 /// Moves what tethers pull to; the work that this takes.

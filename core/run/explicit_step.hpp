@@ -54,7 +54,7 @@ class ExplicitStepper {
   int free_count() const { return filter_.free_count(); }
   State& pose() { return state_; }
   ExplicitView view();
-  void keep_strain() {}  // the history has it
+  void keep_strain();
   void gather_acting(State& pose, double inverse_step, double* out);
   void place_dependents(State& pose) { fascia::place_dependents(model_.points, pose); }
   /// Calls act.operator()<Frames>().
@@ -71,7 +71,8 @@ class ExplicitStepper {
     return std::tie(state_, half_v_, half_spin_, half_rate_, factors_, gradient_, load_, last_increments_, history_,
                     stepped_, kinetic_, work_, largest_work_, last_step_, times_);
   }
-  void update_forces();
+  void update_forces(const Fading& fading);
+  void keep_memory(const Fading& fading);
   void add_forces(const State& state, std::vector<double>& gradient, std::vector<double>& load);
   void start_velocities();
   void find_increments(std::span<const double> factors);
@@ -98,6 +99,8 @@ class ExplicitStepper {
   std::vector<double> old_targets_;
   std::vector<Vec3d> old_forces_;  ///< of tethers
   StrainHistory history_;
+  StressMemory<PoolSpace> memory_;
+  AlignedVector<double> fading_;               ///< S_e at the present state
   std::vector<PoseMotion> held_acceleration_;  ///< of each constraint
   std::tuple<State, std::vector<Vec3d>, std::vector<Vec3d>, std::vector<Mat3d>, std::vector<double>,
              std::vector<double>, std::vector<double>, std::vector<double>, StrainHistory, bool, double, double, double,

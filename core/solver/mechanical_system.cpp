@@ -28,7 +28,8 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       motions_(motion_sizes(model)),
       masses_(part_masses(model)),
       driven_(driven_parts(model)),
-      state_(State::at_rest(model)) {
+      state_(State::at_rest(model)),
+      memory_(model.points.memory, space_) {
   for (auto* vector : {&gradient_, &load_, &inertia_, &direction_, &work_, &prescribed_})
     vector->resize(at(model.dof_count()));
   node_energy_.resize(3 * at(model.node_count()));
@@ -102,8 +103,8 @@ void MechanicalSystem::place_dependents_of_step() {
 
 /// Energy of the step where it starts. The strain energy of vertices is what the step before left.
 double MechanicalSystem::energy_at_start() {
-  const bool same = reached_ && !model_.has_frames() && !model_.points.damped && model_.tethers.empty() &&
-                    reached_->first == start_.u;
+  const bool same = reached_ && !model_.has_frames() && !model_.points.damped && memory_.empty() &&
+                    model_.tethers.empty() && reached_->first == start_.u;
   if (!same) return evaluate().energy;
   add_loads_and_inertia();
   return reached_->second + load_energy_ + inertia_energy_;
@@ -164,7 +165,7 @@ Evaluation MechanicalSystem::evaluate() {
   dependents_.transfer(gradient_, dependent_forces_);
   Evaluation e;
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
-  e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
+  e.energy_scale = internal_.size() + std::abs(load_energy_) + inertia_energy_;
   judge(forces_of_parts(), model_.points.part_whole, settings_.tolerance, e);
   return e;
 }

@@ -10,6 +10,7 @@
 #include "core/space/pool_space.hpp"
 #include "core/step/model_data.hpp"
 #include "core/step/step_view.hpp"
+#include "core/step/stress_memory_steps.hpp"
 #include "core/structure/inertia.hpp"
 #include "core/structure/model.hpp"
 #include "core/tangent/dependents.hpp"
@@ -179,6 +180,9 @@ class MechanicalSystem {
   void place_dependents_of_step();
   void add_loads_and_inertia();
   void predict_strain(const StepMemory& memory);
+  void give_memory(const Fading& fading);
+  void keep_memory(State& state);
+  void rest_as_it_is(State& state);
   void store_strain_at(State state, StrainHistory& history);
   /// Runs a loop over the strains of a history.
   template <class Loop>
@@ -214,6 +218,8 @@ class MechanicalSystem {
   StepForm form_;
   StrainHistory history_;
   AlignedVector<double> start_strain_;  ///< E at the start of the step
+  StressMemory<PoolSpace> memory_;
+  AlignedVector<double> fading_;  ///< S_e at the end of a step
   MiddleStretches<std::vector<Vec3d>> middles_;
   std::vector<double> factors_;
   std::vector<double> reached_factors_;  ///< at the end of the last step

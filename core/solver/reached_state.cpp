@@ -17,6 +17,7 @@ void MechanicalSystem::look_at(const State& state, double h) {
     for_strains(loops::StrainAlongVelocity{history_.E.data(), behind.E.data(), ahead.E.data(), true});
     history_.inverse_step = 1 / h;
   }
+  give_memory({});
   evaluate_reached({});
   add_support_inertia(state, 0);
 }
@@ -31,6 +32,7 @@ void MechanicalSystem::look_back(const State& state, const State& before, const 
     for_strains(loops::StrainFromSteps{history_.E.data(), last.E.data(), first.E.empty() ? nullptr : first.E.data()});
     history_.inverse_step = 1 / dt;
   }
+  give_memory({});
   std::vector<double> targets;
   if (!middles_.empty()) {
     targets.assign(executor_.targets().begin(), executor_.targets().end());
@@ -83,6 +85,7 @@ void MechanicalSystem::stand_in(const StepInProgress& step) {
   set_factors(step.factors);
   form_ = step.form;
   history_ = step.history;
+  give_memory(Fading::over(form_.reach));
   increment_ = {step.increment.u, step.increment.D, step.increment.turned};
   rebuild_state();
   has_taken_ = extrapolates_ && !step.taken.d.empty();

@@ -36,7 +36,33 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
                                    data_or_null(memory.acceleration)});
     if (model_.points.damped) predict_strain(memory);
   }
+  if (!memory_.empty()) {
+    if (start_.memory.empty()) rest_as_it_is(start_);
+    state_.memory = start_.memory;
+    give_memory(Fading::over(form_.reach));
+  }
   rebuild_state();
+}
+
+/// A state that remembers nothing has been as it is for ever: nothing is left to fade.
+void MechanicalSystem::rest_as_it_is(State& state) {
+  state.memory.resize(memory_.size());
+  memory_.prepare({});
+  keep_memory(state);
+}
+
+/// Has points that remember stresses keep a state, as the fading says that was prepared.
+void MechanicalSystem::keep_memory(State& state) {
+  fading_.resize(memory_.stress_size());
+  executor_.store_stress(state, {memory_.relaxing(), memory_.given_size()}, fading_);
+  memory_.keep(state.memory.data(), fading_.data());
+}
+
+/// Gives the points that remember stresses what they add to a step, or to a state that was reached.
+void MechanicalSystem::give_memory(const Fading& fading) {
+  if (memory_.empty()) return;
+  memory_.prepare(fading);
+  history_.given = {memory_.give(start_.memory.data()), memory_.given_size()};
 }
 
 /// Where the present velocities lead: rotations along arcs, origins of frames in the midpoint rule as their q says.
@@ -96,6 +122,10 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
                       .before = remembers && same_step ? before_.data() : nullptr});
   place_dependents(model_.points, end);
   place_dependent_rates(model_.points, end);
+  if (!memory_.empty()) {
+    memory_.prepare(Fading::over(form_.step));
+    keep_memory(end);
+  }
   if (!remembers) return end;
   memory.step = form_.step;
   if (history_.inverse_step > 0) memory.E = start_strain_;
@@ -108,6 +138,7 @@ void MechanicalSystem::start_acceleration(const State& start, double dt, StepMem
   // Nothing has moved yet: (E − Ê) / h is dE/dt with the Ê of a step that comes from where velocities lead back to.
   if (model_.points.damped) for_strains(loops::Extrapolate{history_.E.data(), start_strain_.data(), -2});
   form_.h = 0;  // forces without inertia
+  give_memory({});
   executor_.gradient(state_, history_, gradient_);
   add_loads_and_inertia();
   const int nodes = model_.node_count();

@@ -1,6 +1,7 @@
 #include "core/structure/element_block.hpp"
 
 #include "core/base/coloring.hpp"
+#include "core/base/errors.hpp"
 #include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
 #include "core/physics/solid_law.hpp"
@@ -73,6 +74,24 @@ void number_patch(const ElementBlockSpec& spec, int first_batch, int last_batch,
   block.patch_begin.push_back(block.slot_count());
 }
 
+/// Where strains are averaged, all elements of the block must fade alike: an average has no part that fades by itself.
+void add_viscosity(const ElementBlockSpec& spec, ElementBlock& block) {
+  block.source = spec.source;
+  for (std::size_t e = 0; e < spec.material.size(); ++e) {
+    const ElementMaterialSpec& m = spec.material[e];
+    if (m.viscosity != nullptr) {
+      check_viscosity(spec.law, *m.viscosity, m.stiffness_damping);
+      block.viscosity.resize(at(block.batch_count()) * kElementLanes);
+      block.viscosity[e] = m.viscosity;
+    }
+    const auto& first = spec.material[0].viscosity;
+    if (spec.averaged && (!fade_alike(m.viscosity, first) || (first && first->shear_only)))
+      throw InputError(
+          "elements with averaged volumes must have one viscosity, of all their stiffness; give all the same, or do "
+          "not average");
+  }
+}
+
 }  // namespace
 
 ElementBlock make_element_block(const ElementBlockSpec& spec) {
@@ -85,6 +104,7 @@ ElementBlock make_element_block(const ElementBlockSpec& spec) {
   block.count = static_cast<int>(spec.material.size());
   block.own_constants = own_constant_count(spec.law);
   for (const ElementMaterialSpec& m : spec.material) check_own_constants(spec.law, m);
+  add_viscosity(spec, block);
   const auto batches = at(block.batch_count());
   block.gradient.resize(batches * at(spec.points) * at(spec.nodes) * 3 * kElementLanes);
   block.volume.resize(batches * at(spec.points) * kElementLanes);
@@ -121,6 +141,15 @@ LawConstants ElementBlock::constants_of(int element) const {
   c.mu = rows[kMu * kElementLanes];
   for (int k = 0; k < own_constants; ++k) c.own.push_back(rows[(kOwnConstants + k) * kElementLanes]);
   return c;
+}
+
+std::vector<std::shared_ptr<const Viscosity>> ElementBlock::viscosity_of_points() const {
+  std::vector<std::shared_ptr<const Viscosity>> all;
+  for (std::size_t batch = 0; batch * kElementLanes < viscosity.size(); ++batch) {
+    const auto first = viscosity.begin() + static_cast<std::ptrdiff_t>(batch * kElementLanes);
+    for (int q = 0; q < points; ++q) all.insert(all.end(), first, first + kElementLanes);
+  }
+  return all;
 }
 
 void finish_element_block(ElementBlock& block, int nodes_of_model) {

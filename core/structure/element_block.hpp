@@ -6,6 +6,7 @@
 #include "core/physics/law_constants.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct ElementBlockSpec {
   std::vector<Vec3d> gradient;                ///< ∇N at rest (elements × points × nodes) [1/m]
   std::vector<double> volume;                 ///< (elements × points) [m³]
   std::vector<ElementMaterialSpec> material;  ///< (elements)
+  std::vector<int> source{};                  ///< (elements): which one of its body it is, where stresses fade
   double length = 1;                          ///< mean length of the edges [m]
 };
 
@@ -49,6 +51,10 @@ struct ElementBlock {
   /// Rows of `material`; a law's own constants are the last ones.
   enum Row { kLambda, kMu, kStiffnessDamping, kPenalty, kOwnConstants };
   AlignedVector<double> material;  ///< (batches × material_rows() × 8)
+
+  /// (batches × 8) what fades of the stress of each element; empty where nothing does
+  std::vector<std::shared_ptr<const Viscosity>> viscosity;
+  std::vector<int> source;  ///< as in ElementBlockSpec
 
   std::vector<int> patch_batch{0};               ///< (patches + 1)
   std::vector<int> patch_begin{0};               ///< (patches + 1): slots, each a node of a patch
@@ -85,6 +91,8 @@ struct ElementBlock {
            static_cast<std::size_t>(batch) * static_cast<std::size_t>(material_rows()) * kElementLanes;
   }
   LawConstants constants_of(int element) const;
+  /// (batches × points × 8) of each point, likewise.
+  std::vector<std::shared_ptr<const Viscosity>> viscosity_of_points() const;
   Lame lame_of(int element) const {
     const double* m = material_of(element / kElementLanes) + element % kElementLanes;
     return {m[kLambda * kElementLanes], m[kMu * kElementLanes]};

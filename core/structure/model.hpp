@@ -138,6 +138,7 @@ struct State {
   FrameMatrices Q_dot;                        ///< dQ/dt [1/s]
   std::vector<std::array<double, 3>> turned;  ///< of each constraint: rotation done about its axes [rad]
   double time = 0;                            ///< [s]; in statics the load factor
+  AlignedVector<double> memory{};             ///< of points that remember stresses (MemoryLayout); empty: at rest
 
   static State at_rest(const Model& model);
 };

@@ -50,6 +50,7 @@ void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const Poin
     set_.lane_point.push_back(used ? set_.point_count++ : -1);
   }
   add_rule(points, length, rule);
+  add_viscosity(points, rule);
   set_.slot_node.insert(set_.slot_node.end(), nodes.begin(), nodes.end());
   set_.slot_begin.push_back(set_.slot_count());
 }
@@ -86,6 +87,19 @@ void PointSetBuilder::add_own_constants(std::span<const PointSample> points, Gro
   }
 }
 
+void PointSetBuilder::add_viscosity(std::span<const PointSample> points, const PointRule& rule) {
+  const std::size_t end = set_.rule.size() * kGroupSize, first = end - kGroupSize;
+  for (std::size_t lane = 0; lane < points.size(); ++lane) {
+    const PointSample& p = points[lane];
+    if (p.viscosity == nullptr) continue;
+    check_viscosity(rule.law, *p.viscosity, p.stiffness_damping);
+    set_.viscosity.resize(end);
+    set_.source.resize(end, PointSample::kNoSource);
+    set_.viscosity[first + lane] = p.viscosity;
+    set_.source[first + lane] = p.source;
+  }
+}
+
 void PointSetBuilder::add_shell(ShellBlock shell) {
   set_.damped = set_.damped || shell.damped;
   set_.shells.push_back(std::move(shell));
@@ -108,6 +122,18 @@ void transpose_incidence(PointSet& set) {
     for (int slot = 0; slot < set.slot_count(); ++slot) act(set.slot_node[at(slot)], slot);
   };
   list_by_node(set.node_count(), for_each_slot, set.node_slot_begin, set.node_slot);
+}
+
+/// In the order in which CpuExecutor has the blocks.
+void lay_out_memory(PointSet& set) {
+  if (!set.viscosity.empty()) {
+    set.viscosity.resize(at(set.group_count()) * kGroupSize);
+    set.source.resize(set.viscosity.size(), PointSample::kNoSource);
+  }
+  set.memory.add_block(set.viscosity);
+  for (const ElementBlock& block : set.blocks) set.memory.add_block(block.viscosity_of_points());
+  for (const ShellBlock& shell : set.shells) set.memory.add_block(shell.viscosity_of_lanes());
+  for (std::size_t others = set.user_blocks.size(); others > 0; --others) set.memory.add_block({});
 }
 
 void check_user_blocks(const PointSet& set) {
@@ -154,6 +180,7 @@ void sort_dependents(PointSet& set) {
 PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   set_.dofs = DofLayout(std::move(frames));
   check_user_blocks(set_);
+  lay_out_memory(set_);
   transpose_incidence(set_);
   sort_dependents(set_);
   find_parts(set_, group_length_, joints_);

@@ -9,6 +9,7 @@
 #include "core/structure/dof_layout.hpp"
 #include "core/structure/element_block.hpp"
 #include "core/structure/shell_block.hpp"
+#include "core/structure/stress_memory.hpp"
 #include "core/structure/user_block.hpp"
 
 #include <memory>
@@ -40,6 +41,11 @@ struct PointSample : LawConstants {
   double stiffness_damping = 0;       ///< β [s]
   std::vector<Influence> influences;  ///< one for each node of its group
   Mat3d axes{};                       ///< of a thin law: tangents first; of a tether: its stiffness [N/m]
+  int source = kNoSource;             ///< which point of its body it is, where stresses fade
+
+  static constexpr int kNoSource = -1;
+  /// A point that stands for the volumetric part of all sources before it, back to the last such one.
+  static constexpr int kVolumetric = -2;
 };
 
 /// All integration points of a model: in groups of eight that share their frames (array of structures of arrays), and
@@ -57,6 +63,10 @@ struct PointSet {
   std::vector<GroupRule> rule;     ///< (groups)
   AlignedVector<double> axes;      ///< (groups that need them × 9 × 8): PointSample::axes by rows
   AlignedVector<double> own;       ///< (rows × 8): constants that a group's law has of its own
+  /// (groups × 8) what fades of the stress of each lane, and PointSample::source; empty where nothing does
+  std::vector<std::shared_ptr<const Viscosity>> viscosity;
+  std::vector<int> source;
+  MemoryLayout memory;  ///< of all blocks
 
   std::vector<int> node_slot_begin;  ///< (nodes + 1), transposed incidence
   std::vector<int> node_slot;        ///< slots of each node, ascending
@@ -145,6 +155,7 @@ class PointSetBuilder {
   void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
   void add_rule(std::span<const PointSample> points, double length, PointRule rule);
   void add_own_constants(std::span<const PointSample> points, GroupRule& group);
+  void add_viscosity(std::span<const PointSample> points, const PointRule& rule);
   PointSet set_;
   std::vector<double> group_length_;  ///< spacing of the frames [m]
   std::vector<Joint> joints_;

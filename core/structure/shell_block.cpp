@@ -3,6 +3,7 @@
 #include "core/base/coloring.hpp"
 #include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
+#include "core/physics/solid_law.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -68,8 +69,23 @@ ShellBlock make_shell_block(std::span<const ShellElementSpec> elements, double l
     const bool used = e < elements.size();
     fill_lane(ascending(used ? elements[e] : elements.back()), used, e / kElementLanes, e % kElementLanes, block);
     block.damped = block.damped || (used && elements[e].stiffness_damping > 0);
+    if (!used) continue;
+    block.source.push_back(elements[e].source);
+    if (elements[e].viscosity == nullptr) continue;
+    check_viscosity(Law::sheet, *elements[e].viscosity, elements[e].stiffness_damping);
+    block.viscosity.resize(batches * kElementLanes);
+    block.viscosity[e] = elements[e].viscosity;
   }
   return block;
+}
+
+std::vector<std::shared_ptr<const Viscosity>> ShellBlock::viscosity_of_lanes() const {
+  std::vector<std::shared_ptr<const Viscosity>> all;
+  for (std::size_t first = 0; first < viscosity.size(); first += kElementLanes) {
+    const auto batch = viscosity.begin() + static_cast<std::ptrdiff_t>(first);
+    for (int part = 0; part < 2; ++part) all.insert(all.end(), batch, batch + kElementLanes);
+  }
+  return all;
 }
 
 double ShellBlock::stiffness_sum() const {

@@ -3,9 +3,11 @@
 #include "core/base/aligned.hpp"
 #include "core/math/mat3.hpp"
 #include "core/physics/shell_constants.hpp"
+#include "core/physics/viscosity.hpp"
 #include "core/structure/element_block.hpp"
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,6 +19,8 @@ struct ShellElementSpec {
   Mat3d axes = Mat3d::identity();  ///< T₀: columns in the plane, then the normal
   ShellConstants<double> constants{};
   double stiffness_damping = 0;  ///< β [s]
+  std::shared_ptr<const Viscosity> viscosity{};
+  int source = -1;  ///< which triangle of its body it is, where stresses fade
 };
 
 /// Triangles of shells in batches of eight, one a lane (array of structures of arrays). Unused lanes repeat the last
@@ -28,6 +32,10 @@ struct ShellBlock {
   std::vector<int> node;            ///< (batches × 3 × 8)
   AlignedVector<double> constants;  ///< (batches × kRows × 8)
 
+  /// (batches × 8) what fades of the stress of each triangle; empty where nothing does
+  std::vector<std::shared_ptr<const Viscosity>> viscosity;
+  std::vector<int> source;  ///< (triangles) ShellElementSpec::source
+
   std::vector<int> node_slot_begin, node_slot;   ///< of each node of the model: 3 · triangle + corner, ascending
   std::vector<int> color_begin{0}, color_batch;  ///< batches of one colour share no node
 
@@ -35,6 +43,13 @@ struct ShellBlock {
   static constexpr int kGradients = 0, kAxes = 6, kMembrane = 15, kBending = kMembrane + kPacked6,
                        kDamping = kBending + kPacked6, kRows = kDamping + 1;
 
+  /// A triangle remembers twelve strains, in two lanes: those of its membrane, and eight lanes on those of its bending.
+  /// Its stress is linear in them, so that what fades is strain as well.
+  std::vector<std::shared_ptr<const Viscosity>> viscosity_of_lanes() const;
+  static std::size_t memory_lane(int triangle) {
+    const auto t = static_cast<std::size_t>(triangle);
+    return t / kElementLanes * 2 * kElementLanes + t % kElementLanes;
+  }
   int batch_count() const { return (count + kElementLanes - 1) / kElementLanes; }
   const double* constants_of(int batch) const {
     return constants.data() + static_cast<std::size_t>(batch) * kRows * kElementLanes;
@@ -59,6 +74,7 @@ struct ShellBlock {
   }
 };
 
+/// @throws InputError  a viscosity that no material has, or that relaxes in shear alone
 ShellBlock make_shell_block(std::span<const ShellElementSpec> elements, double length);
 
 /// Fills slots by node and colours. @param nodes_of_model  their number

@@ -2,6 +2,7 @@
 
 #include "core/executor/executor.hpp"
 #include "core/linear/block_matrix.hpp"
+#include "tests/support/fading.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,9 @@ class DerivativeTest : public testing::TestWithParam<Case> {
   DerivativeTest(Built built, double displacement, double rotation)
       : built_(std::move(built)),
         executor_(built_.model.points, pool_),
-        state_(random_state(built_.model, displacement, rotation)) {
+        state_(random_state(built_.model, displacement, rotation)),
+        memory_(built_.model.points, 200) {
+    history_.given = memory_.given();
     if (tested().dt <= 0) return;
     history_.inverse_step = 1 / tested().dt;
     executor_.store_strain(random_state(built_.model, 0.01, 0.5 * rotation, 7), history_);
@@ -155,6 +158,7 @@ class DerivativeTest : public testing::TestWithParam<Case> {
   ThreadPool pool_{1};
   CpuExecutor executor_;
   State state_;
+  MidwayMemory memory_;  ///< of materials whose stress fades
   StrainHistory history_;
 };
 

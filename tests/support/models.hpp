@@ -29,6 +29,7 @@ struct BlockOptions {
   Mat3d rotation = Mat3d::identity();
   Vec3d translation{};
   Law law = Law::st_venant_kirchhoff;
+  std::shared_ptr<const Viscosity> viscosity{};
 };
 
 inline GridSpec block_spec(const BlockOptions& o) {
@@ -46,7 +47,8 @@ inline GridSpec block_spec(const BlockOptions& o) {
   spec.translation = o.translation;
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d&) {
-    return PointMaterialSpec{{lame, own_constants(o.law, lame.mu)}, o.mass_damping, o.stiffness_damping, o.law};
+    return PointMaterialSpec{
+        {lame, own_constants(o.law, lame.mu), o.viscosity}, o.mass_damping, o.stiffness_damping, o.law};
   };
   return spec;
 }

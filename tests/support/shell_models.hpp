@@ -56,6 +56,7 @@ inline ShellMesh patch_mesh(const SurfaceMap& map, const PatchOptions& o) {
 struct ShellMatter {
   double young = 1e4, poisson = 0.3, thickness = 0.05, density = 1000;
   double stiffness_damping = 0, mass_damping = 0;
+  std::shared_ptr<const Viscosity> viscosity{};
 };
 
 struct ShellModel {
@@ -67,7 +68,7 @@ inline ShellBodySpec shell_spec(ShellMesh mesh, const ShellMatter& m) {
   ShellBodySpec spec;
   const Lame lame = Lame::from_young(m.young, m.poisson);
   spec.thickness.assign(mesh.triangles.size(), m.thickness);
-  spec.material.assign(mesh.triangles.size(), {{lame}, m.mass_damping, m.stiffness_damping});
+  spec.material.assign(mesh.triangles.size(), {{lame, {}, m.viscosity}, m.mass_damping, m.stiffness_damping});
   spec.density = m.density;
   spec.mesh = std::move(mesh);
   return spec;

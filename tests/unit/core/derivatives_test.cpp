@@ -112,7 +112,10 @@ std::vector<Case> cases() {
     o.law = law;
     return o;
   };
-  BlockOptions turned = plain, affine_viscous = affine;
+  BlockOptions turned = plain, affine_viscous = affine, fading = plain, fading_affine = affine,
+               fading_selective = selective;
+  fading.viscosity = fading_affine.viscosity = two_branches();
+  fading_selective.viscosity = two_branches(true);
   turned.rotation = rotation_about(normalized(Vec3d{{1, 2, 3}}), 0.7);
   affine_viscous.stiffness_damping = 0.02;
   const auto solid = [](const BlockOptions& o) { return [o] { return block(o); }; };
@@ -137,6 +140,12 @@ std::vector<Case> cases() {
           {"affine sheet", thin({4, 3}, affine)},
           {"affine line", thin({5}, affine)},
           {"scattered", [plain] { return build_cloud(scattered_spec(plain, 0.4, 1)); }},
+          {"fading", solid(fading)},
+          {"fading mooney rivlin", solid(of_law(Law::mooney_rivlin, fading))},
+          {"fading selective neo hookean", solid(of_law(Law::neo_hookean, fading_selective))},
+          {"fading affine", solid(fading_affine)},
+          {"fading sheet", thin({4, 3}, fading)},
+          {"fading line", thin({5}, fading)},
           {"mixture", mixture},
           {"bonded", [] { return bonded(false); }},
           {"bonded to affine", [] { return bonded(true); }}};

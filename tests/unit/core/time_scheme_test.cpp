@@ -2,6 +2,7 @@
 #include "core/run/modes.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/structure/inertia.hpp"
+#include "tests/support/fading.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -66,6 +67,7 @@ Case make_case(const std::string& name) {
   }
   if (name == "mass damping") o.mass_damping = 2;
   if (name.ends_with("stiffness damping")) o.stiffness_damping = 0.002;
+  if (name.ends_with("fading")) o.viscosity = two_branches();
   Case c{name, name.starts_with("vertices") ? vertex_block(o) : block(o).model, {}};
   if (name == "sliding on a plane") hold_face(c.model, 1, 2);
   if (name == "pinned") hold_face(c.model, 3, 0);
@@ -105,7 +107,7 @@ TEST(TimeScheme, OrderInTime) {
   for (const char* name :
        {"rigid frames", "affine frames", "vertices", "mass damping", "stiffness damping", "vertices, stiffness damping",
         "stretching, stiffness damping", "vertices, stretching, stiffness damping", "held, stiffness damping",
-        "sliding on a plane", "pinned", "turned boundary"}) {
+        "sliding on a plane", "pinned", "turned boundary", "held, fading", "fading"}) {
     const Case c = make_case(name);
     for (const TimeScheme scheme : kSchemes) {
       State ends[3];

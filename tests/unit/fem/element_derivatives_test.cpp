@@ -46,7 +46,30 @@ std::vector<Case> cases() {
       o.law = Law::neo_hookean;
       o.stiffness_damping = 0.02;
     });
+    add("linear_fading_" + name, shape, [](ElementOptions& o) {
+      o.formulation = linear;
+      o.viscosity = two_branches();
+    });
+    add("corotational_fading_" + name, shape, [](ElementOptions& o) {
+      o.formulation = corotational;
+      o.viscosity = two_branches(true);
+    });
+    add("mooney_rivlin_fading_" + name, shape, [](ElementOptions& o) {
+      o.law = Law::mooney_rivlin;
+      o.viscosity = two_branches(true);
+    });
   }
+  add("svk_fading_tet4", tet4, [](ElementOptions& o) { o.viscosity = two_branches(); });
+  add("neo_hookean_fading_hex8", hex8, [](ElementOptions& o) {
+    o.law = Law::neo_hookean;
+    o.viscosity = two_branches();
+  });
+  add("neo_hookean_averaged_fading", tet4, [](ElementOptions& o) {
+    o.locking = ElementLocking::averaged;
+    o.law = Law::neo_hookean;
+    o.poisson = 0.49;
+    o.viscosity = two_branches();
+  });
   add("svk_viscous_tet4", tet4, [](ElementOptions& o) { o.stiffness_damping = 0.02; });
   add("linear_viscous_tet4", tet4, [](ElementOptions& o) {
     o.formulation = linear;
@@ -130,7 +153,7 @@ TEST_P(ElementDerivatives, InternalForcesBalance) {
   } else if (!viscous) {
     EXPECT_LT(norm(moment), 1e-12 * test::norm(g));
   }
-  if (GetParam().dt > 0) return;
+  if (GetParam().dt > 0 || !memory_.empty()) return;  // a stress of the past works along rounding
   const double turned = energy(rigid_state(built_.model, rotation_increment(Vec3d{{0, 1, 2}}), {{1, 2, 3}}));
   const double scale = GetParam().options.young * built_.body->volume();
   if (linear)

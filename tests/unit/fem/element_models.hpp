@@ -17,6 +17,7 @@ struct ElementOptions {
   double young = 1e4, poisson = 0.3, density = 1000;
   std::array<int, 3> cells{2, 2, 1};
   double distortion = 0.05;  ///< of inner and outer nodes alike [m]
+  std::shared_ptr<const Viscosity> viscosity{};
 };
 
 /// A slab of 1 × 0.8 × 0.5 m whose nodes are moved at random.
@@ -50,7 +51,8 @@ inline ElementModel element_model(const ElementOptions& o, ElementMesh mesh) {
   spec.density = o.density;
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d&, int) {
-    return PointMaterialSpec{{lame, own_constants(o.law, lame.mu)}, o.mass_damping, o.stiffness_damping, o.law};
+    return PointMaterialSpec{
+        {lame, own_constants(o.law, lame.mu), o.viscosity}, o.mass_damping, o.stiffness_damping, o.law};
   };
   return element_model(std::move(spec));
 }

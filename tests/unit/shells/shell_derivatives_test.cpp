@@ -26,12 +26,24 @@ std::vector<Case> cases() {
   const auto shell = [](ShellMatter matter, double jitter) {
     return [=] { return shell_model(patch_mesh(dome, {3, 3, Diagonals::alternating, jitter}), matter); };
   };
+  const auto mixed = [] {
+    ShellBodySpec spec = shell_spec(patch_mesh(dome, {3, 3, Diagonals::alternating, 0.2}), {.thickness = 0.05});
+    for (std::size_t t = 0; t < spec.material.size(); ++t)
+      if (t % 2 == 0)
+        spec.material[t].viscosity = two_branches();
+      else
+        spec.material[t].stiffness_damping = 0.02;
+    return shell_model(std::move(spec));
+  };
+  ShellMatter fading{.thickness = 0.05, .viscosity = two_branches()};
   ShellMatter thick{1e4, 0.3, 0.2}, thin{1e4, 0.45, 0.01}, viscous{1e4, 0.3, 0.05, 1000, 0.02};
   return {{"thick", shell(thick, 0.2)},
           {"thin", shell(thin, 0.2)},
           {"much turned", shell(thick, 0), 1.2},
           {"hardly turned", shell(thick, 0), 1e-3},
-          {"viscous", shell(viscous, 0.2), 0.4, 0.05}};
+          {"viscous", shell(viscous, 0.2), 0.4, 0.05},
+          {"fading", shell(fading, 0.2)},
+          {"fading beside viscous", mixed, 0.4, 0.05}};
 }
 
 class ShellDerivatives : public DerivativeTest<Case, ShellModel> {
