@@ -59,6 +59,8 @@ class Blocks {
   void product(const DirectionOf<T, V>& direction);
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   void store_strain(const PoseView& pose, double* E);
+  /// Stores what fades, of the points that remember it, with rows of `given`. @param out  (lanes × 6)
+  void store_stress(const PoseView& pose, const double* given, double* out);
 
   /// Quantities of each part (kinds of blocks × parts × kQuantities) of the last forces with them.
   void sum_quantities(double* out);
@@ -82,9 +84,9 @@ class Blocks {
     };
     std::apply([&](auto&... kinds) { (one(kinds), ...); }, kinds_);
   }
-  /// A kind's strains.
+  /// A kind's strains; what is given is of all blocks.
   static HistoryView part_of(const HistoryView& all, std::size_t begin) {
-    return {all.E == nullptr ? nullptr : all.E + begin, all.inverse_step};
+    return {.E = all.E == nullptr ? nullptr : all.E + begin, .inverse_step = all.inverse_step, .given = all.given};
   }
 
   std::tuple<Points<Space>, Elements<Space>, Shells<Space>> kinds_;

@@ -74,6 +74,11 @@ void Blocks<Space>::store_strain(const PoseView& pose, double* E) {
   for_each_kind([&](auto& kind, std::size_t begin) { kind.store_strain(pose, E + begin); });
 }
 
+template <class Space>
+void Blocks<Space>::store_stress(const PoseView& pose, const double* given, double* out) {
+  for_each_kind([&](auto& kind, std::size_t) { kind.store_stress(pose, given, out); });
+}
+
 namespace kernels {
 
 struct TakeQuantities {

@@ -7,8 +7,11 @@
 /// One point of a group at a time, in the layout of core/executor/group_kernels.hpp.
 namespace fascia::gpu::kernels {
 
+/// @param given    rows of all groups, or null
+/// @param factors  those of the step, or of what never fades
 template <Law L, class T>
-FASCIA_HD auto material(const PointsOf<T>& set, int group, int lane, double inverse_step) {
+FASCIA_HD auto material(const PointsOf<T>& set, int group, int lane, double inverse_step, const double* given,
+                        GivenRow factors = kGivenFactors) {
   const T* base = set.material + static_cast<std::size_t>(group) * 6 * kGroupSize;
   MaterialOf<L, T> m;
   m.volume = row(base, kVolume, lane);
@@ -28,8 +31,16 @@ FASCIA_HD auto material(const PointsOf<T>& set, int group, int lane, double inve
     if (m.law == Law::tether)
       for (int k = 0; k < 3; ++k) m.target[k] = static_cast<T>(row(set.targets + index * 3 * kGroupSize, k, lane));
   }
+  if (given != nullptr)
+    scale_constants(law_factors<T>(given_rows(given, static_cast<std::size_t>(group)), factors, lane), m);
   return m;
 }
+
+/// S₀ of a point, which stays during the step.
+FASCIA_HD inline Mat3d given_stress(const double* given, int group, int lane) {
+  return symmetric_matrix(given_rows(given, static_cast<std::size_t>(group)), kGivenStress, lane);
+}
+FASCIA_HD inline Mat3d first_piola(const Mat3d& H, const Mat3d& S) { return S + H * S; }
 
 template <class T>
 FASCIA_HD const T* shape_of(const PointsOf<T>& set, int slot) {
@@ -136,12 +147,12 @@ FASCIA_HD void add_column(FrameKind kind, const T* shape, int lane, const Mat3d&
 
 template <PointKind Kind, class T>
 FASCIA_HD void add_slot_column(const PointsOf<T>& set, int slot, FrameKind kind, const Mat3d& Q, int k,
-                               double inverse_step, Tangent tangent, double* column) {
+                               double inverse_step, const double* given, Tangent tangent, double* column) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const int group = set.slot_group[slot];
   const T *rows = linearized_rows(set, group), *shape = shape_of(set, slot);
   for (int lane = 0; lane < kGroupSize; ++lane) {
-    const auto m = material<Kind.law>(set, group, lane, inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, inverse_step, given);
     const PointMotion<T> unit = unit_motion<kBlend>(kind, k, shape, lane, rounded<T>(Q));
     const auto d = differential_of<Kind>(rows, lane, m, tangent, unit);
     add_column<kBlend>(kind, shape, lane, Q, d.dP * m.volume, d.dY * m.volume, column);
@@ -150,9 +161,10 @@ FASCIA_HD void add_slot_column(const PointsOf<T>& set, int slot, FrameKind kind,
 
 template <class T>
 FASCIA_HD void add_slot_column(const PointsOf<T>& set, int slot, FrameKind kind, const Mat3d& Q, int k,
-                               double inverse_step, Tangent tangent, double* column) {
-  with_kind(set.rule[set.slot_group[slot]].rule,
-            [&]<PointKind Kind>() { add_slot_column<Kind>(set, slot, kind, Q, k, inverse_step, tangent, column); });
+                               double inverse_step, const double* given, Tangent tangent, double* column) {
+  with_kind(set.rule[set.slot_group[slot]].rule, [&]<PointKind Kind>() {
+    add_slot_column<Kind>(set, slot, kind, Q, k, inverse_step, given, tangent, column);
+  });
 }
 
 }  // namespace fascia::gpu::kernels

@@ -88,6 +88,7 @@ class Points {
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   /// @param E  (groups × 6 × 8)
   void store_strain(const PoseView& pose, double* E);
+  void store_stress(const PoseView& pose, const double* given, double* out);
 
  private:
   /// Groups of one kind are computed together.
@@ -114,6 +115,8 @@ class Points {
   }
   template <class Act>
   void for_kinds(const Act& act);
+  /// The groups are the first of all blocks.
+  const double* own_given(const double* given) const { return remembers_ ? given : nullptr; }
   template <class T>
   void upload(const PointSet& set);
   template <class T>
@@ -128,8 +131,10 @@ class Points {
   Array<Space, char> blends_;
   Rows<double> wide_;
   Rows<float> narrow_;
-  bool is_narrow_;           ///< products have 32 bits
-  double inverse_step_ = 0;  ///< of the linearisation
+  bool is_narrow_;                 ///< products have 32 bits
+  bool remembers_;                 ///< some points do
+  double inverse_step_ = 0;        ///< of the linearisation
+  const double* given_ = nullptr;  ///< likewise
   Tangent tangent_ = Tangent::full;
 };
 

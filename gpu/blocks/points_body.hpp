@@ -10,7 +10,8 @@
 namespace fascia::gpu {
 
 template <class Space>
-Points<Space>::Points(const PointSet& set, Precision precision) : is_narrow_(precision != Precision::full) {
+Points<Space>::Points(const PointSet& set, Precision precision)
+    : is_narrow_(precision != Precision::full), remembers_(!set.viscosity.empty()) {
   slot_begin_.upload(set.slot_begin);
   slot_node_.upload(set.slot_node);
   node_slot_begin_.upload(set.node_slot_begin);
@@ -116,13 +117,15 @@ struct PointForces {
     constexpr bool kBlend = Kind.stabilization != Stabilization::none;
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<double> x = motion_of<kBlend>(set, group, lane, pose.u, pose.D);
-    const auto m = material<Kind.law>(set, group, lane, history.inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, history.inverse_step, history.given);
     const Mat3d E_old = old_strain(history, group, lane);
-    const PointStress<double> stress = point_stress<Kind.stabilization>(x, m, E_old);
+    PointStress<double> stress = point_stress<Kind.stabilization>(x, m, E_old);
+    if (history.given != nullptr) stress.P += first_piola(x.H, given_stress(history.given, group, lane));
     const Mat3d P = stress.P * m.volume;
     store_stress(set, group, lane, P, stress.Y * m.volume);
     if (part_motion == nullptr) return;
-    const PointEnergy<double> energy = point_energy<Kind.stabilization>(x, m, E_old);
+    PointEnergy<double> energy = point_energy<Kind.stabilization>(x, m, E_old);
+    if (history.given != nullptr) split_energy(group, lane, x, energy);
     const double motion = part_motion[nodes.part[set.slot_node[set.slot_begin[group]]]];
     const double g = row(set.material + static_cast<std::size_t>(group) * 6 * kGroupSize, kGradientNorm, lane);
     const double stiffness = m.volume * (m.lambda + m.mu * 2.0) * (1.0 + m.viscosity);
@@ -133,6 +136,35 @@ struct PointForces {
     q[kViscous] = energy.viscous;
     q[kRounding] = g * g * (pull + stiffness * stiffness * (strain + moved * moved) * (1.0 + strain));
     q[kTether] = is_tether(m) ? pull : 0.0;
+  }
+
+ private:
+  /// Where points remember stresses, what never fades is elastic, and the rest of the step's potential viscous.
+  FASCIA_HD void split_energy(int group, int lane, const PointMotion<double>& x, PointEnergy<double>& energy) const {
+    const auto lasting = material<Kind.law>(set, group, lane, history.inverse_step, history.given, kLastingFactors);
+    const double elastic = point_energy<Kind.stabilization>(x, lasting, {}).elastic;
+    const Mat3d given = given_stress(history.given, group, lane);
+    energy.viscous += energy.elastic - elastic + lasting.volume * contract(given, green_strain(x.H));
+    energy.elastic = elastic;
+  }
+};
+
+/// Stores what fades of points: stabilisation does not.
+template <PointKind Kind>
+struct PointFading {
+  PointsView set;
+  PoseView pose;
+  const double* given;
+  double* out;
+  const int* groups;
+
+  FASCIA_HD void operator()(int i) const {
+    const int group = groups[i / kGroupSize], lane = i % kGroupSize;
+    const PointMotion<double> x = motion_of<false>(set, group, lane, pose.u, pose.D);
+    const auto m = material<Kind.law>(set, group, lane, 0, given);
+    Mat3d stress;
+    if (!is_tether(m)) stress = tangent_stress<Stabilization::none>(x, m, Mat3d{}).S + given_stress(given, group, lane);
+    store_symmetric(out + static_cast<std::size_t>(group) * 6 * kGroupSize, 0, lane, stress);
   }
 };
 
@@ -148,10 +180,11 @@ struct PointLinearization {
   FASCIA_HD void operator()(int i) const {
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<double> x = motion_of<true>(set, group, lane, pose.u, pose.D);
-    const auto m = material<Kind.law>(set, group, lane, history.inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, history.inverse_step, history.given);
     const Mat3d E_old = old_strain(history, group, lane);
     TangentStress<double> stress;
     if (!is_tether(m)) stress = stress_of(x, m, group, lane, E_old);
+    if (history.given != nullptr) stress.S += given_stress(history.given, group, lane);
     T* rows = motion + static_cast<std::size_t>(group) * kPointRows * kGroupSize;
     store_matrix(rows, 0, lane, x.H);
     store_matrix(rows, 9, lane, x.Dbar);
@@ -181,6 +214,7 @@ struct PointProduct {
   PointsOf<T> set;
   DirectionOf<T, V> direction;
   double inverse_step;
+  const double* given;
   Tangent tangent;
   const int* groups;
 
@@ -188,7 +222,7 @@ struct PointProduct {
     constexpr bool kBlend = Kind.stabilization != Stabilization::none;
     const int group = groups[i / kGroupSize], lane = i % kGroupSize;
     const PointMotion<T> d = motion_of<kBlend>(set, group, lane, direction.dx, direction.dA);
-    const auto m = material<Kind.law>(set, group, lane, inverse_step);
+    const auto m = material<Kind.law>(set, group, lane, inverse_step, given);
     const auto r = differential_of<Kind>(linearized_rows(set, group), lane, m, tangent, d);
     store_stress(set, group, lane, r.dP * m.volume, r.dY * m.volume);
   }
@@ -201,6 +235,7 @@ struct PointDiagonal {
   NodesView nodes;
   const Mat3d* Q;
   double inverse_step;
+  const double* given;
   Tangent tangent;
   double* blocks;
 
@@ -209,7 +244,7 @@ struct PointDiagonal {
     if (k >= n) return;
     double column[kMostDofs] = {};
     for (int s = set.node_slot_begin[node]; s < set.node_slot_begin[node + 1]; ++s)
-      add_slot_column(set, set.node_slot[s], nodes.kind[node], Q[node], k, inverse_step, tangent, column);
+      add_slot_column(set, set.node_slot[s], nodes.kind[node], Q[node], k, inverse_step, given, tangent, column);
     for (int r = 0; r < n; ++r) blocks[nodes.block[node] + static_cast<std::size_t>(n * r + k)] += column[r];
   }
 };
@@ -219,8 +254,10 @@ struct PointDiagonal {
 template <class Space>
 void Points<Space>::forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history,
                            const double* part_motion) {
+  HistoryView past = history;
+  past.given = own_given(history.given);
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
-    Space::for_each(lanes, kernels::PointForces<K>{view(), nodes, pose, history, part_motion, groups});
+    Space::for_each(lanes, kernels::PointForces<K>{view(), nodes, pose, past, part_motion, groups});
   });
   Space::template sum_lanes<12>(view().slots, kernels::SlotTerm<double>{view()},
                                 kernels::StoreSlot<double>{view().slot_sums});
@@ -229,9 +266,11 @@ void Points<Space>::forces(const NodesView& nodes, const PoseView& pose, const H
 template <class Space>
 void Points<Space>::linearize(const PoseView& pose, const HistoryView& history, Tangent tangent,
                               const TakenStepView& taken) {
+  HistoryView past = history;
+  past.given = given_ = own_given(history.given);
   inverse_step_ = history.inverse_step;
   tangent_ = tangent;
-  is_narrow_ ? linearize_as<float>(pose, history, taken) : linearize_as<double>(pose, history, taken);
+  is_narrow_ ? linearize_as<float>(pose, past, taken) : linearize_as<double>(pose, past, taken);
   if (!taken.known()) return;
   Space::template sum_lanes<12>(view().slots, kernels::SlotTerm<double>{view()},
                                 kernels::StoreSlot<double>{view().slot_sums});
@@ -251,7 +290,7 @@ template <class T, class V>
 void Points<Space>::product(const DirectionOf<T, V>& direction) {
   const PointsOf<T>& set = view_of<T>();
   for_kinds([&]<PointKind K>(const int* groups, int lanes) {
-    Space::for_each(lanes, kernels::PointProduct<K, T, V>{set, direction, inverse_step_, tangent_, groups});
+    Space::for_each(lanes, kernels::PointProduct<K, T, V>{set, direction, inverse_step_, given_, tangent_, groups});
   });
   Space::template sum_lanes<12>(set.slots, kernels::SlotTerm<T>{set}, kernels::StoreSlot<T>{set.slot_sums});
 }
@@ -265,7 +304,7 @@ template <class Space>
 template <class T>
 void Points<Space>::add_diagonal_as(const NodesView& nodes, const Mat3d* Q, double* blocks) {
   Space::for_each(kMostDofs * nodes.count,
-                  kernels::PointDiagonal<T>{view_of<T>(), nodes, Q, inverse_step_, tangent_, blocks});
+                  kernels::PointDiagonal<T>{view_of<T>(), nodes, Q, inverse_step_, given_, tangent_, blocks});
 }
 
 template <class Space>
@@ -273,6 +312,14 @@ std::vector<int> Points<Space>::item_parts(const PointSet& set) const {
   std::vector<int> parts;
   for (int g = 0; g < set.group_count(); ++g) parts.insert(parts.end(), kGroupSize, set.part_of_group(g));
   return parts;
+}
+
+template <class Space>
+void Points<Space>::store_stress(const PoseView& pose, const double* given, double* out) {
+  if (!remembers_) return;
+  for_kinds([&]<PointKind K>(const int* groups, int lanes) {
+    Space::for_each(lanes, kernels::PointFading<K>{view(), pose, given, out, groups});
+  });
 }
 
 template <class Space>

@@ -14,13 +14,15 @@ namespace fascia::gpu::kernels {
 struct ShellLane {
   ShellConstants<double> constants;
   Mat3d axes;
-  double viscosity;  ///< β / dt
+  double viscosity;     ///< β / dt
+  const double* given;  ///< rows of the membrane's lanes, those of bending after them; null where nothing fades
+  double factor = 1;
   int node[3];
   Vec3d u[3];
   Mat3d D[3];
 
   template <class T>
-  FASCIA_HD ShellLane(const ShellBlockOf<T>& block, int element, const PoseView& pose, double inverse_step) {
+  FASCIA_HD ShellLane(const ShellBlockOf<T>& block, int element, const PoseView& pose, const HistoryView& history) {
     const int batch = element / kLanes, lane = element % kLanes;
     const double* rows = block.constants + at(batch) * ShellBlock::kRows * kLanes;
     for (int a = 0; a < 3; ++a)
@@ -30,7 +32,9 @@ struct ShellLane {
       constants.bending[k] = row(rows, ShellBlock::kBending + k, lane);
     }
     axes = matrix(rows, ShellBlock::kAxes, lane);
-    viscosity = block.damped ? row(rows, ShellBlock::kDamping, lane) * inverse_step : 0.0;
+    viscosity = block.damped ? row(rows, ShellBlock::kDamping, lane) * history.inverse_step : 0.0;
+    given = history.given == nullptr ? nullptr : given_rows(history.given, at(2 * batch)) + lane;
+    if (given != nullptr) factor = given[kGivenFactors * kLanes];
     for (int a = 0; a < 3; ++a) {
       node[a] = block.node[(at(batch) * 3 + at(a)) * kLanes + at(lane)];
       u[a] = transpose(axes) * pose.u[node[a]];
@@ -39,6 +43,16 @@ struct ShellLane {
   }
   ShellLane(const ShellLane&) = delete;
   ShellLane& operator=(const ShellLane&) = delete;
+
+  FASCIA_HD double lasting() const { return given[kLastingFactors * kLanes]; }
+  FASCIA_HD ShellStrain<double> given_strain() const {
+    ShellStrain<double> e;
+    for (int k = 0; k < 6; ++k) {
+      e.membrane[k] = given[(kGivenStress + k) * kLanes];
+      e.bending[k] = given[(kGivenRows + kGivenStress + k) * kLanes];
+    }
+    return e;
+  }
 };
 
 FASCIA_HD inline ShellStrain<double> old_strain(const HistoryView& history, int element) {
@@ -55,6 +69,9 @@ FASCIA_HD inline ShellStrain<double> old_strain(const HistoryView& history, int 
 /// Elastic and viscous stress.
 FASCIA_HD inline ShellStrain<double> total_stress(const ShellLane& shell, const ShellStrain<double>& strain,
                                                   const ShellStrain<double>& old) {
+  if (shell.given != nullptr)
+    return shell_stress(shell.constants,
+                        strain * shell.factor + (strain - old) * shell.viscosity + shell.given_strain());
   return shell_stress(shell.constants, strain + (strain - old) * shell.viscosity);
 }
 
@@ -98,7 +115,7 @@ struct ShellForces {
 
   FASCIA_HD void operator()(int i) const {
     if (i >= block.count) return;
-    const ShellLane shell(block, i, pose, history.inverse_step);
+    const ShellLane shell(block, i, pose, history);
     const ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
     const ShellStrain<double>& e = triangle.strain();
     const ShellStrain<double> old = old_strain(history, i);
@@ -108,8 +125,14 @@ struct ShellForces {
     if (part_motion == nullptr) return;
     const ShellStrain<double> flow = e - old;
     double* quantities = block.quantities + at(i) * kQuantities;
-    quantities[kElastic] = 0.5 * contract(e, shell_stress(shell.constants, e));
+    const ShellStrain<double> stress = shell_stress(shell.constants, e);
+    quantities[kElastic] = 0.5 * contract(e, stress);
     quantities[kViscous] = 0.5 * shell.viscosity * contract(flow, shell_stress(shell.constants, flow));
+    if (shell.given != nullptr) {  // what never fades is elastic, and the rest of the step's potential viscous
+      const double energy = quantities[kElastic];
+      quantities[kElastic] = shell.lasting() * energy;
+      quantities[kViscous] += (shell.factor - shell.lasting()) * energy + contract(shell.given_strain(), stress);
+    }
     quantities[kRounding] = rounding_of(shell, e, f, part_motion[nodes.part[shell.node[0]]]);
   }
 };
@@ -129,7 +152,7 @@ struct ShellStiffness {
 
   FASCIA_HD void operator()(int i) const {
     const int b = i / kLanes % 3, lane = i % kLanes, batch = i / kLanes / 3, element = batch * kLanes + lane;
-    const ShellLane shell(block, element, pose, history.inverse_step);
+    const ShellLane shell(block, element, pose, history);
     ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
     triangle.prepare_products(taken.known() ? extrapolated(element)
                                             : total_stress(shell, triangle.strain(), old_strain(history, element)));
@@ -140,7 +163,7 @@ struct ShellStiffness {
       ShellNodes<double> motion;
       for (int a = 0; a < 3; ++a)
         if (a == b) (k < 3 ? motion.x : motion.r)[a] = unit;
-      const ShellNodes<double> f = triangle.product(motion, 1 + shell.viscosity, full);
+      const ShellNodes<double> f = triangle.product(motion, shell.factor + shell.viscosity, full);
       for (int a = 0; a < 3; ++a) {
         if (a < b) continue;
         const Vec3d force = axes * f.x[a], torque = axes * f.r[a];
@@ -154,7 +177,7 @@ struct ShellStiffness {
  private:
   /// Stress extrapolated along the step that led here.
   FASCIA_HD ShellStrain<double> extrapolated(int element) const {
-    const ShellLane shell(block, element, taken.start, history.inverse_step);
+    const ShellLane shell(block, element, taken.start, history);
     const ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
     const Mat3d axes = present_axes(shell, triangle);
     ShellNodes<double> motion;
@@ -231,7 +254,7 @@ struct ShellStrains {
   double* E;
 
   FASCIA_HD void operator()(int i) const {
-    const ShellLane shell(block, i, pose, 0);
+    const ShellLane shell(block, i, pose, HistoryView{});
     const ShellTriangle<double> triangle(shell.constants, shell.u, shell.D);
     double* rows = E + at(i / kLanes) * 12 * kLanes + i % kLanes;
     for (int k = 0; k < 6; ++k) {

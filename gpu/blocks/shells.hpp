@@ -83,6 +83,7 @@ class Shells {
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   /// @param E  (strain_size())
   void store_strain(const PoseView& pose, double* E);
+  void store_stress(const PoseView& pose, const double* given, double* out);
 
  private:
   struct Block {
@@ -91,6 +92,8 @@ class Shells {
     ShellBlockView view;
     ShellBlockOf<float> narrow;
     std::size_t strain_begin = 0;
+    std::size_t memory_begin = 0;  ///< first of its lanes
+    bool remembers = false;
 
     template <class T>
     const ShellBlockOf<T>& view_of() const {
@@ -118,9 +121,11 @@ class Shells {
   template <class T>
   void linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent, const TakenStepView& taken);
   void find_corners(const PointSet& set);
-  /// Strains of one block. @param E  of all
-  static HistoryView history_of(const Block& block, const double* E, double inverse_step) {
-    return {E == nullptr || !block.view.damped ? nullptr : E + block.strain_begin, inverse_step};
+  /// Finds that of one block. @param all  of all: strains of shells, what is given of all blocks
+  static HistoryView history_of(const Block& block, const HistoryView& all) {
+    return {.E = all.E == nullptr || !block.view.damped ? nullptr : all.E + block.strain_begin,
+            .inverse_step = all.inverse_step,
+            .given = block.remembers && all.given != nullptr ? all.given + block.memory_begin * kGivenRows : nullptr};
   }
 
   std::vector<Block> blocks_;

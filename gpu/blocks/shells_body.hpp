@@ -20,6 +20,8 @@ Shells<Space>::Shells(const PointSet& set, Precision precision)
     block.view = {shell.count, shell.batch_count(), shell.damped, block.constants.data(), block.node.data()};
     block.narrow = {shell.count, shell.batch_count(), shell.damped, block.constants.data(), block.node.data()};
     block.strain_begin = strain_size_;
+    block.memory_begin = set.memory.begin[1 + set.blocks.size() + blocks_.size()];
+    block.remembers = !shell.viscosity.empty();
     strain_size_ += at(shell.batch_count()) * 12 * kElementLanes;
     lanes += at(shell.batch_count()) * kElementLanes;
     blocks_.push_back(std::move(block));
@@ -93,9 +95,8 @@ template <class Space>
 void Shells<Space>::forces(const NodesView& nodes, const PoseView& pose, const HistoryView& history,
                            const double* part_motion) {
   for (const Block& block : blocks_)
-    Space::for_each(
-        block.view.batches * kElementLanes,
-        kernels::ShellForces{block.view, history_of(block, history.E, history.inverse_step), nodes, pose, part_motion});
+    Space::for_each(block.view.batches * kElementLanes,
+                    kernels::ShellForces{block.view, history_of(block, history), nodes, pose, part_motion});
 }
 
 template <class Space>
@@ -109,10 +110,9 @@ template <class T>
 void Shells<Space>::linearize_as(const PoseView& pose, const HistoryView& history, Tangent tangent,
                                  const TakenStepView& taken) {
   for (const Block& block : blocks_)
-    Space::for_each(
-        3 * block.view.batches * kElementLanes,
-        kernels::ShellStiffness<T>{block.template view_of<T>(), history_of(block, history.E, history.inverse_step),
-                                   pose, taken, dof_.data(), tangent == Tangent::full});
+    Space::for_each(3 * block.view.batches * kElementLanes,
+                    kernels::ShellStiffness<T>{block.template view_of<T>(), history_of(block, history), pose, taken,
+                                               dof_.data(), tangent == Tangent::full});
 }
 
 template <class Space>
@@ -130,6 +130,15 @@ void Shells<Space>::add_diagonal(const NodesView& nodes, const Mat3d*, double* b
     Space::for_each(6 * nodes_, kernels::ShellDiagonal<float>{view_of<float>(), nodes, blocks});
   else
     Space::for_each(6 * nodes_, kernels::ShellDiagonal<double>{view(), nodes, blocks});
+}
+
+/// The strains of shells fade.
+template <class Space>
+void Shells<Space>::store_stress(const PoseView& pose, const double*, double* out) {
+  for (const Block& block : blocks_)
+    if (block.remembers)
+      Space::for_each(block.view.batches * kElementLanes,
+                      kernels::ShellStrains{block.view, pose, out + block.memory_begin * 6});
 }
 
 template <class Space>

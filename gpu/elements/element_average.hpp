@@ -21,17 +21,18 @@ struct ThetaPass {
   }
 };
 
-/// k times the mean about each node.
+/// k times the mean about each node. @param given  of the block; its elements fade alike
 template <class T>
 struct NodeAveragePass {
   ElementBlockOf<T> block;
+  const double* given;
 
   FASCIA_HD void operator()(int node) const {
     double sum = 0;
     for (int k = block.around_begin[node]; k < block.around_begin[node + 1]; ++k)
       sum += block.theta[block.around[k] / 4];
     block.node_pressure[node] =
-        sum == 0 ? T(0) : static_cast<T>(block.node_modulus[node] * sum / block.node_volume[node]);
+        sum == 0 ? T(0) : static_cast<T>(bulk_factor(given) * block.node_modulus[node] * sum / block.node_volume[node]);
   }
 };
 
@@ -54,6 +55,7 @@ struct AverageDiagonalPass {
   ElementBlockOf<T> block;
   NodesView nodes;
   double* blocks;
+  const double* given;
 
   FASCIA_HD void operator()(int node) const {
     const int begin = block.around_begin[node], end = block.around_begin[node + 1];
@@ -64,7 +66,7 @@ struct AverageDiagonalPass {
         if (find(begin, k, a) < k) continue;  // it has been met before
         Vec3d G;
         for (int l = k; l < end; l = find(l + 1, end, a)) G += corner_gradient(l);
-        K += outer(G, G) * (block.node_modulus[a] / block.node_volume[a]);
+        K += outer(G, G) * (bulk_factor(given) * block.node_modulus[a] / block.node_volume[a]);
       }
     double* out = blocks + nodes.block[node];
     for (int r = 0; r < 3; ++r)

@@ -27,18 +27,30 @@ FASCIA_HD T* point_rows(T* rows, const ElementBlockOf<T>& block, int batch, int 
   return rows + (at(batch) * at(block.points) + at(point)) * 9 * kLanes;
 }
 
+/// Rows of what a step gives the points of a batch; only where they remember stresses.
+template <class T>
+FASCIA_HD const double* given_rows(const ElementBlockOf<T>& block, const HistoryView& history, int batch, int point) {
+  return gpu::given_rows(history.given, at(batch) * at(block.points) + at(point));
+}
+/// Factor on the volumetric modulus, of blocks whose elements fade alike.
+FASCIA_HD inline double bulk_factor(const double* given, GivenRow factors = kGivenFactors) {
+  return given == nullptr ? 1.0 : given[(factors + 1) * kLanes];
+}
+
 template <Law L, class T>
 FASCIA_HD ElementSolid<L, T> element_material(const ElementBlockOf<T>& block, int batch, int lane,
-                                              double inverse_step) {
+                                              const HistoryView& history, GivenRow factors = kGivenFactors) {
   constexpr int kOwn = SolidLaw<L, T>::kOwn;
   const T* base = block.material + at(batch) * at(ElementBlock::kOwnConstants + kOwn) * kLanes;
   ElementSolid<L, T> m;
   m.lambda = row(base, ElementBlock::kLambda, lane);
   m.mu = row(base, ElementBlock::kMu, lane);
-  m.viscosity = block.damped ? row(base, ElementBlock::kStiffnessDamping, lane) * static_cast<T>(inverse_step) : T(0);
+  m.viscosity =
+      block.damped ? row(base, ElementBlock::kStiffnessDamping, lane) * static_cast<T>(history.inverse_step) : T(0);
   m.penalty = block.penalised ? row(base, ElementBlock::kPenalty, lane) : T(0);
   if constexpr (kOwn > 0)
     for (int k = 0; k < kOwn; ++k) m.own[k] = row(base, ElementBlock::kOwnConstants + k, lane);
+  if (history.given != nullptr) scale_constants(law_factors<T>(given_rows(block, history, batch, 0), factors, lane), m);
   return m;
 }
 
@@ -110,6 +122,10 @@ struct ElementPoints<4, T> {
   FASCIA_HD Mat3<T> stress(int) const {
     return rounded<T>(symmetric_matrix(history.S + at(batch) * 6 * kLanes, 0, lane));
   }
+  /// S₀, where points remember stresses.
+  FASCIA_HD Mat3<T> given(int) const {
+    return rounded<T>(symmetric_matrix(given_rows(block, history, batch, 0), kGivenStress, lane));
+  }
 };
 
 /// Points of a larger element, some or all: their H has been stored.
@@ -132,6 +148,9 @@ struct ElementPoints<0, T> {
   }
   FASCIA_HD Mat3<T> stress(int q) const {
     return rounded<T>(symmetric_matrix(history.S + point(q) * 6 * kLanes, 0, lane));
+  }
+  FASCIA_HD Mat3<T> given(int q) const {
+    return rounded<T>(symmetric_matrix(given_rows(block, history, batch, q), kGivenStress, lane));
   }
 
  private:

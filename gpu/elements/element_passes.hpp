@@ -123,7 +123,7 @@ struct ForcesPass : ElementPass<L, N, double> {
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, double> x = this->points_of(i, u, block.points_buffer);
     if (x.batch * kLanes + x.lane >= block.count) return;
-    const auto m = element_material<L>(block, x.batch, x.lane, history.inverse_step);
+    const auto m = element_material<L>(block, x.batch, x.lane, history);
     const double pressure = block.averaged ? mean_of_nodes(block, x.batch, x.lane) : 0.0;
     const ElementAt<L, N, double> element(x, m, turn_of<L>(x, false), pressure, true);
     double elastic = 0, viscous = 0, rounding = 0, motion = 0;
@@ -134,6 +134,7 @@ struct ForcesPass : ElementPass<L, N, double> {
       if (part_motion != nullptr) {
         elastic += v * element.elastic_density(q);
         if (block.damped) viscous += v * element.viscous_density(q);
+        if (history.given != nullptr) split(element, x, q, elastic, viscous);
         rounding += rounding_of(x.H(q), P, m, v, x.squared_gradient(q), motion);
       }
       if constexpr (N == 4)
@@ -143,12 +144,22 @@ struct ForcesPass : ElementPass<L, N, double> {
     }
     if (part_motion == nullptr) return;
     double* quantities = block.quantities + at(i) * kQuantities;
-    quantities[kElastic] = elastic + element.penalty_energy() + averaged_energy(x);
-    quantities[kViscous] = viscous;
+    const double averaged = averaged_energy(x);
+    const double lasting = bulk_factor(history.given, kLastingFactors) / bulk_factor(history.given);
+    quantities[kElastic] = elastic + element.penalty_energy() + averaged * lasting;
+    quantities[kViscous] = viscous + averaged * (1 - lasting);
     quantities[kRounding] = rounding;
   }
 
  private:
+  /// Where points remember stresses, what never fades is elastic, and the rest of the step's potential viscous.
+  FASCIA_HD void split(const ElementAt<L, N, double>& element, const ElementPoints<N, double>& x, int q,
+                       double& elastic, double& viscous) const {
+    const auto lasting = element_material<L>(block, x.batch, x.lane, history, kLastingFactors);
+    const double fading = element.elastic_density(q) - element.elastic_density(q, lasting);
+    elastic -= x.v(q) * fading;
+    viscous += x.v(q) * (fading + contract(x.given(q), element.strain(q)));
+  }
   /// The element's share of k V θ²/2 of its nodes.
   FASCIA_HD static double averaged_energy(const ElementPoints<N, double>& x) {
     const ElementBlockView& block = x.block;
@@ -159,7 +170,7 @@ struct ForcesPass : ElementPass<L, N, double> {
       const double k = block.node_modulus[node], p = block.node_pressure[node];
       if (k != 0) energy += 0.125 * x.v(0) * p * p / k;
     }
-    return energy;
+    return energy / bulk_factor(x.history.given);
   }
 };
 
@@ -192,7 +203,7 @@ struct ProductPass : ElementPass<L, N, T> {
 
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, T> x = this->points_of(i, u, block.H);
-    const auto m = element_material<L>(block, x.batch, x.lane, history.inverse_step);
+    const auto m = element_material<L>(block, x.batch, x.lane, history);
     ElementAt<L, N, T, Plain> element(x, m, turn_of<L>(x, true), block.averaged ? block.pressure[i] : T(0), full);
     if constexpr (N == 4) {
       const Mat3<T> dF = x.gradient_of_nodes(dx);
@@ -228,7 +239,7 @@ struct DiagonalPass : ElementPass<L, N, T> {
     const int lane = i % kLanes, corner = i / kLanes % block.nodes, batch = i / kLanes / block.nodes;
     const int e = batch * kLanes + lane;
     const ElementPoints<N, T> x = this->points_of(e, u, block.H);
-    const auto m = element_material<L>(block, batch, lane, history.inverse_step);
+    const auto m = element_material<L>(block, batch, lane, history);
     ElementAt<L, N, T> element(x, m, turn_of<L>(x, true), block.averaged ? block.pressure[e] : T(0), full);
     const auto gradient_at = [&](int q) { return gradient(gradient_of(block, batch, q), corner, lane); };
     const auto dF = [&](int q) {
@@ -253,8 +264,8 @@ struct ExtrapolationPass : ElementPass<L, N, double> {
 
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, double> x = this->points_of(i, taken.start.u, block.points_buffer);
-    const ElementAt<L, N, double> element(x, element_material<L>(block, x.batch, x.lane, history.inverse_step),
-                                          turn_of<L>(x, false), 0, true);
+    const ElementAt<L, N, double> element(x, element_material<L>(block, x.batch, x.lane, history), turn_of<L>(x, false),
+                                          0, true);
     for (int q = x.begin(); q < x.end(); ++q) {
       const Mat3d dF = point_gradient(block, x.batch, q, x.lane, taken.direction.dx) * taken.length;
       store_symmetric(S + (at(x.batch) * at(block.points) + at(q)) * 6 * kLanes, 0, x.lane,
@@ -275,6 +286,24 @@ struct SpinPass {
   }
 };
 
+/// Stores what fades: the law's stress, in the element's axes where it turns.
+template <Law L, int N>
+struct FadingPass : ElementPass<L, N, double> {
+  using ElementPass<L, N, double>::block;
+  using ElementPass<L, N, double>::history;
+  const Vec3d* u;
+  double* S;
+
+  FASCIA_HD void operator()(int i) const {
+    const ElementPoints<N, double> x = this->points_of(i, u, block.points_buffer);
+    const double pressure = block.averaged ? mean_of_nodes(block, x.batch, x.lane) : 0.0;
+    const ElementAt<L, N, double> element(x, element_material<L>(block, x.batch, x.lane, history), turn_of<L>(x, false),
+                                          pressure, true);
+    for (int q = x.begin(); q < x.end(); ++q)
+      store_symmetric(S + (at(x.batch) * at(block.points) + at(q)) * 6 * kLanes, 0, x.lane, element.stress(q));
+  }
+};
+
 template <Law L, int N>
 struct StrainPass : ElementPass<L, N, double> {
   using ElementPass<L, N, double>::block;
@@ -283,8 +312,8 @@ struct StrainPass : ElementPass<L, N, double> {
 
   FASCIA_HD void operator()(int i) const {
     const ElementPoints<N, double> x = this->points_of(i, u, block.points_buffer);
-    const ElementAt<L, N, double> element(x, element_material<L>(block, x.batch, x.lane, 0), turn_of<L>(x, false), 0,
-                                          true);
+    const ElementAt<L, N, double> element(x, element_material<L>(block, x.batch, x.lane, HistoryView{}),
+                                          turn_of<L>(x, false), 0, true);
     for (int q = x.begin(); q < x.end(); ++q)
       store_symmetric(E + (at(x.batch) * at(block.points) + at(q)) * 6 * kLanes, 0, x.lane, element.strain(q));
   }

@@ -29,7 +29,7 @@ FASCIA_HD Mat3<T> mean_gradient(const ElementPoints<N, T>& x) {
 }
 
 /// An element at a state, ready for stresses and, after begin_direction(), for their differentials. Neither has what
-/// averages about nodes add. Plain: known to have neither penalty nor damping, which spares registers.
+/// averages about nodes add. Plain: known to have neither penalty nor damping nor memory, which spares registers.
 template <Law L, int N, class T, bool Plain = false>
 class ElementAt {
  public:
@@ -52,8 +52,8 @@ class ElementAt {
       swelling_ /= volume_;
     }
     if constexpr (kTurns) {
-      // In one point alone only viscous stress has axes of its own.
-      if (Points::kOne && !damped()) return;
+      // In one point alone only stress of the past has axes of its own.
+      if (Points::kOne && !has_axes()) return;
       for (int q = x_.begin(); q < x_.end(); ++q) element_.add_point(x_.H(q), sigma(q), x_.v(q));
       element_.close();
     }
@@ -70,12 +70,14 @@ class ElementAt {
   }
 
   /// Elastic energy without the penalty's, viscous energy [J/m³].
-  FASCIA_HD T elastic_density(int q) const {
+  FASCIA_HD T elastic_density(int q) const { return elastic_density(q, m_); }
+  /// The first, with other constants.
+  FASCIA_HD T elastic_density(int q, const ElementSolid<L, T>& m) const {
     if constexpr (kTurns) {
-      return StVenantKirchhoff<T>{m_.lambda, m_.mu}.energy_density(strain(q));
+      return StVenantKirchhoff<T>{m.lambda, m.mu}.energy_density(strain(q));
     } else {
       const T theta = block_.averaged ? T(0) : SolidLaw<L, T>::volumetric_strain(x_.H(q));
-      return m_.law().shear_energy(x_.H(q)) + T(0.5) * m_.law().volumetric_modulus() * theta * theta;
+      return m.law().shear_energy(x_.H(q)) + T(0.5) * m.law().volumetric_modulus() * theta * theta;
     }
   }
   FASCIA_HD T viscous_density(int q) const {
@@ -88,6 +90,16 @@ class ElementAt {
 
   /// Total stress of a point after a step, to first order.
   FASCIA_HD Mat3<T> extrapolated_stress(int q, const Mat3<T>& dF) const { return point(q).extrapolated_stress(dF, m_); }
+
+  /// Second Piola-Kirchhoff stress, viscous too; of the co-rotational law in the element's axes.
+  FASCIA_HD Mat3<T> stress(int q) const {
+    if constexpr (kTurns) {
+      return sigma(q);
+    } else {
+      const ElasticPoint<L, T> at_point = point(q);
+      return at_point.S + at_point.S_viscous;
+    }
+  }
 
   /// Strain that the law and its damping see.
   FASCIA_HD Mat3<T> strain(int q) const {
@@ -104,7 +116,7 @@ class ElementAt {
       Mat3<T> mean;
       for (int q = x_.begin(); q < x_.end(); ++q) mean += Points::kOne ? dF(q) : dF(q) * (x_.v(q) / volume_);
       element_.begin_direction(mean);
-      if (full_ && !(Points::kOne && !damped())) {
+      if (full_ && !(Points::kOne && !has_axes())) {
         for (int q = x_.begin(); q < x_.end(); ++q) {
           const Mat3<T> dA = element_.relative_differential(x_.H(q), dF(q));
           element_.add_direction(x_.H(q), sigma(q), dA, element_.stress_differential(dA, m_), x_.v(q));
@@ -144,6 +156,9 @@ class ElementAt {
 
   FASCIA_HD bool penalised() const { return !Plain && block_.penalised; }
   FASCIA_HD bool damped() const { return !Plain && block_.damped; }
+  FASCIA_HD bool remembers() const { return !Plain && x_.history.given != nullptr; }
+  /// The stress has axes other than the strain's.
+  FASCIA_HD bool has_axes() const { return damped() || remembers(); }
   /// Not 0 in lanes that are not used.
   FASCIA_HD T total_volume() const {
     T sum = 0;
@@ -151,12 +166,16 @@ class ElementAt {
     return sum > 0 ? sum : T(1);
   }
   FASCIA_HD Mat3<T> old(int q) const { return damped() ? x_.old(q) : Mat3<T>{}; }
-  FASCIA_HD Mat3<T> sigma(int q) const { return element_.stress(strain(q), m_, old(q), damped()); }
+  FASCIA_HD Mat3<T> sigma(int q) const {
+    const Mat3<T> stress = element_.stress(strain(q), m_, old(q), damped());
+    return remembers() ? stress + x_.given(q) : stress;
+  }
   FASCIA_HD ElasticPoint<L, T> point(int q) const {
     const Mat3<T> H = x_.H(q);
     ElasticPoint<L, T> p(
         H, m_, block_.averaged ? pressure_ : m_.law().volumetric_modulus() * SolidLaw<L, T>::volumetric_strain(H),
         old(q), damped());
+    if (remembers()) p.S += x_.given(q);
     if (x_.history.S != nullptr) p.set_stress(x_.stress(q));
     return p;
   }

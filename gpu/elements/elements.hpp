@@ -101,6 +101,7 @@ class Elements {
   void add_diagonal(const NodesView& nodes, const Mat3d* Q, double* blocks);
   /// @param E  (strain_size())
   void store_strain(const PoseView& pose, double* E);
+  void store_stress(const PoseView& pose, const double* given, double* out);
 
  private:
   /// What of a block has a scalar. Of 32 bits, it is there for products beside that for forces.
@@ -116,6 +117,8 @@ class Elements {
     Rows<double> wide;
     Rows<float> narrow;
     std::size_t strain_begin = 0;
+    std::size_t memory_begin = 0;  ///< first of its lanes
+    bool remembers = false;
     bool extrapolates = false;  ///< ElementBlock::extrapolates()
 
     const ElementBlockView& view() const { return wide.view; }
@@ -134,10 +137,10 @@ class Elements {
   template <class T>
   void place_corners(Array<Space, T>& corners, std::size_t size, Rows<T> Block::*rows);
   void find_corners(const PointSet& set);
-  /// Strains of one block. @param E  of all
-  static HistoryView history_of(const Block& block, const double* E, double inverse_step);
+  /// Finds that of one block. @param all  of all: strains of elements, what is given of all blocks
+  static HistoryView history_of(const Block& block, const HistoryView& all);
   HistoryView kept_history(const Block& block) const {
-    HistoryView kept = history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
+    HistoryView kept = history_of(block, linearized_history());
     if (block.extrapolates && extrapolated_) kept.S = S_.data() + block.strain_begin;
     return kept;
   }
@@ -148,7 +151,10 @@ class Elements {
   void add_diagonal_as(const NodesView& nodes, double* blocks);
   /// Averages θ, or its derivative along dx, into node_pressure.
   template <class T, class V>
-  void average(const ElementBlockOf<T>& view, const Vec3d* u, const Vec3<V>* dx);
+  void average(const ElementBlockOf<T>& view, const HistoryView& history, const Vec3d* u, const Vec3<V>* dx);
+  HistoryView linearized_history() const {
+    return {.E = E_.empty() ? nullptr : E_.data(), .inverse_step = inverse_step_, .given = given_};
+  }
 
   std::vector<Block> blocks_;
   Array<Space, int> node_begin_, node_corner_;
@@ -165,6 +171,7 @@ class Elements {
   Array<Space, double> E_, S_;  ///< S: extrapolated stresses
   bool extrapolated_ = false;   ///< the linearisation has them
   double inverse_step_ = 0;
+  const double* given_ = nullptr;
   Tangent tangent_ = Tangent::full;
 };
 

@@ -25,18 +25,21 @@ void run(const Pass& pass) {
 }
 
 template <class Space>
-HistoryView Elements<Space>::history_of(const Block& block, const double* E, double inverse_step) {
-  return {E == nullptr || !block.view().damped ? nullptr : E + block.strain_begin, inverse_step};
+HistoryView Elements<Space>::history_of(const Block& block, const HistoryView& all) {
+  return {.E = all.E == nullptr || !block.view().damped ? nullptr : all.E + block.strain_begin,
+          .inverse_step = all.inverse_step,
+          .given = block.remembers && all.given != nullptr ? all.given + block.memory_begin * kGivenRows : nullptr};
 }
 
 template <class Space>
 template <class T, class V>
-void Elements<Space>::average(const ElementBlockOf<T>& view, const Vec3d* u, const Vec3<V>* dx) {
+void Elements<Space>::average(const ElementBlockOf<T>& view, const HistoryView& history, const Vec3d* u,
+                              const Vec3<V>* dx) {
   with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
     if constexpr (N == 4 && L != Law::corotational)
       Space::for_each(view.lanes(), kernels::ThetaPass<L, T, V>{view, u, dx});
   });
-  Space::for_each(nodes_, kernels::NodeAveragePass<T>{view});
+  Space::for_each(nodes_, kernels::NodeAveragePass<T>{view, history.given});
 }
 
 template <class Space>
@@ -44,14 +47,11 @@ void Elements<Space>::forces(const NodesView& nodes, const PoseView& pose, const
                              const double* part_motion) {
   for (Block& block : blocks_) {
     const ElementBlockView& view = block.view();
-    if (view.averaged) average<double, double>(view, pose.u, nullptr);
+    const HistoryView past = history_of(block, history);
+    if (view.averaged) average<double, double>(view, past, pose.u, nullptr);
     if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
     with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
-      run<Space>(
-          kernels::ForcesPass<L, N>{{view, history_of(block, history.E, history.inverse_step), part_motion != nullptr},
-                                    nodes,
-                                    pose.u,
-                                    part_motion});
+      run<Space>(kernels::ForcesPass<L, N>{{view, past, part_motion != nullptr}, nodes, pose.u, part_motion});
     });
     if (!view.one_point()) run<Space>(kernels::CornerPass<double>{view});
   }
@@ -62,6 +62,7 @@ void Elements<Space>::linearize(const PoseView& pose, const HistoryView& history
                                 const TakenStepView& taken) {
   if (empty()) return;
   inverse_step_ = history.inverse_step;
+  given_ = history.given;
   tangent_ = tangent;
   u_.resize(at(nodes_));
   Space::copy(u_.data(), pose.u, u_.size() * sizeof(Vec3d));
@@ -79,7 +80,7 @@ void Elements<Space>::extrapolate(const TakenStepView& taken) {
     if (!block.extrapolates) continue;
     const ElementBlockView& view = block.view();
     if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, taken.start.u, view.points_buffer});
-    const HistoryView past = history_of(block, E_.empty() ? nullptr : E_.data(), inverse_step_);
+    const HistoryView past = history_of(block, linearized_history());
     with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
       if constexpr (is_of_points(L))
         run<Space>(kernels::ExtrapolationPass<L, N>{{view, past, false}, taken, S_.data() + block.strain_begin});
@@ -102,7 +103,7 @@ template <class T>
 void Elements<Space>::linearize_as() {
   for (Block& block : blocks_) {
     const ElementBlockOf<T>& view = block.template view_of<T>();
-    if (view.averaged) average<T, double>(view, u_.data(), nullptr);
+    if (view.averaged) average<T, double>(view, history_of(block, linearized_history()), u_.data(), nullptr);
     if (!view.one_point()) run<Space>(kernels::GradientPass<T, double>{view, u_.data(), view.H});
     if (!view.averaged && view.law != Law::corotational) continue;
     with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
@@ -116,12 +117,13 @@ template <class T, class V>
 void Elements<Space>::product(const DirectionOf<T, V>& direction) {
   for (Block& block : blocks_) {
     const ElementBlockOf<T>& view = block.template view_of<T>();
-    if (view.averaged) average<T, V>(view, u_.data(), direction.dx);
+    const HistoryView kept = kept_history(block);
+    if (view.averaged) average<T, V>(view, kept, u_.data(), direction.dx);
     with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
-      const kernels::ElementPass<L, N, T> pass(view, kept_history(block), false);
+      const kernels::ElementPass<L, N, T> pass(view, kept, false);
       if (N == 0 && !pass.split) run<Space>(kernels::GradientPass<T, V>{view, direction.dx, view.points_buffer});
       const bool full = tangent_ == Tangent::full;
-      if (view.penalised || view.damped)
+      if (view.penalised || view.damped || kept.given != nullptr)
         run<Space>(kernels::ProductPass<L, N, T, V, false>{pass, u_.data(), direction.dx, full});
       else
         run<Space>(kernels::ProductPass<L, N, T, V, true>{pass, u_.data(), direction.dx, full});
@@ -154,7 +156,21 @@ void Elements<Space>::add_diagonal_as(const NodesView& nodes, double* blocks) {
       if constexpr (N == 4 && L != Law::corotational)
         Space::for_each(view.lanes(), kernels::ThetaGradientPass<L, T>{view, u_.data()});
     });
-    Space::for_each(nodes_, kernels::AverageDiagonalPass<T>{view, nodes, blocks});
+    Space::for_each(nodes_, kernels::AverageDiagonalPass<T>{view, nodes, blocks, kept_history(block).given});
+  }
+}
+
+template <class Space>
+void Elements<Space>::store_stress(const PoseView& pose, const double* given, double* out) {
+  for (Block& block : blocks_) {
+    if (!block.remembers) continue;
+    const ElementBlockView& view = block.view();
+    const HistoryView past = history_of(block, {.given = given});
+    if (view.averaged) average<double, double>(view, past, pose.u, nullptr);
+    if (!view.one_point()) run<Space>(kernels::GradientPass<double, double>{view, pose.u, view.points_buffer});
+    with_element_kind(view.law, view.nodes, [&]<Law L, int N>() {
+      run<Space>(kernels::FadingPass<L, N>{{view, past, false}, pose.u, out + block.memory_begin * 6});
+    });
   }
 }
 

@@ -5,6 +5,7 @@
 #include "core/run/explicit_nodes.hpp"
 #include "core/run/explicit_plan.hpp"
 #include "core/step/model_data.hpp"
+#include "core/step/stress_memory_steps.hpp"
 #include "gpu/actions/followers.hpp"
 #include "gpu/actions/surfaces.hpp"
 #include "gpu/blocks/blocks.hpp"
@@ -79,7 +80,7 @@ class ExplicitSystem {
     Pose pose;
     Array<Space, Vec3d> half_v, half_spin;
     Array<Space, Mat3d> half_rate;
-    Array<Space, double> last_increments, E, present, next, targets;
+    Array<Space, double> last_increments, E, memory, present, next, targets;
     Array<Space, Progress> progress;
     std::optional<ExplicitPlan> plan;
     double last_step = 0;
@@ -93,6 +94,8 @@ class ExplicitSystem {
   void start_velocities();
   void store_start_strain();
   void place_tethers();
+  const double* give_memory(Array<Space, double>& memory);
+  void keep_memory(Array<Space, double>& memory);
   void queue_factors();
   void update_forces(const Array<Space, double>& factors);
   void update_forces(const kernels::ExplicitBlocksView& s, const HistoryView& history);
@@ -128,6 +131,9 @@ class ExplicitSystem {
   Array<Space, Vec3d> half_v_, half_spin_;
   Array<Space, Mat3d> half_rate_;
   Array<Space, double> load_, gradient_, increments_, last_increments_, E_;
+  StressMemory<Space> memory_;
+  Array<Space, double> before_;                  ///< what points remember from before the present state
+  Array<Space, double> fading_;                  ///< what fades there
   Array<Space, double> mode_E_;                  ///< of the state whose mode is looked for
   Array<Space, double> table_, present_, next_;  ///< factors: queued, at the present step, at the end of the next
   Array<Space, double> still_, energies_;

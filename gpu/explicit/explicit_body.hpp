@@ -27,7 +27,8 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, co
       followers_(model),
       surfaces_(model),
       pose_(state),
-      schedules_(static_cast<int>(zero_factors(model).size())) {
+      schedules_(static_cast<int>(zero_factors(model).size())),
+      memory_(model.points.memory) {
   require_inertia(model, filter_);
   upload_nodes();
   const auto n = at(model.node_count()), dofs = at(model.dof_count());
@@ -35,6 +36,10 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, co
     pose_.turned.resize(3 * model.constraints.size());
     pose_.turned.set_zero();
   }
+  pose_.begin_memory(memory_.size());
+  before_.copy_from(pose_.memory);
+  fading_.resize(memory_.stress_size());
+  memory_.prepare({});
   half_v_.resize(n);
   half_spin_.resize(pose_.D.size());
   half_rate_.resize(pose_.D.size());
@@ -149,6 +154,20 @@ void ExplicitSystem<Space>::start_velocities() {
   progress_.upload(std::vector<Progress>{start});
 }
 
+/// Finds what points that remember stresses add at the present state; null where nothing fades.
+template <class Space>
+const double* ExplicitSystem<Space>::give_memory(Array<Space, double>& memory) {
+  return memory_.empty() ? nullptr : memory_.give(memory.data());
+}
+
+/// @param memory  from before the present state; it becomes that of the state
+template <class Space>
+void ExplicitSystem<Space>::keep_memory(Array<Space, double>& memory) {
+  if (memory_.empty()) return;
+  blocks_.store_stress(pose_view(), memory_.relaxing(), fading_.data());
+  memory_.keep(memory.data(), fading_.data());
+}
+
 /// Has the factors of the next two steps in the space.
 template <class Space>
 void ExplicitSystem<Space>::queue_factors() {
@@ -168,7 +187,8 @@ void ExplicitSystem<Space>::queue_factors() {
 /// Blocks and loads at the state. @param factors  there
 template <class Space>
 void ExplicitSystem<Space>::update_forces(const Array<Space, double>& factors) {
-  update_forces(view(factors), {E_.data(), E_.empty() ? 0.0 : 1 / last_step_});
+  update_forces(view(factors),
+                {.E = E_.data(), .inverse_step = E_.empty() ? 0.0 : 1 / last_step_, .given = give_memory(before_)});
 }
 
 /// The same at the pose of a view.
@@ -189,6 +209,7 @@ void ExplicitSystem<Space>::update_forces(const kernels::ExplicitBlocksView& s, 
 
 template <class Space>
 void ExplicitSystem<Space>::keep_strain() {
+  memory_.prepare({Fading::Of::at_once, 0});  // as ExplicitStepper
   if (!model_.points.damped) return;
   mode_E_.resize(blocks_.strain_size());
   blocks_.store_strain(pose_view(), mode_E_.data());
@@ -200,7 +221,8 @@ void ExplicitSystem<Space>::gather_acting(Pose& pose, double inverse_step, doubl
   s.u = pose.u.data();
   s.D = pose.D.data();
   s.uneven = nullptr;
-  update_forces(s, {mode_E_.data(), mode_E_.empty() ? 0.0 : inverse_step});
+  update_forces(
+      s, {.E = mode_E_.data(), .inverse_step = mode_E_.empty() ? 0.0 : inverse_step, .given = give_memory(before_)});
   for_nodes([&]<bool Frames>() { Space::for_each(model_.node_count(), loops::GatherActing<View, Frames>{s, out}); });
 }
 
@@ -218,6 +240,7 @@ void ExplicitSystem<Space>::advance() {
   const LeapTimes times = LeapTimes::between(last_step_, plan_.step());
   if (times.kick != times_.kick || times.drift != times_.drift) ++record_;
   times_ = times;
+  memory_.prepare(plan_.taken() == 0 ? Fading{} : Fading::over(last_step_));
   loop_.run(record_, 1, 1, &progress_.data()->unsound, [this] { step(); });
   last_step_ = times_.drift;
   plan_.take();
@@ -244,6 +267,7 @@ void ExplicitSystem<Space>::for_moving(const Act& act) {
   act(half_rate_, saved_.half_rate);
   act(last_increments_, saved_.last_increments);
   act(E_, saved_.E);
+  act(before_, saved_.memory);
   act(present_, saved_.present);
   act(next_, saved_.next);
   act(progress_, saved_.progress);
@@ -275,6 +299,7 @@ void ExplicitSystem<Space>::step() {
   Space::for_each(schedules_, kernels::TakeFactors{progress, table_.data(), schedules_, present_.data(), next_.data()});
   update_forces(present_);
   if (!E_.empty()) blocks_.store_strain(pose_view(), E_.data());
+  keep_memory(before_);
   find_prescribed(next_.data(), increments_);
   for_nodes([&]<bool Frames>() {
     Space::template sum<2>(model_.node_count(), loops::KickAndDrift<View, Frames>{view(present_)},
@@ -292,7 +317,10 @@ void ExplicitSystem<Space>::step() {
 template <class Space>
 void ExplicitSystem<Space>::report_velocities() {
   queue_factors();
+  memory_.prepare(Fading::over(last_step_));
   update_forces(next_);
+  pose_.memory.copy_from(before_);
+  keep_memory(pose_.memory);
   find_prescribed(table_.data() + at((plan_.taken() - queued_from_) * schedules_), increments_);
   View present = view(next_);
   present.times = LeapTimes::between(last_step_, plan_.step());
@@ -306,14 +334,14 @@ void ExplicitSystem<Space>::report_velocities() {
 
 template <class Space>
 InternalEnergy ExplicitSystem<Space>::energy() {
-  blocks_.forces(data_.view().nodes, pose_view(), {}, still_.data());
+  memory_.prepare({});
+  blocks_.forces(data_.view().nodes, pose_view(), {.given = give_memory(pose_.memory)}, still_.data());
   blocks_.sum_quantities(energies_.data());
   const std::vector<double> q = energies_.downloaded();
   InternalEnergy sum;
   for (std::size_t i = 0; i < q.size(); i += kQuantities) {
     sum.elastic += q[i + kElastic];
     sum.stabilization += q[i + kStabilizing];
-    sum.viscous += q[i + kViscous];
   }
   return sum;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/step/model_view.hpp"
+#include "core/structure/stress_memory.hpp"
 
 /// What kernels of blocks see: pointers into a space and values, copied into each kernel.
 namespace fascia::gpu {
@@ -24,12 +25,24 @@ struct TakenStepView {
   FASCIA_HD bool known() const { return start.u != nullptr; }
 };
 
-/// Strains of one block at the start of a step, and 1/dt of viscous stress; no strains where nothing is damped.
+/// Strains of one block at the start of a step, and 1/dt of viscous stress; no strains where nothing is damped. What a
+/// step gives the points that remember stresses (GivenRow); none where nothing fades.
 struct HistoryView {
   const double* E = nullptr;
   double inverse_step = 0;
   const double* S = nullptr;  ///< extrapolated stresses of a tangent, in the layout of E; none: those of the state
+  const double* given = nullptr;
 };
+
+/// Rows of the lanes of a batch (GivenRow).
+FASCIA_HD inline const double* given_rows(const double* given, std::size_t batch) {
+  return given + batch * kGivenRows * MemoryLayout::kLanes;
+}
+template <class T>
+FASCIA_HD LawFactors<T> law_factors(const double* rows, GivenRow first, int lane) {
+  return {static_cast<T>(rows[first * MemoryLayout::kLanes + lane]),
+          static_cast<T>(rows[(first + 1) * MemoryLayout::kLanes + lane])};
+}
 
 /// What a node feels: a force, N conjugate to Q or A, and a torque beside it.
 struct NodeSums {

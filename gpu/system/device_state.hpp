@@ -14,6 +14,7 @@ struct DeviceState {
   Array<Space, Vec3d> u, v;
   Array<Space, Mat3d> D, Q_dot;
   Array<Space, double> turned;  ///< (constraints × 3)
+  Array<Space, double> memory;  ///< as State has it
   double time = 0;
   long step = 0;  ///< of the system that reached it; 0: another
 
@@ -30,6 +31,7 @@ struct DeviceState {
     D.copy_from(other.D);
     Q_dot.copy_from(other.Q_dot);
     turned.copy_from(other.turned);
+    memory.copy_from(other.memory);
     time = other.time;
     step = other.step;
     return *this;
@@ -41,6 +43,7 @@ struct DeviceState {
     D.upload(state.D.values());
     Q_dot.upload(state.Q_dot.values());
     turned.upload(std::span(state.turned.empty() ? nullptr : state.turned[0].data(), 3 * state.turned.size()));
+    memory.upload(state.memory);
     time = state.time;
     step = 0;
   }
@@ -52,7 +55,16 @@ struct DeviceState {
     if (!Q_dot.empty()) Q_dot.download(std::span(&*state.Q_dot.begin(), Q_dot.size()));
     state.turned.resize(turned.size() / 3);
     if (!turned.empty()) turned.download(std::span(state.turned[0].data(), turned.size()));
+    state.memory.resize(memory.size());
+    memory.download(state.memory);
     state.time = time;
+  }
+  /// Room for what points remember. @return false where the state had it
+  bool begin_memory(std::size_t size) {
+    if (memory.size() == size) return false;
+    memory.resize(size);
+    memory.set_zero();
+    return true;
   }
 };
 

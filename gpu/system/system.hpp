@@ -6,6 +6,7 @@
 #include "core/solver/boundary_motion.hpp"
 #include "core/space/part_sums.hpp"
 #include "core/step/model_data.hpp"
+#include "core/step/stress_memory_steps.hpp"
 #include "gpu/actions/followers.hpp"
 #include "gpu/actions/surfaces.hpp"
 #include "gpu/blocks/blocks.hpp"
@@ -108,7 +109,9 @@ class System {
   }
   template <class T, class V>
   kernels::ProductView<T, V> product_view();
-  HistoryView history() const { return {damped_ ? E_.data() : nullptr, damped_ ? inverse_step_ : 0.0}; }
+  HistoryView history() const {
+    return {.E = damped_ ? E_.data() : nullptr, .inverse_step = damped_ ? inverse_step_ : 0.0, .given = given_};
+  }
   PoseView pose() const { return {u_.data(), D_.data()}; }
   void rebuild_state();
   void place_dependents();
@@ -123,6 +126,8 @@ class System {
   Evaluation judge();
   double energy_at_start();
   void predict_strain(const Memory& memory);
+  void give_memory(const Fading& fading);
+  void keep_memory(Pose& state);
   void store_strain_along_velocity(double h);
   void follow_strain(const Pose& before, const Pose& earlier, double dt);
   void note_stretches();
@@ -206,6 +211,9 @@ class System {
   StepConstants step_;
   double inverse_step_ = 0;  ///< of the viscous stress
   Array<Space, double> E_, start_E_, ahead_E_, behind_E_;
+  StressMemory<Space> memory_;
+  Array<Space, double> fading_;    ///< what fades at the end of a step
+  const double* given_ = nullptr;  ///< by memory_; null where nothing fades
   Array<Space, Vec3d> du_, saved_du_, u_, moved_u_;
   Array<Space, Mat3d> Ds_, saved_Ds_, D_, moved_D_;
   Array<Space, double> turned_, saved_turned_;

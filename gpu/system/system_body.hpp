@@ -32,7 +32,8 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
       damped_(model.points.damped),
       motions_(motion_sizes(model)),
       masses_(part_masses(model)),
-      driven_(driven_parts(model)) {
+      driven_(driven_parts(model)),
+      memory_(model.points.memory) {
   const auto n = at(model.node_count()), dofs = at(model.dof_count()), parts = at(model.points.part_count());
   const std::size_t frames = turning_ ? n : 0;
   for (auto* array : {&du_, &saved_du_, &u_}) array->resize(n);
@@ -231,7 +232,7 @@ Evaluation System<Space>::judge() {
   }
   if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
   e.energy = internal_.total() + load_energy_ + inertia_energy_;
-  e.energy_scale = std::abs(internal_.total()) + std::abs(load_energy_) + inertia_energy_;
+  e.energy_scale = internal_.size() + std::abs(load_energy_) + inertia_energy_;
   fascia::judge(forces, model_.points.part_whole, settings_.tolerance, e);
   prescribed_left_ = !model_.constraints.empty() && motions_.lacks(report_values_.data() + report_values_.size() - 3);
   return e;

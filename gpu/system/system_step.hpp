@@ -35,8 +35,31 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
     q_.set_zero();
     w_.set_zero();
   }
+  if (!memory_.empty()) {
+    if (start_.begin_memory(memory_.size())) {  // as it is for ever
+      memory_.prepare({});
+      keep_memory(start_);
+    }
+    give_memory(Fading::over(step_.reach));
+  }
   rebuild_state();
   node_parts_.template sum<0, 1>(loops::NodeMotion{data_.view().nodes, pose()}, start_motion_.data());
+}
+
+/// Gives the points that remember stresses what they add to a step, or to a state that was reached.
+template <class Space>
+void System<Space>::give_memory(const Fading& fading) {
+  if (memory_.empty()) return;
+  memory_.prepare(fading);
+  given_ = memory_.give(start_.memory.data());
+}
+
+/// Has points that remember stresses keep a state, as the fading says that was prepared.
+template <class Space>
+void System<Space>::keep_memory(Pose& state) {
+  fading_.resize(memory_.stress_size());
+  blocks_.store_stress({state.u.data(), state.D.data()}, memory_.relaxing(), fading_.data());
+  memory_.keep(state.memory.data(), fading_.data());
 }
 
 template <class Space>
@@ -88,6 +111,7 @@ void System<Space>::look_at(const Pose& state, double h) {
     moved_u_ = Array<Space, Vec3d>();
     moved_D_ = Array<Space, Mat3d>();
   }
+  give_memory({});
   evaluate();
   internal_.viscous = 0;
   // Supports carry the mass damping of what they hold; nothing is accelerated.
@@ -123,7 +147,7 @@ void System<Space>::place_tethers() {
 /// The strain energy of vertices is what the step before left.
 template <class Space>
 double System<Space>::energy_at_start() {
-  const bool same = reached_ && start_.step != 0 && reached_->first == start_.step;
+  const bool same = reached_ && memory_.empty() && start_.step != 0 && reached_->first == start_.step;
   if (!same) return evaluate().energy;
   evaluate_loads();
   return reached_->second + load_energy_ + inertia_energy_;
@@ -177,6 +201,11 @@ typename System<Space>::Pose System<Space>::finish_step(double end_time, Memory&
     dependents_.place(end.u.data(), end.D.data());
     dependents_.place_rates(end.v.data(), end.Q_dot.data());
   }
+  if (!memory_.empty()) {
+    end.memory.copy_from(start_.memory);
+    memory_.prepare(Fading::over(step_.step));
+    keep_memory(end);
+  }
   reached_.reset();
   if (step_.scheme == TimeScheme::implicit_euler && !turning_ && !damped_ && model_.tethers.empty())
     reached_ = {end.step, internal_.total()};
@@ -194,6 +223,7 @@ void System<Space>::start_acceleration(const Pose& start, double dt, Memory& mem
   // Nothing has moved yet, see MechanicalSystem: E + h dE/dt becomes E − h dE/dt.
   if (damped_) Space::for_each(static_cast<int>(E_.size()), loops::Extrapolate{E_.data(), start_E_.data(), -2});
   step_.h = 0;  // forces without inertia
+  give_memory({});
   evaluate_forces();
   Space::for_each(model_.node_count(), loops::ForceOfAcceleration{step_view(), force_view(), world_y_.data()});
   if (!dependents_.empty()) dependents_.transfer(data_.view().nodes, world_y_.data(), nullptr);
@@ -205,6 +235,7 @@ template <class Space>
 void System<Space>::look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt) {
   begin_step(state, 0);
   if (damped_) follow_strain(before, earlier, dt);
+  give_memory({});
   evaluate();
   internal_.viscous = 0;
   if (!middles_.empty()) stretch_tethers(state.time);

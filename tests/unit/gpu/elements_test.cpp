@@ -39,7 +39,8 @@ std::vector<Case> cases() {
     for (const auto& [shape, shape_name] : shapes)
       for (const bool averaged : {false, true})
         for (const bool penalised : {false, true})
-          for (const bool damped : {false, true}) {
+          for (const char* past : {"", "_damped", "_fading"}) {
+            const bool damped = past == std::string("_damped"), fading = past == std::string("_fading");
             if (averaged && (shape != tet4 || law.formulation != ElementFormulation::large_strain)) continue;
             ElementOptions o;
             o.shape = shape;
@@ -48,10 +49,11 @@ std::vector<Case> cases() {
             if (averaged) o.locking = ElementLocking::averaged;
             if (penalised) o.penalty = 1e5;
             if (damped) o.stiffness_damping = 0.02;
+            if (fading) o.viscosity = two_branches(!averaged && penalised);
             if (order_of(shape) == 2) o.cells = {1, 1, 1};
             if (shape == tet4) o.cells = {3, 2, 1};  // lanes are left over
             all.push_back({std::string(law.name) + "_" + shape_name + (averaged ? "_averaged" : "") +
-                               (penalised ? "_penalised" : "") + (damped ? "_damped" : ""),
+                               (penalised ? "_penalised" : "") + past,
                            o});
           }
   return all;

@@ -3,6 +3,7 @@
 #include "core/executor/executor.hpp"
 #include "core/space/space.hpp"
 #include "gpu/space/views.hpp"
+#include "tests/support/fading.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -127,15 +128,23 @@ class Comparison {
  public:
   /// @param dt  above 0: with viscous stress
   Comparison(const Model& model, const State& state, const State& old, double dt)
-      : host_(model, state), start_(model, old), own_(model.points), cpu_(model.points, pool_) {
+      : host_(model, state),
+        start_(model, old),
+        own_(model.points),
+        cpu_(model.points, pool_),
+        memory_(model.points, 200) {
+    history_.given = memory_.given();
+    own_history_.given = memory_.empty() ? nullptr : history_.given.data();
     if (dt <= 0) return;
     history_.inverse_step = 1 / dt;
     cpu_.store_strain(old, history_);
-    own_history_ = {history_.E.data(), history_.inverse_step};
+    own_history_.E = history_.E.data();
+    own_history_.inverse_step = history_.inverse_step;
   }
 
   void expect_all() {
     expect_same_strains();
+    expect_same_fading();
     expect_same_forces();
     for (const Tangent tangent : {Tangent::full, Tangent::material}) expect_same_tangent(tangent);
     expect_same_extrapolation();
@@ -149,6 +158,17 @@ class Comparison {
     expect_near(E, stored.E, "strains");
   }
 
+  /// Both store the same of what fades.
+  void expect_same_fading() {
+    AlignedVector<double> S(memory_.stress_size()), own(S.size());
+    if (S.empty()) return;
+    for (const std::span<const double> given : {memory_.given(), memory_.relaxing()}) {
+      cpu_.store_stress(host_.state(), given, S);
+      own_.store_stress(host_.pose(), given.data(), own.data());
+      expect_near(own, S, "what fades");
+    }
+  }
+
   void expect_same_forces() {
     std::vector<double> g(at(host_.model().dof_count()));
     const InternalEnergy energy = cpu_.gradient(host_.state(), history_, g);
@@ -159,7 +179,8 @@ class Comparison {
     const std::vector<int> parts = own_.item_parts(set);
     const double* q = own_.quantities();
     EXPECT_NEAR(HostModel::sum(q, parts, gpu::kElastic), energy.elastic, 1e-12 * energy.elastic);
-    EXPECT_NEAR(HostModel::sum(q, parts, gpu::kViscous), energy.viscous, 1e-12 * energy.viscous);
+    EXPECT_NEAR(HostModel::sum(q, parts, gpu::kViscous), energy.viscous,
+                1e-12 * (std::abs(energy.viscous) + (memory_.empty() ? 0 : energy.elastic)));
     EXPECT_EQ(HostModel::sum(q, parts, gpu::kStabilizing), 0);
     for (int part = 0; part < set.part_count(); ++part) {
       const double rounding =
@@ -207,6 +228,7 @@ class Comparison {
   Class own_;
   ThreadPool pool_{1};
   CpuExecutor cpu_;
+  MidwayMemory memory_;
   StrainHistory history_;
   gpu::HistoryView own_history_;
 };

@@ -39,8 +39,23 @@ INSTANTIATE_TEST_SUITE_P(Matter, GpuShells,
                          testing::Values(Case{"thick", {1e4, 0.3, 0.2}}, Case{"thin", {1e4, 0.45, 0.01}},
                                          Case{"much_turned", {1e4, 0.3, 0.2}, 1.2},
                                          Case{"hardly_turned", {1e4, 0.3, 0.2}, 1e-3},
+                                         Case{"fading", {.thickness = 0.05, .viscosity = two_branches()}},
                                          Case{"damped", {1e4, 0.3, 0.05, 1000, 0.02}}),
                          [](const auto& parameter) { return parameter.param.name; });
+
+/// In one block some triangles fade and others damp.
+TEST(GpuShellBodies, FadingBesideDamped) {
+  ShellBodySpec spec = shell_spec(mesh(), {.thickness = 0.05});
+  for (std::size_t t = 0; t < spec.material.size(); ++t)
+    if (t % 2 == 0)
+      spec.material[t].viscosity = two_branches();
+    else
+      spec.material[t].stiffness_damping = 0.02;
+  const ShellModel built = shell_model(std::move(spec));
+  Comparison<HostShells> comparison(built.model, random_state(built.model, 0.02, 0.4),
+                                    random_state(built.model, 0.01, 0.2, 7), 0.05);
+  comparison.expect_all();
+}
 
 /// Two shells of different matter in one model: places of forces, strains and quantities of each.
 TEST(GpuShellBodies, OfTwo) {
