@@ -252,6 +252,7 @@ Simulation build_simulation(Scene scene) {
   add_constraints(s, points);
   add_couplings(s, points);
   s.model.points = std::move(points).finish(s.model.frame_kind);
+  for (const SimulatedBody& b : s.bodies) b.body->find_memories(s.model.points);
   if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
   give_inertia_to_hosts(s);
   s.initial = State::at_rest(s.model);

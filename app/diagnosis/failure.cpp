@@ -40,6 +40,8 @@ std::vector<char> mend(State& state, const State& good) {
       state.v[i] = good.v[i];
       state.Q_dot[i] = good.Q_dot[i];
     }
+  if (!std::all_of(state.memory.begin(), state.memory.end(), [](double S) { return std::isfinite(S); }))
+    state.memory = good.memory;
   return lost;
 }
 

@@ -45,7 +45,8 @@ double weight_length(const Attachment& attachment) {
 const Material* material_of(const Body& body, const BodyPoint& point) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)); };
   for (const MaterialUse& use : body.materials)
-    if (same(use.material.mu, point.mu) && same(use.material.lambda, point.lambda) && use.material.own == point.own)
+    if (same(use.material.mu, point.mu) && same(use.material.lambda, point.lambda) && use.material.own == point.own &&
+        fade_alike(use.material.viscosity, point.viscosity))
       return &use.material;
   return nullptr;
 }

@@ -127,6 +127,15 @@ class BodyVariants {
     v.overrides.push_back(fmt::format("{}.mass={}", path_, mass->second));
   }
 
+  static std::string viscosity_text(const Viscosity& viscosity) {
+    std::vector<std::string> branches;
+    for (const ViscousBranch& b : viscosity.branches)
+      branches.push_back(fmt::format("{{ share = {}, time = {} }}", b.share, b.time));
+    return fmt::format("viscosity = [{}], relax = \"{}\", statics = \"{}\"", fmt::join(branches, ", "),
+                       viscosity.shear_only ? "shear" : "all",
+                       viscosity.instantaneous_statics ? "instantaneous" : "long-term");
+  }
+
   /// The law that one of large strain becomes where a formulation takes none; empty where that cannot be said in one
   /// line.
   std::vector<std::string> linear_law() const {
@@ -136,6 +145,7 @@ class BodyVariants {
     std::string text = fmt::format("{}.material={{ young = {}, poisson = {}", path_, m.young(), m.poisson());
     if (m.mass_damping > 0 || m.stiffness_damping > 0)
       text += fmt::format(", damping = {{ mass = {}, stiffness = {} }}", m.mass_damping, m.stiffness_damping);
+    if (m.viscosity) text += ", " + viscosity_text(*m.viscosity);
     return {text + " }"};
   }
 

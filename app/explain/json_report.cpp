@@ -30,6 +30,8 @@ const char* name_of(VariantKind kind) {
       return "fluid";
     case VariantKind::damping:
       return "damping";
+    case VariantKind::viscosity:
+      return "viscosity";
     case VariantKind::coupling:
       return "coupling";
     case VariantKind::newton_tolerance:

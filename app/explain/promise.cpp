@@ -41,6 +41,7 @@ double promise_of(const Explanation& e, const Part& part) {
       return share / 2;
     case VariantKind::law:
     case VariantKind::damping:
+    case VariantKind::viscosity:
     case VariantKind::coupling:
       return 0.1;
     case VariantKind::newton_tolerance:

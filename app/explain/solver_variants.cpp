@@ -58,6 +58,12 @@ std::vector<Variant> material_variants(const Scene& scene) {
     const bool damped = material->mass_damping > 0 || material->stiffness_damping > 0;
     if (is_dynamic(scene.solver.kind) && damped)
       add(VariantKind::damping, damping, fmt::format("without `{}`", damping), damping + "=");
+    if (material->viscosity && scene.solver.kind != SolverKind::modes) {
+      const std::string viscosity = path + ".viscosity";
+      add(VariantKind::viscosity, viscosity, fmt::format("without `{}`", viscosity), viscosity + "=");
+      for (const char* beside : {".relax", ".statics"})  // which the scene may not say without it
+        if (scene.says(path + beside)) found.back().overrides.push_back(path + beside + "=");
+    }
     if (!needs_large_strain(material->law)) continue;
     add(VariantKind::law, path + ".law", fmt::format("with `{}.law = \"st-venant-kirchhoff\"`", path),
         path + ".law=\"st-venant-kirchhoff\"");

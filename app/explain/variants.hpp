@@ -18,6 +18,7 @@ enum class VariantKind {
   coarser,
   fluid,
   damping,
+  viscosity,
   coupling,
   newton_tolerance,
   linear_tolerance,

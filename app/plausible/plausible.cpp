@@ -204,12 +204,13 @@ void warn_of_sag(Simulation& s, const Body& body, const BodyScale& scale) {
   const double bent = weight / scale.softest * slenderness * slenderness;
   const bool limp = scale.softest < kSofterThanBrain && body.thickness.empty() && bent > kLimp;
   if (weight < kCrushed * scale.softest && !limp) return;
-  s.warnings.add("sag", place_of_stiffness(s.scene, body),
-                 fmt::format("{} does not bear body \"{}\" ({}, {:.4g} kg/m3): its own weight would {}; see {}, "
-                             "density, lengths and world.gravity",
-                             pressure_text(scale.softest), body.name, length_text(scale.length), scale.density,
-                             limp ? "fold it over" : "crush a column of that length",
-                             stiffness_key(body.materials.front().material.law)));
+  s.warnings.add(
+      "sag", place_of_stiffness(s.scene, body),
+      fmt::format("{}{} does not bear body \"{}\" ({}, {:.4g} kg/m3): its own weight would {}; see {}, "
+                  "density, lengths and world.gravity",
+                  pressure_text(scale.softest), scale.long_term ? " in the long term" : "", body.name,
+                  length_text(scale.length), scale.density, limp ? "fold it over" : "crush a column of that length",
+                  stiffness_key(body.materials.front().material.law)));
 }
 
 /// One cell of frames along a body that is much longer than thick: it hardly bends.
@@ -249,8 +250,12 @@ BodyScale scale_of(const Simulation& s, std::size_t index) {
   scale.area = scale.length > 0 ? built.volume() / scale.length : 0;
   scale.density = built.volume() > 0 ? built.mass() / built.volume() : 0;
   if (is_carrier(body)) return scale;
+  const bool waits = s.scene.solver.kind == SolverKind::statics;
   for (const MaterialUse& use : body.materials) {
-    const double E = use.material.young();
+    const Material& m = use.material;
+    const bool fades = waits && m.viscosity && !m.viscosity->instantaneous_statics;
+    const double E = fades ? lasting_constants(m).young() : m.young();
+    scale.long_term = scale.long_term || fades;
     scale.stiffest = std::max(scale.stiffest, E);
     scale.softest = scale.softest > 0 ? std::min(scale.softest, E) : E;
   }

@@ -31,6 +31,7 @@ struct BodyScale {
   double area = 0;                   ///< mean section across the length [m²]
   double density = 0;                ///< [kg/m³]
   double softest = 0, stiffest = 0;  ///< Young's moduli [Pa]; 0 where no material is its own
+  bool long_term = false;            ///< they are what is left of some in static solves, after stresses have faded
   double wave_speed() const;         ///< of the stiffest material [m/s]; 0 without mass
   double slowest_period() const;     ///< of bending as a cantilever, or along the length [s]
 };

@@ -48,6 +48,17 @@ void warn_of_held(Simulation& s, const std::set<int>& fixed) {
   }
 }
 
+void warn_of_idle_viscosity(Simulation& s, const Material& m) {
+  const SolverKind kind = s.scene.solver.kind;
+  if (kind == SolverKind::modes)
+    s.warnings.add("no-effect", place_of_material(s.scene, m, "viscosity"),
+                   "does nothing to natural frequencies, which are those of the instantaneous constants; remove it, or "
+                   "give the constants of the long term");
+  if (kind != SolverKind::statics && s.scene.says(m.place.key + ".statics"))
+    s.warnings.add("no-effect", place_of_material(s.scene, m, "statics"),
+                   "does nothing where the solver is not static; remove it");
+}
+
 }  // namespace
 
 void warn_of_no_effect(Simulation& s) {
@@ -68,10 +79,11 @@ void warn_of_no_effect(Simulation& s) {
   for (const Body& b : s.scene.bodies)
     for (const MaterialUse& use : b.materials) {
       const Material& m = use.material;
-      if (used.insert(m.place.key).second && !is_dynamic(s.scene.solver.kind) &&
-          m.mass_damping + m.stiffness_damping > 0)
+      const bool fresh = used.insert(m.place.key).second;
+      if (fresh && !is_dynamic(s.scene.solver.kind) && m.mass_damping + m.stiffness_damping > 0)
         s.warnings.add("no-effect", place_of_material(s.scene, m, "damping"),
                        "does nothing without time; remove it, or use a dynamic solver");
+      if (fresh && m.viscosity) warn_of_idle_viscosity(s, m);
     }
   for (const auto& [key, place] : s.scene.places)
     if (key.starts_with("materials.") && key.find('.', 10) == std::string::npos && !used.contains(key))

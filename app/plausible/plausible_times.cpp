@@ -110,11 +110,17 @@ void warn_of_damping(Simulation& s, double duration) {
   }
 }
 
+/// A stress of the material fades over steps, and the run may be about that.
+bool fades_in_steps(const Material& m, double time_step) {
+  return m.viscosity && std::any_of(m.viscosity->branches.begin(), m.viscosity->branches.end(),
+                                    [&](const ViscousBranch& branch) { return branch.time >= time_step; });
+}
+
 /// The body that vibrates most slowly, and the shortest time in which a wave crosses one.
 struct Vibrations {
   double slowest = 0, crossing = 0;  ///< [s]; 0: none
   double length = 0;                 ///< of the slowest body [m]
-  bool creeps = false;               ///< the slowest body does, and so the run may be about that
+  bool creeps = false;               ///< the slowest body does, or relaxes, and so the run may be about that
   std::string body;
 };
 
@@ -123,7 +129,9 @@ Vibrations vibrations_of(const Simulation& s) {
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const BodyScale scale = scale_of(s, b);
     const double period = scale.slowest_period();
-    const auto creeps = [&](const MaterialUse& use) { return creep_of(use.material, period).ratio > 1; };
+    const auto creeps = [&](const MaterialUse& use) {
+      return creep_of(use.material, period).ratio > 1 || fades_in_steps(use.material, s.scene.solver.time_step);
+    };
     const std::vector<MaterialUse>& materials = s.scene.bodies[b].materials;
     if (period > v.slowest) {
       v.slowest = period;

@@ -127,6 +127,29 @@ void read_own_constants(const TableReader& table, const LawWord& law, Material& 
                                     bulk, mu, kLeast, kMost));
 }
 
+/// @return null where there is none
+std::shared_ptr<const Viscosity> read_viscosity(const TableReader& table) {
+  if (!table.has("viscosity")) {
+    table.refuse({"relax", "statics"}, "is used only beside viscosity");
+    return nullptr;
+  }
+  Viscosity viscosity;
+  for (const TableReader& branch : table.tables("viscosity")) {
+    const auto share = branch.number("share"), time = branch.number("time");
+    if (share && time) viscosity.branches.push_back({*share, *time});
+  }
+  viscosity.shear_only = table.text("relax") == "shear";
+  viscosity.instantaneous_statics = table.text("statics") == "instantaneous";
+  if (const double lasting = viscosity.long_term(); !(lasting > kLeastLasting))
+    table.error("viscosity",
+                fmt::format("has shares that sum up to {:.9g}; must sum up to less than {:.9g}, so that a part of the "
+                            "stiffness lasts",
+                            1 - lasting, 1 - kLeastLasting));
+  if (table.table("damping").number("stiffness").value_or(0) > 0)
+    table.table("damping").error("stiffness", "is a viscosity of its own; remove it, or the material's viscosity");
+  return std::make_shared<const Viscosity>(std::move(viscosity));
+}
+
 std::optional<BodyModel> read_model(const TableReader& body) {
   const auto word = body.text("model");
   if (!word) return std::nullopt;
@@ -140,6 +163,7 @@ std::optional<BodyModel> read_model(const TableReader& body) {
 void check_thin_laws(const TableReader& table, const Body& body) {
   const std::optional<Extent> extent = read_extent(table);
   if (!extent || *extent == Extent::solid) return;
+  refuse_shear_relaxation(table, body, "thin bodies");
   for (std::size_t i = 0; i < body.materials.size(); ++i)
     if (const Law law = body.materials[i].material.law; needs_large_strain(law))
       table.diagnostics().add(
@@ -186,6 +210,17 @@ Place place_of_material(const TableReader& body, std::size_t use) {
   return value && value->as_array() ? body.tables("material")[use].place("use") : body.place("material");
 }
 
+void refuse_shear_relaxation(const TableReader& body, const Body& read, const char* who) {
+  for (std::size_t i = 0; i < read.materials.size(); ++i) {
+    const Material& material = read.materials[i].material;
+    const std::string named = material.name.empty() ? "" : fmt::format("\"{}\" ", material.name);
+    if (material.viscosity && material.viscosity->shear_only)
+      body.diagnostics().add(
+          place_of_material(body, i),
+          fmt::format("{}relaxes in shear alone, which {} do not; must have relax = \"all\"", named, who));
+  }
+}
+
 Material read_material(const TableReader& table) {
   Material material;
   material.place = table.place();
@@ -207,6 +242,7 @@ Material read_material(const TableReader& table) {
   const TableReader damping = table.table("damping");
   material.mass_damping = damping.number("mass").value_or(0);
   material.stiffness_damping = damping.number("stiffness").value_or(0);
+  material.viscosity = read_viscosity(table);
   return material;
 }
 

@@ -85,6 +85,19 @@ void read_locking(const TableReader& table, Body& body) {
                                        *table.text("formulation")));
 }
 
+/// An average about nodes has no part that fades by itself.
+void check_averaged_viscosity(const TableReader& table, const Body& body) {
+  if (body.locking != Locking::f_bar) return;
+  refuse_shear_relaxation(table, body, "elements with locking = \"f-bar\"");
+  const auto& first = body.materials.empty() ? nullptr : body.materials[0].material.viscosity;
+  for (std::size_t i = 1; i < body.materials.size(); ++i) {
+    if (!fade_alike(body.materials[i].material.viscosity, first))
+      table.diagnostics().add(place_of_material(table, i),
+                              "has another viscosity than the first material; with locking = \"f-bar\" all must have "
+                              "the same");
+  }
+}
+
 }  // namespace
 
 const char* word(BodyModel model) {
@@ -128,6 +141,7 @@ void read_elements(const TableReader& table, Body& body) {
   body.incompressibility = table.number("incompressibility").value_or(body.incompressibility);
   body.incompressibility_place = table.place("incompressibility");
   read_locking(table, body);
+  check_averaged_viscosity(table, body);
 }
 
 void refuse_element_keys(const TableReader& table) {

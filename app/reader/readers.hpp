@@ -82,6 +82,8 @@ void check_around(const TableReader& shape, std::size_t index);
 
 /// Where a body names the material of one of its uses, which were read.
 Place place_of_material(const TableReader& body, std::size_t use);
+/// Reports each material of a body that relaxes in shear alone.
+void refuse_shear_relaxation(const TableReader& body, const Body& read, const char* who);
 
 /// A list of tables of which the first that selects something counts: only the last may have no `where`.
 std::vector<TableReader> read_choices(const TableReader& table, std::string_view key);

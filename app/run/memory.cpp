@@ -67,7 +67,8 @@ struct ToCome {
 };
 
 double state_bytes(const Model& model) {
-  return static_cast<double>(model.node_count()) * (model.has_frames() ? 192 : 48);
+  return static_cast<double>(model.node_count()) * (model.has_frames() ? 192 : 48) +
+         8.0 * static_cast<double>(model.points.memory.size());
 }
 
 double vector_bytes(const Model& model) { return 8.0 * model.dof_count(); }
@@ -168,6 +169,8 @@ class Setup {
     linearize(dt);
     // Some twelve directions of GMRES, two vectors each, come beside where loads have no potential.
     const double directions = on_gpu || s_.model.loads_are_conservative() ? 0 : 24;
+    // Points that remember stresses have what fades of them, and a linearisation keeps what they are given.
+    to_come_.keep(8.0 * (6 + kGivenRows) * static_cast<double>(s_.model.points.memory.lanes()));
     to_come_.keep(3 * state_bytes(s_.model) + (12 + directions) * vector_bytes(s_.model));
     if (!on_gpu && s_.model.free_dof_count() > 0) of_solver();
   }

@@ -145,6 +145,23 @@ Shape make_material_schema() {
                      table({key("mass", number("1/s", at_least(0)), "On velocities.").defaults("0"),
                             key("stiffness", number("s", at_least(0)), "On the rate of strain.").defaults("0")}),
                      "Viscous damping."));
+  keys.push_back(
+      key("viscosity",
+          array(table({key("share", number("1", inside(0, 1)), "Of the instantaneous stress.").needed(),
+                       key("time", number("s", above(0)), "After which 1/e of the share is left.").needed()}),
+                1),
+          "Shares of the stress that fade (a Prony series): the constants of the law are the instantaneous "
+          "ones, of which 1 minus the sum of the shares lasts."));
+  keys.push_back(key("relax",
+                     choice({{"all", "All of the stress."},
+                             {"shear", "That of the shear modulus; the bulk modulus lasts. Not for thin bodies."}}),
+                     "What fades, beside `viscosity`.")
+                     .defaults("\"all\""));
+  keys.push_back(
+      key("statics",
+          choice({{"long-term", "All that fades has done so."}, {"instantaneous", "Nothing has faded yet."}}),
+          "How a static solve takes `viscosity`.")
+          .defaults("\"long-term\""));
   return table(std::move(keys), {one});
 }
 

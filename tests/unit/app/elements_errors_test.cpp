@@ -157,6 +157,40 @@ TEST(ElementErrors, LawsTakeTheirOwnConstants) {
             "a.toml:8:75: bodies.block.material.poisson: is no constant of the law \"mooney-rivlin\"; remove it");
 }
 
+TEST(ElementErrors, WhatFadesLeavesAPart) {
+  const auto errors_of_material = [](const std::string& material, std::string_view more = "") {
+    return errors(mesh_body("tetrahedra", meshed_box, std::string(more)),
+                  "{ young = 1, poisson = 0.3, " + material + " }");
+  };
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 0.4, time = \"0.5 s\" }, { share = 0.3, time = 8 }]"), "");
+  EXPECT_EQ(errors_of_material("viscosity = []"),
+            "a.toml:8:52: bodies.block.material.viscosity: an empty list is of the wrong length; must be a list, each "
+            "a table with share, time");
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 0.6, time = 1 }, { share = 0.4, time = 2 }]"),
+            "a.toml:8:52: bodies.block.material.viscosity: has shares that sum up to 1; must sum up to less than "
+            "0.999999, so that a part of the stiffness lasts");
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 1, time = 0 }]"),
+            "a.toml:8:63: bodies.block.material.viscosity[0].share: 1 is out of range; must be above 0 and below 1\n"
+            "a.toml:8:73: bodies.block.material.viscosity[0].time: 0 is out of range; must be above 0");
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 0.5 }]"),
+            "a.toml:8:53: bodies.block.material.viscosity[0].time: is missing; must be a time in s above 0");
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 0.5, tau = 1 }]"),
+            "a.toml:8:53: bodies.block.material.viscosity[0].time: is missing; must be a time in s above 0\n"
+            "a.toml:8:68: bodies.block.material.viscosity[0].tau: is no known key; known here: share, time");
+  EXPECT_EQ(errors_of_material("relax = \"shear\", statics = \"instantaneous\""),
+            "a.toml:8:48: bodies.block.material.relax: is used only beside viscosity; remove it\n"
+            "a.toml:8:67: bodies.block.material.statics: is used only beside viscosity; remove it");
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 0.5, time = 1 }], relax = \"sheer\""),
+            "a.toml:8:89: bodies.block.material.relax: \"sheer\" is no known value; must be \"all\" or \"shear\" (did "
+            "you mean \"shear\"?)");
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 0.5, time = 1 }], damping = { stiffness = 0.1 }"),
+            "a.toml:8:105: bodies.block.material.damping.stiffness: is a viscosity of its own; remove it, or the "
+            "material's viscosity");
+  EXPECT_EQ(errors_of_material("viscosity = [{ share = 0.5, time = 1 }], relax = \"shear\"", "locking = \"f-bar\"\n"),
+            "a.toml:8:12: bodies.block.material: relaxes in shear alone, which elements with locking = \"f-bar\" do "
+            "not; must have relax = \"all\"");
+}
+
 TEST(ElementErrors, ThinMeshlessBodiesTakeOneLaw) {
   const char* message =
       "has the law \"neo-hookean\", which thin bodies do not take; must be of the law \"st-venant-kirchhoff\"";

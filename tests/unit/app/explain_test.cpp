@@ -21,7 +21,7 @@ using namespace fascia::app;
 
 const std::string kScene = R"(
 [materials]
-gel = { law = "neo-hookean", young = 1e4, poisson = 0.3, damping = { mass = 1 } }
+gel = { law = "neo-hookean", young = 1e4, poisson = 0.3, damping = { mass = 1 }, viscosity = [{ share = 0.5, time = 1 }], relax = "shear" }
 [bodies.base]
 model = "hexahedra"
 order = 2
@@ -145,7 +145,12 @@ TEST(Variants, FormulationsBringALawThatTheyTake) {
 TEST(Variants, OfMaterialsAndTheSolver) {
   const Scene scene = scene_of(kScene);
   const std::vector<Variant> materials = material_variants(scene);
-  ASSERT_EQ(materials.size(), 2u);
+  ASSERT_EQ(materials.size(), 3u);
+  EXPECT_EQ(carried_out(*find(materials, VariantKind::viscosity, "materials.gel.viscosity"))
+                .bodies[0]
+                .materials[0]
+                .material.viscosity,
+            nullptr);
   EXPECT_EQ(carried_out(*find(materials, VariantKind::damping, "materials.gel.damping"))
                 .bodies[0]
                 .materials[0]

@@ -134,6 +134,22 @@ TEST(Plausible, Times) {
   expect_one({.material = "damping = { stiffness = 20 }"}, "materials.liver.damping.stiffness", "damping");
 }
 
+/// Steps that see a stress fade may be meant, however slow they are beside vibrations.
+TEST(Plausible, RelaxationThatStepsSee) {
+  const std::string fades = "viscosity = [{ share = 0.5, time = \"20 s\" }]";
+  Words words{.material = fades, .solver = "kind = \"implicit-euler\"\ntime_step = \"5 s\"\nduration = \"10 min\""};
+  EXPECT_EQ(warnings_of(words), std::vector<std::string>{});
+  words.material = "viscosity = [{ share = 0.5, time = \"20 ms\" }]";
+  expect_one(words, "solver.time_step", "time-step");
+  expect_one({.gravity = "[0, 0, 0]", .material = fades, .solver = "kind = \"modes\"\ncount = 3"},
+             "materials.liver.viscosity", "no-effect");
+  expect_one({.material = fades + "\nstatics = \"long-term\""}, "materials.liver.statics", "no-effect");
+  // A static scene is judged by what lasts.
+  expect_one(
+      {.young = "2.2e5", .material = "viscosity = [{ share = 0.9999, time = 1 }]", .solver = "kind = \"static\""},
+      "materials.liver.young", "sag");
+}
+
 TEST(Plausible, KeysThatDoNothing) {
   const std::string load = "[[loads]]\nbody = \"organ\"\nat = [0.16, 0.1, 0.08]\nforce = [0.1, 0, 0]\nover = 1\n";
   expect_one({.solver = "kind = \"static\"", .rest = load}, "loads[0].over", "no-effect");
