@@ -166,6 +166,11 @@ std::optional<std::string> falling_energy(const RandomScene& scene, const Outcom
   for (const auto& [name, body] : scene.tree["bodies"].items())
     if (body.contains("fluid") && (body["fluid"].contains("over") || body["fluid"].contains("profile")))
       return std::nullopt;  // what pumps it works
+  const auto fades = [](const Json& material) { return material.contains("viscosity"); };
+  for (const char* where : {"bodies", "materials"})
+    for (const auto& [name, entry] : scene.tree.value(where, Json::object()).items())
+      if (fades(entry) || (entry.contains("material") && fades(entry["material"])))
+        return std::nullopt;  // what branches hold is not told
   const std::vector<std::vector<double>>& rows = run.probes.at("total_energy").rows;
   const double most = run.largest("J");
   for (std::size_t k = 1; k < rows.size(); ++k)

@@ -10,6 +10,9 @@ namespace {
 /// Sets apart the draws of what one scene in five has beside the rest. None of the seeds that tests name is of these.
 constexpr std::uint64_t kMore = 0xb4;
 
+/// Sets apart the draws of stresses that fade; none of the named seeds is of these either.
+constexpr std::uint64_t kFading = 0x10d;
+
 struct Additions {
   explicit Additions(Draws& draws) {
     if (!draws.chance(0.2)) return;
@@ -19,6 +22,39 @@ struct Additions {
   }
   bool fluid = false, tissue = false, mesh = false;
 };
+
+/// Draws one or several branches, which fade within the run, long before or long after.
+Json viscosity(Draws& draws, const Scales& scales) {
+  Json branches = Json::array();
+  const int count = draws.whole(1, 3);
+  for (int k = 0; k < count; ++k)
+    branches.push_back(
+        Json{{"share", draws.uniform(0.01, 0.9 / count)}, {"time", scales.time() * draws.decades(-3, 3)}});
+  return branches;
+}
+
+/// One scene in seven has materials whose stress fades, of each body in its own way.
+void add_viscosity(Draws& draws, const Scales& scales, Json& scene) {
+  if (!draws.chance(0.15)) return;
+  for (auto& [name, body] : scene["bodies"].items()) {
+    if (!body.contains("material") || draws.chance(0.4)) continue;
+    const Json branches = viscosity(draws, scales);
+    const bool thin = body.value("model", "") == "shell" || body.contains("thickness") || body.contains("radius") ||
+                      body["domain"].contains("as") || body.contains("locking");
+    const bool shear = !thin && draws.chance(0.3);
+    const bool at_once = draws.chance(0.3) && scene["solver"]["kind"] == "static";
+    const auto add = [&](Json& material) {
+      material["viscosity"] = branches;
+      if (shear) material["relax"] = "shear";
+      if (at_once) material["statics"] = "instantaneous";
+      if (material.contains("damping")) material["damping"].erase("stiffness");
+    };
+    if (body["material"].is_array())
+      for (Json& part : body["material"]) add(part["use"]);
+    else
+      add(body["material"]);
+  }
+}
 
 }  // namespace
 
@@ -47,6 +83,8 @@ RandomScene random_scene(std::uint64_t seed) {
   if (with.tissue) add_tissue(more, scales, flies, row, scene);
   if (with.mesh) add_mesh(more, scales, row, fmt::format("{}", seed), scene);
   if (with.fluid) add_fluid(more, flies, row, scene);
+  Draws fading(seed ^ kFading);
+  add_viscosity(fading, scales, scene.tree);
   add_probes(scales, row, scene.tree);
   if (draws.chance(0.125) && scene.wrong.empty()) spoil(draws, scene);
   return scene;

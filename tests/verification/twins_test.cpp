@@ -46,6 +46,9 @@ struct RandomScene {
     const double slowest = length * std::sqrt(density / young);  // seconds that a wave takes along the bar
     if (kind > 0 && pick(2) == 0)
       text += ", damping = { mass = " + number(0.1 / slowest) + ", stiffness = " + number(0.01 * slowest) + " }";
+    else if (kind > 0 && seed % 3 == 0)
+      text += ", viscosity = [{ share = 0.3, time = " + number(slowest) +
+              " }, { share = 0.2, time = " + number(30 * slowest) + " }]";
     text += " }\n";
     if (free)
       text += "initial = { velocity = " + directed(0.01 * length / slowest) +
