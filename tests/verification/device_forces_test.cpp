@@ -24,11 +24,12 @@ using app::Simulation;
 enum class Where { host, device };
 
 /// Hexahedra, tissue that shares their vertices, tetrahedra that follow the tissue, a shell on these, and scattered
-/// frames whose ends are held by tethers; pulled and turned, with both kinds of damping, from a motion that stretches
-/// them at once.
+/// frames whose ends are held by tethers; pulled and turned, with both kinds of damping or stresses that fade, from a
+/// motion that stretches them at once.
 constexpr const char* kScene = R"(
 [materials]
 soft = { young = 1e4, poisson = 0.3, damping = { stiffness = "20 ms", mass = "5 Hz" } }
+slack = { young = 1e4, poisson = 0.3, viscosity = [{ share = 0.3, time = "20 ms" }, { share = 0.3, time = 1 }] }
 [bodies.organ]
 model = "hexahedra"
 domain = { box = { min = [0, 0, 0], max = [0.5, 0.5, 0.5], cells = [2, 2, 2] } }
@@ -45,13 +46,13 @@ material = "soft"
 model = "tetrahedra"
 domain = { box = { min = [1, 0, 0], max = [1.5, 0.5, 0.5], cells = [2, 2, 2] } }
 density = 100
-material = "soft"
+material = "slack"
 [bodies.skin]
 model = "shell"
 domain = { rectangle = { origin = [1, 0, 0.5], edge_u = [0.5, 0, 0], edge_v = [0, 0.5, 0], cells = [2, 2] } }
 thickness = 0.02
 density = 100
-material = "soft"
+material = "slack"
 [bodies.cloud]
 model = "meshless"
 domain = { box = { min = [0, 1, 0], max = [1, 1.4, 0.4] } }
