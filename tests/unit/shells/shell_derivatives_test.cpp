@@ -23,7 +23,7 @@ struct Case {
 Vec3d dome(double u, double v) { return {{u, v, 0.6 * u * (1 - u) + 0.3 * u * v}}; }
 
 std::vector<Case> cases() {
-  const auto shell = [](ShellMatter matter, double jitter) {
+  const auto shell = [](const ShellMatter& matter, double jitter) {
     return [=] { return shell_model(patch_mesh(dome, {3, 3, Diagonals::alternating, jitter}), matter); };
   };
   const auto mixed = [] {
