@@ -73,7 +73,7 @@ class ElementBody final : public ModelBody {
   Attachment attachment(std::size_t element, const Vec3d& xi) const;
   Strained strained(std::size_t element, const State& state) const;
   std::vector<Averaged> averages(const State& state) const;
-  PointTensors tensors_of(std::size_t point, const Mat3d& H, const Mat3d& Q, const Strained& element,
+  PointTensors tensors_of(std::size_t point, const Mat3d& H, const RememberedStress& past, const Strained& element,
                           const std::optional<Averaged>& averaged) const;
   const ElementMesh& mesh() const { return locator_.mesh(); }
 

@@ -93,22 +93,22 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
   return result;
 }
 
-/// @param Q  what the point remembers, added to what never fades
-PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Mat3d& Q, const Strained& element,
-                                     const std::optional<Averaged>& averaged) const {
-  const LawConstants p = lasting_constants(points_[point]);
+/// @param past  what the point remembers, added to what never fades
+PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const RememberedStress& past,
+                                     const Strained& element, const std::optional<Averaged>& averaged) const {
+  const LawConstants p = lasting_constants(points_[point]), relaxing = relaxing_constants(points_[point]);
   const double pull = penalty_ * element.swelling * std::abs(element.swelling);
   const double penalty_energy = penalty_ * std::pow(std::abs(element.swelling), 3) / 3;
-  const StVenantKirchhoff<double> law{p.lambda, p.mu};
+  const StVenantKirchhoff<double> law{p.lambda, p.mu}, fading{relaxing.lambda, relaxing.mu};
   PointTensors t;
   t.strain = green_strain(H);
   if (formulation_ == ElementFormulation::linear) {
-    t.stress = law.second_piola(sym(H)) + Q;
+    t.stress = law.second_piola(sym(H)) + past.at(fading.second_piola(sym(H)));
     t.energy_density = law.energy_density(sym(H));
   } else if (formulation_ == ElementFormulation::corotational) {
     const Mat3d R = Mat3d::identity() + element.turn;
     const Mat3d strain = sym(transpose(element.turn) + H + transpose_times(element.turn, H));
-    t.stress = times_transpose(R * (law.second_piola(strain) + Q), R);
+    t.stress = times_transpose(R * (law.second_piola(strain) + past.at(fading.second_piola(strain))), R);
     t.energy_density = law.energy_density(strain);
   } else {
     const Mat3d F = Mat3d::identity() + H;
@@ -117,9 +117,13 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Ma
       const auto solid = make_law<Solid>(p);
       t.energy_density = averaged ? solid.shear_energy(H) + averaged->energy_density : energy_density(solid, H);
       const double pressure = averaged ? averaged->pressure : solid.volumetric_modulus() * Solid::volumetric_strain(H);
-      return solid.second_piola(typename Solid::At(H), t.strain, pressure);
+      const Mat3d lasts = solid.second_piola(typename Solid::At(H), t.strain, pressure);
+      if (p.viscosity == nullptr) return lasts;
+      // Averages fade in all of their stress.
+      return lasts +
+             past.at(averaged ? lasts * (1 / p.viscosity->long_term()) : second_piola(make_law<Solid>(relaxing), H));
     });
-    t.stress = times_transpose(F * (S + Q), F) * (1 / determinant(F));
+    t.stress = times_transpose(F * S, F) * (1 / determinant(F));
   }
   t.stress += Mat3d::diagonal(pull);
   t.energy_density += penalty_energy;

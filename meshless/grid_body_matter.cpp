@@ -38,6 +38,13 @@ void GridBody::add_points(const GridSpec& spec, const std::vector<Sample>& sampl
     messages_.push_back(
         "selective integration takes a part of the bending stiffness of affine frames away, which do not "
         "lock; use integration = \"auto\"");
+  constexpr double little = 0.3;  // of the shear modulus: the points' own volume term is then above twice of it
+  if (selective_ && std::any_of(materials.begin(), materials.end(), [](const PointMaterialSpec& m) {
+        return m.viscosity && m.viscosity->shear_only && m.viscosity->long_term() < little;
+      }))
+    messages_.push_back(
+        "relaxes in shear to less than 0.3 of its stiffness: what fades of the shear takes a part of selective "
+        "integration away, and the body locks in the long term; use relax = \"all\", or elements of order 2");
   if (selective_ && spec.integration == IntegrationKind::automatic)
     choices_.push_back("Poisson ratio above 0.45: lambda is integrated at one point a cell (selective integration)");
 

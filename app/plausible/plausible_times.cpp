@@ -111,9 +111,11 @@ void warn_of_damping(Simulation& s, double duration) {
 }
 
 /// A stress of the material fades over steps, and the run may be about that.
-bool fades_in_steps(const Material& m, double time_step) {
-  return m.viscosity && std::any_of(m.viscosity->branches.begin(), m.viscosity->branches.end(),
-                                    [&](const ViscousBranch& branch) { return branch.time >= time_step; });
+bool fades_in_steps(const Material& m, double time_step, double duration) {
+  const auto fades = [&](const ViscousBranch& branch) {
+    return branch.time >= time_step && branch.time <= 10 * duration && branch.share >= 0.01;
+  };
+  return m.viscosity && std::any_of(m.viscosity->branches.begin(), m.viscosity->branches.end(), fades);
 }
 
 /// The body that vibrates most slowly, and the shortest time in which a wave crosses one.
@@ -124,13 +126,14 @@ struct Vibrations {
   std::string body;
 };
 
-Vibrations vibrations_of(const Simulation& s) {
+Vibrations vibrations_of(const Simulation& s, double duration) {
   Vibrations v;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const BodyScale scale = scale_of(s, b);
     const double period = scale.slowest_period();
     const auto creeps = [&](const MaterialUse& use) {
-      return creep_of(use.material, period).ratio > 1 || fades_in_steps(use.material, s.scene.solver.time_step);
+      return creep_of(use.material, period).ratio > 1 ||
+             fades_in_steps(use.material, s.scene.solver.time_step, duration);
     };
     const std::vector<MaterialUse>& materials = s.scene.bodies[b].materials;
     if (period > v.slowest) {
@@ -200,7 +203,7 @@ void warn_of_times(Simulation& s) {
   if (is_implicit_dynamics(solver.kind))
     for (const NamedSchedule& named : schedules_of(s.scene)) warn_of_coarse_times(s, named);
   for (const NamedSchedule& named : schedules_of(s.scene)) warn_of_late_times(s, named, duration);
-  const Vibrations v = vibrations_of(s);
+  const Vibrations v = vibrations_of(s, duration);
   // Implicit Euler and BDF2 may be taken to let a body settle.
   const bool keeps_energy = solver.kind == SolverKind::newmark || solver.kind == SolverKind::midpoint;
   if (is_implicit_dynamics(solver.kind) && v.slowest > 0 && !v.creeps &&

@@ -25,22 +25,31 @@ ThinMaterial<double> stress_material(const BodyPoint& p, const Mat3d& axes) {
 Mat3d cauchy(const Mat3d& F, const Mat3d& S) { return times_transpose(F * S, F) * (1 / determinant(F)); }
 
 /// @param Hv  where the volumetric strain is taken; H without selective integration
-/// @param Q, Qv  what the point remembers, and of its volumetric strain
+/// @param past, past_v  what the point remembers, and of its volumetric strain
 PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, const Mat3d& H, const Mat3d& Hv,
-                        const Mat3d& Q, const Mat3d& Qv) {
+                        const RememberedStress& past, const RememberedStress& past_v, bool selective) {
   const Mat3d E = green_strain(H), F = Mat3d::identity() + H, Fv = Mat3d::identity() + Hv;
   if (is_thin(p.law)) {
     const ThinMaterial<double> m = stress_material(p, axes[at(p.axes)]);
-    return {E, cauchy(F, second_piola(m, E) + Q), energy_density(m, E)};
+    const Mat3d S = second_piola(m, E);
+    const double lasting = p.viscosity ? p.viscosity->long_term() : 1.0;
+    return {E, cauchy(F, S + past.at(S * (1 / lasting))), energy_density(m, E)};
   }
   return with_solid_law(p.law, [&]<Law L>() -> PointTensors {
     LawConstants without_lambda = p, lambda_alone = p;
     without_lambda.lambda = lambda_alone.mu = 0;
     std::fill(lambda_alone.own.begin(), lambda_alone.own.end(), 0.0);
-    const auto shear = make_law<SolidLaw<L, double>>(lasting_constants(without_lambda)),
-               volume = make_law<SolidLaw<L, double>>(lasting_constants(lambda_alone));
-    return {E, cauchy(F, second_piola(shear, H) + Q) + cauchy(Fv, second_piola(volume, Hv) + Qv),
-            energy_density(shear, H) + energy_density(volume, Hv)};
+    const auto law = [](const LawConstants& constants) { return make_law<SolidLaw<L, double>>(constants); };
+    const auto shear = law(lasting_constants(without_lambda)), volume = law(lasting_constants(lambda_alone));
+    Mat3d S = second_piola(shear, H), Sv = second_piola(volume, Hv);
+    if (p.viscosity) {
+      // Without a volumetric lane the point remembers both.
+      const Mat3d S_e = second_piola(law(relaxing_constants(without_lambda)), H),
+                  S_ev = second_piola(law(relaxing_constants(lambda_alone)), Hv);
+      S += selective ? past.at(S_e) : past.at(S_e + S_ev);
+      if (selective) Sv += past_v.at(S_ev);
+    }
+    return {E, cauchy(F, S) + cauchy(Fv, Sv), energy_density(shear, H) + energy_density(volume, Hv)};
   });
 }
 
@@ -90,13 +99,20 @@ TensorField ModelBody::tensor_field(const State& state) const {
 PointTensors ModelBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {
   const Mat3d H = field_at(place, state).H;
   const Mat3d Hv = selective() ? field_at(attach_volumetric(place), state).H : H;
-  return tensors_of(points_[nearest], axes_, H, Hv, remembered(nearest, state), remembered_volumetric(nearest, state));
+  return tensors_of(points_[nearest], axes_, H, Hv, remembered(nearest, state), remembered_volumetric(nearest, state),
+                    selective());
 }
 
 LawConstants lasting_constants(LawConstants constants) {
   if (constants.viscosity == nullptr) return constants;
   const double lasting = constants.viscosity->long_term();
   scale_constants(LawFactors<double>{lasting, constants.viscosity->shear_only ? 1 : lasting}, constants);
+  return constants;
+}
+
+LawConstants relaxing_constants(LawConstants constants) {
+  if (constants.viscosity != nullptr && constants.viscosity->shear_only)
+    scale_constants(LawFactors<double>{1, 0}, constants);
   return constants;
 }
 
@@ -111,13 +127,16 @@ double ModelBody::branch_sum(std::size_t lane, int row, const State& state) cons
   return sum;
 }
 
-Mat3d ModelBody::remembered_at(const std::vector<std::size_t>& lanes, std::size_t point, const State& state) const {
-  Mat3d Q;
-  if (lanes.empty() || lanes[point] == kNoLane) return Q;
-  for (int c = 0; c < 6; ++c)
-    Q(kSymmetricPlaces[c][0], kSymmetricPlaces[c][1]) = Q(kSymmetricPlaces[c][1], kSymmetricPlaces[c][0]) =
-        branch_sum(lanes[point], c, state);
-  return Q;
+RememberedStress ModelBody::remembered_at(const std::vector<std::size_t>& lanes, std::size_t point,
+                                          const State& state) const {
+  RememberedStress past;
+  if (lanes.empty() || lanes[point] == kNoLane || state.memory.empty()) return past;
+  for (int c = 0; c < 6; ++c) {
+    const auto [i, j] = kSymmetricPlaces[c];
+    past.fading(i, j) = past.fading(j, i) = state.memory[MemoryLayout::place(lanes[point], 6, c)];
+    past.left(i, j) = past.left(j, i) = branch_sum(lanes[point], c, state);
+  }
+  return past;
 }
 
 void ModelBody::find_memories(const PointSet& set) {

@@ -18,6 +18,18 @@ struct PointMaterialSpec : LawConstants {
   Law law = Law::st_venant_kirchhoff;              ///< of solids
 };
 
+/// What an integration point remembers of stresses (core/physics/viscosity.hpp), for the stress at a place near it.
+struct RememberedStress {
+  Mat3d fading{};  ///< S_e there at the end of the last step [Pa]
+  Mat3d left{};    ///< the sum of its branches [Pa]
+
+  /// The stress left at a place where S_e is another: the same share of the difference is left.
+  Mat3d at(const Mat3d& S_e) const {
+    const double size = contract(fading, fading);
+    return size > 0 ? left + (S_e - fading) * (contract(left, fading) / size) : left;
+  }
+};
+
 /// Where a material point is attached: the nodes that move it.
 struct Attachment {
   std::vector<int> nodes;  ///< of the model, ascending
@@ -159,8 +171,10 @@ class ModelBody {
   ModelBody& operator=(const ModelBody&) = default;
   ModelBody& operator=(ModelBody&&) = default;
 
-  /// The stress left in the branches of a point adds to that of the law with lasting_constants().
-  Mat3d remembered(std::size_t point, const State& state) const { return remembered_at(memory_lane_, point, state); }
+  /// The stress that is left adds to that of the law with lasting_constants().
+  RememberedStress remembered(std::size_t point, const State& state) const {
+    return remembered_at(memory_lane_, point, state);
+  }
   /// A triangle of a shell remembers strains: these are left in its branches, of its membrane (0 to 5)
   /// and bending (6 to 11).
   double remembered_strain(std::size_t triangle, int row, const State& state) const {
@@ -170,7 +184,7 @@ class ModelBody {
                  : 0;
   }
   /// This one is of its volumetric strain, where that is taken elsewhere (selective integration).
-  Mat3d remembered_volumetric(std::size_t point, const State& state) const {
+  RememberedStress remembered_volumetric(std::size_t point, const State& state) const {
     return remembered_at(volumetric_lane_, point, state);
   }
 
@@ -189,7 +203,7 @@ class ModelBody {
  private:
   static constexpr std::size_t kNoLane = static_cast<std::size_t>(-1);
   double branch_sum(std::size_t lane, int row, const State& state) const;
-  Mat3d remembered_at(const std::vector<std::size_t>& lanes, std::size_t point, const State& state) const;
+  RememberedStress remembered_at(const std::vector<std::size_t>& lanes, std::size_t point, const State& state) const;
   void find_lanes_of_points(const PointSet& set);
   void find_lanes_of_elements(const PointSet& set);
   /// By points: their lanes, and those of their volumetric strain; empty where nothing fades.
@@ -197,8 +211,9 @@ class ModelBody {
   std::size_t memory_stride_ = 0;  ///< numbers of a branch in a state
 };
 
-/// The constants with which a law gives the stress that never fades.
+/// The constants with which a law gives the stress that never fades, and S_e, of which shares do.
 LawConstants lasting_constants(LawConstants constants);
+LawConstants relaxing_constants(LawConstants constants);
 /// Poisson's ratio at once or in the long term, whichever is larger: elements and points lock by it.
 double largest_poisson(const LawConstants& constants);
 

@@ -53,7 +53,7 @@ class ExplicitSystem {
   const Pose& pose() const { return pose_; }
   Pose& pose() { return pose_; }
   /// At the present step, without viscous stress.
-  InternalEnergy energy();
+  InternalEnergy energy() { return energy(true); }
   /// Accelerations of each constraint's node, at the last report_velocities().
   const Array<Space, PoseMotion>& held_accelerations() const { return held_acceleration_; }
 
@@ -95,6 +95,9 @@ class ExplicitSystem {
   void store_start_strain();
   void place_tethers();
   const double* give_memory(Array<Space, double>& memory);
+  /// Since the forces before: none at the start.
+  Fading fading_to_here() const { return plan_.taken() == 0 ? Fading{} : Fading::over(last_step_); }
+  InternalEnergy energy(bool faded);
   void keep_memory(Array<Space, double>& memory);
   void queue_factors();
   void update_forces(const Array<Space, double>& factors);

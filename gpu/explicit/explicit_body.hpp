@@ -36,8 +36,7 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, co
     pose_.turned.resize(3 * model.constraints.size());
     pose_.turned.set_zero();
   }
-  pose_.begin_memory(memory_.size());
-  before_.copy_from(pose_.memory);
+  const bool rested = pose_.begin_memory(memory_.size());
   fading_.resize(memory_.stress_size());
   memory_.prepare({});
   half_v_.resize(n);
@@ -60,6 +59,8 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, co
     dependents_.place(pose_.u.data(), pose_.D.data());
     dependents_.place_rates(pose_.v.data(), pose_.Q_dot.data());
   }
+  if (rested) keep_memory(pose_.memory);
+  before_.copy_from(pose_.memory);
   start_velocities();
   if (plan.automatic() && filter_.free_count() > 0) mode_ = std::make_unique<ExplicitMode<ExplicitSystem>>(*this);
 }
@@ -143,7 +144,7 @@ void ExplicitSystem<Space>::start_velocities() {
   next_.upload(factor_function_(plan_.time()));
   if (model_.points.damped) store_start_strain();
   place_tethers();
-  const double internal = energy().total();
+  const double internal = energy(false).total();
   update_forces(next_);
   for_nodes([&]<bool Frames>() {
     Space::template sum<1>(model_.node_count(), loops::StartVelocity<View, Frames>{view(next_)},
@@ -240,7 +241,7 @@ void ExplicitSystem<Space>::advance() {
   const LeapTimes times = LeapTimes::between(last_step_, plan_.step());
   if (times.kick != times_.kick || times.drift != times_.drift) ++record_;
   times_ = times;
-  memory_.prepare(plan_.taken() == 0 ? Fading{} : Fading::over(last_step_));
+  memory_.prepare(fading_to_here());
   loop_.run(record_, 1, 1, &progress_.data()->unsound, [this] { step(); });
   last_step_ = times_.drift;
   plan_.take();
@@ -317,7 +318,7 @@ void ExplicitSystem<Space>::step() {
 template <class Space>
 void ExplicitSystem<Space>::report_velocities() {
   queue_factors();
-  memory_.prepare(Fading::over(last_step_));
+  memory_.prepare(fading_to_here());
   update_forces(next_);
   pose_.memory.copy_from(before_);
   keep_memory(pose_.memory);
@@ -332,10 +333,12 @@ void ExplicitSystem<Space>::report_velocities() {
                          loops::StoreSums<1, 0>{&progress_.data()->motion});
 }
 
+/// @param faded  of what never fades, where points remember stresses; else as if nothing had faded
 template <class Space>
-InternalEnergy ExplicitSystem<Space>::energy() {
+InternalEnergy ExplicitSystem<Space>::energy(bool faded) {
   memory_.prepare({});
-  blocks_.forces(data_.view().nodes, pose_view(), {.given = give_memory(pose_.memory)}, still_.data());
+  const HistoryView history{.given = faded ? give_memory(pose_.memory) : nullptr};
+  blocks_.forces(data_.view().nodes, pose_view(), history, still_.data());
   blocks_.sum_quantities(energies_.data());
   const std::vector<double> q = energies_.downloaded();
   InternalEnergy sum;

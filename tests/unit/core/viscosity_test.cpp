@@ -3,6 +3,7 @@
 #include "tests/support/fading.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/shell_models.hpp"
+#include "tests/support/statics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -245,6 +246,42 @@ TEST(Viscosity, StaticsWaitOrDoNot) {
   const double soft = sag(5e3, nullptr), stiff = sag(1e4, nullptr);
   EXPECT_NEAR(sag(1e4, two_branches()), soft, 1e-8 * soft);
   EXPECT_NEAR(sag(1e4, std::make_shared<const Viscosity>(at_once)), stiff, 1e-8 * stiff);
+}
+
+/// Where nothing has faded yet, stresses are those of the law everywhere, between the points and at the faces too.
+TEST(Viscosity, StressesBetweenPointsAreThoseOfTheLaw) {
+  const auto bent = [](std::shared_ptr<const Viscosity> viscosity) {
+    BlockOptions o;
+    o.viscosity = std::move(viscosity);
+    BuiltModel built = build_cloud(thin_spec({7, 3}, o));
+    hold_face(built.model);
+    add_gravity(built.model, {{0, 0, -0.02}});
+    return built;
+  };
+  Viscosity at_once = *two_branches();
+  at_once.instantaneous_statics = true;
+  std::vector<Mat3d> found[2];
+  for (const bool fades : {false, true}) {
+    const BuiltModel built = bent(fades ? std::make_shared<const Viscosity>(at_once) : nullptr);
+    const State end = solved(built.model, {}).end;
+    CloudBody body = built.clouds[0];
+    body.group_count = built.model.points.group_count();
+    body.find_memories(built.model.points);
+    for (const double z : {-0.01, -0.003, 0.0, 0.01}) {
+      const Vec3d X{{0.21, 0.4, z}};
+      std::size_t nearest = 0;
+      for (std::size_t q = 0; q < body.points().size(); ++q)
+        if (norm(body.points()[q].X - X) < norm(body.points()[nearest].X - X)) nearest = q;
+      found[fades ? 1 : 0].push_back(body.tensors_at(body.attach(X), nearest, end).stress);
+    }
+  }
+  double largest = 0, apart = 0;
+  for (std::size_t k = 0; k < found[0].size(); ++k) {
+    largest = std::max(largest, norm(found[0][k]));
+    apart = std::max(apart, norm(found[0][k] - found[1][k]));
+  }
+  EXPECT_GT(largest, 1);
+  EXPECT_LT(apart, 1e-6 * largest);
 }
 
 /// Explicit steps and implicit ones go to the same motion; reported stresses are those that act.

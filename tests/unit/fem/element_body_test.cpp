@@ -1,5 +1,6 @@
 #include "core/executor/executor.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "tests/support/fading.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
 #include <gtest/gtest.h>
@@ -187,6 +188,41 @@ TEST(ElementBody, ATensorFieldIsWhatTensorsAreAtEachPlace) {
       EXPECT_EQ(norm(field(place, q).stress - built.body->tensors_at(place, q, state).stress), 0);
     }
   }
+}
+
+/// Where nothing has faded yet, stresses are those of the law at any place of an element, whatever the formulation.
+TEST(FadingStresses, AreThoseOfTheLawWhileNothingHasFaded) {
+  for (const auto formulation :
+       {ElementFormulation::linear, ElementFormulation::corotational, ElementFormulation::large_strain})
+    for (const bool shear_only : {false, true}) {
+      std::vector<Mat3d> found[2];
+      for (const bool fades : {false, true}) {
+        ElementOptions o;
+        o.shape = ElementShape::hex20;
+        o.formulation = formulation;
+        Viscosity at_once = *two_branches(shear_only);
+        at_once.instantaneous_statics = true;
+        if (fades) o.viscosity = std::make_shared<const Viscosity>(at_once);
+        ElementModel built = element_model(o);
+        built.body->find_memories(built.model.points);
+        ThreadPool pool(1);
+        MechanicalSystem system(built.model, pool, {});
+        State end = random_state(built.model, 0.02, 0);
+        end.memory.resize(built.model.points.memory.size());
+        if (fades) {
+          StressMemory<PoolSpace> memory(built.model.points.memory);
+          std::vector<double> relaxing(memory.relaxing(), memory.relaxing() + memory.given_size());
+          AlignedVector<double> given(relaxing.begin(), relaxing.end()), S(memory.stress_size());
+          system.executor().store_stress(end, given, S);
+          memory.prepare(Fading::over(0));
+          memory.keep(end.memory.data(), S.data());
+        }
+        for (const Vec3d& X : {Vec3d{{0.1, 0.7, 0.1}}, Vec3d{{0.8, 0.3, 0.4}}, Vec3d{{0.5, 0.4, 0.25}}})
+          found[fades ? 1 : 0].push_back(built.body->tensors_at(built.body->attach(X), 0, end).stress);
+      }
+      for (std::size_t k = 0; k < found[0].size(); ++k)
+        EXPECT_LT(norm(found[0][k] - found[1][k]), 1e-10 * norm(found[0][k])) << static_cast<int>(formulation);
+    }
 }
 
 /// A tangent that nothing changes stands for that of any state; a frame that turns changes it.
