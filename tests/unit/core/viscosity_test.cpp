@@ -330,6 +330,11 @@ TEST(Viscosity, ReportedStressesMakeTheForces) {
   std::uniform_real_distribution<double> uniform(-100, 100);
   state.memory.resize(built.model.points.memory.size());
   for (double& S : state.memory) S = uniform(random);
+  const StressMemory<PoolSpace> memory(built.model.points.memory);
+  AlignedVector<double> given(memory.given_size()), S_e(memory.stress_size());
+  std::copy_n(memory.relaxing(), given.size(), given.data());
+  system.executor().store_stress(state, given, S_e);
+  std::copy(S_e.begin(), S_e.end(), state.memory.begin());
   system.look_at(state, 0.01);
   GridBody body = built.bodies[0];
   body.group_count = built.model.points.group_count();
