@@ -20,7 +20,7 @@ inline app::Simulation small_scene(const std::string& scene, const std::vector<s
   static const std::map<std::string, std::vector<std::string>> smaller{
       {"affine_cantilever", {"bodies.beam.frames.grid=[11,3,3]"}},
       {"bone_plate", {"bodies.bone.domain.cylinder.cells=[8,12]", "bodies.cushion.frames.poisson_disk=0.01"}},
-      {"relaxing_ligament", {"solver.duration=2"}},
+      {"relaxing_ligament", {"bodies.ligament.domain.box.cells=[4,2,1]", "solver.duration=0.3"}},
       {"riding_surface", {"bodies.skin.domain.ellipsoid.cells=[40]", "bodies.organ.frames.poisson_disk=0.03"}},
       {"roll_up", {"bodies.line.frames.grid=[21]"}},
       {"soft_cantilever_tetrahedra", {"bodies.beam.domain.box.cells=[8,2,2]"}},
