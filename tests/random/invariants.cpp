@@ -166,11 +166,18 @@ std::optional<std::string> falling_energy(const RandomScene& scene, const Outcom
   for (const auto& [name, body] : scene.tree["bodies"].items())
     if (body.contains("fluid") && (body["fluid"].contains("over") || body["fluid"].contains("profile")))
       return std::nullopt;  // what pumps it works
-  const auto fades = [](const Json& material) { return material.contains("viscosity"); };
-  for (const char* where : {"bodies", "materials"})
-    for (const auto& [name, entry] : scene.tree.value(where, Json::object()).items())
+  const auto fades = [](const Json& material) {
+    const auto has = [](const Json& part) {
+      return part.contains("viscosity") || part.value("use", Json()).contains("viscosity");
+    };
+    return material.is_array() ? std::any_of(material.begin(), material.end(), has) : has(material);
+  };
+  for (const char* where : {"bodies", "materials"}) {
+    const Json table = scene.tree.value(where, Json::object());
+    for (const auto& [name, entry] : table.items())
       if (fades(entry) || (entry.contains("material") && fades(entry["material"])))
         return std::nullopt;  // what branches hold is not told
+  }
   const std::vector<std::vector<double>>& rows = run.probes.at("total_energy").rows;
   const double most = run.largest("J");
   for (std::size_t k = 1; k < rows.size(); ++k)
