@@ -120,6 +120,14 @@ double largest_poisson(const LawConstants& constants) {
   return std::max(constants.poisson(), lasting_constants(constants).poisson());
 }
 
+Mat3d RememberedStress::at(const Mat3d& S_e) const {
+  const Mat3d difference = S_e - fading;
+  const double size = norm(fading), apart = norm(difference);
+  if (!(size > 0) || !(apart > 0)) return left;
+  const double most = (norm(left) + share * apart) / apart;
+  return left + difference * std::clamp(contract(left, fading * (1 / size)) / size, -most, most);
+}
+
 double ModelBody::branch_sum(std::size_t lane, int row, const State& state) const {
   double sum = 0;
   for (std::size_t first = memory_stride_; first < state.memory.size(); first += memory_stride_)
@@ -130,6 +138,7 @@ double ModelBody::branch_sum(std::size_t lane, int row, const State& state) cons
 RememberedStress ModelBody::remembered_at(const std::vector<std::size_t>& lanes, std::size_t point,
                                           const State& state) const {
   RememberedStress past;
+  if (points_[point].viscosity) past.share = 1 - points_[point].viscosity->long_term();
   if (lanes.empty() || lanes[point] == kNoLane || state.memory.empty()) return past;
   for (int c = 0; c < 6; ++c) {
     const auto [i, j] = kSymmetricPlaces[c];

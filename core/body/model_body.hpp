@@ -18,16 +18,16 @@ struct PointMaterialSpec : LawConstants {
   Law law = Law::st_venant_kirchhoff;              ///< of solids
 };
 
-/// What an integration point remembers of stresses (core/physics/viscosity.hpp), for the stress at a place near it.
+/// An integration point remembers this of stresses (core/physics/viscosity.hpp), for the stress at a place near it.
 struct RememberedStress {
-  Mat3d fading{};  ///< S_e there at the end of the last step [Pa]
-  Mat3d left{};    ///< the sum of its branches [Pa]
+  Mat3d fading{};    ///< S_e there at the end of the last step [Pa]
+  Mat3d left{};      ///< the sum of its branches [Pa]
+  double share = 0;  ///< of S_e that they take at once [-]
 
-  /// The stress left at a place where S_e is another: the same share of the difference is left.
-  Mat3d at(const Mat3d& S_e) const {
-    const double size = contract(fading, fading);
-    return size > 0 ? left + (S_e - fading) * (contract(left, fading) / size) : left;
-  }
+  /// The stress left at a place where S_e is another: the same part of the difference is left. Where S_e passes through
+  /// zero at the point, that part says nothing: the correction is at most what is left there and what branches take of
+  /// the difference at once.
+  Mat3d at(const Mat3d& S_e) const;
 };
 
 /// Where a material point is attached: the nodes that move it.

@@ -175,14 +175,24 @@ Vec3d tether_force(const PointSet& set, std::span<const double> targets, const T
   return force * set.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
 }
 
+namespace {
+
+/// Motion of a group's batch, without blended rotations.
+PointMotion<Lanes> motion_of(const PointSet& set, const BlockState& state, int group, int b) {
+  const auto nodes = set.nodes(group);
+  PointMotion<Lanes> x;
+  for (std::size_t s = 0; s < nodes.size(); ++s)
+    add_slot<false>(set.shape_of_slot(set.slot_begin[at(group)] + static_cast<int>(s)), b,
+                    broadcast(state.u[at(nodes[s])]), broadcast(turn_of(state, nodes[s])), x);
+  return x;
+}
+
+}  // namespace
+
 template <PointKind Kind>
 void PointExecutor::stress_of_group(const BlockState& state, int group, std::span<double> S) const {
-  const auto nodes = set_.nodes(group);
   for (int b = 0; b < kBatches; ++b) {
-    PointMotion<Lanes> x;
-    for (std::size_t s = 0; s < nodes.size(); ++s)
-      add_slot<false>(set_.shape_of_slot(set_.slot_begin[at(group)] + static_cast<int>(s)), b,
-                      broadcast(state.u[at(nodes[s])]), broadcast(turn_of(state, nodes[s])), x);
+    const PointMotion<Lanes> x = motion_of(set_, state, group, b);
     const auto m = material<Kind>(set_, group, b, state, targets_);
     Mat3<Lanes> stress;
     if (!is_tether(m)) stress = tangent_stress<Stabilization::none>(x, m, {}).S + given_stress(state, group, b);
@@ -199,16 +209,9 @@ void PointExecutor::store_stress(const BlockState& state, std::span<double> S) {
 
 void PointExecutor::store_strain(const BlockState& state, std::span<double> E) {
   pool_.for_ranges(set_.group_count(), kGrain, [&](int begin, int end) {
-    for (int group = begin; group < end; ++group) {
-      const auto nodes = set_.nodes(group);
-      for (int b = 0; b < kBatches; ++b) {
-        PointMotion<Lanes> x;
-        for (std::size_t s = 0; s < nodes.size(); ++s)
-          add_slot<false>(set_.shape_of_slot(set_.slot_begin[at(group)] + static_cast<int>(s)), b,
-                          broadcast(state.u[at(nodes[s])]), broadcast(turn_of(state, nodes[s])), x);
-        store_symmetric(E.data() + at(group) * 6 * kGroupSize, 0, b, green_strain(x.H));
-      }
-    }
+    for (int group = begin; group < end; ++group)
+      for (int b = 0; b < kBatches; ++b)
+        store_symmetric(E.data() + at(group) * 6 * kGroupSize, 0, b, green_strain(motion_of(set_, state, group, b).H));
   });
 }
 

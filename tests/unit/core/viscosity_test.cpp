@@ -284,6 +284,27 @@ TEST(Viscosity, StressesBetweenPointsAreThoseOfTheLaw) {
   EXPECT_LT(apart, 1e-6 * largest);
 }
 
+/// Between points the same part is left, however far the stress has swung; where the law's stress passes through zero
+/// at the point, as in a swing, nothing grows beyond what is left there and what branches take at once.
+TEST(Viscosity, WhatIsLeftNearAPointIsBounded) {
+  Mat3d fading, left, other;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      fading(i, j) = 1 + i * j;
+      other(i, j) = i == j ? 40 : -3;
+    }
+  left = fading * 0.2;
+  EXPECT_LT(norm(RememberedStress{fading, left, 0.4}.at(fading * -1.7) - left * -1.7), 1e-12 * norm(left));
+  EXPECT_EQ(norm(RememberedStress{fading, left, 0.4}.at(fading) - left), 0);
+  EXPECT_EQ(norm(RememberedStress{{}, left, 0.4}.at(other) - left), 0);
+  for (const double swing : {1e-3, 1e-9, 1e-100}) {
+    const RememberedStress past{fading * swing, left, 0.4};
+    EXPECT_LE(norm(past.at(other) - left), (1 + 1e-12) * (norm(left) + 0.4 * norm(other - past.fading))) << swing;
+    // What swings alike is told without error at any moment.
+    EXPECT_LT(norm(past.at(past.fading * 1.7) - left * 1.7), 1e-12 * norm(left)) << swing;
+  }
+}
+
 /// Explicit steps and implicit ones go to the same motion; reported stresses are those that act.
 TEST(Viscosity, ExplicitStepsAndReportedStressesAgree) {
   const BuiltModel built = creeping(true);
