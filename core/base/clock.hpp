@@ -5,7 +5,7 @@
 
 namespace fascia {
 
-/// What times are measured with.
+/// The clock that times are measured with.
 using Clock = std::chrono::steady_clock;
 
 inline double seconds_since(Clock::time_point start) {

@@ -11,7 +11,7 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What of a body's description is to blame.
+/// Part of a body's description that is to blame.
 enum class Blame { domain, frames, points, weights };
 
 /// Input whose content is wrong: the message names the place and a remedy. Exit status 2.

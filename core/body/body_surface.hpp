@@ -16,7 +16,7 @@ std::vector<std::array<int, 2>> free_edges(const std::vector<BodyFace>& faces);
 /// The faces in parts that hang together across edges.
 std::vector<std::vector<BodyFace>> connected_faces(const std::vector<BodyFace>& faces);
 
-/// The same faces, each seen from its other side.
+/// The faces, each seen from its other side.
 std::vector<BodyFace> turned_over(const std::vector<BodyFace>& faces);
 
 /// Faces of a body as a surface that its nodes move, without pressure; measured at rest. Triangles whose corners are

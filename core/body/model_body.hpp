@@ -125,7 +125,7 @@ class ModelBody {
   /// Weight of each node over its mass, where a static load of gravity is not shared as the mass is; else empty [kg].
   const std::vector<double>& weights() const { return weights_; }
 
-  /// What a scene calls it: "meshless", "tetrahedra", "hexahedra", "shell".
+  /// Name of the kind of body in a scene: "meshless", "tetrahedra", "hexahedra", "shell".
   virtual std::string model_name() const { return "meshless"; }
   /// λ is integrated at one point a cell.
   virtual bool selective() const { return false; }
@@ -133,9 +133,9 @@ class ModelBody {
   virtual bool interpolates() const { return true; }
   /// The nodes that move the material at a rest position.
   virtual Attachment attach(const Vec3d& X) const = 0;
-  /// The same for an integration point, exactly as the mechanics see it.
+  /// The nodes that move an integration point, exactly as the mechanics see it.
   virtual Attachment attach_point(std::size_t point) const = 0;
-  /// The same at the point whose volumetric strain stands for X's cell (selective integration).
+  /// The nodes that move the point whose volumetric strain stands for the cell of a place (selective integration).
   virtual Attachment attach_volumetric(const Attachment& at) const { return at; }
   /// The nodes that move a point of the surface.
   virtual Attachment attach_surface(std::size_t point) const { return attach(surface_.points[point]); }
@@ -148,12 +148,12 @@ class ModelBody {
   virtual std::vector<PointTensors> tensors(const State& state) const;
   /// At any place. @param nearest  index of the integration point whose material counts there
   virtual PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const;
-  /// The same at many places of one state: what they share is computed once, when this is called. Body and state must
+  /// Tensors at many places of one state: what these share is computed once, when this is called. Body and state must
   /// outlive what it returns.
   virtual TensorField tensor_field(const State& state) const;
   /// Green-Lagrange strain at any place.
   virtual Mat3d strain_at(const Attachment& place, const State& state) const;
-  /// What only this kind of body shows in results.
+  /// Fields of results that only this kind of body has.
   virtual std::vector<BodyField> own_fields(const State& /*state*/) const { return {}; }
   /// Nodes on the outside: 1 (one entry a node of the body, then one for each of shared_nodes(), always 1).
   virtual std::vector<char> nodes_on_boundary() const = 0;

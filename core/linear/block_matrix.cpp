@@ -21,7 +21,6 @@ struct ElementsAround {
 
   template <class Block>
   ElementsAround(const Block& block, int model_nodes) : nodes(block.nodes), averaged(block.averaged) {
-    element.reserve(at(block.count) * at(nodes));
     block.for_each_cell([&](std::span<const int> e, double) { element.insert(element.end(), e.begin(), e.end()); });
     begin.assign(at(model_nodes) + 1, 0);
     for (const int node : element) ++begin[at(node) + 1];

@@ -58,9 +58,8 @@ class BlockMatrix {
   std::vector<std::size_t> value_begin_;  ///< of each block, and of all
   AlignedVector<double> values_;
 
-  /// Of products with the upper triangle: rows are taken in a few chunks, whose sums for rows behind them wait in a
-  /// buffer, so that the order of additions does not depend on threads. Vectors have four or eight numbers a node
-  /// there.
+  /// Products with the upper triangle take rows in a few chunks, whose sums for rows behind them wait in a buffer, so
+  /// that the order of additions does not depend on threads. Vectors have four or eight numbers a node there.
   std::vector<int> chunk_begin_;             ///< (chunks + 1) rows
   std::vector<std::size_t> overhang_begin_;  ///< (chunks + 1): what a chunk has for rows from its end on
   std::vector<int> overhang_row_;            ///< these rows, ascending in each chunk

@@ -9,7 +9,7 @@
 
 namespace fascia {
 
-/// What pivots a factorisation accepts: L Lᵀ needs positive ones; L D Lᵀ, without pivoting, takes any but zero.
+/// Pivots that a factorisation accepts: L Lᵀ needs positive ones; L D Lᵀ, without pivoting, takes any but zero.
 enum class Pivots { positive, any };
 
 /// Cholesky factorisation of a block matrix restricted to its free degrees of freedom. The pattern is analysed once;
@@ -31,7 +31,7 @@ class BlockCholesky {
   /// @param shift  added to the diagonal, relative to the diagonal of `shift_from`: K + shift · diag
   bool factorize(const BlockMatrix& matrix, double shift = 0, const BlockMatrix* shift_from = nullptr);
 
-  /// Of the last factorisation: by Sylvester's law the number of the matrix's negative eigenvalues.
+  /// Number of negative pivots of the last factorisation: by Sylvester's law that of the matrix's negative eigenvalues.
   int negative_pivots() const;
 
   /// Solves in constraint axes; prescribed entries of `x` are set to zero.

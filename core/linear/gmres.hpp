@@ -16,7 +16,7 @@ struct GmresOptions {
   double tolerance = 1e-10;  ///< on |r| / |b|
 };
 
-/// Of conjugate gradients with the symmetric part, as a preconditioner of the whole.
+/// Tolerance of conjugate gradients with the symmetric part, as a preconditioner of the whole.
 inline constexpr double kInnerTolerance = 1e-3;
 /// A solve that leaves more is worse than one with the symmetric part alone.
 inline constexpr double kUsefulResidual = 1e-3;
@@ -129,7 +129,7 @@ GmresReport flexible_gmres(const CpuVectors& space, const Apply& apply, const Pr
   return report;
 }
 
-/// The same with degrees of freedom of several units: norms are those of forces, and of torques over lengths.
+/// flexible_gmres() with degrees of freedom of several units: norms are those of forces, and of torques over lengths.
 /// @param length  what a unit of each degree of freedom moves [m]; 0 where it is fixed
 template <class Apply, class Precondition>
 GmresReport gmres_by_length(const CpuVectors& space, std::span<const double> length, const Apply& apply,

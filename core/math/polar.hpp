@@ -28,9 +28,9 @@ FASCIA_HD Mat3<T> polar_by_newton(const Mat3<T>& H) {
   return D - (C + D * C) * T(0.5);
 }
 
-/// The same of any I + H: F V = U Σ by one-sided Jacobi rotations of columns, R = U Vᵀ. V is proper, and so U is made:
-/// where F is turned inside out that turns the direction of its smallest singular value. Of those that a singular F
-/// leaves open, it is a rotation that turns little.
+/// The rotation in F = I + H of any determinant, minus I: F V = U Σ by one-sided Jacobi rotations of columns, R = U Vᵀ.
+/// V is proper, and so U is made: where F is turned inside out that turns the direction of its smallest singular value.
+/// Among those that a singular F leaves open, it is a rotation that turns little.
 FASCIA_HD inline Mat3d polar_by_jacobi(const Mat3d& H) {
   const Mat3d I = Mat3d::identity();
   Mat3d F = I + H;
@@ -88,7 +88,7 @@ FASCIA_HD inline Mat3d nearest_rotation_increment(const Mat3d& H) {
   return determinant(Mat3d::identity() + H) > kNearlyFlat ? polar_by_newton(H) : polar_by_jacobi(H);
 }
 
-/// The same for a batch, lanes that are nearly flat or turned inside out one by one.
+/// R − I of the rotations R nearest to a batch of I + H; lanes that are nearly flat or turned inside out go one by one.
 template <int W>
 Mat3<Batch<W>> nearest_rotation_increment(const Mat3<Batch<W>>& H) {
   using T = Batch<W>;

@@ -19,7 +19,7 @@ class CorotationalElement {
   /// @param H_mean  mean displacement gradient, volume the element's [m³]
   FASCIA_HD CorotationalElement(const Mat3<T>& H_mean, const T& volume, bool full)
       : CorotationalElement(H_mean, nearest_rotation_increment(H_mean), volume, full) {}
-  /// The same where R − I of the mean is known.
+  /// Makes the element where R − I of the mean is known. @param D  R − I
   FASCIA_HD CorotationalElement(const Mat3<T>& H_mean, const Mat3<T>& D, const T& volume, bool full)
       : full_(full), volume_(volume), D_(D) {
     R_ = Mat3<T>::identity() + D_;

@@ -24,7 +24,8 @@ struct SolidMaterial : PointMaterial<T>, OwnConstants<SolidLaw<L, T>::kOwn, T> {
   FASCIA_HD SolidLaw<L, T> law() const { return make_law<SolidLaw<L, T>>(*this); }
 };
 
-/// Of a sheet, a line or a tether. A type of its own, so that solids do not ask at every point which law they have.
+/// Material of a sheet, a line or a tether. It has a type of its own, so that solids do not ask at every point which
+/// law they have.
 template <class T>
 struct ThinMaterial : PointMaterial<T> {
   Law law = Law::sheet;

@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-/// What happens at one integration point: elastic stress, viscous stress and stabilisation. Drilling ties the blended
+/// Physics of one integration point: elastic stress, viscous stress and stabilisation. Drilling ties the blended
 /// rotation Qbar = Σ w Q to the rotation in F; with affine frames the blended A is tied to all of F. Everything that a
 /// frame feels follows from P and Y:
 ///

@@ -4,8 +4,8 @@
 
 namespace fascia {
 
-/// What keeps frames from moving where strain does not see them: nothing; Qbar tied to the rotation in F; affine
-/// frames: the blended A tied to F.
+/// Stabilisation that keeps frames from moving where strain does not see them: nothing; Qbar tied to the rotation in F;
+/// affine frames: the blended A tied to F.
 enum class Stabilization : unsigned char { none, drilling, affine };
 
 /// How a group's points are computed.
@@ -21,7 +21,7 @@ struct PointKind {
   Law law = Law::st_venant_kirchhoff;
 };
 
-/// The same in a point set.
+/// Rule of a group in a point set.
 struct GroupRule {
   PointRule rule;
   int axes = -1;  ///< index of the group among those that have axes, −1: none

@@ -5,7 +5,7 @@ namespace fascia {
 /// Entries of a symmetric 6 × 6 matrix on and below the diagonal, by rows.
 inline constexpr int kPacked6 = 21;
 
-/// What a shell's triangle is at rest (core/physics/shell_triangle.hpp).
+/// Constants of a shell's triangle at rest (core/physics/shell_triangle.hpp).
 template <class T>
 struct ShellConstants {
   T g[3][2]{};             ///< gradients of the linear functions at rest [1/m]

@@ -152,7 +152,7 @@ class ShellTriangle {
   struct Moments {
     Vec3<T> m[3], sum;
   };
-  /// Of the element axes and the stretch, for a motion of the nodes.
+  /// Variation of the element axes and the stretch, for a motion of the nodes.
   struct Variation {
     Vec3<T> p[2];  ///< Tᵀ δF
     Vec3<T> spin;
@@ -255,7 +255,8 @@ class ShellTriangle {
     return e;
   }
 
-  /// What is conjugate to Tᵀ δF: U S, and what moments against the element's own rotation ask of it.
+  /// Forces and moments on the nodes, from y conjugate to Tᵀ δF: U S, and what moments against the element's own
+  /// rotation ask of it.
   FASCIA_HD ShellNodes<T> at_nodes(const ShellStrain<T>& s, const Moments& m) const {
     const T* S = s.membrane;
     const Vec3<T>& M = m.sum;

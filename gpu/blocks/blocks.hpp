@@ -12,7 +12,7 @@
 
 namespace fascia::gpu {
 
-/// What a node gathers from all blocks, of a scalar T.
+/// Views of all blocks from which a node gathers, of a scalar T.
 template <class T>
 struct BlocksOf {
   PointsOf<T> points;
@@ -21,7 +21,7 @@ struct BlocksOf {
   SpringsView springs;
   bool has_points = false, has_elements = false, has_shells = false, has_springs = false;
 
-  /// Of all but springs, whose tangent is in the nodes' own blocks.
+  /// Adds what the last pass gave a node: of all but springs, whose tangent is in the nodes' own blocks.
   FASCIA_HD void add_sums(int node, NodeSums& sums) const {
     if (has_points) points.add_sums(node, sums);
     if (has_elements) elements.add_sums(node, sums);

@@ -70,9 +70,10 @@ class Dependents {
 
   /// Puts dependent nodes where their hosts take them. @param D  null where no node turns, here and below
   void place(Vec3d* u, Mat3d* D);
-  /// The same of velocities and dQ/dt.
+  /// Gives dependent nodes the velocities and dQ/dt that follow from those of their hosts.
   void place_rates(Vec3d* v, Mat3d* Q_dot) { place(v, Q_dot); }
-  /// Of motions since the start of a step: u = u₀ + du, and Q = (I + Ds) Q₀ or A = A₀ + Ds.
+  /// Gives dependent nodes the motions since the start of a step that follow from those of their hosts: u = u₀ + du,
+  /// and Q = (I + Ds) Q₀ or A = A₀ + Ds.
   /// @param start_D  D at the start
   void place_increments(Vec3d* du, Mat3d* Ds, const Mat3d* start_D);
 
@@ -85,12 +86,13 @@ class Dependents {
   void expand(const NodesView& nodes, double* d, Vec3d* dx, Mat3d* dA, const Mat3d* Q);
   /// Moves forces on dependent nodes to their hosts. @param forces  as DependentNodes::transfer() keeps them; or null
   void transfer(const NodesView& nodes, double* g, double* forces);
-  /// As DependentNodes::add_turning().
+  /// Adds to the nodes' own blocks what forces on dependent nodes ask of turning hosts, as
+  /// DependentNodes::add_turning().
   void add_turning(const NodesView& nodes, const double* forces, double* node_blocks);
 
   /// Moves the own blocks of dependent nodes to their hosts, each as Jᵀ K_vv J, and leaves the identity in their place.
-  /// What a dependent node has with other nodes is left out: the blocks stay positive definite, but are not those of
-  /// the condensed matrix.
+  /// Couplings of a dependent node with other nodes are left out: the blocks stay positive definite, but are not those
+  /// of the condensed matrix.
   void add_diagonal(const NodesView& nodes, double* blocks);
 
  private:

@@ -96,7 +96,7 @@ class Points {
     PointKind kind;
     Array<Space, int> groups;
   };
-  /// What has a scalar. Of 32 bits, it is there for products beside that for forces.
+  /// Arrays that have a scalar T. Of 32 bits, they are there for products beside those for forces.
   template <class T>
   struct Rows {
     Array<Space, T> shape, material, axes, own, stress, slot_sums, motion;

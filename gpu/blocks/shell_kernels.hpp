@@ -201,8 +201,8 @@ FASCIA_HD void multiply_row(const T* rows, const T* x, T* y) {
   y[R] += rows[stiffness_row(R, R) * kLanes] * x[R];
 }
 
-/// Of 32 bits, what a translation costs is left out on both sides: displacements count from the first corner's, whose
-/// force balances the others'.
+/// Product of each triangle's tangent with a direction. Of 32 bits, what a translation costs is left out on both sides:
+/// displacements count from the first corner's, whose force balances the others'.
 template <class T, class V>
 struct ShellProduct {
   static constexpr bool kExact = std::is_same_v<T, double>;

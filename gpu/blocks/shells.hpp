@@ -29,7 +29,7 @@ struct ShellBlockOf {
 
 using ShellBlockView = ShellBlockOf<double>;
 
-/// What all triangles gave the nodes of a model.
+/// Forces and torques that all triangles gave the nodes of a model.
 template <class T>
 struct ShellsOf {
   const int *node_begin = nullptr, *node_corner = nullptr;  ///< place of each corner's force, ascending
@@ -103,7 +103,7 @@ class Shells {
         return narrow;
     }
   };
-  /// What passes leave. Of 32 bits, it is there for products beside that for forces.
+  /// Arrays that passes leave. Of 32 bits, they are there for products beside those for forces.
   template <class T>
   struct Rows {
     Array<Space, T> corners, stiffness;

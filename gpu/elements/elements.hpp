@@ -44,7 +44,7 @@ struct ElementBlockOf {
 
 using ElementBlockView = ElementBlockOf<double>;
 
-/// What all elements gave the nodes of a model.
+/// Forces that all elements gave the nodes of a model.
 template <class T>
 struct ElementsOf {
   const int *node_begin = nullptr, *node_corner = nullptr;  ///< place of each corner's force, ascending
@@ -104,7 +104,7 @@ class Elements {
   void store_stress(const PoseView& pose, const double* given, double* out);
 
  private:
-  /// What of a block has a scalar. Of 32 bits, it is there for products beside that for forces.
+  /// Arrays of a block that have a scalar T. Of 32 bits, they are there for products beside those for forces.
   template <class T>
   struct Rows {
     Array<Space, T> gradient, volume, material, points_buffer, H, turn, pressure;

@@ -75,7 +75,7 @@ class ExplicitSystem {
  private:
   using View = kernels::ExplicitBlocksView;
 
-  /// What steps change.
+  /// Everything that steps change.
   struct Moving {
     Pose pose;
     Array<Space, Vec3d> half_v, half_spin;

@@ -192,7 +192,7 @@ void ExplicitSystem<Space>::update_forces(const Array<Space, double>& factors) {
                 {.E = E_.data(), .inverse_step = E_.empty() ? 0.0 : 1 / last_step_, .given = give_memory(before_)});
 }
 
-/// The same at the pose of a view.
+/// Forces of blocks and loads at the pose of a view.
 template <class Space>
 void ExplicitSystem<Space>::update_forces(const kernels::ExplicitBlocksView& s, const HistoryView& history) {
   const NodesView& nodes = data_.view().nodes;
@@ -293,7 +293,7 @@ void ExplicitSystem<Space>::restore(double limit) {
   queued_ = queued_from_ = 0;
 }
 
-/// What a step queues: the same in all of them.
+/// Queues a step: the same launches in all of them.
 template <class Space>
 void ExplicitSystem<Space>::step() {
   Progress* progress = progress_.data();

@@ -103,7 +103,7 @@ struct MoveTethers {
   FASCIA_HD Vec3d target(const Tether& t) const {
     return {{targets[entry(t, 0)], targets[entry(t, 1)], targets[entry(t, 2)]}};
   }
-  /// As CpuExecutor::tether_force().
+  /// Force with which a tether pulls, as PointExecutor::tether_force().
   FASCIA_HD Vec3d force(const Tether& t) const {
     const double* axes = points.axes + at(points.rule[t.group].axes) * 9 * kGroupSize + t.lane;
     const Vec3d apart = tether_stretch(points, pose, t, targets);

@@ -18,7 +18,7 @@ __global__ void __launch_bounds__(256) for_each(int count, Body body) {
   if (i < count) body(i);
 }
 
-/// Of a block's threads, in a fixed order; valid in thread 0.
+/// Sums over a block's threads, in a fixed order; valid in thread 0.
 template <int K, int M>
 __device__ void block_sum(Sums<K, M>& s) {
   __shared__ Sums<K, M> part[32];

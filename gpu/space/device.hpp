@@ -19,7 +19,7 @@ struct DeviceLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What several devices do not compute together; one may.
+/// The problem is one that several devices do not compute together; one may.
 struct NotShared : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -32,7 +32,7 @@ std::vector<int> find_devices(int count, std::string& reason);
 /// @param reason  why: a sentence
 inline bool find_device(std::string& reason) { return !find_devices(1, reason).empty(); }
 
-/// The same. @throws NoDevice  with the reason and a remedy
+/// Takes the first device that this build can use. @throws NoDevice  with the reason and a remedy
 void require_device();
 
 }  // namespace fascia::gpu

@@ -3,7 +3,7 @@
 #include "core/step/model_view.hpp"
 #include "core/structure/stress_memory.hpp"
 
-/// What kernels of blocks see: pointers into a space and values, copied into each kernel.
+/// Views of a model for kernels of blocks: pointers into a space and values, copied into each kernel.
 namespace fascia::gpu {
 
 /// A small motion of all nodes: by degrees of freedom, and as (dx, dA) of each node.
@@ -44,14 +44,14 @@ FASCIA_HD LawFactors<T> law_factors(const double* rows, GivenRow first, int lane
           static_cast<T>(rows[(first + 1) * MemoryLayout::kLanes + lane])};
 }
 
-/// What a node feels: a force, N conjugate to Q or A, and a torque beside it.
+/// Sums of what acts on a node: a force, N conjugate to Q or A, and a torque beside it.
 struct NodeSums {
   Vec3d force{}, torque{};
   Mat3d N{};
 };
 
-/// What a point, element or spring has at a state: energies [J], and squares of the rounding in its forces and of the
-/// pull of tethers [N²].
+/// Quantities of a point, element or spring at a state: energies [J], and squares of the rounding in its forces and of
+/// the pull of tethers [N²].
 enum Quantity { kElastic, kStabilizing, kViscous, kRounding, kTether, kQuantities };
 
 }  // namespace fascia::gpu

@@ -5,7 +5,7 @@
 
 #include <cuda_runtime.h>
 
-/// What threads do with the frames, points and lists of a tile. A frame's motion travels as twelve numbers c, A with
+/// Thread functions for a tile's frames, points and lists. A frame's motion travels as twelve numbers c, A with
 ///   t = c + A X,   H = Σ t gᵀ + w A,   blended rotation = Σ w A / blend,
 /// places relative to the tile's origin; forces return the same way: h = P g,  f = Σ h,  M = Σ h Xᵀ + w (P + Y /
 /// blend).
@@ -91,7 +91,7 @@ __device__ inline void write_record(const Vec3d& t, const Mat3d& dQ, const doubl
   store_words<kRecord>(record, r);
 }
 
-/// Of the direction v: dx (3), rotation vector (3).
+/// Writes c and A of a frame that moves along v: dx (3), rotation vector (3).
 __device__ inline void write_direction(const double* v, const double* pose, const TileHead& head, double* record) {
   Mat3d Q;
 #pragma unroll

@@ -12,8 +12,8 @@ struct SharedPlan {
   int bytes = 0;
 };
 
-/// What CG knows between kernels. Each kernel reads one copy and writes the other, so that all blocks of a launch see
-/// the same.
+/// State of CG between kernels. Each kernel reads one copy and writes the other, so that all blocks of a launch see the
+/// same.
 struct CgState {
   double rz = 0, rz_start = 0;
   double tolerance = 0;
@@ -25,7 +25,7 @@ struct CgState {
   double inverse_step = 0;
 };
 
-/// What r·z after an update means.
+/// The state of CG that follows from r·z after an update.
 __device__ inline CgState judged(CgState s, double rz) {
   if (s.done != 0) return s;
   const auto stop = [&](CgStatus status) {
@@ -319,7 +319,7 @@ static __global__ __launch_bounds__(kUpdateThreads) void start_kernel(VectorArgs
   if (threadIdx.x == 0) a.rz_parts[blockIdx.x] = part;
 }
 
-/// Whether CG goes on: sets the condition of a graph's loop. One block.
+/// Decides whether CG goes on: sets the condition of a graph's loop. One block.
 static __global__ void decide_kernel(const double* rz_parts, int count, const CgState* in,
                                      cudaGraphConditionalHandle loop) {
   __shared__ double scratch[33];

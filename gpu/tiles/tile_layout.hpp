@@ -24,7 +24,7 @@ struct TileFrame {
   int writer = 0;  ///< 1 in the one tile of a device that writes the frame's vectors
 };
 
-/// What all points of a tile share.
+/// Constants that all points of a tile share.
 struct TileHead {
   double origin[3]{};  ///< places are relative to it [m]
   double blend = 1;    ///< c of TilePoints

@@ -44,7 +44,7 @@ struct TilePoints {
   int most_influences() const;
 };
 
-/// What a point set gives, or in one sentence why tiles cannot compute it.
+/// Points of a point set, or in one sentence why tiles cannot compute it.
 struct TilePointsResult {
   TilePoints points;
   std::string refusal;  ///< empty: the points are complete

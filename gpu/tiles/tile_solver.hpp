@@ -50,13 +50,13 @@ class TileSolver {
   /// @param moments       (nodes × 9) N of each frame, conjugate to Q, by rows; or null. Its rotation-rotation tangent
   ///                      is sym(L) − tr(L) I, L = N Qᵀ
   virtual void forces(const double* u, const double* D, double inverse_step, double* gradient, double* moments) = 0;
-  /// The same with energies.
+  /// Gradient of the internal energy (overwritten) like forces(), with energies.
   virtual TileEnergy gradient(const double* u, const double* D, double inverse_step, double* gradient,
                               double* moments) = 0;
 
   /// Keeps the tangent of the points at a state.
   virtual void linearize(const double* u, const double* D, Tangent tangent, double inverse_step) = 0;
-  /// What acts on one frame alone, symmetric: (nodes × 36), kept; null: none.
+  /// Sets the tangent of what acts on one frame alone, symmetric: (nodes × 36), kept; null: none.
   virtual void set_node_blocks(const double* blocks) = 0;
   /// Degrees of freedom that stay zero: bit i of a node holds its i-th, in world axes. By node, on the host; empty:
   /// none.
@@ -69,7 +69,7 @@ class TileSolver {
   virtual void multiply(const double* x, double* y) = 0;
   /// CG as conjugate_gradients(), from x = 0.
   virtual CgReport solve(const double* b, double* x, const CgOptions& options) = 0;
-  /// The same without waiting for it.
+  /// Starts solve() without waiting for it; finish_solve() waits.
   virtual void start_solve(const double* b, double* x, const CgOptions& options) = 0;
   virtual CgReport finish_solve() = 0;
 

@@ -65,7 +65,7 @@ class Solver final : public TileSolver {
 
   /// Makes it one of several that compute a problem: `team[rank]`. Each has a stream of its own.
   void join(std::span<const std::unique_ptr<Solver>> team, int rank);
-  /// What must not happen while another device waits for this one.
+  /// Makes ahead what must not be made while another device waits for this one.
   void prepare_solve() { build_graph(); }
   void prepare_forces() { gradient_partials_.resize(at(layout_.slot_count()) * kGradient); }
   /// gradient() without waiting, and its energies.

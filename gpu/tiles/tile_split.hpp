@@ -16,9 +16,9 @@ struct TileExport {
   int remote_row = 0;
 };
 
-/// What one of several devices computes: tiles that stand side by side, with all frames that they touch. Vectors of
-/// frames of several shares are updated in each of them from the same sums in the same order, so that all copies agree
-/// bit for bit; only partial sums travel.
+/// Share of one of several devices: tiles that stand side by side, with all frames that they touch. Vectors of frames
+/// of several shares are updated in each of them from the same sums in the same order, so that all copies agree bit for
+/// bit; only partial sums travel.
 struct TileShare {
   /// Frames that the share owns stand before those that it shares without owning them. A frame's slots are those of
   /// all tiles in their order, with slot_tile −1 where another share has the tile.

@@ -168,7 +168,7 @@ static __global__ void pack_blocks_kernel(int frame_count, const int* frame_node
           0.5 * (B[kDofs * i + j] + B[kDofs * j + i]);
 }
 
-/// As positive_inverse(): by L D Lᵀ with pivots kept positive.
+/// The inverse of a symmetric block, as positive_inverse(): by L D Lᵀ with pivots kept positive.
 /// @param a  lower triangle is read
 /// @param write  write(i, j, value) for j ≥ i
 template <class Write>
@@ -309,7 +309,7 @@ __global__ __launch_bounds__(kJacobiLanes* kJacobiFrames) void jacobi_kernel(Pro
     args.blocks[static_cast<std::size_t>(kBlock) * place + i] = block[i / kDofs][i % kDofs];
 }
 
-/// The same of frames of several devices, from the parts of each.
+/// Inverse of the own block of each frame that several devices compute, packed, from the parts of each.
 /// @param block_begin  (count + 1) rows of a frame, by rank
 static __global__ __launch_bounds__(kUpdateThreads) void shared_jacobi_kernel(int count, const int* shared,
                                                                               const int* block_begin, int frames,

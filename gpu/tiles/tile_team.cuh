@@ -13,8 +13,8 @@ struct TeamView {
   int rank = 0, size = 1;
   unsigned* meetings = nullptr;  ///< own: how many there were
   unsigned* arrived = nullptr;   ///< own: blocks of a launch that are done, 0 before and after
-  /// Of each rank, what the others tell it: (2 × ranks × 2), even and odd meetings apart, as the next one may begin
-  /// before all have read.
+  /// Memory of each rank for what the others tell it: (2 × ranks × 2), even and odd meetings apart, as the next one may
+  /// begin before all have read.
   std::uint64_t* words[kMostShares]{};
 };
 
