@@ -9,7 +9,7 @@
 
 namespace fascia {
 
-/// What a block of elements does at a state, as CpuExecutor asks for it: forces on vertices, products with the tangent,
+/// Computes a block of elements at a state, as CpuExecutor asks for it: forces on vertices, products with the tangent,
 /// its entries. Patches are computed in parallel, each in a fixed order.
 class ElementExecutor {
  public:

@@ -79,7 +79,11 @@ void CpuExecutor::note_motion(const State& state, std::span<double> motion) {
   node_parts_.sum<0, 1>(loops::NodeMotion{nodes_of(set_), {state.u.data(), state.D.data()}}, motion.data());
 }
 
-void CpuExecutor::start_from(const State& state) { note_motion(state, start_motion_); }
+void CpuExecutor::start_from(const State& state) {
+  for (UserExecutor& block : std::get<Several<UserExecutor>>(blocks_))
+    if (block.follow()) ++pattern_;
+  note_motion(state, start_motion_);
+}
 
 NodeSum CpuExecutor::sum_at(int node) {
   NodeSum sum;

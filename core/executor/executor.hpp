@@ -64,14 +64,18 @@ class CpuExecutor {
   /// Where tethers pull to: (groups with axes × 3 × 8) [m]. Zero at first.
   std::span<double> targets() { return std::get<Several<PointExecutor>>(blocks_).front().targets(); }
 
-  /// Where a step starts: increments of its states carry the rounding of that motion.
+  /// Where a step starts: increments of its states carry the rounding of that motion. Follows user blocks whose cells
+  /// have changed.
+  /// @throws InputError  a cell that names a node that there is not; nothing is followed then
   void start_from(const State& state);
+  /// Changes where cells of user blocks have changed, so that the pattern of the matrix has.
+  long pattern() const { return pattern_; }
 
   /// Gradient of the internal energy by degrees of freedom: force, then torque or what is conjugate to A (overwritten).
   /// Along u ← u + dx, Q ← exp(dr) Q or A ← A + dA the energy changes by gradient · (dx, dr or dA).
   InternalEnergy gradient(const State& state, const StrainHistory& history, std::span<double> gradient);
 
-  /// The same without energies and without what linearize() needs.
+  /// Gradient of the internal energy like gradient(), without energies and without what linearize() needs.
   void forces(const State& state, const StrainHistory& history, std::span<double> gradient);
 
   /// Tangent at the state of the last call of gradient(), which must have been `state`.
@@ -83,6 +87,9 @@ class CpuExecutor {
 
   /// y = K x without a matrix.
   void multiply(const Linearization& at, std::span<const double> x, std::span<double> y);
+
+  /// The longest part of a step along a direction, up to 1, that user blocks allow. @param Q  I + D of each frame
+  double largest_step(const State& state, std::span<const double> direction, const std::vector<Mat3d>& Q);
 
   /// The largest rotation that a direction has in elements [rad]; frames show theirs.
   double largest_spin(std::span<const double> direction);
@@ -102,8 +109,8 @@ class CpuExecutor {
   /// Groups of points, with their tethers. Products and tangents with extrapolated stresses overwrite their sums.
   const PointExecutor& points() const { return of_kind<PointExecutor>().front(); }
 
-  /// What rounding alone leaves in the gradient of a connected part, as a norm with torques divided by the part's
-  /// length, at the last call of gradient() [N]. It grows with the part's motion there and at the start of the step.
+  /// Norm of what rounding alone leaves in the gradient of a connected part, with torques divided by the part's length,
+  /// at the last call of gradient() [N]. It grows with the part's motion there and at the start of the step.
   double rounding(int part) const { return part_rounding_[static_cast<std::size_t>(part)]; }
 
   /// The largest displacement of a part, or rotation at its length, that this rounding came from [m].
@@ -152,6 +159,7 @@ class CpuExecutor {
   PartSums<PoolSpace> node_parts_;
   Blocks blocks_;
   SpringExecutor springs_;
+  long pattern_ = 0;
   std::vector<std::size_t> strain_begin_;  ///< (blocks + 1): of each in StrainHistory::E
   bool see_motions_ = false, see_translations_ = false, see_state_again_ = false;  ///< some block does
   std::vector<double> part_motion_, start_motion_, part_rounding_;

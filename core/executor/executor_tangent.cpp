@@ -107,6 +107,16 @@ void CpuExecutor::linearize_blocks(const State& state, const StrainHistory& hist
   });
 }
 
+double CpuExecutor::largest_step(const State& state, std::span<const double> direction, const std::vector<Mat3d>& Q) {
+  std::vector<UserExecutor>& blocks = std::get<Several<UserExecutor>>(blocks_);
+  if (blocks.empty()) return 1;
+  const BlockDirection motion = direction_of(direction, Q);
+  double longest = 1;
+  for (UserExecutor& block : blocks)
+    longest = std::min(longest, block.largest_step(state_of(state, {}, 0), motion));
+  return longest;
+}
+
 double CpuExecutor::largest_spin(std::span<const double> direction) {
   const BlockDirection motion{direction, translations_of(direction), {}};
   double largest = 0;

@@ -10,7 +10,7 @@
 
 namespace fascia {
 
-/// What a block of shell triangles does at a state, as CpuExecutor asks for it: forces on frames, products with the
+/// Computes a block of shell triangles at a state, as CpuExecutor asks for it: forces on frames, products with the
 /// tangent, its entries. Batches are computed in parallel; frames add up their triangles in fixed order.
 class ShellExecutor {
  public:

@@ -1,10 +1,12 @@
 #include "core/executor/user_executor.hpp"
 
+#include "core/base/errors.hpp"
 #include "core/base/incidence.hpp"
 #include "core/linear/block_matrix.hpp"
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 
 namespace fascia {
 
@@ -16,20 +18,34 @@ constexpr int kAssembledAtOnce = 256;  ///< cells whose matrices wait to be adde
 }  // namespace
 
 UserExecutor::UserExecutor(const UserBlock& block, const PointSet& set, ThreadPool& pool)
-    : block_(block),
-      set_(set),
-      pool_(pool),
-      slot_sums_(at(block.count) * at(block.nodes)),
-      poses_(slot_sums_.size()),
-      motions_(slot_sums_.size()),
-      dx_(slot_sums_.size()),
-      cell_energy_(at(block.count)),
-      cell_rounding_(at(block.count)) {
+    : block_(block), revision_(block.revision()), set_(set), pool_(pool) {
+  list_slots();
+}
+
+void UserExecutor::list_slots() {
+  for (int c = 0; c < block_.count(); ++c)
+    for (const int node : block_.cell(c))
+      if (node >= set_.node_count())
+        throw InputError("cell " + std::to_string(c) + " of a user block names node " + std::to_string(node) +
+                         "; the model has " + std::to_string(set_.node_count()));
+  slot_sums_.assign(at(block_.count()) * at(block_.nodes), {});
+  poses_.resize(slot_sums_.size());
+  motions_.resize(slot_sums_.size());
+  dx_.resize(slot_sums_.size());
+  cell_energy_.assign(at(block_.count()), 0.0);
+  cell_rounding_.assign(at(block_.count()), 0.0);
   const auto for_each_slot = [&](const auto& act) {
-    for (int c = 0; c < block_.count; ++c)
+    for (int c = 0; c < block_.count(); ++c)
       for (int a = 0; a < block_.nodes; ++a) act(block_.cell(c)[at(a)], block_.nodes * c + a);
   };
-  list_by_node(set.node_count(), for_each_slot, node_slot_begin_, node_slot_);
+  list_by_node(set_.node_count(), for_each_slot, node_slot_begin_, node_slot_);
+}
+
+bool UserExecutor::follow() {
+  if (revision_ == block_.revision()) return false;
+  list_slots();
+  revision_ = block_.revision();
+  return true;
 }
 
 template <class Act>
@@ -47,9 +63,21 @@ std::span<const CellPose> UserExecutor::take_poses(const BlockState& state, int 
   return poses;
 }
 
+std::span<const CellMotion> UserExecutor::take_motions(const BlockDirection& direction, int cell) {
+  const std::span<CellMotion> motions = of_cell(motions_, cell);
+  for (std::size_t a = 0; a < motions.size(); ++a) {
+    const double* m = direction.motions.data() + at(block_.cell(cell)[a]) * 12;
+    for (int i = 0; i < 3; ++i) {
+      motions[a].dx[i] = m[i];
+      for (int j = 0; j < 3; ++j) motions[a].dA(i, j) = m[3 + 3 * i + j];
+    }
+  }
+  return motions;
+}
+
 /// Rounding is that of the forces, and of the nodes' motion, of whichever part moves most.
 void UserExecutor::compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion) {
-  for_cells(0, block_.count, [&](int cell) {
+  for_cells(0, block_.count(), [&](int cell) {
     const std::span<CellForce> out = of_cell(slot_sums_, cell);
     std::fill(out.begin(), out.end(), CellForce{});
     const double energy = block_.forces(cell, take_poses(state, cell), out);
@@ -65,17 +93,10 @@ void UserExecutor::compute_forces(const BlockState& state, bool energies, std::s
 }
 
 void UserExecutor::compute_product(const BlockState& state, const BlockDirection& direction) {
-  for_cells(0, block_.count, [&](int cell) {
+  for_cells(0, block_.count(), [&](int cell) {
     const std::span<CellForce> out = of_cell(slot_sums_, cell);
     std::fill(out.begin(), out.end(), CellForce{});
-    const std::span<CellMotion> motions = of_cell(motions_, cell);
-    for (std::size_t a = 0; a < motions.size(); ++a) {
-      const double* m = direction.motions.data() + at(block_.cell(cell)[a]) * 12;
-      for (int i = 0; i < 3; ++i) {
-        motions[a].dx[i] = m[i];
-        for (int j = 0; j < 3; ++j) motions[a].dA(i, j) = m[3 + 3 * i + j];
-      }
-    }
+    const std::span<const CellMotion> motions = take_motions(direction, cell);
     block_.product(cell, take_poses(state, cell), state.tangent, motions, out);
   });
 }
@@ -90,7 +111,7 @@ void UserExecutor::add_sums(int node, NodeSum& sum) const {
 
 /// A cell may tie parts of different stiffness together: each of them has its rounding.
 void UserExecutor::add_rounding(std::span<double> squares_of_parts) const {
-  for (int cell = 0; cell < block_.count; ++cell) {
+  for (int cell = 0; cell < block_.count(); ++cell) {
     const std::span<const int> nodes = block_.cell(cell);
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       const int part = set_.node_part[at(nodes[a])];
@@ -103,12 +124,19 @@ void UserExecutor::add_rounding(std::span<double> squares_of_parts) const {
 
 double UserExecutor::largest_spin(const BlockDirection& direction) {
   double largest = 0;
-  for (int cell = 0; cell < block_.count; ++cell) {
+  for (int cell = 0; cell < block_.count(); ++cell) {
     const std::span<Vec3d> dx = of_cell(dx_, cell);
     for (std::size_t a = 0; a < dx.size(); ++a) dx[a] = direction.dx[at(block_.cell(cell)[a])];
     largest = std::max(largest, block_.spin(cell, dx));
   }
   return largest;
+}
+
+double UserExecutor::largest_step(const BlockState& state, const BlockDirection& direction) {
+  double longest = 1;
+  for (int cell = 0; cell < block_.count(); ++cell)
+    longest = std::min(longest, block_.largest_step(cell, take_poses(state, cell), take_motions(direction, cell)));
+  return longest;
 }
 
 int UserExecutor::dofs_of_cell(int cell) const {
@@ -167,12 +195,12 @@ void UserExecutor::add_matrix(int cell, std::span<const double> K, Entries entri
 /// Overwrites the sums of the last forces or product.
 void UserExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Entries entries) {
   int most = 0;
-  for (int cell = 0; cell < block_.count; ++cell) most = std::max(most, dofs_of_cell(cell));
+  for (int cell = 0; cell < block_.count(); ++cell) most = std::max(most, dofs_of_cell(cell));
   const std::size_t size = at(most) * at(most);
-  std::vector<double> K(size * at(std::min(block_.count, kAssembledAtOnce)));
+  std::vector<double> K(size * at(std::min(block_.count(), kAssembledAtOnce)));
   const auto of = [&](int cell, int begin) { return std::span(K).subspan(at(cell - begin) * size, size); };
-  for (int begin = 0; begin < block_.count; begin += kAssembledAtOnce) {
-    const int end = std::min(block_.count, begin + kAssembledAtOnce);
+  for (int begin = 0; begin < block_.count(); begin += kAssembledAtOnce) {
+    const int end = std::min(block_.count(), begin + kAssembledAtOnce);
     for_cells(begin, end, [&](int cell) { fill_matrix(state, cell, of(cell, begin)); });
     for (int cell = begin; cell < end; ++cell) add_matrix(cell, of(cell, begin), entries, matrix);
   }

@@ -17,7 +17,10 @@ class UserExecutor {
 
   static constexpr bool kSeesMotions = true, kSeesTranslations = true, kSeesStateAgain = false;
 
-  bool empty() const { return block_.count == 0; }
+  static bool empty() { return false; }
+  /// Follows the cells of the block, which may have changed. @return  whether they have
+  /// @throws InputError  a node that the model does not have
+  bool follow();
   static std::size_t strain_size() { return 0; }
   static void store_strain(const BlockState&, std::span<double>) {}
   static void store_stress(const BlockState&, std::span<double>) {}
@@ -30,8 +33,12 @@ class UserExecutor {
   InternalEnergy energy() const { return {energy_, 0, 0}; }
   void add_rounding(std::span<double> squares_of_parts) const;
   double largest_spin(const BlockDirection& direction);
+  /// The longest part of a step along the direction that all cells allow, up to 1.
+  double largest_step(const BlockState& state, const BlockDirection& direction);
 
  private:
+  void list_slots();
+  std::span<const CellMotion> take_motions(const BlockDirection& direction, int cell);
   std::span<const CellPose> take_poses(const BlockState& state, int cell);
   /// A cell's part of an array by slots.
   template <class T>
@@ -47,6 +54,7 @@ class UserExecutor {
   void for_cells(int begin, int end, const Act& act);
 
   const UserBlock& block_;
+  long revision_ = 0;  ///< of the block's cells
   const PointSet& set_;
   ThreadPool& pool_;
   std::vector<CellForce> slot_sums_;  ///< (cells × nodes)

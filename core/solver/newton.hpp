@@ -56,7 +56,8 @@ struct SolvedStep {
 /// iterations, because a slender structure's first step always does (its bending, linear in the rotations, stretches
 /// it). Where that leads nowhere, it returns to the best state and searches along the line.
 ///
-/// System: evaluate() → Evaluation; direction() → DirectionReport; apply(step); save() and restore(), one state;
+/// System: evaluate() → Evaluation; direction() → DirectionReport; largest_step(wanted), what of a step may be taken;
+/// apply(step); save() and restore(), one state;
 /// has_prescribed_increment(): boundary motion that the next direction still carries; conservative();
 /// compares_energies(): of two states on a way of Newton's method the one with less energy is nearer to the solution.
 template <class System>
@@ -77,7 +78,7 @@ class Newton {
       const DirectionReport d = direction();
       if (!d.usable) return give_up(NewtonStatus::linear_failure);
       const double before = current_.residual;
-      system_.apply(capped(d));
+      system_.apply(system_.largest_step(capped(d)));
       current_ = system_.evaluate();
       if (moving) first_residual_ = std::max(first_residual_, current_.residual);
       if (!moving) count_standing(before);
@@ -128,7 +129,7 @@ class Newton {
     standing_ = current_.finite() && current_.residual >= kFalls * before ? standing_ + 1 : 0;
   }
 
-  /// What is left is a small share of the loads, the last corrections were small, and it falls no further.
+  /// True where the residual is a small share of the loads, the last corrections were small, and it falls no further.
   bool stagnates(const DirectionReport& d) const {
     return !d.unsolved && system_.conservative() && standing_ >= kStands && is_small(d, kSmallDecrement) &&
            marked_.left_of_load <= kLargestShare;
@@ -182,7 +183,7 @@ class Newton {
     if (report_.iterations >= settings_.max_iterations) return NewtonStatus::limit;
     const DirectionReport d = direction();
     if (!d.usable) return NewtonStatus::linear_failure;
-    double step = std::min(1.0, 0.25 * kRotationCap / std::max(d.largest_rotation, 1e-300));
+    double step = system_.largest_step(std::min(1.0, 0.25 * kRotationCap / std::max(d.largest_rotation, 1e-300)));
     const bool moving = system_.has_prescribed_increment();  // then the mark's residual is no measure
     for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
       system_.apply(step);
@@ -213,8 +214,8 @@ class Newton {
     return finish(NewtonStatus::converged);
   }
 
-  /// What is kept of a solve that failed is the best state that it met. Where a boundary has not arrived, no state is
-  /// an equilibrium, however well its forces balance.
+  /// Ends a solve that failed, at the best state that it met. Where a boundary has not arrived, no state is an
+  /// equilibrium, however well its forces balance.
   NewtonReport give_up(NewtonStatus status) {
     if (system_.has_prescribed_increment()) return finish(status);
     if (unsolved_ && (status == NewtonStatus::stalled || status == NewtonStatus::limit))

@@ -8,8 +8,8 @@
 
 namespace fascia {
 
-/// What a node may do: a frame turns (6 degrees of freedom), or also stretches and shears (12); a vertex only moves
-/// (3).
+/// Kind of a node by how it may move: a frame turns (6 degrees of freedom), or also stretches and shears (12); a vertex
+/// only moves (3).
 enum class FrameKind : unsigned char { rigid, affine, vertex };
 
 /// Number of degrees of freedom of a node.

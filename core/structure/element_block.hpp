@@ -35,7 +35,7 @@ struct ElementBlockSpec {
   double length = 1;                          ///< mean length of the edges [m]
 };
 
-/// The same in batches of eight elements (array of structures of arrays). Unused lanes repeat the last element with
+/// Elements of one kind in batches of eight (array of structures of arrays). Unused lanes repeat the last element with
 /// volume 0 and without material; an element's nodes are in ascending order. Batches are bundled in patches of a few
 /// hundred elements, whose nodes have numbers of their own: a patch sums its forces on them before the nodes gather the
 /// sums of their patches.

@@ -56,8 +56,8 @@ struct FollowerLoad {
   std::vector<Vec3d> g{};  ///< vertices only
 };
 
-/// What holds a frame: the first `translations` rows of `translation_axes` (and likewise rotations) are prescribed.
-/// Of an affine frame, a rotation about a row k holds the entries (i, j) and (j, i) of A in these axes, i, j ≠ k.
+/// Constraint of a frame: the first `translations` rows of `translation_axes` (and likewise rotations) are prescribed.
+/// In an affine frame, a rotation about a row k holds the entries (i, j) and (j, i) of A in these axes, i, j ≠ k.
 struct FrameConstraint {
   int node = 0;
   Mat3d translation_axes = Mat3d::identity();
@@ -83,14 +83,26 @@ struct Tether {
   Vec3d arm{};              ///< not 0: not X itself is tied, but the place X + arm relative to X [m]
 };
 
-/// x → centre + R(axis, s·angle)(x − centre) + s·translation, with s the factor of its schedule.
+/// A rigid motion of the places X of a boundary, with s the factor of its schedule,
+///
+///   x = centre + R(axis, s·angle) Q₀ (X − centre) + t₀ + s·translation.
+///
+/// A schedule moves it from rest, Q₀ = I and t₀ = 0. A driver gives a new end before each step: s goes from 0 to 1
+/// during the step, Q₀ and t₀ are where the last one ended.
 struct PrescribedMotion {
   int schedule = 0;
   Vec3d translation{}, axis{{0, 0, 1}}, center{};
   double angle = 0;  ///< [rad], may exceed 2π
+  bool driven = false;
+  Mat3d D_start{};  ///< Q₀ − I
+  Vec3d u_start{};  ///< t₀ [m]
 
+  /// Q − I of what turns with the motion.
+  FASCIA_HD Mat3d turn(double factor) const {
+    return compose_increments(rotation_increment(axis * (angle * factor)), D_start);
+  }
   FASCIA_HD Vec3d displacement(const Vec3d& X, double factor) const {
-    return rotation_increment(axis * (angle * factor)) * (X - center) + translation * factor;
+    return turn(factor) * (X - center) + translation * factor + u_start;
   }
 };
 

@@ -15,6 +15,9 @@
 
 namespace fascia {
 
+PointSetBuilder::PointSetBuilder(PointSet&& set)
+    : set_(std::move(set)), group_length_(std::move(set_.group_length)), joints_(std::move(set_.joints)) {}
+
 void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
                                  const PointRule& rule) {
   for (std::size_t first = 0; first < points.size(); first += kGroupSize)
@@ -138,7 +141,7 @@ void lay_out_memory(PointSet& set) {
 
 void check_user_blocks(const PointSet& set) {
   for (const auto& block : set.user_blocks)
-    for (int c = 0; c < block->count; ++c)
+    for (int c = 0; c < block->count(); ++c)
       for (const int node : block->cell(c))
         if (node >= set.node_count())
           throw InputError("cell " + std::to_string(c) + " of a user block names node " + std::to_string(node) +
@@ -179,6 +182,7 @@ void sort_dependents(PointSet& set) {
 
 PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   set_.dofs = DofLayout(std::move(frames));
+  set_.memory = {};
   check_user_blocks(set_);
   lay_out_memory(set_);
   transpose_incidence(set_);
@@ -189,6 +193,8 @@ PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   set_.color_group = std::move(colors.item);
   for (ElementBlock& block : set_.blocks) finish_element_block(block, set_.node_count());
   for (ShellBlock& shell : set_.shells) finish_shell_block(shell, set_.node_count());
+  set_.group_length = std::move(group_length_);
+  set_.joints = std::move(joints_);
   return std::move(set_);
 }
 

@@ -48,6 +48,12 @@ struct PointSample : LawConstants {
   static constexpr int kVolumetric = -2;
 };
 
+/// Nodes that hang together though no point or element joins them, or a frame without any.
+struct Joint {
+  std::vector<int> nodes;
+  double length = 0;  ///< converts torques to forces where residuals are judged and nothing else has a length [m]
+};
+
 /// All integration points of a model: in groups of eight that share their frames (array of structures of arrays), and
 /// in finite elements. Unused lanes repeat the group's last point with volume 0.
 struct PointSet {
@@ -84,6 +90,8 @@ struct PointSet {
   std::vector<ShellBlock> shells;
   std::vector<std::shared_ptr<const UserBlock>> user_blocks;
   std::vector<Spring> springs;
+  std::vector<double> group_length;  ///< (groups) spacing of the frames [m]
+  std::vector<Joint> joints;
   std::vector<DependentNode> dependents;  ///< each behind those of its hosts that depend on others
 
   int node_count() const { return dofs.node_count(); }
@@ -112,15 +120,13 @@ struct PointSet {
 /// Rows of PointSet::material.
 enum MaterialRow { kVolume, kLambda, kMu, kStabilization, kStiffnessDamping, kGradientNorm };
 
-/// Nodes that hang together though no point or element joins them, or a frame without any.
-struct Joint {
-  std::vector<int> nodes;
-  double length = 0;  ///< converts torques to forces where residuals are judged and nothing else has a length [m]
-};
-
 /// Collects groups and closes the set: order of dependent nodes, transposed incidence, connected parts and colours.
 class PointSetBuilder {
  public:
+  PointSetBuilder() = default;
+  /// Opens a set again, to add to it.
+  explicit PointSetBuilder(PointSet&& set);
+
   /// Adds points that share `nodes` and their rule; they are cut into groups of eight. Each point's F at rest must be
   /// I (Σ w = 1, Σ X gᵀ + B = I), which is checked by the caller's weights.
   /// @param length  spacing of the frames: converts torques to forces where residuals and rounding are judged [m]

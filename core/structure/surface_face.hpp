@@ -142,12 +142,13 @@ FASCIA_HD void add_face_product(const SurfaceFace& face, const Vec3d* x, double 
   }
 }
 
-/// What a share of a node adds to the displacement of a vertex. @param u, D  of the node
+/// Displacement that a share of a node adds to a vertex. @param u, D  of the node
 FASCIA_HD inline Vec3d share_displacement(const SurfaceShare& share, const Vec3d& u, const Mat3d& D) {
   return u * share.w + D * share.b;
 }
 
-/// The same for increments d of the node by degrees of freedom. @param Q  its present I + D
+/// Displacement that a share adds to a vertex for increments d of its node by degrees of freedom. @param Q  the node's
+/// present I + D
 FASCIA_HD inline Vec3d share_variation(const SurfaceShare& share, FrameKind kind, const double* d, const Mat3d& Q) {
   return Vec3d{{d[0], d[1], d[2]}} * share.w + frame_variation(kind, d + 3, Q) * share.b;
 }
@@ -172,7 +173,8 @@ FASCIA_HD inline ShareColumns share_columns(const SurfaceShare& share, FrameKind
   return J;
 }
 
-/// What fills a closed surface, or presses on one with a potential, for a change of its volume.
+/// Volume, pressure and energy of what fills a closed surface, or presses on one with a potential, for a change of its
+/// volume.
 struct SurfacePressure {
   double volume = 0;     ///< [m³]
   double pressure = 0;   ///< at the datum [Pa]

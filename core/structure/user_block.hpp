@@ -50,6 +50,12 @@ class UserBlock {
                        std::span<CellForce> out) const = 0;
   /// The elastic modulus that its matter would have [Pa]: tells stiff parts from soft ones, and forces from rounding.
   virtual double stiffness(int cell) const = 0;
+  /// The longest part of a step, up to 1, that a cell allows: where its energy has no value beyond. Newton's method
+  /// asks before each step that it takes.
+  virtual double largest_step(int /*cell*/, std::span<const CellPose> /*poses*/,
+                              std::span<const CellMotion> /*motions*/) const {
+    return 1;
+  }
   /// Rotation of a cell by small displacements of its nodes [rad], as far as frames do not show it: Newton's method
   /// takes no step that turns one by more than a right angle or so.
   virtual double spin(int /*cell*/, std::span<const Vec3d> /*dx*/) const { return 0; }
@@ -58,20 +64,33 @@ class UserBlock {
   /// Calls act(nodes, stiffness [Pa]) for each cell, as all blocks do (blocks.hpp).
   template <class Act>
   void for_each_cell(const Act& act) const {
-    for (int c = 0; c < count; ++c) act(cell(c), stiffness(c));
+    for (int c = 0; c < count(); ++c) act(cell(c), stiffness(c));
   }
   double stiffness_sum() const {
     double sum = 0;
-    for (int c = 0; c < count; ++c) sum += stiffness(c) * length;
+    for (int c = 0; c < count(); ++c) sum += stiffness(c) * length;
     return sum;
   }
 
-  const int nodes, count;
+  int count() const { return static_cast<int>(cells_.size()) / nodes; }
+  /// How often the cells have changed.
+  long revision() const { return revision_; }
+
+  const int nodes;
   const double length;
   static constexpr bool averaged = false;  ///< as ElementBlock has it
 
+ protected:
+  /// Gives the block other cells: pairs that have come near one another, bonds that broke. Between the steps of a run;
+  /// all that was made of the pattern of the matrix is then made anew.
+  /// @throws InputError  as the constructor; the cells stay what they were
+  void set_cells(std::vector<int> cells);
+
  private:
+  void check(const std::vector<int>& cells) const;
+
   std::vector<int> cells_;
+  long revision_ = 0;
 };
 
 }  // namespace fascia

@@ -8,12 +8,13 @@
 namespace fascia {
 
 CgSolver::CgSolver(TangentOperator& K, const LinearSettings& settings, FactorSolver& factor)
-    : K_(K),
-      settings_(settings),
-      one_(preconditioner_of(settings.preconditioner, K, factor)),
-      levels_(K, false),
-      material_(K, true) {
-  if (!one_) one_ = std::make_unique<DiagonalBlocks>(K, true);
+    : K_(K), settings_(settings), factor_(factor), levels_(K, false), material_(K, true) {
+  choose_one();
+}
+
+void CgSolver::choose_one() {
+  one_ = preconditioner_of(settings_.preconditioner, K_, factor_);
+  if (!one_) one_ = std::make_unique<DiagonalBlocks>(K_, true);
 }
 
 CgReport CgSolver::solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options) {
@@ -55,6 +56,16 @@ CgReport CgSolver::solve_by_either(const Vector& b, Vector& x, const CgOptions& 
   CgReport cg = by_levels();
   cg.iterations += tried.iterations;
   return cg;
+}
+
+void CgSolver::begin_afresh() {
+  choose_one();
+  pattern_ = K_.pattern_revision();
+  levels_.forget();
+  material_.forget();
+  one_is_ready_ = false;
+  kept_levels_ = {};
+  blocks_or_levels_ = BlocksOrLevels({});
 }
 
 LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, double rough) {

@@ -29,6 +29,7 @@ class CgSolver final : public LinearSolver {
   /// Preconditioners are made where a solve asks for them. Those that are kept take products with K all the same,
   /// before the first iteration does: its matrix is assembled here.
   bool prepare() override {
+    if (pattern_ != K_.pattern_revision()) begin_afresh();
     one_is_ready_ = false;
     K_.matrix();
     return true;
@@ -36,6 +37,8 @@ class CgSolver final : public LinearSolver {
   LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
   LinearReport solve(std::span<const double> b, std::span<double> x, const CgOptions& options);
   bool iterates() const override { return true; }
+  /// Makes preconditioners anew and counts iterations afresh.
+  void begin_afresh();
 
   /// That was taken last; automatic: blocks.
   PreconditionerKind preconditioner() const {
@@ -55,8 +58,12 @@ class CgSolver final : public LinearSolver {
   CgReport solve_by_levels(const Vector& b, Vector& x, const CgOptions& options);
   CgReport solve_by_either(const Vector& b, Vector& x, const CgOptions& options);
 
+  void choose_one();
+
   TangentOperator& K_;
   LinearSettings settings_;
+  FactorSolver& factor_;
+  long pattern_ = 0;                     ///< of K, that preconditioners were made of
   std::unique_ptr<Preconditioner> one_;  ///< that is asked for, or blocks
   bool one_is_ready_ = false;            ///< for K as it is
   LevelsOfFrames levels_, material_;

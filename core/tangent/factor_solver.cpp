@@ -14,12 +14,24 @@ constexpr double kSmallestShift = 1e-6;
 
 }  // namespace
 
+void FactorSolver::follow_pattern() {
+  if (pattern_ == K_.pattern_revision()) return;
+  pattern_ = K_.pattern_revision();
+  order_.reset();
+  cholesky_.reset();
+  indefinite_.reset();
+  factor_ = nullptr;
+  definite_ = false;
+}
+
 const EliminationOrder& FactorSolver::order() {
+  follow_pattern();
   if (!order_) order_ = EliminationOrder::of(K_.pattern(), K_.filter());
   return *order_;
 }
 
 BlockCholesky& FactorSolver::cholesky() {
+  follow_pattern();
   if (!cholesky_) cholesky_.emplace(K_.pattern(), K_.filter(), Pivots::positive, &order());
   return *cholesky_;
 }
@@ -44,6 +56,7 @@ void FactorSolver::take(BlockCholesky& factor, int negative_pivots) {
 }
 
 bool FactorSolver::factorize_any() {
+  follow_pattern();
   if (!indefinite_) indefinite_.emplace(K_.pattern(), K_.filter(), Pivots::any, &order());
   if (!indefinite_->factorize(K_.matrix())) return false;
   take(*indefinite_, indefinite_->negative_pivots());

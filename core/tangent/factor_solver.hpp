@@ -24,6 +24,9 @@ class FactorSolver final : public LinearSolver {
   /// Takes K + s · diagonal of its material part, with the smallest s of a few that is enough. False where none is.
   bool prepare_shifted();
 
+  /// Forgets which shift was enough before.
+  void begin_afresh() { shift_ = 0; }
+
   /// Takes the terms beside K as they are now, with the factor of a K as good as the same.
   void renew_terms() { take(*factor_, negative_pivots_); }
 
@@ -41,7 +44,7 @@ class FactorSolver final : public LinearSolver {
 
   /// How nodes are eliminated; known before a factor is made.
   const EliminationOrder& order();
-  bool knows_order() const { return order_.has_value(); }
+  bool knows_order() const { return order_.has_value() && pattern_ == K_.pattern_revision(); }
   /// How many operations a factor takes for each number of the matrix.
   double flops_per_number();
   /// A factor fits into memory.
@@ -50,6 +53,7 @@ class FactorSolver final : public LinearSolver {
 
  private:
   static constexpr double kMostBytes = 2e9;
+  void follow_pattern();
   bool factorize_any();
   void take(BlockCholesky& factor, int negative_pivots);
   void finish_shifted(std::span<const double> b, std::span<double> x);
@@ -59,6 +63,7 @@ class FactorSolver final : public LinearSolver {
   std::optional<EliminationOrder> order_;
   std::optional<BlockCholesky> cholesky_, indefinite_;
   BlockCholesky* factor_ = nullptr;  ///< that solves
+  long pattern_ = 0;                 ///< of K, that these were made of
   bool definite_ = false;
   int negative_ = 0, negative_pivots_ = 0;
   double shift_ = 0;      ///< of the last factorisation that needed one

@@ -81,6 +81,7 @@ class LevelsOfFrames final : public Preconditioner {
   bool prepare() override;
   double apply(std::span<const double> r, std::span<double> z) override;
   void begin() override { start_ = 0; }
+  void forget() { levels_.reset(); }
   /// Null where they were never made.
   const Multigrid* levels() const { return levels_ ? &*levels_ : nullptr; }
 

@@ -10,7 +10,7 @@
 
 namespace fascia {
 
-/// What the tangent K at an equilibrium under dead loads says of its stability.
+/// Stability of an equilibrium under dead loads, as the tangent K there tells it.
 struct Stability {
   bool known = false;       ///< false: nobody looked, or the linear solver found no answer
   int unstable = 0;         ///< directions in which the energy falls; of conjugate gradients 1 stands for any number
@@ -23,7 +23,7 @@ struct Stability {
 /// Within this part of the lowest stiffness at rest the sign of the present one is not what a model can tell.
 inline constexpr double kNearLimit = 0.01;
 
-/// Of a solve with a tangent.
+/// Outcome of a solve with a tangent.
 struct TangentProbe {
   bool usable = false;
   int unstable = 0;  ///< negative directions that it met
@@ -60,7 +60,7 @@ double quotient(std::span<const double> x, std::span<const double> Kx, std::span
 /// The node that moves most.
 int most_moved_node(const Model& model, std::span<const double> direction);
 
-/// Of the equilibrium that a system stands at after an evaluation; it stands there again in the end.
+/// Stability of the equilibrium that a system stands at after an evaluation; it stands there again in the end.
 ///
 /// @param softest  softest(at_end): the softest direction of the full tangent at the state of the last evaluation
 template <class System, class Softest>
@@ -85,7 +85,7 @@ Stability stability_of(System& system, const typename System::Pose& end, const t
   // The stiffness of this direction at rest bounds the lowest one there from above: most ends need no more.
   const std::vector<double> factors(system.factors().begin(), system.factors().end());
   system.begin_step(rest, 0);
-  system.set_factors(std::vector<double>(factors.size(), 0.0));
+  system.set_rest();
   system.evaluate();
   std::vector<double> y = system.product(direction);
   system.filter().to_local(y);

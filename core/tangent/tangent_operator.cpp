@@ -20,6 +20,11 @@ void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
   at_ = &lin;
   tamer_ = tamer;
   assembled_ = tamed_ = false;
+  if (pattern_ != executor_.pattern()) {
+    pattern_ = executor_.pattern();
+    matrix_.reset();
+    material_.reset();
+  }
   beside_.set(lin.low_rank, filter_);
   if (!dependents_.empty()) dependents_.turn(lin.Q);
 }

@@ -69,6 +69,8 @@ class TangentOperator {
   const BlockMatrix& matrix();
   /// Where it is stored; its values may be any.
   BlockMatrix& pattern();
+  /// Changes with the pattern: what was made of another one is to be made anew.
+  long pattern_revision() const { return pattern_; }
   /// Terms of K that no matrix holds.
   LowRank& beside() { return beside_; }
   const LowRank& beside() const { return beside_; }
@@ -95,6 +97,7 @@ class TangentOperator {
   const Relinearize* tamer_ = nullptr;
   std::optional<BlockMatrix> matrix_, material_;
   bool assembled_ = false, tamed_ = false;
+  long pattern_ = 0;  ///< CpuExecutor::pattern() of the matrices
   LowRank beside_;
   std::vector<double> work_, lengths_;
 };

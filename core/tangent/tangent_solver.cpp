@@ -36,6 +36,14 @@ TangentSolver::TangentSolver(const Model& model, CpuExecutor& executor, const Do
       cg_(K_, settings, factor_),
       own_(settings.own ? settings.own(K_) : nullptr) {}
 
+void TangentSolver::begin_afresh() {
+  direct_.reset();
+  unstable_ = 0;
+  factor_.begin_afresh();
+  cg_.begin_afresh();
+  if (own_) own_ = settings_.own(K_);
+}
+
 bool TangentSolver::direct() {
   if (direct_) return *direct_;
   if (own_)

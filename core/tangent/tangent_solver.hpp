@@ -33,7 +33,7 @@ struct SolverChoice {
 class TangentSolver {
  public:
   /// Up to here a factorisation takes a few seconds at most, whatever the conditioning; CG may be 2 to 3 times faster
-  /// on a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual.md).
+  /// on a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual/solvers.md).
   static constexpr int kDirectDofs = 15000;
   /// From so many operations of a factor for each number of the matrix on, CG is taken beyond those unknowns: those of
   /// the iterations that a bulky body needs with blocks, or of 40 cycles with their levels, where a factor's operations
@@ -66,6 +66,9 @@ class TangentSolver {
   /// Levels of rigid frames of a tangent, for solves elsewhere; null where one of them is not positive definite.
   /// @param material  the tangent is without all that stress does
   const Multigrid* levels(const Linearization& at, bool material);
+
+  /// Forgets all that solves before have taught: what comes next depends on the tangents to come alone.
+  void begin_afresh();
 
   /// A factor is used, and neither CG nor a solver of the caller's.
   bool direct();

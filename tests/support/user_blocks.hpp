@@ -57,7 +57,7 @@ class PlainTetrahedra final : public UserBlock {
  public:
   PlainTetrahedra(std::vector<int> cells, const std::vector<Vec3d>& rest, const Lame& lame, double size)
       : UserBlock(4, std::move(cells), size), lame_(lame) {
-    for (int c = 0; c < count; ++c) {
+    for (int c = 0; c < count(); ++c) {
       const std::span<const int> n = cell(c);
       const Vec3d X = rest[at(n[0])];
       const Mat3d edges = Mat3d::from_columns(rest[at(n[1])] - X, rest[at(n[2])] - X, rest[at(n[3])] - X);

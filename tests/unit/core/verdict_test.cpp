@@ -130,6 +130,7 @@ struct OneSpring {
     return report;
   }
   bool unsolved = false;  ///< conjugate gradients end at their limit
+  static double largest_step(double wanted) { return wanted; }
   void apply(double step) { x += step * d; }
   void save() { saved = x; }
   void restore() { x = saved; }

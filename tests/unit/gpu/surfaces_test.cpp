@@ -1,4 +1,5 @@
 #include "gpu/actions/surfaces.hpp"
+#include "assembly/actions/actions.hpp"
 
 #include "core/body/body_surface.hpp"
 #include "core/solver/surface_loads.hpp"
