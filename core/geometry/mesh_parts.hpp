@@ -9,8 +9,8 @@
 
 namespace fascia {
 
-/// What a mesh consists of: solids, sheets and lines (a volume that thins out into a sheet, a membrane with strands).
-/// Parts that touch share their coordinates exactly.
+/// Parts of a mesh: solids, sheets and lines (a volume that thins out into a sheet, a membrane with strands). Parts
+/// that touch share their coordinates exactly.
 struct MeshParts {
   std::optional<ClosedSurface> solid;  ///< of the volume cells; none without them
   /// The triangles that are no face of a volume cell; open, closed or branched. Each part that hangs together across

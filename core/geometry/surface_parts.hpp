@@ -25,7 +25,7 @@ struct Triangle {
   int cell = -1;  ///< index of that cell, where it is known
 };
 
-/// What triangles make up: of a solid they are the boundary, of a sheet the matter.
+/// Role of a surface's triangles: of a solid they are the boundary, of a sheet the matter.
 enum class Surface { of_solid, of_sheet };
 
 /// Cells that bound or fill a solid, or make up a sheet or lines, on welded points.
@@ -51,7 +51,7 @@ void report_unused(const Mesh& mesh, std::vector<std::string>& messages);
 /// @throws InputError  all points coincide
 Solid make_solid(const Mesh& mesh, bool (*wanted)(CellType), std::vector<std::string>& messages);
 
-/// The same points with other cells.
+/// A solid on the points of another, with other cells.
 Solid with_cells(const Solid& solid, std::vector<Cell> cells);
 
 /// "FILE: " + message

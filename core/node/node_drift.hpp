@@ -7,7 +7,7 @@
 /// How one node moves on in a step of central differences, and what that gives to the run's energies.
 namespace fascia {
 
-/// Of the nodes that a step moves.
+/// Energies that a step gathers from the nodes that it moves.
 struct ExplicitSums {
   double kinetic = 0;  ///< of those that nothing holds, at the half step [J]
   double work = 0;     ///< of loads and boundaries in the step [J]

@@ -11,7 +11,7 @@ struct EndRates {
   PoseMotion v{}, a{};
 };
 
-/// Of a scheme that solves for the end. @param D  there
+/// Rates of a node at the end of a step, by a scheme that solves for the end. @param D  at the end
 FASCIA_HD inline EndRates rates_at_end(const StepConstants& step, const StepNode& node, const Mat3d& D) {
   const PoseMotion x = motion_of(node);
   EndRates out;
@@ -49,9 +49,9 @@ struct MiddleEnd {
   PoseMotion motion{}, v{};
 };
 
-/// Of a rigid frame: Q turns by the same rotation again, and the mass centre goes on straight. The momentum is kept
-/// exactly, L₊ = L + dt τ with the torque in the middle of the step: about the mass centre, or of a held frame about
-/// its origin and its free axes.
+/// Finishes a midpoint step of a rigid frame: Q turns by the same rotation again, and the mass centre goes on straight.
+/// The momentum is kept exactly, L₊ = L + dt τ with the torque in the middle of the step: about the mass centre, or of
+/// a held frame about its origin and its free axes.
 /// @param end  of a node whose motion and velocity go on straight
 FASCIA_HD inline void finish_middle_of_frame(const StepConstants& step, const StepNode& node,
                                              const FrameConstraint* held, const Mat3d& D_middle, MiddleEnd& end) {
@@ -103,7 +103,7 @@ FASCIA_HD inline MiddleEnd finish_middle(const StepConstants& step, const StepNo
   return end;
 }
 
-/// What a node's velocity asks of the forces before any acceleration: turning of rigid frames, mass damping.
+/// Force that a node's velocity asks for before any acceleration: turning of rigid frames, mass damping.
 /// @param D  Q − I or A − I, v its velocity
 /// @param damping  inertia weighted with α; null: none
 FASCIA_HD inline InertiaForce inertia_of_velocity(FrameKind kind, const FrameInertia& inertia,

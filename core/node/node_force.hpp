@@ -15,8 +15,7 @@ FASCIA_HD inline void add_node_force(FrameKind kind, const Mat3d& D, const Vec3d
   add_moment(kind, squared_norm(torque) > 0 ? N + moment_of_torque(torque, A) : N, A, g + 3);
 }
 
-/// Of a moment L = Σ f (Q b)ᵀ on a rigid frame: minus the second derivative of its work f · Q b along rotation
-/// increments.
+/// Second derivative of Σ f · Q b along rotation increments of a rigid frame, from the moment L = Σ f (Q b)ᵀ.
 FASCIA_HD inline Mat3d rotation_tangent(const Mat3d& L) { return sym(L) - Mat3d::diagonal(trace(L)); }
 
 FASCIA_HD inline void add_rotation_block(double* block, const Mat3d& rr) {

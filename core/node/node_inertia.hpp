@@ -47,7 +47,8 @@ FASCIA_HD inline void free_mass_block(FrameKind kind, const FrameInertia& inerti
       if (((fixed >> i | fixed >> j) & 1U) != 0) block[n * i + j] = i == j ? 1 : 0;
 }
 
-/// The same of a node of a model.
+/// The mass block of a node of a model (n × n by rows) in constraint axes; rows and columns of what is held are those
+/// of the identity. @param Q  its I + D
 inline std::array<double, kMostDofs * kMostDofs> free_mass_block(const Model& model, const DofFilter& filter, int node,
                                                                  const Mat3d& Q) {
   std::array<double, kMostDofs * kMostDofs> block{};

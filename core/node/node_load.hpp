@@ -12,7 +12,7 @@ FASCIA_HD inline void add_dead_load(FrameKind kind, const NodeLoad& load, double
   add_node_force(kind, D, load.force * s, load.couple * s, load.torque * s, g);
 }
 
-/// What the load has done without its torque: minus its potential [J].
+/// Work that the load has done without its torque; minus its potential [J].
 FASCIA_HD inline double dead_load_work(const NodeLoad& load, const Vec3d& u, const Mat3d& D) {
   return dot(load.force, u) + contract(load.couple, D);
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-/// What one node has of a mode of M⁻¹ K, as functions of plain values. Entries stand in constraint axes.
+/// A mode of M⁻¹ K at one node, as functions of plain values. Entries stand in constraint axes.
 namespace fascia {
 
 struct ModeNode {

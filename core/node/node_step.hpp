@@ -74,7 +74,7 @@ FASCIA_HD inline MovedNode moved_by_velocity(const StepConstants& step, const St
   return moved;
 }
 
-/// Of the step before, what a scheme keeps of a node; null where it has no use for it.
+/// Motion and rates of the step before that a scheme keeps of a node; null where it has no use for them.
 struct NodeMemory {
   const PoseMotion *motion = nullptr, *velocity = nullptr, *acceleration = nullptr;
 };
@@ -115,7 +115,7 @@ FASCIA_HD inline void predict(const StepConstants& step, const NodeMemory& memor
   }
 }
 
-/// What is prescribed goes straight too: in the midpoint rule its q has no part along these axes.
+/// Takes from q its part along the prescribed axes (midpoint rule): what is prescribed goes straight too.
 FASCIA_HD inline void straighten_held(const FrameConstraint& c, Vec3d& q) {
   for (int a = 0; a < c.translations; ++a) q -= c.translation_axes.row(a) * dot(c.translation_axes.row(a), q);
 }
@@ -152,7 +152,7 @@ FASCIA_HD inline StepInertia step_inertia(const StepConstants& step, const StepN
   return out;
 }
 
-/// The same of a node that is a point mass.
+/// Inertia of the step at a node that is a point mass (no rotation).
 /// @param damping  α m [kg/s]
 FASCIA_HD inline StepInertia step_inertia(const StepConstants& step, double mass, double damping, const Vec3d& du,
                                           const Vec3d& q, const Vec3d& w, const Vec3d& v) {

@@ -10,10 +10,7 @@ FASCIA_HD inline void prescribed_affine(const FrameConstraint& c, const Prescrib
                                         const double* factors, const Mat3d& D, double* local) {
   const int motion = c.turning_motion();
   Mat3d target;
-  if (motion >= 0) {
-    const PrescribedMotion& m = motions[motion];
-    target = rotation_increment(m.axis * (m.angle * factors[m.schedule]));
-  }
+  if (motion >= 0) target = motions[motion].turn(factors[motions[motion].schedule]);
   const Mat3d missing = times_transpose(c.rotation_axes * (target - D), c.rotation_axes);
   for (int q = 0; q < 3; ++q)
     for (int i = 0; i < 3; ++i) local[3 * q + i] = missing(i, q);
@@ -42,6 +39,11 @@ FASCIA_HD inline void prescribed_increment(FrameKind kind, const FrameConstraint
     const int motion = c.rotation_motion[at(a)];
     if (motion < 0) continue;
     const PrescribedMotion& m = motions[motion];
+    if (m.driven) {
+      const Mat3d left = compose_increments(m.turn(factors[m.schedule]), transpose(D));
+      local[3 + a] = dot(c.rotation_axes.row(a), rotation_vector(left));
+      continue;
+    }
     local[3 + a] = dot(c.rotation_axes.row(a), m.axis) * (m.angle * factors[m.schedule]) - turned[a];
   }
 }

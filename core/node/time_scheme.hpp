@@ -37,7 +37,7 @@ struct PoseMotion {
   friend FASCIA_HD PoseMotion operator*(const PoseMotion& a, double s) { return {a.u * s, a.Q * s}; }
 };
 
-/// What a scheme keeps of the step before; empty before the first one.
+/// Motions, rates and strains of the step before that a scheme keeps; empty before the first one.
 struct StepMemory {
   double step = 0;                       ///< dt₋ [s]; 0: none
   std::vector<PoseMotion> motion;        ///< x₋
@@ -62,6 +62,11 @@ struct StepConstants {
     if (scheme == TimeScheme::bdf2) c.h = dt * (step_before + dt) / (step_before + 2 * dt);
     return c;
   }
+  /// Steps as long as each other but for rounding of their ends.
+  FASCIA_HD static bool equal(double dt, double other) {
+    const double apart = dt - other;
+    return (apart < 0 ? -apart : apart) <= 1e-9 * dt;
+  }
   /// c of bdf2
   FASCIA_HD double memory_factor() const {
     const double r = step / step_before;
@@ -73,7 +78,7 @@ struct StepConstants {
   }
 };
 
-/// What a step starts from, node by node.
+/// Constants of a step, and the q and w of each node that it starts from.
 struct StepForm : StepConstants {
   std::vector<PoseMotion> q, w;
 };
@@ -102,8 +107,8 @@ struct MiddleStretches {
       if (time[k] >= middle) stretch[k] = {};
     return stretch[0];
   }
-  /// Of the three in the stretch at the end of a step: what means of two middles lead to, in which nothing is left of
-  /// what changes sign from step to step.
+  /// Weights of the three in the stretch at the end of a step: it is extrapolated from means of two middles, in which
+  /// nothing is left of what changes sign from step to step.
   std::array<double, 3> weights(double end) const {
     if (stretch[1].empty()) return {1, 0, 0};
     if (stretch[2].empty()) return {0.5, 0.5, 0};

@@ -14,7 +14,7 @@ namespace fascia {
 /// unstable, inverted: an equilibrium, but one that no body rests in.
 enum class RunStatus { converged, not_converged, diverged, interrupted, unstable, inverted };
 
-/// What a driver tells after each accepted step.
+/// Figures that a driver tells after each accepted step.
 struct StepInfo {
   int step = 0;         ///< counted from 1; 0: the start
   double time = 0;      ///< [s]; in statics the load factor
@@ -74,7 +74,7 @@ std::string passed_sentence(double from, double to);
 std::string detour_sentence(double to);
 /// Why a step did not converge.
 std::string failure_sentence(const NewtonReport& newton, const SolverSettings& settings);
-/// Of the equilibrium at the end of statics, which the system stands at.
+/// Stability of the equilibrium at the end of statics, which the system stands at.
 inline Stability end_stability(MechanicalSystem& system, const State& end, const RunReport& run, bool current) {
   return system.stability(end, run.linear_iterations, current);
 }
@@ -82,7 +82,8 @@ inline Stability end_stability(MechanicalSystem& system, const State& end, const
 inline constexpr double kRotationPerStep = 0.35;
 
 struct StaticsSettings {
-  int load_steps = 0;  ///< 0: as few as converge
+  int load_steps = 0;       ///< 0: as few as converge
+  double from = 0, to = 1;  ///< load factors; the state is an equilibrium of the first
 };
 
 /// Equilibrium under loads and boundary motions that grow with the load factor from 0 to 1. A load step that does not

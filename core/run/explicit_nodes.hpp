@@ -7,7 +7,7 @@
 
 namespace fascia {
 
-/// What steps of central differences need of a model's nodes, found once.
+/// Constants of a model's nodes that steps of central differences need, found once.
 struct ExplicitNodes {
   std::vector<SpinInertia> turning;  ///< of free rigid frames
   std::vector<Vec3d> center;         ///< c / m of free rigid frames [m]

@@ -6,7 +6,8 @@ namespace fascia {
 
 struct StepInfo;
 
-/// What is kept of the limit: the material stiffens where it is stretched, and iterations find ω from below.
+/// Part of the stable step that steps are kept to: the material stiffens where it is stretched, and iterations find ω
+/// from below.
 inline constexpr double kStableMargin = 0.95;
 
 struct ExplicitSettings {

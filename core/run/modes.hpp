@@ -16,8 +16,7 @@ struct Modes {
   std::vector<double> stabilization;
   int iterations = 0;
   bool converged = true;
-  /// Of a frequency, the largest part that rounding leaves open: more than a little where soft parts move beside stiff
-  /// ones.
+  /// Largest part of a frequency that rounding leaves open: more than a little where soft parts move beside stiff ones.
   double uncertainty = 0;
   double least = 0;  ///< what is below cannot be told from a free motion, for rounding [Hz]
 };

@@ -63,7 +63,7 @@ class PathFollower {
       keep_failure(run_, system_);
       return give_up(report, "there is no equilibrium to start from");
     }
-    state_ = system_.finish_step(0);
+    system_.finish_step(0, state_);
     begin();
     system_.evaluate();
     tangent_ = directions();
@@ -309,7 +309,7 @@ class PathFollower {
     const bool corner = has_corner();
     const LoadCurve curve{state_.time, rate_ * p, lambda_, rate * p};
     system_.keep_loads();
-    state_ = system_.finish_step(lambda_);
+    system_.finish_step(lambda_, state_);
     ++run_.steps;
     run_.time = lambda_;
     run_.residual = std::max(run_.residual, report.last.relative);

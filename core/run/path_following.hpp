@@ -45,7 +45,7 @@ struct PathSettings {
 RunReport run_path(MechanicalSystem& system, State& state, const FactorFunction& factors,
                    const SolverSettings& settings, const PathSettings& path, const StepObserver& observe);
 
-/// Whether load control came to a limit point: at the state the tangent is indefinite, or the loads move it several
+/// True where load control came to a limit point: at the state the tangent is indefinite, or the loads move it several
 /// times as easily as they did at rest. @param reached  load factor of the state
 bool near_limit_point(MechanicalSystem& system, const State& state, const FactorFunction& factors, double reached);
 

@@ -33,18 +33,25 @@ double prescribed_rotation(const Model& model, std::span<const std::array<double
   };
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const FrameConstraint& c = model.constraints[k];
-    if (model.kind(c.node) == FrameKind::rigid && c.rotations > 0) {
+    const int turning = c.turning_motion();
+    if (turning >= 0 && model.motions[at(turning)].driven) {
+      largest = std::max(largest, turn_of(turning));
+    } else if (model.kind(c.node) == FrameKind::rigid && c.rotations > 0) {
       double local[kMostDofs] = {};
       prescribed_increment(FrameKind::rigid, c, 0, model.motions.data(), factors.data(), {}, {}, {}, turned[k].data(),
                            local);
       largest = std::max(largest, std::hypot(local[3], local[4], local[5]));
     }
-    if (model.kind(c.node) == FrameKind::affine && c.rotations > 0)
-      largest = std::max(largest, turn_of(c.turning_motion()));
+    if (model.kind(c.node) == FrameKind::affine && c.rotations > 0) largest = std::max(largest, turn_of(turning));
     for (const int motion : c.translation_motion) largest = std::max(largest, turn_of(motion));
   }
   for (const Tether& t : model.tethers) largest = std::max(largest, turn_of(t.motion));
   return largest;
+}
+
+void start_driven(const Model& model, std::vector<double>& factors) {
+  for (const PrescribedMotion& m : model.motions)
+    if (m.driven) factors[at(m.schedule)] = 0;
 }
 
 void place_tethers(const Model& model, std::span<const double> factors, std::span<double> targets) {

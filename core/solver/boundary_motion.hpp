@@ -28,6 +28,9 @@ MotionSizes motion_sizes(const Model& model);
 double prescribed_rotation(const Model& model, std::span<const std::array<double, 3>> turned,
                            std::span<const double> factors, std::span<const double> reached);
 
+/// Sets the factors of motions that a driver gives anew to their start, 0.
+void start_driven(const Model& model, std::vector<double>& factors);
+
 /// Takes from the velocities of a state what constraints hold still. What motions move keeps its own.
 void stop_held(const Model& model, State& state);
 

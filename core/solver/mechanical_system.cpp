@@ -77,6 +77,12 @@ void MechanicalSystem::set_factors(std::span<const double> factors) {
   place_tethers(model_, factors_, executor_.targets());
 }
 
+void MechanicalSystem::set_rest() {
+  set_factors(std::vector<double>(factors_.size(), 0.0));
+  const std::span<double> targets = executor_.targets();
+  std::fill(targets.begin(), targets.end(), 0.0);
+}
+
 void MechanicalSystem::rebuild_state() {
   known_.reset();
   state_.u.resize(start_.u.size());
@@ -304,6 +310,10 @@ void MechanicalSystem::note_step(double step) {
   taken_.D = state_.D;
   taken_.d = direction_;
   for (double& d : taken_.d) d *= step;
+}
+
+double MechanicalSystem::largest_step(double wanted) {
+  return std::min(wanted, executor_.largest_step(state_, direction_, lin_.Q));
 }
 
 void MechanicalSystem::apply(double step) {

@@ -60,15 +60,28 @@ class MechanicalSystem {
   /// Loads and boundary motions where the step's equations hold (midpoint: in its middle, else at its end): one factor
   /// for each schedule.
   void set_factors(std::span<const double> factors);
+  /// Loads and boundary motions of the model at rest: none, wherever drivers start their motions.
+  void set_rest();
   /// Starts Newton where the old velocities lead, if the step's potential is lower there than at the old state.
   void start_from_prediction();
+  /// Reads anew the motions that a driver gives, which start at their factor 0. Before the step's factors are set.
+  void restart_motions();
+  /// Goes on from a state as if it had been given it: what comes next depends on that state, the memory of its step,
+  /// and what is said here alone.
+  /// @param factors    of schedules at that state
+  /// @param pressures  reached_pressures() there; empty: none
+  void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
+  /// Newton's pressures of enclosed volumes at the end of the last step [Pa].
+  const std::vector<double>& reached_pressures() const { return surfaces_.reached(); }
+
   /// The state at the end of the step, with its velocities. Of a midpoint step the factors must be set to those of the
   /// end before; what is prescribed then is on its target.
-  State finish_step(double end_time) {
+  /// @param end  takes it in place: it keeps its memory from step to step
+  void finish_step(double end_time, StepMemory& memory, State& end);
+  void finish_step(double end_time, State& end) {
     StepMemory unused;
-    return finish_step(end_time, unused);
+    finish_step(end_time, unused, end);
   }
-  State finish_step(double end_time, StepMemory& memory);
   /// Accelerations from the equation of motion at a state (Newmark's start), zero where a node has no inertia and in
   /// what is prescribed. The factors must be set to those of its time. @param dt  of the step to come
   void start_acceleration(const State& start, double dt, StepMemory& memory);
@@ -76,15 +89,19 @@ class MechanicalSystem {
   // What Newton asks for.
   Evaluation evaluate();
   DirectionReport direction();
+  /// The part of a step along the direction that may be taken, at most the one that is wanted: user blocks may have no
+  /// energy beyond (UserBlock::largest_step()).
+  double largest_step(double wanted);
   void apply(double step);
   void save();
   void restore();
   bool has_prescribed_increment();
   bool conservative() const { return conservative_; }
-  /// Of loads without a potential, the energy of an evaluation has the work that they did since the start of the step.
+  /// Energies of states are comparable: of loads without a potential, the energy of an evaluation has the work that
+  /// they did since the start of the step.
   static constexpr bool compares_energies() { return true; }
 
-  /// Of the equilibrium that the last step of statics found, which the system still stands at.
+  /// Stability of the equilibrium that the last step of statics found, which the system still stands at.
   /// @param end   as finish_step() returned it
   /// @param made     iterations of CG in the run so far
   /// @param current  the last direction was that of a correction too small to matter
@@ -146,10 +163,11 @@ class MechanicalSystem {
   const State& state() const { return state_; }
   std::span<const double> factors() const { return factors_; }
   /// Gradient of the internal energy, loads and inertia: what supports add to hold the model (by degrees of freedom).
-  /// What acts on dependent nodes is on their hosts.
+  /// Forces on dependent nodes are on their hosts.
   std::span<const double> gradient() const { return gradient_; }
-  /// Of each dependent node, in the order of PointSet::dependents: the force with which its hosts hold it, and where it
-  /// turns their torque about it (dependents × 6) [N], [N m]. Gradient before it went to the hosts.
+  /// Forces on dependent nodes, in the order of PointSet::dependents: for each the force with which its hosts hold it
+  /// and, where it turns, their torque about it (dependents × 6) [N], [N m]. They are the gradient before it went to
+  /// the hosts.
   std::span<const double> dependent_forces() const { return dependent_forces_; }
   InternalEnergy internal_energy() const { return internal_; }
   double load_energy() const { return load_energy_; }  ///< potential of dead loads and closed surfaces [J]
@@ -165,7 +183,7 @@ class MechanicalSystem {
   TangentSolver& linear() { return tangent_; }
 
  private:
-  /// What a step changes, for save() and restore().
+  /// Increments of a step, which change in it, for save() and restore().
   struct Increment {
     std::vector<Vec3d> du;
     FrameMatrices Ds;

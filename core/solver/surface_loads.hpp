@@ -29,7 +29,7 @@ class SurfaceLoads {
   /// dV of a closed surface by degrees of freedom, at the state of the last call of add_forces().
   std::vector<double> volume_gradient(std::size_t surface, const State& state) const;
 
-  /// What rounding leaves in the forces on a connected part at the last call of add_forces() [N].
+  /// Rounding error of the forces on a connected part at the last call of add_forces() [N].
   double rounding(int part) const;
 
   // Newton's pressures: from the last step's end on, towards what a direction leads to, back to those saved.
@@ -40,6 +40,9 @@ class SurfaceLoads {
   void save() { saved_ = newton_; }
   void restore() { newton_ = saved_; }
   void finish_step() { reached_ = newton_; }
+  /// Newton's pressures at the end of the last step [Pa].
+  const std::vector<double>& reached() const { return reached_; }
+  void begin_afresh(const std::vector<double>& reached) { reached_ = reached; }
 
   const SurfaceForces& forces(std::size_t surface) const { return forces_[surface]; }
 

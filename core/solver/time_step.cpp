@@ -89,20 +89,35 @@ void MechanicalSystem::predict_strain(const StepMemory& memory) {
   for_strains(loops::StrainAlongVelocity{E, ahead.E.data(), behind.E.data(), form_.scheme == TimeScheme::newmark});
 }
 
-State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
+void MechanicalSystem::restart_motions() {
+  known_.reset();
+  start_driven(model_, reached_factors_);
+}
+
+void MechanicalSystem::begin_afresh(std::span<const double> factors, const std::vector<double>& pressures) {
+  known_.reset();
+  reached_.reset();
+  reached_factors_.assign(factors.begin(), factors.end());
+  middles_ = {};
+  static_cast<StepConstants&>(form_) = {};
+  surfaces_.begin_afresh(pressures);
+  tangent_.begin_afresh();
+}
+
+void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& end) {
   reached_factors_ = factors_;
   surfaces_.finish_step();
   reached_.reset();
   if (form_.scheme == TimeScheme::implicit_euler && !model_.has_frames()) reached_ = {state_.u, internal_.total()};
   const std::size_t n = start_.u.size();
-  State end = state_;
+  end = state_;
   end.turned = increment_.turned;
   end.time = end_time;
   end.v.assign(n, Vec3d{});
   end.Q_dot = end.D;
   end.Q_dot.set_zero();
   const bool remembers = form_.h > 0 && form_.scheme != TimeScheme::implicit_euler;
-  const bool same_step = memory.step == form_.step && memory.motion.size() == n;
+  const bool same_step = StepConstants::equal(form_.step, memory.step) && memory.motion.size() == n;
   if (remembers) {
     before_.swap(memory.motion);
     memory.motion.resize(n);
@@ -126,10 +141,9 @@ State MechanicalSystem::finish_step(double end_time, StepMemory& memory) {
     memory_.prepare(Fading::over(form_.step));
     keep_memory(end);
   }
-  if (!remembers) return end;
+  if (!remembers) return;
   memory.step = form_.step;
   if (history_.inverse_step > 0) memory.E = start_strain_;
-  return end;
 }
 
 void MechanicalSystem::start_acceleration(const State& start, double dt, StepMemory& memory) {

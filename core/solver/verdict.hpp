@@ -47,7 +47,7 @@ struct Evaluation {
 
 /// No residual above this part of a part's loads is called converged for another reason than the tolerance itself.
 inline constexpr double kLargestShare = 1e-4;
-/// What acts is told from rounding where it exceeds the floor by so much.
+/// Factor by which what acts exceeds the rounding floor where it is told from rounding.
 inline constexpr double kAboveRounding = 100;
 
 /// A free part that moves in a step by less than this part of its displacement is at rest but for rounding.

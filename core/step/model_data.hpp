@@ -21,6 +21,8 @@ class ModelData {
   ModelData& operator=(const ModelData&) = delete;
 
   const ModelView& view() const { return view_; }
+  /// Reads motions again, as many as there were.
+  void show_motions(const std::vector<PrescribedMotion>& motions) { view_.motions = motions_.show(motions); }
   void set_factors(std::span<const double> factors) {
     factors_.upload(factors);
     view_.factors = factors_.data();

@@ -151,7 +151,7 @@ struct TakeTangent {
   }
 };
 
-/// Of a term. @param surface  of each term
+/// Takes K / V* of a term into the tangent. @param surface  of each term
 struct TakeStiffness {
   SurfacesView set;
   SurfaceTangentView tangent;

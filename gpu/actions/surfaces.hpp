@@ -12,7 +12,7 @@
 
 namespace fascia::gpu {
 
-/// What a surface load says beside its faces.
+/// Constants of a surface load beside its faces.
 struct SurfaceRule {
   int schedule = 0, weight_schedule = 0;
   bool has_potential = false;
@@ -20,7 +20,7 @@ struct SurfaceRule {
   Vec3d weight{};
 };
 
-/// Of each surface at the last forces, as in SurfaceForces.
+/// Figures of each surface at the last forces, as in SurfaceForces.
 enum SurfaceFigure { kVolumeInside, kPressure, kPotential, kPressureRounding, kStiffness, kSurfaceFigures };
 
 /// The vertices, faces and shares of all surfaces, one after the other.
@@ -52,7 +52,7 @@ struct SurfacesView {
   FASCIA_HD Vec3d force(int vertex, double pressure) const { return area[vertex] * pressure + weight[vertex]; }
 };
 
-/// What products need of the surfaces, as SurfaceTangent and RankOne.
+/// Data of the surfaces that products need, as SurfaceTangent and RankOne.
 struct SurfaceTangentView {
   const Vec3d* x = nullptr;
   double* pressure = nullptr;  ///< of each surface
@@ -74,7 +74,7 @@ class Surfaces {
   /// Adds forces to the degrees of freedom. @param factors  of schedules, in the space, here and below
   void add_forces(const NodesView& nodes, const PoseView& pose, const double* factors, double* load);
 
-  /// What the last forces leave for the host: (surfaces × kSurfaceFigures) in the space.
+  /// Figures that the last forces leave for the host: (surfaces × kSurfaceFigures) in the space.
   const double* figures() const { return figures_.data(); }
   std::size_t figure_count() const { return figures_.size(); }
   /// From figures that were copied: the potential of all surfaces [J], and what rounding leaves in the forces on a
@@ -103,6 +103,12 @@ class Surfaces {
   void save() { saved_.copy_from(newton_); }
   void restore() { newton_.copy_from(saved_); }
   void finish_step() { reached_.copy_from(newton_); }
+  std::vector<double> reached() const { return reached_.downloaded(); }
+  /// @param reached  empty: none
+  void begin_afresh(const std::vector<double>& reached) {
+    reached_.set_zero();
+    if (!reached.empty()) reached_.upload(reached);
+  }
 
  private:
   void upload(const Model& model);

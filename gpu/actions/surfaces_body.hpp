@@ -42,7 +42,7 @@ Surfaces<Space>::Surfaces(const Model& model) : dofs_(at(model.dof_count())) {
               stiffness_.data(), along_.data(),    gradients_.data()};
 }
 
-/// What does not change.
+/// Uploads what does not change.
 template <class Space>
 void Surfaces<Space>::upload(const Model& model) {
   std::vector<SurfaceRule> rules;

@@ -99,6 +99,11 @@ RunReport run_explicit(const Model& model, State& state, const FactorFunction& f
   return needed().run_explicit(model, state, factors, settings, dynamics, observe);
 }
 
+std::unique_ptr<ModelStepper> make_stepper(const Model& model, const State& start, const SolverSettings& settings,
+                                           const SteppingSettings& stepping) {
+  return needed().make_stepper(model, start, settings, stepping);
+}
+
 DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
                           const SolverSettings& settings, std::span<const double> direction) {
   return needed().evaluate(model, state, factors, settings, direction);

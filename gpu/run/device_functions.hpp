@@ -16,6 +16,7 @@ struct DeviceFunctions {
   decltype(&gpu::run_statics) run_statics;
   decltype(&gpu::run_implicit) run_implicit;
   decltype(&gpu::run_explicit) run_explicit;
+  decltype(&gpu::make_stepper) make_stepper;
   decltype(&gpu::evaluate) evaluate;
 };
 

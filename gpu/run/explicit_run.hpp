@@ -91,8 +91,8 @@ class ReachedExplicitStep final : public ReachedStep {
   bool fetched_ = false;
 };
 
-/// As run_explicit() of the host. Whether the motion is sound is looked at every so many steps, and where the state is
-/// seen or kept; the space remembers the step at which it was not.
+/// Explicit dynamics in a space, like run_explicit() of the host. Whether the motion is sound is looked at every so
+/// many steps, and where the state is seen or kept; the space remembers the step at which it was not.
 template <class Space>
 RunReport run_explicit_in(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& solver,
                           const ExplicitSettings& settings, const DeviceObserver& observe) {

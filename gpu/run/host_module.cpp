@@ -19,6 +19,7 @@ const DeviceFunctions kHostFunctions{FASCIA_INTERFACE_TAG,
                                      run_statics_on_host,
                                      run_implicit_on_host,
                                      run_explicit_on_host,
+                                     make_stepper_on_host,
                                      evaluate_on_host};
 
 }  // namespace

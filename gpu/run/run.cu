@@ -10,7 +10,7 @@ const DeviceFunctions& cuda_functions() {
   static const DeviceFunctions functions{FASCIA_INTERFACE_TAG,       FASCIA_CUDA,
                                          find_cuda_devices,          run_statics_in<CudaSpace>,
                                          run_implicit_in<CudaSpace>, run_explicit_in<CudaSpace>,
-                                         evaluate_in<CudaSpace>};
+                                         make_stepper_in<CudaSpace>, evaluate_in<CudaSpace>};
   return functions;
 }
 

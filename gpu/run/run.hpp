@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/run/explicit_dynamics.hpp"
+#include "core/run/model_stepper.hpp"
 
 #include <functional>
 #include <memory>
@@ -28,7 +29,12 @@ RunReport run_implicit(const Model& model, State& state, const FactorFunction& f
 RunReport run_explicit(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& settings,
                        const ExplicitSettings& dynamics, const DeviceObserver& observe);
 
-/// What a model has at a state, for comparisons.
+/// fascia::make_stepper() with everything on the device.
+/// @throws NoDevice, DeviceMemoryError, DeviceLost, NotShared  also from its steps, but the first
+std::unique_ptr<ModelStepper> make_stepper(const Model& model, const State& start, const SolverSettings& settings,
+                                           const SteppingSettings& stepping);
+
+/// Evaluation of a model at a state, for comparisons.
 struct DeviceEvaluation {
   Evaluation judged;
   InternalEnergy energy;
@@ -40,7 +46,8 @@ struct DeviceEvaluation {
 DeviceEvaluation evaluate(const Model& model, const State& state, std::span<const double> factors,
                           const SolverSettings& settings, std::span<const double> direction);
 
-/// The same in the space of the host: slow, and for tests of what the device computes.
+/// run_statics(), run_implicit(), run_explicit() and evaluate() in the space of the host: slow, and for tests of what
+/// the device computes.
 RunReport run_statics_on_host(const Model& model, State& state, const FactorFunction& factors,
                               const SolverSettings& settings, const StaticsSettings& statics,
                               const DeviceObserver& observe);
@@ -50,6 +57,8 @@ RunReport run_implicit_on_host(const Model& model, State& state, const FactorFun
 RunReport run_explicit_on_host(const Model& model, State& state, const FactorFunction& factors,
                                const SolverSettings& settings, const ExplicitSettings& dynamics,
                                const DeviceObserver& observe);
+std::unique_ptr<ModelStepper> make_stepper_on_host(const Model& model, const State& start,
+                                                   const SolverSettings& settings, const SteppingSettings& stepping);
 DeviceEvaluation evaluate_on_host(const Model& model, const State& state, std::span<const double> factors,
                                   const SolverSettings& settings, std::span<const double> direction);
 

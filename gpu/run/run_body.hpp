@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/run/drivers_body.hpp"
+#include "core/run/system_stepper.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"
 #include "gpu/system/system.hpp"
@@ -8,7 +9,8 @@
 /// The bodies of runs, for the files that instantiate them.
 namespace fascia::gpu {
 
-/// As of a MechanicalSystem, by one of the host.
+/// True where load control came to a limit point, as a MechanicalSystem of the host finds it; false for more than
+/// System::kMostOfFactor free degrees of freedom.
 template <class Space>
 bool near_limit_point(System<Space>& system, const DeviceState<Space>& pose, const FactorFunction& factors,
                       double reached) {
@@ -18,7 +20,7 @@ bool near_limit_point(System<Space>& system, const DeviceState<Space>& pose, con
   return fascia::near_limit_point(system.host(), state, factors, reached);
 }
 
-/// Of the equilibrium at the end of statics: by a factorisation on the host where that is cheap, as of a
+/// Stability of the equilibrium at the end of statics: by a factorisation on the host where that is cheap, as of a
 /// MechanicalSystem; else by conjugate gradients on the device.
 template <class Space>
 Stability end_stability(System<Space>& system, const DeviceState<Space>& end, const RunReport& run, bool) {
@@ -36,8 +38,9 @@ Stability end_stability(System<Space>& system, const DeviceState<Space>& end, co
 template <class Space>
 class StepOfSystem final : public ReachedStep {
  public:
-  StepOfSystem(System<Space>& system, const DeviceState<Space>& pose, State& state)
-      : system_(system), pose_(pose), state_(state) {}
+  /// @param fetched  `state` is that of `pose`
+  StepOfSystem(System<Space>& system, const DeviceState<Space>& pose, State& state, bool fetched = false)
+      : system_(system), pose_(pose), state_(state), fetched_(fetched) {}
   InternalEnergy energy() const override { return system_.internal_energy(); }
   const State& state() override {
     if (fetched_) return state_;
@@ -56,7 +59,7 @@ class StepOfSystem final : public ReachedStep {
   System<Space>& system_;
   const DeviceState<Space>& pose_;
   State& state_;
-  bool fetched_ = false;
+  bool fetched_;
 };
 
 /// Calls run(system, pose, observer) with the state in the space, and brings it back.
@@ -84,16 +87,28 @@ RunReport run_statics_in(const Model& model, State& state, const FactorFunction&
   });
 }
 
+/// @throws NotShared  what several GPUs do not compute together
+inline void require_shared(const Model& model, const SolverSettings& settings, TimeScheme scheme) {
+  // Tiles know the strains of one state before, and no others.
+  if (settings.devices.size() > 1 && model.points.damped && scheme != TimeScheme::implicit_euler)
+    throw NotShared("several GPUs share stiffness damping with kind = \"implicit-euler\" alone");
+}
+
 template <class Space>
 RunReport run_implicit_in(const Model& model, State& state, const FactorFunction& factors,
                           const SolverSettings& settings, const DynamicsSettings& dynamics,
                           const DeviceObserver& observe) {
-  // Tiles know the strains of one state before, and no others.
-  if (settings.devices.size() > 1 && model.points.damped && dynamics.scheme != TimeScheme::implicit_euler)
-    throw NotShared("several GPUs share stiffness damping with kind = \"implicit-euler\" alone");
+  require_shared(model, settings, dynamics.scheme);
   return run_in<Space>(model, state, settings, observe, [&](auto& system, auto& pose, const auto& watch) {
     return fascia::run_implicit(system, pose, factors, settings, dynamics, watch);
   });
+}
+
+template <class Space>
+std::unique_ptr<ModelStepper> make_stepper_in(const Model& model, const State& start, const SolverSettings& settings,
+                                              const SteppingSettings& stepping) {
+  if (!stepping.statics) require_shared(model, settings, stepping.scheme);
+  return std::make_unique<SystemStepper<System<Space>, StepOfSystem<Space>>>(model, start, settings, stepping);
 }
 
 template <class Space>

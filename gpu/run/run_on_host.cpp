@@ -21,6 +21,11 @@ RunReport run_explicit_on_host(const Model& model, State& state, const FactorFun
   return run_explicit_in<HostSpace>(model, state, factors, settings, dynamics, observe);
 }
 
+std::unique_ptr<ModelStepper> make_stepper_on_host(const Model& model, const State& start,
+                                                   const SolverSettings& settings, const SteppingSettings& stepping) {
+  return make_stepper_in<HostSpace>(model, start, settings, stepping);
+}
+
 DeviceEvaluation evaluate_on_host(const Model& model, const State& state, std::span<const double> factors,
                                   const SolverSettings& settings, std::span<const double> direction) {
   return evaluate_in<HostSpace>(model, state, factors, settings, direction);

@@ -74,6 +74,20 @@ struct DeviceMemory {
   double step = 0;
   Array<Space, PoseMotion> motion, velocity, acceleration;
   Array<Space, double> E;
+
+  DeviceMemory() = default;
+  explicit DeviceMemory(const StepMemory& memory) : step(memory.step) {
+    motion.upload(memory.motion);
+    velocity.upload(memory.velocity);
+    acceleration.upload(memory.acceleration);
+    E.upload(memory.E);
+  }
+  StepMemory downloaded() const {
+    StepMemory memory{step, motion.downloaded(), velocity.downloaded(), acceleration.downloaded(), {}};
+    memory.E.resize(E.size());
+    E.download(memory.E);
+    return memory;
+  }
 };
 
 }  // namespace fascia::gpu

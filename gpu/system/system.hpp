@@ -46,12 +46,18 @@ class System {
   void begin_step(const Pose& start, double dt) { begin_step(start, dt, TimeScheme::implicit_euler, {}); }
   void begin_step(const Pose& start, double dt, TimeScheme scheme, const Memory& memory);
   void set_factors(std::span<const double> factors);
+  void set_rest();
   void start_from_prediction();
-  Pose finish_step(double end_time) {
-    Memory unused;
-    return finish_step(end_time, unused);
+  void restart_motions();
+  void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
+  std::vector<double> reached_pressures() const {
+    return surfaces_.empty() ? std::vector<double>{} : surfaces_.reached();
   }
-  Pose finish_step(double end_time, Memory& memory);
+  void finish_step(double end_time, Memory& memory, Pose& end);
+  void finish_step(double end_time, Pose& end) {
+    Memory unused;
+    finish_step(end_time, unused, end);
+  }
   void start_acceleration(const Pose& start, double dt, Memory& memory);
   void look_at(const Pose& state, double h);
   /// Adds what supports carry of their own mass, see MechanicalSystem.
@@ -60,6 +66,7 @@ class System {
 
   Evaluation evaluate();
   DirectionReport direction();
+  static double largest_step(double wanted) { return wanted; }  // user blocks are not here
   void apply(double step);
   void save();
   void restore();
@@ -78,17 +85,17 @@ class System {
   InternalEnergy internal_energy() const { return internal_; }
   /// By degrees of freedom, as MechanicalSystem::gradient().
   std::vector<double> gradient() const { return gradient_.downloaded(); }
-  /// As MechanicalSystem::dependent_forces().
+  /// Forces on dependent nodes, as MechanicalSystem::dependent_forces().
   std::vector<double> dependent_forces() const { return dependent_forces_.downloaded(); }
   /// Reads what acts at the last evaluation, but for tether_forces.
   void read(const ReachedParts& parts, ReachedForces& out);
-  /// As CpuExecutor::targets(); empty where nothing is tethered.
+  /// Targets of tethers, as CpuExecutor::targets(); empty where nothing is tethered.
   std::vector<double> tether_targets();
   /// K d at the last evaluation, by degrees of freedom in world axes.
   std::vector<double> product(std::span<const double> d);
   /// A system of the host with Cholesky's factors, made when it is first asked for.
   MechanicalSystem& host();
-  /// As MechanicalSystem::stability(), by conjugate gradients.
+  /// Stability of an equilibrium, as MechanicalSystem::stability(), by conjugate gradients.
   Stability stability(const Pose& end) {
     return stability_of(*this, end, Pose(State::at_rest(model_)), [&](bool) { return softest(); });
   }
@@ -118,7 +125,7 @@ class System {
   void evaluate_forces(bool quantities = true);
   void evaluate_loads();
   void add_other_loads();
-  /// Of the surfaces' figures in the report.
+  /// The surfaces' figures in the report.
   std::span<const double> figures() const {
     return std::span(report_values_)
         .subspan(report_values_.size() - 3 - surfaces_.figure_count(), surfaces_.figure_count());

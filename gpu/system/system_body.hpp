@@ -175,7 +175,7 @@ void System<Space>::add_other_loads() {
               surfaces_.figure_count() * sizeof(double));
 }
 
-/// What the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
+/// Finds what the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
 template <class Space>
 void System<Space>::find_prescribed() {
   const ModelView& m = data_.view();

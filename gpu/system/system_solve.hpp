@@ -113,7 +113,7 @@ void System<Space>::apply_tangent(const CgView<V>& v) {
   Space::template sum<1>(n, finish, kernels::TakeCurvature<V>{v});
 }
 
-/// What blocks make of the direction in world axes, of 64 bits, with what depends on it.
+/// Product of the blocks with the direction in world axes, of 64 bits, and with what depends on it.
 template <class Space>
 template <class T, class V>
 void System<Space>::multiply(const kernels::ProductView<T, V>& w) {
@@ -142,7 +142,8 @@ std::uint64_t System<Space>::operator_key() {
   return operator_count_;
 }
 
-/// What is left of the right-hand side is not what tiles judge by: it takes one more product.
+/// CG in tiles. The report's norm of what is left of the right-hand side is not what tiles judge by: it takes one more
+/// product.
 template <class Space>
 CgReport System<Space>::solve_in_tiles(const CgOptions& options) {
   CgReport report = tiles_->solve(cg_.rhs(), cg_.solution(), options);
@@ -189,7 +190,7 @@ CgOptions System<Space>::solve_options() const {
   return options;
 }
 
-/// Of the full tangent at the present state, which was evaluated.
+/// The softest direction of the full tangent at the present state, which was evaluated.
 template <class Space>
 SoftestDirection System<Space>::softest() {
   linearize(Tangent::full, true);

@@ -137,6 +137,14 @@ void System<Space>::set_factors(std::span<const double> factors) {
 }
 
 template <class Space>
+void System<Space>::set_rest() {
+  set_factors(std::vector<double>(factors_.size(), 0.0));
+  if (model_.tethers.empty()) return;
+  blocks_.points().targets().set_zero();
+  factors_are_placed_ = false;
+}
+
+template <class Space>
 void System<Space>::place_tethers() {
   if (model_.tethers.empty()) return;
   std::vector<double> targets(blocks_.points().targets().size());
@@ -167,12 +175,35 @@ void System<Space>::start_from_prediction() {
 }
 
 template <class Space>
-typename System<Space>::Pose System<Space>::finish_step(double end_time, Memory& memory) {
+void System<Space>::restart_motions() {
+  known_.reset();
+  data_.show_motions(model_.motions);
+  factors_are_placed_ = false;
+  start_driven(model_, reached_factors_);
+}
+
+template <class Space>
+void System<Space>::begin_afresh(std::span<const double> factors, const std::vector<double>& pressures) {
+  known_.reset();
+  reached_.reset();
+  reached_factors_.assign(factors.begin(), factors.end());
+  middles_ = {};
+  step_ = {};
+  data_.show_motions(model_.motions);
+  factors_are_placed_ = false;
+  if (!surfaces_.empty()) surfaces_.begin_afresh(pressures);
+  kept_levels_ = {};
+  blocks_or_levels_ = BlocksOrLevels(costs_of_levels());
+  too_slow_ = false;
+  if (host_) host_->system.begin_afresh(factors, {});
+}
+
+template <class Space>
+void System<Space>::finish_step(double end_time, Memory& memory, Pose& end) {
   reached_factors_ = factors_;
   if (!surfaces_.empty()) surfaces_.finish_step();
   const bool remembers = step_.h > 0 && step_.scheme != TimeScheme::implicit_euler;
-  const bool same_step = memory.step == step_.step && memory.motion.size() == u_.size();
-  Pose end;
+  const bool same_step = StepConstants::equal(step_.step, memory.step) && memory.motion.size() == u_.size();
   end.u.resize(u_.size());
   end.v.resize(u_.size());
   end.D.resize(D_.size());
@@ -209,10 +240,9 @@ typename System<Space>::Pose System<Space>::finish_step(double end_time, Memory&
   reached_.reset();
   if (step_.scheme == TimeScheme::implicit_euler && !turning_ && !damped_ && model_.tethers.empty())
     reached_ = {end.step, internal_.total()};
-  if (!remembers) return end;
+  if (!remembers) return;
   memory.step = step_.step;
   if (damped_) memory.E.copy_from(start_E_);
-  return end;
 }
 
 template <class Space>

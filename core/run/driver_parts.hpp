@@ -1,0 +1,62 @@
+#pragma once
+
+#include "core/run/drivers.hpp"
+
+#include <algorithm>
+
+/// Parts that the drivers share: what a run counts, and when a step is accepted.
+namespace fascia::drivers {
+
+/// Solves of one load step that may fail before the step does, and of a time step as often as it may be halved: where
+/// short steps fail and succeed in turn, more of them only take time.
+constexpr int kMostFailures = 16, kMostHalvings = 8;
+/// Load steps in a row that conjugate gradients do not solve, however short.
+constexpr int kMostUnsolved = 8;
+
+inline void count(RunReport& run, const NewtonReport& newton) {
+  run.newton_iterations += newton.iterations;
+  run.linear_iterations += newton.linear_iterations;
+  run.indefinite_solves += newton.indefinite ? 1 : 0;
+}
+
+/// A time step during which some tangent was not positive definite: at its length it may have several solutions.
+inline void note_indefinite(RunReport& run, int solves_before, double end) {
+  if (run.indefinite_solves == solves_before) return;
+  if (run.indefinite_steps++ == 0) run.first_indefinite = end;
+}
+
+inline bool acceptable(const NewtonReport& newton, const SolverSettings& settings) {
+  if (newton.status == NewtonStatus::converged) return true;
+  const bool usable = newton.status == NewtonStatus::limit || newton.status == NewtonStatus::stalled ||
+                      newton.status == NewtonStatus::unsolved;
+  return settings.proceed_on_limit && usable && newton.last.finite();
+}
+
+inline void accept(RunReport& run, const NewtonReport& newton, const SolverSettings& settings, double time) {
+  ++run.steps;
+  run.time = time;
+  run.residual = std::max(run.residual, newton.last.relative);
+  run.steps_at_limit += newton.status != NewtonStatus::converged;
+  run.convergence = convergence_sentence(newton, settings);
+  run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor);
+}
+
+/// Report of a step taken in halves: the worse verdict of both, with the larger residual.
+inline NewtonReport worse(const NewtonReport& first, NewtonReport second) {
+  if (first.last.excess > second.last.excess) second.last = first.last;
+  if (second.status == NewtonStatus::converged) second.status = first.status;
+  if (second.convergence < first.convergence) second.convergence = first.convergence;
+  return second;
+}
+
+/// The last tangent is that of the end too, but for the last correction: not after a step that reached it from afar.
+inline bool has_tangent_of_end(const NewtonReport& newton, const Model& model) {
+  constexpr double near = 1e-3;
+  return newton.iterations > 0 && (newton.last_tangent <= near || model.is_linear());
+}
+
+inline RunStatus failure_status(const NewtonReport& newton) {
+  return newton.status == NewtonStatus::not_finite ? RunStatus::diverged : RunStatus::not_converged;
+}
+
+}  // namespace fascia::drivers

@@ -1,0 +1,122 @@
+#pragma once
+
+#include "core/run/driver_parts.hpp"
+
+#include <sstream>
+#include <utility>
+
+namespace fascia {
+
+/// Implicit dynamics, one time step after the other, with what the scheme and the reports keep of the steps before.
+///
+/// @tparam System  a MechanicalSystem, or one of the same functions on another processor
+template <class System>
+class ImplicitStepper {
+ public:
+  using Pose = typename System::Pose;
+  using Memory = typename System::Memory;
+
+  /// @param system, settings  stay with the caller
+  ImplicitStepper(System& system, const SolverSettings& settings, TimeScheme scheme)
+      : system_(system), settings_(settings), scheme_(scheme) {}
+
+  /// Advances the state by a time step, in halves where Newton's method fails or a boundary turns too far at once, down
+  /// to 1/256. Where that fails too, the state stays as it was, and the run's status, message and failed state say why.
+  /// @param end, dt  end and length of the step [s]
+  /// @param run      counts the step, and is not touched otherwise
+  NewtonReport step(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
+    using namespace drivers;
+    std::swap(earlier_, before_);
+    before_ = state;
+    failures_ = 0;
+    const int solves = run.indefinite_solves;
+    const NewtonReport report = advanced(state, factors, end, dt, run);
+    note_indefinite(run, solves, end);
+    if (!acceptable(report, settings_)) {
+      fail(report, end, run);
+      state = before_;
+      begin_afresh();
+      return report;
+    }
+    accept(run, report, settings_, end);
+    if (failures_ > 0 && run.halved_steps++ == 0) run.first_halved = end;
+    as_long_as_before_ = last_step_ > 0 && StepConstants::equal(dt, last_step_);
+    last_step_ = dt;
+    return report;
+  }
+
+  /// Has the system look at the state that the last step reached, where that step's equations hold elsewhere.
+  void look_back(const Pose& state) {
+    if (!system_.solves_for_middle()) return;
+    system_.look_back(state, before_, as_long_as_before_ ? earlier_ : Pose{}, last_step_);
+  }
+
+  /// Numbers of the steps before that the scheme keeps.
+  const Memory& memory() const { return memory_; }
+  /// Goes on from another state than the one that it reached.
+  void begin_afresh(Memory memory = {}) {
+    memory_ = std::move(memory);
+    last_step_ = 0;
+  }
+
+ private:
+  /// Leaves the state as it was where a step throws, too.
+  NewtonReport advanced(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
+    try {
+      return advance(state, factors, end, dt, drivers::kMostHalvings, run);
+    } catch (...) {
+      state = before_;
+      begin_afresh();
+      throw;
+    }
+  }
+
+  NewtonReport advance(Pose& state, const FactorFunction& factors, double end, double dt, int depth, RunReport& run) {
+    using namespace drivers;
+    const TimeScheme taken = scheme_of_step(scheme_, dt, memory_);
+    const double solved_at = taken == TimeScheme::midpoint ? end - 0.5 * dt : end;
+    if (taken == TimeScheme::newmark && memory_.acceleration.empty()) {
+      system_.set_factors(factors(end - dt));
+      system_.start_acceleration(state, dt, memory_);
+    }
+    system_.begin_step(state, dt, taken, memory_);
+    system_.set_factors(factors(solved_at));
+    NewtonReport report;
+    if (depth == 0 || system_.prescribed_rotation() <= kRotationPerStep) {
+      system_.start_from_prediction();
+      Newton newton(system_, settings_, {run.steps + 1, end});
+      report = newton.solve();
+      count(run, report);
+      if (acceptable(report, settings_)) {
+        if (solved_at < end) system_.set_factors(factors(end));
+        system_.finish_step(end, memory_, state);
+        return report;
+      }
+      if (depth == 0 || ++failures_ > kMostHalvings) return report;
+    }
+    report = advance(state, factors, end - 0.5 * dt, 0.5 * dt, depth - 1, run);
+    if (!acceptable(report, settings_)) return report;
+    return worse(report, advance(state, factors, end, 0.5 * dt, depth - 1, run));
+  }
+
+  void fail(const NewtonReport& report, double end, RunReport& run) {
+    keep_failure(run, system_);
+    std::ostringstream message;
+    message << "step " << run.steps + 1 << " (t = " << end << " s): " << failure_sentence(report, settings_)
+            << "; try a smaller time_step, damping, or newton.on_limit = \"continue\"";
+    run.message = message.str();
+    run.status = drivers::failure_status(report);
+    run.residual = report.last.finite() ? report.last.relative : 0.0;
+  }
+
+  System& system_;
+  const SolverSettings& settings_;
+  TimeScheme scheme_;
+  Memory memory_;
+  Pose before_, earlier_;           ///< at the starts of the last two steps
+  double last_step_ = 0;            ///< [s]; 0: none
+  bool as_long_as_before_ = false;  ///< both were of one length
+  int failures_ = 0;                ///< of the present time step
+};
+
+}  // namespace fascia
