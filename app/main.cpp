@@ -10,13 +10,14 @@
 #include "app/run/messages.hpp"
 #include "app/run/process_memory.hpp"
 #include "app/run/run_scene.hpp"
-#include "app/scene/errors.hpp"
 #include "app/study/study.hpp"
 #include "app/tools.hpp"
 #include "app/verify/verify.hpp"
 #include "app/version.hpp"
+#include "assembly/specification/errors.hpp"
 #include "core/base/errors.hpp"
 #include "core/solver/settings.hpp"
+#include "fascia/stepper.hpp"
 
 #include <fcntl.h>
 #include <fmt/ranges.h>
@@ -320,8 +321,8 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) == 0) return status;
     say("fascia: standard output cannot be written: {}\n", std::strerror(errno));
     return kFileProblem;
-  } catch (const SceneError& e) {
-    for (const Diagnostic& d : e.diagnostics()) say("{}\n", d.text());
+  } catch (const fascia::SceneError& e) {
+    for (const fascia::Diagnostic& d : e.diagnostics()) say("{}\n", d.text());
     return kWrongInput;
   } catch (const fascia::InputError& e) {
     say("{}\n", e.what());
@@ -332,7 +333,7 @@ int main(int argc, char** argv) {
   } catch (const fascia::FileError& e) {
     say("{}\n", e.what());
     return kFileProblem;
-  } catch (const BackendError& e) {
+  } catch (const fascia::BackendError& e) {
     say("{}\n", e.what());
     return kNoBackend;
   } catch (const std::bad_alloc&) {

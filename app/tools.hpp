@@ -8,6 +8,11 @@
 
 /// Commands beside `run`, `check` and `list`, and what a run asks of their code: a module, fascia-tools.so, that is
 /// loaded when one is asked for. A plain run waits neither for its compiler nor for the loader.
+namespace fascia {
+struct Scene;
+struct Simulation;
+}  // namespace fascia
+
 namespace fascia::app {
 
 class ErrorEstimate;
@@ -16,8 +21,6 @@ struct CompareOptions;
 struct ExplainOptions;
 struct ExtremesOptions;
 struct RerunOptions;
-struct Scene;
-struct Simulation;
 struct StudyOptions;
 struct TuneOptions;
 struct VerifyOptions;

@@ -1,8 +1,9 @@
 // Stages of the time steps of a scene: step_benchmark SCENE [--set KEY=VALUE]...
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
-#include "app/run/solver_settings.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
+#include "assembly/specification/errors.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/run/drivers.hpp"
@@ -181,7 +182,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return fascia::app::run(argc, argv);
-  } catch (const fascia::app::SceneError& e) {
+  } catch (const fascia::SceneError& e) {
     for (const auto& d : e.diagnostics()) fmt::print(stderr, "{}\n", d.text());
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());

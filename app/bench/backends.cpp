@@ -1,9 +1,10 @@
 #include "app/bench/benchmark.hpp"
 #include "app/run/run_scene.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/run/drivers.hpp"
+#include "fascia/stepper.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
 #include "app/bench/command.hpp"
+#include "assembly/simulation/simulation.hpp"
 
 #include <filesystem>
 #include <functional>

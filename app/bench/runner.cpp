@@ -1,8 +1,9 @@
 #include "app/bench/benchmark.hpp"
 #include "app/reader/parse.hpp"
+#include "app/run/load_scene.hpp"
 #include "app/run/memory.hpp"
 #include "app/run/process_memory.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/specification/errors.hpp"
 #include "core/base/errors.hpp"
 #include "gpu/space/device.hpp"
 
@@ -78,7 +79,7 @@ std::optional<Simulation> built(const BenchmarkCase& c, std::string& reason) {
     return std::nullopt;
   }
   try {
-    return build_simulation(std::move(scene));
+    return build_within_memory(std::move(scene));
   } catch (const SceneError& e) {
     reason = e.diagnostics().front().message;
   } catch (const std::bad_alloc&) {

@@ -1,6 +1,6 @@
 #include "app/diagnosis/condition.hpp"
 
-#include "app/run/solver_settings.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/solver/mechanical_system.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/diagnosis/failure.hpp"
 
-#include "app/diagnosis/places.hpp"
 #include "app/scene/laws.hpp"
+#include "assembly/simulation/places.hpp"
 #include "core/base/index.hpp"
 #include "core/node/dof_filter.hpp"
 

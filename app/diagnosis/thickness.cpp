@@ -1,6 +1,6 @@
 #include "app/diagnosis/thickness.hpp"
 
-#include "app/plausible/readable.hpp"
+#include "assembly/specification/readable.hpp"
 #include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 

@@ -2,9 +2,10 @@
 
 #include "app/estimate/measure.hpp"
 #include "app/estimate/twin_runs.hpp"
-#include "app/plausible/readable.hpp"
 #include "app/reader/parse.hpp"
 #include "app/results/probes.hpp"
+#include "app/run/load_scene.hpp"
+#include "assembly/specification/readable.hpp"
 #include "core/base/clock.hpp"
 
 #include <fmt/format.h>
@@ -83,7 +84,7 @@ std::unique_ptr<Simulation> coarsest_mesh(const Simulation& s, const EstimatePla
   std::vector<std::string> overrides = s.scene.overrides;
   overrides.insert(overrides.end(), coarsest->twin.overrides.begin(), coarsest->twin.overrides.end());
   try {
-    return std::make_unique<Simulation>(build_simulation(parse_scene_text(s.scene.text, s.scene.path, overrides)));
+    return std::make_unique<Simulation>(build_within_memory(parse_scene_text(s.scene.text, s.scene.path, overrides)));
   } catch (const std::exception&) {  // the twin's own run says why
     return nullptr;
   }

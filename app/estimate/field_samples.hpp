@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
 #include "app/estimate/series.hpp"
+#include "assembly/simulation/simulation.hpp"
 
 #include <string>
 #include <vector>

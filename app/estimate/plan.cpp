@@ -1,6 +1,6 @@
 #include "app/estimate/plan.hpp"
 
-#include "app/scene/errors.hpp"
+#include "assembly/specification/errors.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 #include "app/estimate/resolution.hpp"
 
-#include "app/assembly/regions.hpp"
+#include "assembly/simulation/regions.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -10,6 +10,7 @@
 #include "app/reader/parse.hpp"
 #include "app/results/run_text.hpp"
 #include "app/run/interruption.hpp"
+#include "app/run/load_scene.hpp"
 #include "app/run/messages.hpp"
 #include "app/run/process_memory.hpp"
 #include "app/run/run_scene.hpp"
@@ -85,7 +86,7 @@ class Explainer {
     add_probes();
     e_.scene = parse_scene_file(options.scene, e_.overrides);
     const double program = peak_memory();
-    e_.bodies = profile_of(build_simulation(e_.scene));
+    e_.bodies = profile_of(build_within_memory(e_.scene));
     memory_program_ = program;
     memory_built_ = peak_memory();
   }

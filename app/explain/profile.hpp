@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
 #include "app/explain/explanation.hpp"
+#include "assembly/simulation/simulation.hpp"
 
 namespace fascia::app {
 

@@ -1,9 +1,9 @@
 #include "app/estimate/resolution.hpp"
 #include "app/explain/variants.hpp"
 #include "app/reader/parse.hpp"
-#include "app/scene/errors.hpp"
 #include "app/scene/laws.hpp"
 #include "app/scene/toml_text.hpp"
+#include "assembly/specification/errors.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
 #include "app/explain/suggestions.hpp"
 
 #include "app/reader/parse.hpp"
-#include "app/scene/errors.hpp"
 #include "app/study/tables.hpp"
+#include "assembly/specification/errors.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/scene/scene.hpp"
+#include "assembly/specification/scene.hpp"
 
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 #include "app/need/kept_costs.hpp"
 
 #include "app/machine.hpp"
-#include "app/plausible/readable.hpp"
+#include "assembly/specification/readable.hpp"
 
 #include <fmt/format.h>
 

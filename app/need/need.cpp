@@ -1,6 +1,5 @@
 #include "app/need/need.hpp"
 
-#include "app/assembly/simulation.hpp"
 #include "app/estimate/resolution.hpp"
 #include "app/need/chosen.hpp"
 #include "app/need/report.hpp"
@@ -8,13 +7,15 @@
 #include "app/need/search.hpp"
 #include "app/need/simplify.hpp"
 #include "app/need/time_search.hpp"
-#include "app/plausible/readable.hpp"
 #include "app/reader/parse.hpp"
 #include "app/run/interruption.hpp"
+#include "app/run/load_scene.hpp"
 #include "app/run/messages.hpp"
 #include "app/run/process_memory.hpp"
 #include "app/run/temporary_folder.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/specification/errors.hpp"
+#include "assembly/specification/readable.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "io/files.hpp"
@@ -32,7 +33,8 @@ namespace fs = std::filesystem;
 /// What of a scene is wrong shows with any choice: it is told before others are tried. @return the largest size [m]
 double check_first(const Trials& trials, const NeedChoice& first) {
   double size = 0;
-  for (const SimulatedBody& b : build_simulation(trials.scene_of(first)).bodies) size = std::max(size, b.body->size());
+  for (const SimulatedBody& b : build_within_memory(trials.scene_of(first)).bodies)
+    size = std::max(size, b.body->size());
   return size;
 }
 

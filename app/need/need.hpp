@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/run/run_scene.hpp"
-#include "app/scene/scene.hpp"
+#include "assembly/specification/scene.hpp"
 
 namespace fascia::app {
 

@@ -1,7 +1,7 @@
 #include "app/need/open_scene.hpp"
 
-#include "app/assembly/read_files.hpp"
 #include "app/scene/toml_text.hpp"
+#include "assembly/bodies/read_files.hpp"
 #include "io/mesh/mesh_reader.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +45,7 @@ std::vector<double> box_around(const Body& body) {
     return extents(d);
   }
   const auto& file = std::get<FileDomain>(body.domain);
-  const Mesh mesh = read_for(file.place, [&] { return io::read_mesh(file.path); });
+  const Mesh mesh = read_for(file.place, file.path, file.read, MidNodes::drop);
   Vec3d low{{INFINITY, INFINITY, INFINITY}}, high = -1 * low;
   for (const Vec3d& p : mesh.points)
     for (int i = 0; i < 3; ++i) {
@@ -103,7 +103,8 @@ class Opening {
                line = std::holds_alternative<LineDomain>(body_.domain);
     const bool box = std::holds_alternative<BoxDomain>(body_.domain);
     open_.dimension = line ? 1 : surface ? 2 : 3;
-    // A grid around a curved body needs inner cells; rigid frames of a solid need three through it (manual, section 5).
+    // A grid around a curved body needs inner cells; rigid frames of a solid need three through it (manual, Meshless
+    // bodies).
     const int least = line || surface ? 4 : box ? 2 : 3;
     if (body_.affine || !says("frames.kind")) family("affine frames", {}, line || surface ? 2 : box ? 1 : 3);
     if (!body_.affine) open_.families.insert(open_.families.begin(), Family{"rigid frames", {}, least});

@@ -1,9 +1,9 @@
 #include "app/need/report.hpp"
 
 #include "app/estimate/resolution.hpp"
-#include "app/plausible/readable.hpp"
 #include "app/results/probes.hpp"
 #include "app/scene/diagnostics.hpp"
+#include "assembly/specification/readable.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 #include "app/need/search.hpp"
 
 #include "app/need/shape_cells.hpp"
-#include "app/plausible/readable.hpp"
+#include "assembly/specification/readable.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "app/need/simplify.hpp"
 
 #include "app/explain/variants.hpp"
-#include "app/plausible/readable.hpp"
 #include "app/scene/diagnostics.hpp"
 #include "app/scene/toml_text.hpp"
+#include "assembly/specification/readable.hpp"
 
 #include <fmt/format.h>
 

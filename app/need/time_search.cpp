@@ -1,6 +1,6 @@
 #include "app/need/time_search.hpp"
 
-#include "app/plausible/readable.hpp"
+#include "assembly/specification/readable.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "app/need/trials.hpp"
 
-#include "app/plausible/readable.hpp"
 #include "app/reader/parse.hpp"
 #include "app/scene/diagnostics.hpp"
 #include "app/scene/toml_text.hpp"
+#include "assembly/specification/readable.hpp"
 
 #include <fmt/format.h>
 

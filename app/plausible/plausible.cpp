@@ -1,7 +1,7 @@
 #include "app/plausible/plausible.hpp"
 
-#include "app/plausible/readable.hpp"
 #include "app/scene/laws.hpp"
+#include "assembly/specification/readable.hpp"
 #include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
 
 /// Looks for what a user of a scene cannot have meant, and warns with line and remedy. The limits are wide: they are
 /// crossed by a unit that is missing or wrong, a mesh in millimetres, a key at the wrong place.

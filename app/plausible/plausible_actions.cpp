@@ -1,6 +1,6 @@
 #include "app/plausible/plausible.hpp"
-#include "app/plausible/readable.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/specification/errors.hpp"
+#include "assembly/specification/readable.hpp"
 #include "core/base/index.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 #include "app/plausible/plausible.hpp"
-#include "app/plausible/readable.hpp"
+#include "assembly/specification/readable.hpp"
 #include "core/base/index.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
-#include "app/actions/schedule.hpp"
 #include "app/plausible/plausible.hpp"
-#include "app/plausible/readable.hpp"
+#include "assembly/specification/readable.hpp"
+#include "assembly/specification/schedule.hpp"
 
 #include <fmt/format.h>
 

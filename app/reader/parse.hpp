@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/scene.hpp"
+#include "assembly/specification/scene.hpp"
 
 #include <filesystem>
 #include <string>

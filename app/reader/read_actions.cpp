@@ -137,12 +137,13 @@ Constraint read_constraint(const TableReader& table, const std::vector<std::stri
   constraint.where = read_region(table, "where");
   constraint.axes = read_axes(table);
   if (table.has("move")) {
-    table.refuse({"normal", "axis"}, "is not used with move");
+    table.refuse({"normal", "axis", "driver"}, "is not used with move");
     read_move(table, constraint);
     constraint.schedule = read_schedule(table);
   } else {
     read_fix(table, constraint);
     table.refuse({"over", "profile"}, "is used only with move");
+    constraint.driver = table.text("driver").value_or("");
   }
   return constraint;
 }

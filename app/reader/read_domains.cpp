@@ -1,5 +1,6 @@
 #include "app/reader/readers.hpp"
 #include "app/scene/units.hpp"
+#include "io/mesh/mesh_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -111,8 +112,13 @@ double unit_of_file(const TableReader& domain) {
 FileDomain read_file(const TableReader& domain, const std::filesystem::path& folder) {
   const std::string name = *domain.text("file");
   if (name.empty()) domain.error("file", "is empty; must be the path of a mesh");
-  return {folder / name, domain.place("file"), unit_of_file(domain), domain.integer("refine").value_or(0),
-          domain.place("refine")};
+  const std::filesystem::path path = folder / name;
+  return {path,
+          domain.place("file"),
+          unit_of_file(domain),
+          domain.integer("refine").value_or(0),
+          domain.place("refine"),
+          [path](MidNodes mid_nodes) { return io::read_mesh(path, mid_nodes); }};
 }
 
 BetweenDomain read_between(const TableReader& body, const std::vector<std::string>& known) {

@@ -1,4 +1,5 @@
 #include "app/reader/readers.hpp"
+#include "io/mesh/point_table.hpp"
 
 #include <fmt/format.h>
 
@@ -66,7 +67,8 @@ ListedFrames read_list(const TableReader& frames) {
 SampleFile read_samples(const TableReader& table, const std::filesystem::path& folder) {
   const std::string name = table.text("file").value_or("");
   if (table.value("file") && name.empty()) table.error("file", "is empty; must be the path of a CSV file");
-  return {folder / name};
+  const std::filesystem::path path = folder / name;
+  return {path, [path] { return io::read_point_table(path); }};
 }
 
 /// The keys `poisson_disk`, `count`, `file` and `seed`; `otherwise` without the first three.

@@ -1,6 +1,7 @@
 #include "app/reader/validate.hpp"
 
 #include "app/scene/units.hpp"
+#include "assembly/specification/domain.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "app/results/coupling_report.hpp"
 
-#include "app/assembly/mechanisms.hpp"
+#include "assembly/simulation/mechanisms.hpp"
 #include "core/base/index.hpp"
 #include "core/executor/point_executor.hpp"
 #include "core/executor/spring_executor.hpp"

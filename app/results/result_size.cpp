@@ -4,6 +4,7 @@
 #include "app/results/provenance.hpp"
 #include "app/results/results.hpp"
 #include "app/results/run_text.hpp"
+#include "app/results/tell_warnings.hpp"
 #include "app/run/messages.hpp"
 #include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
@@ -106,7 +107,7 @@ void warn_of_size(Simulation& s, const ResultSize& size) {
                        : fmt::format("a larger output.{} saves fewer states, ", by_time ? "every" : "every_steps");
   const std::string text = fmt::format("the results take {}; {}output.fields leaves fields out", size.text(), fewer);
   s.warnings.add("output", s.scene.place_of("output"), text);
-  s.warnings.tell(s.scene.path);
+  tell(s.warnings, s.scene.path);
 }
 
 }  // namespace fascia::app

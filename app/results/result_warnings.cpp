@@ -19,7 +19,8 @@ constexpr double kResolved = 0.5;
 constexpr double kCollapsed = 0.1;
 
 /// Tension folds a shell's triangles from about this on: the largest strain times the square of the middle one of the
-/// sides over the thickness, the longer side of a cell that was halved (docs/manual.md, "Thin shells that are pulled").
+/// sides over the thickness, the longer side of a cell that was halved (docs/manual/shells.md, "Thin shells that are
+/// pulled").
 constexpr double kFolds = 2.5;
 
 /// The largest stretch of a triangle's plane, squared. @param X, x  corners at rest and now

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
 #include "core/run/drivers.hpp"
 
 #include <string>

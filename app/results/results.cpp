@@ -115,7 +115,7 @@ void ResultFiles::open() {
   csv_.emplace(directory_ / "probes.csv", head);
 }
 
-void ResultFiles::add_probes(double time, const Snapshot& snap) {
+void ResultFiles::add_probes(double time, const ProbedState& snap) {
   std::string row = fmt::format("{}", time);
   last_ = probe_values(simulation_, snap);
   for (const std::vector<double>& values : last_)

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
 #include "app/results/coupling_report.hpp"
 #include "app/results/probes.hpp"
 #include "app/results/step_seconds.hpp"
-#include "app/run/backend.hpp"
 #include "app/run/recovery.hpp"
+#include "assembly/simulation/simulation.hpp"
 #include "core/run/drivers.hpp"
+#include "fascia/choose_backend.hpp"
 #include "io/result_writer.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -31,7 +31,7 @@ class ResultFiles {
   /// Begins probes.csv. @throws FileError
   void open();
   /// A row of probes.csv. @param time  load factor in statics, number of the mode in modes
-  void add_probes(double time, const Snapshot& at);
+  void add_probes(double time, const ProbedState& at);
   /// The .vtu files of a state. @param time  in the .pvd, where times must not decrease: of a path its step
   /// @throws FileError, InputError
   void add_state(double time, const State& state);

@@ -35,7 +35,7 @@ void RunResult::write(const nlohmann::ordered_json& summary) const {
   io::replace_file(directory_.path() / "summary.json", json_text(summary) + "\n");
 }
 
-void RunResult::add_probes(double time, const Snapshot& at) {
+void RunResult::add_probes(double time, const ProbedState& at) {
   const std::lock_guard lock(writing_);
   files_.add_probes(time, at);
   has_rows_ = true;

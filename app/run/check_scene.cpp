@@ -1,16 +1,16 @@
 #include "app/diagnosis/condition.hpp"
-#include "app/diagnosis/step_limit.hpp"
 #include "app/diagnosis/thickness.hpp"
 #include "app/need/kept_costs.hpp"
-#include "app/plausible/readable.hpp"
 #include "app/results/coupling_report.hpp"
 #include "app/results/result_size.hpp"
-#include "app/run/backend.hpp"
 #include "app/run/load_scene.hpp"
 #include "app/run/memory.hpp"
 #include "app/run/run_scene.hpp"
-#include "app/run/solver_settings.hpp"
 #include "app/tools.hpp"
+#include "assembly/simulation/solver_settings.hpp"
+#include "assembly/simulation/step_limit.hpp"
+#include "assembly/specification/readable.hpp"
+#include "fascia/choose_backend.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,11 @@
 #include "app/run/gpu_run.hpp"
 #include "app/run/messages.hpp"
 
+#include "app/results/tell_warnings.hpp"
 #include "app/run/run_scene.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/base/errors.hpp"
+#include "fascia/stepper.hpp"
 #include "gpu/space/device.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +27,7 @@ RunReport broken_off(RunReport seen, const std::string& why) {
 
 void warn(const Simulation& s, const std::string& text, Warnings& warnings) {
   warnings.add("backend", text);
-  warnings.tell(s.scene.path);
+  tell(warnings, s.scene.path);
 }
 
 /// GPUs that share the run. @throws BackendError  fewer than were asked for

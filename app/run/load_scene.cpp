@@ -2,9 +2,13 @@
 
 #include "app/plausible/plausible.hpp"
 #include "app/reader/parse.hpp"
-#include "app/run/backend.hpp"
-#include "app/run/solver_settings.hpp"
+#include "app/results/tell_warnings.hpp"
+#include "app/run/memory.hpp"
+#include "assembly/actions/actions.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "fascia/choose_backend.hpp"
 
 #include <fmt/format.h>
 
@@ -25,8 +29,13 @@ Scene read_scene(const RunOptions& options) {
 
 Simulation load_scene(const RunOptions& options) { return load_scene(read_scene(options)); }
 
+Simulation build_within_memory(Scene scene) {
+  check_memory(scene);
+  return build_simulation(std::move(scene));
+}
+
 Simulation load_scene(Scene scene) {
-  Simulation s = build_simulation(std::move(scene));
+  Simulation s = build_within_memory(std::move(scene));
   add_imperfection(s);
   if (s.scene.solver.kind == SolverKind::central_differences) {
     ThreadPool pool(s.scene.solver.threads);
@@ -34,7 +43,7 @@ Simulation load_scene(Scene scene) {
     settle_time_step(s, system);
   }
   warn_of_the_implausible(s);
-  s.warnings.tell(s.scene.path);
+  tell(s.warnings, s.scene.path);
   return s;
 }
 
@@ -42,7 +51,7 @@ void warn_of_backend(Simulation& s, Backend backend) {
   const std::string lost = not_as_asked(s, backend);
   if (lost.empty()) return;
   s.warnings.add("backend", lost);
-  s.warnings.tell(s.scene.path);
+  tell(s.warnings, s.scene.path);
 }
 
 }  // namespace fascia::app

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
-#include "app/run/backend.hpp"
 #include "app/run/run_scene.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "fascia/choose_backend.hpp"
 
 namespace fascia::app {
 
@@ -17,5 +17,9 @@ Simulation load_scene(const RunOptions& options);
 
 /// Prints, and keeps, a warning where the backend does not do what the scene asks for.
 void warn_of_backend(Simulation& s, Backend backend);
+
+/// build_simulation(), where the memory of the machine seems to suffice.
+/// @throws SceneError  it does not; and as build_simulation()
+Simulation build_within_memory(Scene scene);
 
 }  // namespace fascia::app

@@ -1,6 +1,6 @@
 #include "app/run/mode_warnings.hpp"
 
-#include "app/assembly/mechanisms.hpp"
+#include "assembly/simulation/mechanisms.hpp"
 
 #include <fmt/format.h>
 

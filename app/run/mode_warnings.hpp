@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
-#include "app/results/warnings.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/specification/warnings.hpp"
 #include "core/run/modes.hpp"
 
 namespace fascia::app {

@@ -1,9 +1,7 @@
 #include "app/run/run_scene.hpp"
 
-#include "app/assembly/simulation.hpp"
 #include "app/diagnosis/failure.hpp"
 #include "app/estimate/error_estimate.hpp"
-#include "app/plausible/readable.hpp"
 #include "app/results/coupling_report.hpp"
 #include "app/results/picture.hpp"
 #include "app/results/result_size.hpp"
@@ -11,7 +9,7 @@
 #include "app/results/results.hpp"
 #include "app/results/run_result.hpp"
 #include "app/results/run_text.hpp"
-#include "app/run/backend.hpp"
+#include "app/results/tell_warnings.hpp"
 #include "app/run/gpu_run.hpp"
 #include "app/run/interruption.hpp"
 #include "app/run/load_scene.hpp"
@@ -21,13 +19,16 @@
 #include "app/run/progress.hpp"
 #include "app/run/saved_steps.hpp"
 #include "app/run/solver_choice.hpp"
-#include "app/run/solver_settings.hpp"
 #include "app/tools.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
+#include "assembly/specification/readable.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/math/rotation.hpp"
 #include "core/run/explicit_dynamics.hpp"
 #include "core/run/modes.hpp"
+#include "fascia/choose_backend.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -346,7 +347,7 @@ int run_scene(const RunOptions& options) {
   const double setup = seconds_since(start);
   Outcome out = computed(s, backend, pool, files, options, stop, estimate.get());
   out.times.setup += setup;
-  out.warnings.tell(options.scene);
+  tell(out.warnings, options.scene);
   s.warnings.add(out.warnings);
   nlohmann::ordered_json j = summary(s, out.backend, out.gpus, out.run, out.times, pool.size(), out.probes,
                                      out.stabilization, out.fluids, out.couplings, files.provenance());

@@ -27,12 +27,6 @@ struct RunOptions {
 /// The program returns these; of a run that a signal ended it returns 128 + the signal.
 enum ExitStatus { kDone = 0, kDiffers = 1, kWrongInput = 2, kNotConverged = 3, kFileProblem = 4, kNoBackend = 5 };
 
-/// A backend that is not there. Exit status 5.
-class BackendError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 /// Simulates a scene and writes its results. Errors of input and files are exceptions (main.cpp).
 int run_scene(const RunOptions& options);
 

@@ -23,9 +23,6 @@ Range at_least(double min);
 Range between(double min, double max);  ///< limits included
 Range inside(double min, double max);   ///< limits excluded
 
-/// Lengths whose fifth powers, of moments of inertia, are doubles [m].
-inline constexpr double kShortest = 1e-50, kLongest = 1e50;
-
 enum class Type {
   number,
   integer,

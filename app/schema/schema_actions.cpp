@@ -36,6 +36,9 @@ Shape move_schema() {
 Shape constraint_schema() {
   return table({key("body", text("the name of a body"), "The body.").needed(),
                 key("where", region(), "Its nodes.").needed(), key("fix", fix_schema(), "What is held."),
+                key("driver", text("a name"),
+                    "With `fix`. The name under which a program that embeds the library moves what is held at every "
+                    "step; `fascia run` holds it where it is."),
                 key("move", move_schema(), "What follows a motion, and stays where it ends."),
                 key("axes", array(vector3("1"), 3, 3), "Three perpendicular directions instead of the global axes.")
                     .defaults("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),

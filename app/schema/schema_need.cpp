@@ -24,7 +24,7 @@ Key need_schema() {
              key("memory", number("byte", above(0)), "The most memory that the run may take.")}),
       "What the results must be worth. `fascia run` then chooses what the scene leaves out: frames or cells, "
       "the order of elements, the kind of frames, the time step, and beside a `duration` the kind of time steps. "
-      "The manual has a section on needs.");
+      "The manual has a chapter on needs.");
 }
 
 Key body_need_key() {

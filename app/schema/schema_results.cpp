@@ -97,8 +97,8 @@ Key output_schema() {
                  one_of({boolean(), choice({{"finer", "By a finer mesh, however long that takes."},
                                             {"coarser", "By coarser meshes alone."}})}),
                  "Whether the errors of probes and displacements are estimated, by runs of the same scene at other "
-                 "resolutions; `true`: by a finer mesh where it is small, else by coarser ones. See section 11 of the "
-                 "manual.")
+                 "resolutions; `true`: by a finer mesh where it is small, else by coarser ones. See the manual's "
+                 "chapter on probes.")
                  .defaults("false"),
              key("picture", picture_schema(), "A PNG of the end state; of modes, of each side by side.")
                  .defaults("none")},

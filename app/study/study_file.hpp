@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/scene/region.hpp"
+#include "assembly/specification/region.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -7,6 +7,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/base/thread_pool.hpp"
+#include "fascia/stepper.hpp"
 #include "gpu/space/device.hpp"
 #include "io/files.hpp"
 

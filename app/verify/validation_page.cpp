@@ -44,8 +44,8 @@ constexpr const char* kHead =
     "Every value that fascia is held to: its reference, where that comes from, what may differ and why, and what this "
     "version computes. One registry, `scenes/cases/*.toml`, serves this page, the tests and `fascia verify`, which "
     "makes "
-    "these runs on your machine and writes a report with a certificate ([manual, section "
-    "15](manual.md#15-verification)). "
+    "these runs on your machine and writes a report with a certificate ([manual, "
+    "Verification](manual/verification.md)). "
     "`fascia verify NAME` repeats a run of this page.\n\n"
     "This page is written by `fascia verify --full --write-validation docs/validation.md`.\n\n";
 

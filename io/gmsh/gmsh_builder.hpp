@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/geometry/mesh.hpp"
+#include "core/geometry/mid_nodes.hpp"
 #include "io/gmsh/gmsh_input.hpp"
-#include "io/mesh/mid_nodes.hpp"
 
 #include <map>
 #include <span>

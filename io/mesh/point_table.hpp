@@ -1,20 +1,12 @@
 #pragma once
 
-#include "core/math/vec3.hpp"
+#include "core/geometry/point_table.hpp"
 
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace fascia::io {
-
-/// Frames or integration points that a user lists, in the order of the file.
-struct PointTable {
-  std::vector<Vec3d> position;  ///< (n) [m], n > 0
-  std::vector<Vec3d> rotation;  ///< rotation vectors [rad]: none or n
-  std::vector<double> volume;   ///< [m³], above 0: none or n
-};
 
 /// Reads comma-separated values in SI units.
 ///

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/geometry/mesh.hpp"
-#include "io/mesh/mid_nodes.hpp"
+#include "core/geometry/mid_nodes.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
 #include "tests/support/cases.hpp"
 #include "tests/support/paths.hpp"
 
@@ -16,7 +17,7 @@ namespace fascia::test {
 /// @param scene     name of a file under scenes/, without ".toml"
 /// @param settings  as after --set
 /// @throws FileError  where a mesh is not there
-inline app::Simulation small_scene(const std::string& scene, const std::vector<std::string>& settings = {}) {
+inline Simulation small_scene(const std::string& scene, const std::vector<std::string>& settings = {}) {
   static const std::map<std::string, std::vector<std::string>> smaller{
       {"affine_cantilever", {"bodies.beam.frames.grid=[11,3,3]"}},
       {"bone_plate", {"bodies.bone.domain.cylinder.cells=[8,12]", "bodies.cushion.frames.poisson_disk=0.01"}},
@@ -30,7 +31,7 @@ inline app::Simulation small_scene(const std::string& scene, const std::vector<s
   std::vector<std::string> all;
   if (const auto found = smaller.find(scene); !full_size() && found != smaller.end()) all = found->second;
   all.insert(all.end(), settings.begin(), settings.end());
-  return app::build_simulation(app::parse_scene_file(source_dir() / "scenes" / (scene + ".toml"), all));
+  return build_simulation(app::parse_scene_file(source_dir() / "scenes" / (scene + ".toml"), all));
 }
 
 }  // namespace fascia::test

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/assembly/simulation.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/run/drivers.hpp"
 #include "gpu/run/run.hpp"
 #include "tests/support/cases.hpp"
@@ -19,14 +19,14 @@ struct Solved {
 };
 
 /// Statics, or eight steps of implicit dynamics at most, twenty in full size.
-inline Solved solve(const app::Simulation& s, Where where, const SolverSettings& settings) {
+inline Solved solve(const Simulation& s, Where where, const SolverSettings& settings) {
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   const auto& solver = s.scene.solver;
   Solved out{s.initial, {}};
-  const bool host = where == Where::host, statics = solver.kind == app::SolverKind::statics;
+  const bool host = where == Where::host, statics = solver.kind == SolverKind::statics;
   const StaticsSettings loading{solver.load_steps};
   DynamicsSettings dynamics{TimeScheme::implicit_euler, solver.time_step, std::min(solver.steps, full_size() ? 20 : 8)};
-  if (!statics) dynamics.scheme = app::scheme_of(solver.kind);
+  if (!statics) dynamics.scheme = scheme_of(solver.kind);
   if (where == Where::processor) {
     ThreadPool pool(1);
     MechanicalSystem system(s.model, pool, settings);

@@ -1,8 +1,9 @@
 // Bodies of two materials whose stiffness differs by up to 2e8, drawn at random: whatever is called converged is in
 // equilibrium, and nearly all are.
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/run/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "tests/support/cases.hpp"
@@ -69,9 +70,9 @@ TEST(RandomContrasts, AreInEquilibriumWhereTheyConverge) {
   double worst = 0;
   for (int seed = 1; seed <= kCases; ++seed) {
     const HangingBar bar(static_cast<unsigned>(seed));
-    app::Simulation simulation = app::build_simulation(app::parse_scene_text(bar.text, "bar.toml", {}));
+    Simulation simulation = build_simulation(app::parse_scene_text(bar.text, "bar.toml", {}));
     ThreadPool pool(1);
-    const SolverSettings settings = app::settings_of(simulation.scene.solver);
+    const SolverSettings settings = settings_of(simulation.scene.solver);
     MechanicalSystem system(simulation.model, pool, settings);
     State state = simulation.initial;
     const RunReport report =

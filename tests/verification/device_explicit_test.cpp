@@ -1,8 +1,8 @@
-#include "app/assembly/simulation.hpp"
-#include "app/run/backend.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/run/explicit_step.hpp"
 #include "core/space/space.hpp"
+#include "fascia/choose_backend.hpp"
 #include "gpu/explicit/explicit.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"
@@ -17,8 +17,6 @@
 /// device where there is one.
 namespace fascia::test::device_explicit_test {
 namespace {
-
-using app::Simulation;
 
 enum class Where { host, device };
 
@@ -80,7 +78,7 @@ struct Runs {
 /// @param part  of the stable step
 /// @param automatic  up to the time that so many such steps take
 Runs run_both(const Simulation& s, Where where, double part, int steps, bool automatic = false) {
-  const SolverSettings settings = app::settings_of(s.scene.solver);
+  const SolverSettings settings = settings_of(s.scene.solver);
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   ThreadPool pool(1);
   MechanicalSystem system(s.model, pool, settings);
@@ -120,7 +118,7 @@ class DeviceExplicit : public ::testing::TestWithParam<std::tuple<Where, std::st
 TEST_P(DeviceExplicit, StepsAreThoseOfTheProcessor) {
   constexpr int kSteps = 300;
   const Simulation s = load(scene());
-  ASSERT_EQ(app::not_on_gpu(s), "");
+  ASSERT_EQ(not_on_gpu(s), "");
   const Runs r = run_both(s, where(), 0.5, kSteps);
   EXPECT_EQ(r.there.message, r.on_cpu.message);
   EXPECT_EQ(r.there.steps, kSteps);
@@ -163,7 +161,7 @@ TEST_P(ExplicitEnergies, AreThoseOfTheProcessor) {
   const Simulation s = load(GetParam());
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   ThreadPool pool(1);
-  MechanicalSystem system(s.model, pool, app::settings_of(s.scene.solver));
+  MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
   const double dt = time_step(s, system, 0.5);
   State state = s.initial;
   ExplicitStepper expected(system, state, dt, factors(0));

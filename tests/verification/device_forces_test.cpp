@@ -1,7 +1,8 @@
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
 #include "app/results/coupling_report.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"
 
@@ -18,8 +19,6 @@
 /// the host always, on the device where there is one.
 namespace fascia::test::device_forces_test {
 namespace {
-
-using app::Simulation;
 
 enum class Where { host, device };
 
@@ -88,9 +87,9 @@ over = "0.2 s"
 Simulation load() {
   const auto path = std::filesystem::temp_directory_path() / ("device_forces_" + std::to_string(getpid()) + ".toml");
   std::ofstream(path) << kScene << "[solver]\nkind = \"implicit-euler\"\ntime_step = 0.01\nduration = 0.2\n";
-  app::Scene scene = app::parse_scene_file(path, {});
+  Scene scene = app::parse_scene_file(path, {});
   std::filesystem::remove(path);
-  return app::build_simulation(std::move(scene));
+  return build_simulation(std::move(scene));
 }
 
 /// What acts after a step, as numbers.
@@ -146,7 +145,7 @@ TEST_P(DeviceForces, AreThoseOfTheProcessor) {
   if (where == Where::device && !gpu::find_device(reason)) GTEST_SKIP() << reason;
   const bool host = where == Where::host;
   const Simulation s = load();
-  SolverSettings settings = app::settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   settings.tolerance = 1e-12;
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   ThreadPool pool(1);

@@ -1,7 +1,8 @@
 #include "app/reader/parse.hpp"
 #include "app/run/gpu_run.hpp"
 #include "app/run/run_scene.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "gpu/space/device.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/verification/break_device.hpp"
@@ -14,26 +15,24 @@
 namespace fascia::test::device_lost_test {
 namespace {
 
-using app::Simulation;
-
 class DeviceLost : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     std::string reason;
     if (!gpu::find_device(reason)) GTEST_SKIP() << reason;
-    simulation_.emplace(app::build_simulation(
-        app::parse_scene_file(fascia::test::source_dir() / "scenes" / (GetParam() + ".toml"), {})));
+    simulation_.emplace(
+        build_simulation(app::parse_scene_file(fascia::test::source_dir() / "scenes" / (GetParam() + ".toml"), {})));
     state_ = simulation_->initial;
   }
   std::optional<app::GpuRun> run(const std::string& backend, const gpu::DeviceObserver& observe) {
     simulation_->scene.solver.backend = backend;
     return app::run_on_gpu(
         *simulation_, state_, [this](double t) { return simulation_->factors(t); },
-        app::settings_of(simulation_->scene.solver), warnings_, observe);
+        settings_of(simulation_->scene.solver), warnings_, observe);
   }
   std::optional<Simulation> simulation_;
   State state_;
-  app::Warnings warnings_;
+  Warnings warnings_;
 };
 
 TEST_P(DeviceLost, OnTheWayEndsTheRunWithWhatWasSeen) {
@@ -58,7 +57,7 @@ TEST_P(DeviceLost, WithoutMemorySaysHowMuchThereIs) {
   try {
     run("cuda", {});
     ADD_FAILURE() << "ran without memory";
-  } catch (const app::BackendError& e) {
+  } catch (const BackendError& e) {
     EXPECT_NE(std::string(e.what()).find("gpu: out of memory: asked for "), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find(" free of "), std::string::npos) << e.what();
   }

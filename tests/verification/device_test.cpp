@@ -1,8 +1,8 @@
 #include "gpu/space/device.hpp"
-#include "app/assembly/simulation.hpp"
-#include "app/run/backend.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/base/errors.hpp"
+#include "fascia/choose_backend.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/tiles/tile_points.hpp"
 #include "tests/support/models.hpp"
@@ -20,8 +20,6 @@
 /// where there is one.
 namespace fascia::test::device_test {
 namespace {
-
-using app::Simulation;
 
 /// Energy, forces and products agree to this; rounding of sums in another order leaves 1e-14 to 1e-13.
 constexpr double kSameState = 1e-12;
@@ -78,7 +76,7 @@ TEST_P(DeviceState, HasTheProcessorsEnergyForcesAndProduct) {
   const std::optional<Simulation> simulation = loaded();
   if (!simulation) GTEST_SKIP() << why_not;
   const Simulation& s = *simulation;
-  const SolverSettings settings = app::settings_of(s.scene.solver);
+  const SolverSettings settings = settings_of(s.scene.solver);
   const State state = deformed(s);
   const std::vector<double> factors = s.factors(1), d = random_direction(s.model);
   ThreadPool pool(1);
@@ -104,7 +102,7 @@ TEST_P(DeviceState, HasTheProductRounded) {
   const std::optional<Simulation> simulation = loaded();
   if (!simulation) GTEST_SKIP() << why_not;
   const Simulation& s = *simulation;
-  SolverSettings settings = app::settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   const State state = deformed(s);
   const std::vector<double> factors = s.factors(1), d = random_direction(s.model);
   const auto evaluate = where() == Where::host ? gpu::evaluate_on_host : gpu::evaluate;
@@ -128,7 +126,7 @@ TEST_P(DeviceSolution, IsThatOfEveryPrecision) {
   const std::optional<Simulation> simulation = loaded({"solver.linear.kind=cg", "solver.linear.max_iterations=100000"});
   if (!simulation) GTEST_SKIP() << why_not;
   const Simulation& s = *simulation;
-  SolverSettings settings = app::settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   const Solved expected = solve(s, where(), settings);
   std::printf("%-30s double: Newton %3d CG %6d", scene().c_str(), expected.report.newton_iterations,
               expected.report.linear_iterations);
@@ -168,8 +166,8 @@ void expect_solution_of_processor(const Simulation& s, Where where, const Solver
 TEST_P(DeviceSolution, IsThatOfTheProcessor) {
   const std::optional<Simulation> simulation = loaded(kToRounding);
   if (!simulation) GTEST_SKIP() << why_not;
-  ASSERT_EQ(app::not_on_gpu(*simulation), "");
-  expect_solution_of_processor(*simulation, where(), app::settings_of(simulation->scene.solver));
+  ASSERT_EQ(not_on_gpu(*simulation), "");
+  expect_solution_of_processor(*simulation, where(), settings_of(simulation->scene.solver));
 }
 
 using DeviceLevels = Device;
@@ -182,9 +180,9 @@ TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
   std::optional<Simulation> simulation = loaded({"solver.linear.kind=cg", "solver.linear.preconditioner=multigrid",
                                                  "solver.linear.tolerance=1e-10", "solver.newton.tolerance=1e-12"});
   if (!simulation) GTEST_SKIP() << why_not;
-  ASSERT_EQ(app::not_on_gpu(*simulation), "");
+  ASSERT_EQ(not_on_gpu(*simulation), "");
   Simulation& s = *simulation;
-  SolverSettings settings = app::settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   const auto [expected, on_cpu] = solve(s, Where::processor, settings);
   const auto [got, there] = solve(s, where(), settings);
   const double error = displacement_difference(got, expected);
@@ -217,7 +215,7 @@ TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
 TEST_P(DeviceChoice, TakesLevelsWhereBlocksEndAtTheirLimit) {
   const Simulation s = small_scene("shell_roof", {"solver.linear.kind=cg", "solver.linear.tolerance=1e-12",
                                                   "bodies.roof.domain.cylinder.cells=[24,24]"});
-  const SolverSettings settings = app::settings_of(s.scene.solver);
+  const SolverSettings settings = settings_of(s.scene.solver);
   const auto [expected, on_cpu] = solve(s, Where::processor, settings);
   const auto [got, there] = solve(s, where(), settings);
   std::printf("CG %d %d\n", there.linear_iterations, on_cpu.linear_iterations);
@@ -235,7 +233,7 @@ TEST_P(SharedSolution, IsThatOfTheProcessor) {
   const std::vector<int> devices = gpu::find_devices(kMostDevices, reason);
   if (devices.empty()) GTEST_SKIP() << reason;
   const Simulation s = small_scene(GetParam(), kToRounding);
-  SolverSettings settings = app::settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   for (const std::size_t shares : {2U, 3U}) {
     settings.devices.clear();
     for (std::size_t i = 0; i < shares; ++i) settings.devices.push_back(devices[i % devices.size()]);
@@ -253,7 +251,7 @@ TEST(DeviceShares, RefuseWhatTheyCannotShare) {
   if (devices.empty()) GTEST_SKIP() << reason;
   const auto refused = [&](const std::string& scene, const std::vector<std::string>& overrides) {
     const Simulation s = small_scene(scene, overrides);
-    SolverSettings settings = app::settings_of(s.scene.solver);
+    SolverSettings settings = settings_of(s.scene.solver);
     settings.devices = {devices[0], devices[0]};
     EXPECT_THROW(solve(s, Where::device, settings), gpu::NotShared) << scene;
   };
@@ -288,13 +286,13 @@ const auto kSolutions =
 TEST_P(DeviceChoice, OfALinearSolverIsTheProgramsOwn) {
   const std::optional<Simulation> simulation = loaded();
   if (!simulation) GTEST_SKIP() << why_not;
-  expect_solution_of_processor(*simulation, where(), app::settings_of(simulation->scene.solver));
+  expect_solution_of_processor(*simulation, where(), settings_of(simulation->scene.solver));
 }
 
 /// One Newton iteration is not enough, however short the load step.
 TEST_P(DeviceChoice, KeepsTheStateInWhichItFailed) {
   const Simulation s = small_scene("soft_cantilever", kToRounding);
-  SolverSettings settings = app::settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   settings.max_iterations = 1;
   const RunReport expected = solve(s, Where::processor, settings).report, got = solve(s, where(), settings).report;
   EXPECT_EQ(got.message, expected.message);

@@ -1,8 +1,10 @@
 // Newton's method on what is hard for it: slender bodies that turn far in one step, buckling, great stretch. Tables of
 // its residuals.
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/actions/actions.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/run/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "tests/support/paths.hpp"
@@ -30,6 +32,7 @@ struct Recorder {
     return e;
   }
   DirectionReport direction() { return system.direction(); }
+  double largest_step(double wanted) { return system.largest_step(wanted); }
   void apply(double step) { system.apply(step); }
   void save() { system.save(); }
   void restore() { system.restore(); }
@@ -40,10 +43,10 @@ struct Recorder {
 
 /// Residuals of each load step, printed.
 std::vector<std::vector<double>> residuals_of(const std::string& name, const std::string& text, int load_steps) {
-  app::Scene scene = app::parse_scene_text(text, name, {});
-  app::Simulation simulation = app::build_simulation(std::move(scene));
-  app::add_imperfection(simulation);
-  const SolverSettings settings = app::settings_of(simulation.scene.solver);
+  Scene scene = app::parse_scene_text(text, name, {});
+  Simulation simulation = build_simulation(std::move(scene));
+  add_imperfection(simulation);
+  const SolverSettings settings = settings_of(simulation.scene.solver);
   ThreadPool pool(1);
   MechanicalSystem system(simulation.model, pool, settings);
   State state = simulation.initial;
@@ -61,7 +64,7 @@ std::vector<std::vector<double>> residuals_of(const std::string& name, const std
     for (const double r : recorder.residuals) std::printf(" %.0e", r);
     std::printf("\n");
     all.push_back(recorder.residuals);
-    state = system.finish_step(load);
+    system.finish_step(load, state);
   }
   return all;
 }
@@ -216,10 +219,10 @@ TEST(NewtonResiduals, AColumnAsSoftInEveryDirection) {
     std::vector<double> energies;
     for (const char* imperfection : {"0.98e-4", "0.99e-4", "1e-4", "1.01e-4", "1.02e-4"}) {
       const std::string force = "[" + std::to_string(-2 * 2.4674 * 1e6 * beam.inertia) + ", 0, 0]";
-      app::Simulation simulation = app::build_simulation(app::parse_scene_text(
+      Simulation simulation = build_simulation(app::parse_scene_text(
           scene_of(beam, force, std::string("imperfection = ") + imperfection), "column, " + beam.model, {}));
-      app::add_imperfection(simulation);
-      const SolverSettings settings = app::settings_of(simulation.scene.solver);
+      add_imperfection(simulation);
+      const SolverSettings settings = settings_of(simulation.scene.solver);
       ThreadPool pool(1);
       MechanicalSystem system(simulation.model, pool, settings);
       State state = simulation.initial;

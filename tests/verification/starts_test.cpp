@@ -1,10 +1,11 @@
 // Solves that start far from rest: at random, mirrored, flat, all in one place. They end where a solve from rest ends,
 // at another equilibrium, or with a reason; never with a number that is none.
-#include "app/assembly/simulation.hpp"
 #include "app/extremes/cells.hpp"
 #include "app/reader/parse.hpp"
 #include "app/results/result_warnings.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/base/errors.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/solve_where.hpp"
@@ -26,7 +27,7 @@ enum class Start { near, far, mirrored, flat, one_place };
 constexpr std::array kStarts{"near", "far", "mirrored", "flat", "one place"};
 
 /// What is held, at x = 0, stays where it is.
-State start_of(const app::Simulation& s, Start start, double length) {
+State start_of(const Simulation& s, Start start, double length) {
   const Model& model = s.model;
   State state = start == Start::near  ? random_state(model, 0.005 * length, 0.1)
                 : start == Start::far ? random_state(model, length, 3)
@@ -50,21 +51,21 @@ bool is_finite(const State& state) {
 }
 
 /// As the program ends a run, with fewer iterations before a step is cut.
-Solved ended(app::Simulation& s, const State& from, Where where, double tolerance) {
+Solved ended(Simulation& s, const State& from, Where where, double tolerance) {
   s.initial = from;
-  SolverSettings settings = app::settings_of(s.scene.solver);
+  SolverSettings settings = settings_of(s.scene.solver);
   settings.tolerance *= tolerance;
   settings.max_iterations = 15;
   Solved run = solve(s, where, settings);
-  app::Warnings warnings;
+  Warnings warnings;
   app::add_result_warnings(s, run.state, run.report, warnings);
   return run;
 }
 
 /// Elastic, kinetic and of the loads [J].
-double energy(const app::Simulation& s, const State& state) {
+double energy(const Simulation& s, const State& state) {
   ThreadPool pool(1);
-  MechanicalSystem system(s.model, pool, app::settings_of(s.scene.solver));
+  MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
   system.set_factors(s.factors(0));
   system.look_at(state, s.scene.solver.time_step);
   const InternalEnergy internal = system.internal_energy();
@@ -75,7 +76,7 @@ double energy(const app::Simulation& s, const State& state) {
 class Starts : public testing::TestWithParam<std::size_t> {
  protected:
   /// One run from a start, as a word.
-  std::string end_of(app::Simulation& s, const State& from, Where where, bool dynamic, const State& expected) {
+  std::string end_of(Simulation& s, const State& from, Where where, bool dynamic, const State& expected) {
     const Solved run = ended(s, from, where, 1);
     EXPECT_TRUE(is_finite(run.state));
     if (run.report.status != RunStatus::converged) {
@@ -97,7 +98,7 @@ class Starts : public testing::TestWithParam<std::size_t> {
   }
 
   void expect_known_ends(const app::Specimen& specimen) {
-    app::Simulation s = app::build_simulation(app::parse_scene_text(specimen.text(), "beam.toml", {}));
+    Simulation s = build_simulation(app::parse_scene_text(specimen.text(), "beam.toml", {}));
     const State rest = s.initial;
     const Solved from_rest = ended(s, rest, Where::processor, 1);
     ASSERT_EQ(from_rest.report.status, RunStatus::converged) << from_rest.report.message;

@@ -1,9 +1,10 @@
 // NAFEMS LE10: a thick elliptic plate under pressure, and the stress at its inner edge from a mesh that misses the peak
 // between integration points and nodes.
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
 #include "app/run/recovery.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
 #include "core/base/index.hpp"
 #include "core/run/drivers.hpp"
 #include "core/solver/mechanical_system.hpp"
@@ -114,16 +115,16 @@ Peak peak_of(int around, int across, int through) {
       std::filesystem::temp_directory_path() / fmt::format("fascia_le10_{}_{}.msh", ::getpid(), around);
   const Quarter plate(around, across, through);
   plate.write(mesh);
-  const app::Simulation s = app::build_simulation(app::parse_scene_text(scene_of(plate, mesh), "plate.toml", {}));
+  const Simulation s = build_simulation(app::parse_scene_text(scene_of(plate, mesh), "plate.toml", {}));
   std::filesystem::remove(mesh);
-  const SolverSettings settings = app::settings_of(s.scene.solver);
+  const SolverSettings settings = settings_of(s.scene.solver);
   ThreadPool pool(1);
   MechanicalSystem system(s.model, pool, settings);
   State state = s.initial;
   const RunReport run = run_statics(system, state, [&](double load) { return s.factors(load); }, settings, {}, {});
   EXPECT_EQ(run.status, RunStatus::converged) << run.message;
 
-  const app::SimulatedBody& body = s.bodies[0];
+  const SimulatedBody& body = s.bodies[0];
   const std::vector<PointTensors> points = body.body->tensors(state);
   const std::size_t d = plate.peak();
   Peak peak;

@@ -1,9 +1,10 @@
 // Scenes drawn at random, solved with Cholesky, with conjugate gradients and by what runs on a GPU: the same end, or a
 // status or a warning that says that there are several.
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
-#include "app/run/backend.hpp"
-#include "app/run/solver_settings.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
+#include "fascia/choose_backend.hpp"
 #include "gpu/space/device.hpp"
 #include "tests/support/cases.hpp"
 #include "tests/support/solve_where.hpp"
@@ -108,8 +109,8 @@ bool claimed(const RunReport& r) {
          !r.stability.near_limit;
 }
 
-Solved solved(const app::Simulation& s, Where where, LinearMethod linear) {
-  SolverSettings settings = app::settings_of(s.scene.solver);
+Solved solved(const Simulation& s, Where where, LinearMethod linear) {
+  SolverSettings settings = settings_of(s.scene.solver);
   settings.linear = linear;
   if (linear == LinearMethod::cg) settings.cg.max_iterations = 20000;
   return solve(s, where, settings);
@@ -122,8 +123,8 @@ TEST(RandomTwins, EndAlikeOrSayThatThereAreSeveralEnds) {
   double worst = 0;
   for (unsigned seed = 1; seed <= static_cast<unsigned>(cases(30)); ++seed) {
     const RandomScene scene(seed);
-    const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
-    ASSERT_EQ(app::not_on_gpu(s), "");
+    const Simulation s = build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
+    ASSERT_EQ(not_on_gpu(s), "");
     const Solved direct = solved(s, Where::processor, LinearMethod::cholesky);
     std::vector<std::pair<const char*, Solved>> others{{"cg", solved(s, Where::processor, LinearMethod::cg)},
                                                        {"host", solved(s, Where::host, LinearMethod::cg)}};
@@ -153,7 +154,7 @@ TEST(RandomTwins, GoTheProcessorsWayThroughIndefiniteTangents) {
   int met = 0, alike = 0;
   for (unsigned seed = 1; seed <= static_cast<unsigned>(cases(30)); ++seed) {
     const RandomScene scene(seed);
-    const app::Simulation s = app::build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
+    const Simulation s = build_simulation(app::parse_scene_text(scene.text, "twins.toml", {}));
     const Solved direct = solved(s, Where::processor, LinearMethod::cholesky);
     if (direct.report.indefinite_solves == 0) continue;
     for (const auto& [name, where] : places) {
@@ -171,7 +172,7 @@ TEST(RandomTwins, GoTheProcessorsWayThroughIndefiniteTangents) {
 
 /// Conjugate gradients take hundreds of iterations for a slender body, which a factor solves in less time.
 TEST(SlenderTwins, AreLeftToTheHostsFactor) {
-  const app::Simulation s = app::build_simulation(app::parse_scene_text(R"(
+  const Simulation s = build_simulation(app::parse_scene_text(R"(
 [bodies.b]
 model = "meshless"
 domain = { line = { from = [0, 0, 0], to = [1, 0, 0] } }
@@ -191,7 +192,7 @@ total_force = [0, 0, 0.0005]
 kind = "static"
 load_steps = 3
 )",
-                                                                        "slender.toml", {}));
+                                                              "slender.toml", {}));
   const Solved iterated = solved(s, Where::host, LinearMethod::cg),
                left = solved(s, Where::host, LinearMethod::automatic);
   std::printf("iterations of conjugate gradients: %d, and %d until the host took over\n",

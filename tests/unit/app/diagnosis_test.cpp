@@ -1,9 +1,10 @@
 #include "app/diagnosis/condition.hpp"
-#include "app/diagnosis/step_limit.hpp"
 #include "app/diagnosis/thickness.hpp"
 #include "app/reader/parse.hpp"
-#include "app/run/solver_settings.hpp"
 #include "app/run/temporary_folder.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/solver_settings.hpp"
+#include "assembly/simulation/step_limit.hpp"
 #include "core/math/dense.hpp"
 #include "core/run/explicit_dynamics.hpp"
 

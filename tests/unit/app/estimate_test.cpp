@@ -1,7 +1,8 @@
 #include "app/estimate/estimate.hpp"
 #include "app/estimate/measure.hpp"
 #include "app/estimate/plan.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/specification/errors.hpp"
 #include "tests/unit/app/scene_text.hpp"
 
 #include <gtest/gtest.h>

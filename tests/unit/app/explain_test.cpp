@@ -5,6 +5,7 @@
 #include "app/explain/report.hpp"
 #include "app/explain/suggestions.hpp"
 #include "app/reader/parse.hpp"
+#include "assembly/build/build_simulation.hpp"
 #include "core/math/rotation.hpp"
 #include "io/result_writer.hpp"
 #include "tests/support/paths.hpp"

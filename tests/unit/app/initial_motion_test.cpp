@@ -1,6 +1,7 @@
 // What a scene holds does not move at its start, whatever velocity its body has.
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
 #include "core/node/node_force.hpp"
 
 #include <gtest/gtest.h>

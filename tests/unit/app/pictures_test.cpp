@@ -1,4 +1,4 @@
-#include "app/scene/scene.hpp"
+#include "assembly/specification/scene.hpp"
 #include "tests/unit/app/scene_text.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 #include "app/plausible/plausible.hpp"
-#include "app/plausible/readable.hpp"
 #include "app/reader/parse.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/specification/readable.hpp"
 
 #include <gtest/gtest.h>
 

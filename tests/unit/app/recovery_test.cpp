@@ -1,6 +1,7 @@
 #include "app/run/recovery.hpp"
-#include "app/assembly/matter.hpp"
 #include "app/reader/parse.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/matter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/assembly/regions.hpp"
+#include "assembly/simulation/regions.hpp"
 
 #include <gtest/gtest.h>
 

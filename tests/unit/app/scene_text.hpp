@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/reader/parse.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/specification/errors.hpp"
 
 #include <string>
 #include <string_view>

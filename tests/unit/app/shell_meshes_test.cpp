@@ -1,4 +1,4 @@
-#include "app/assembly/shell_meshes.hpp"
+#include "assembly/bodies/shell_meshes.hpp"
 
 #include "core/base/errors.hpp"
 #include "core/base/index.hpp"

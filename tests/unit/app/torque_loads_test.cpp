@@ -1,7 +1,8 @@
 // A total torque on the edge of a shell, and loads on regions that a body cannot have.
-#include "app/assembly/simulation.hpp"
 #include "app/reader/parse.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/simulation.hpp"
+#include "assembly/specification/errors.hpp"
 
 #include <gtest/gtest.h>
 

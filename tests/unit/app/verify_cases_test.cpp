@@ -1,7 +1,7 @@
 // The registry of verification cases: what a case file may say, how runs are chosen, how values are judged.
-#include "app/scene/errors.hpp"
 #include "app/verify/choice.hpp"
 #include "app/verify/report.hpp"
+#include "assembly/specification/errors.hpp"
 #include "core/base/errors.hpp"
 #include "tests/support/paths.hpp"
 

@@ -1,0 +1,43 @@
+#include "assembly/simulation/matter.hpp"
+
+#include "core/base/index.hpp"
+
+#include <algorithm>
+
+namespace fascia {
+
+void MatterDisplacement::add(const Vec3d& u, double volume) {
+  largest_ = std::max(largest_, norm(u));
+  weighted_ += u * volume;
+  volume_ += volume;
+  sum_ += u;
+  ++places_;
+}
+
+void MatterDisplacement::add(const SimulatedBody& b, const State& state) {
+  const ModelBody& body = *b.body;
+  for (std::size_t q = 0; q < body.points().size(); ++q)
+    add(field_at(body.attach_point(q), state).u, body.points()[q].volume);
+  if (b.groups() != nullptr || body.surface().points.empty())
+    for (const int node : b.node_ids) add(state.u[at(node)], 0);
+  else
+    for (std::size_t i = 0; i < body.surface().points.size(); ++i) add(field_at(body.attach_surface(i), state).u, 0);
+}
+
+Vec3d MatterDisplacement::mean() const {
+  if (volume_ > 0) return weighted_ * (1 / volume_);
+  return sum_ * (1 / static_cast<double>(std::max<std::size_t>(1, places_)));
+}
+
+MatterDisplacement displacement_of_matter(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  MatterDisplacement displacement;
+  if (probe.probe->where) {
+    for (const int node : probe.nodes) displacement.add(state.u[at(node)], 0);
+    return displacement;
+  }
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    if (probe.body < 0 || at(probe.body) == b) displacement.add(s.bodies[b], state);
+  return displacement;
+}
+
+}  // namespace fascia

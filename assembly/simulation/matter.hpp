@@ -1,0 +1,27 @@
+#pragma once
+
+#include "assembly/simulation/simulation.hpp"
+
+namespace fascia {
+
+/// Displacements of matter: of its integration points, and of the nodes of its mesh or, of a meshless or rigid body, of
+/// the points of its surface. Frames of a grid that lie outside are none.
+class MatterDisplacement {
+ public:
+  /// Of one place. @param volume  of an integration point [m³]; 0 elsewhere
+  void add(const Vec3d& u, double volume);
+  void add(const SimulatedBody& body, const State& state);
+
+  double largest() const { return largest_; }  ///< [m]
+  Vec3d mean() const;  ///< weighted with volume at rest; of what has none that of its places [m]
+
+ private:
+  Vec3d weighted_{}, sum_{};
+  double largest_ = 0, volume_ = 0;
+  std::size_t places_ = 0;
+};
+
+/// Of what a probe measures: the nodes of its region, or the matter of its body or of all bodies.
+MatterDisplacement displacement_of_matter(const Simulation& simulation, const ResolvedProbe& probe, const State& state);
+
+}  // namespace fascia

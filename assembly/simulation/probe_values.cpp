@@ -1,0 +1,370 @@
+#include "assembly/simulation/probe_values.hpp"
+
+#include "assembly/simulation/matter.hpp"
+#include "core/base/index.hpp"
+#include "core/math/rotation.hpp"
+#include "core/node/dof_filter.hpp"
+#include "core/structure/inertia.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace fascia {
+
+namespace {
+
+using enum ProbeShape;
+
+struct QuantityInfo {
+  Quantity quantity;
+  const char* name;
+  const char* unit;
+  ProbeShape shape;
+};
+
+constexpr QuantityInfo kQuantities[] = {
+    {Quantity::displacement, "displacement", "m", vector},
+    {Quantity::position, "position", "m", vector},
+    {Quantity::rotation, "rotation", "rad", vector},
+    {Quantity::velocity, "velocity", "m/s", vector},
+    {Quantity::strain, "strain", "1", matrix},
+    {Quantity::stress, "stress", "Pa", matrix},
+    {Quantity::force, "force", "N", vector},
+    {Quantity::moment, "moment", "N m", vector},
+    {Quantity::volume, "volume", "m3", scalar},
+    {Quantity::mass, "mass", "kg", scalar},
+    {Quantity::energy, "energy", "J", scalar},
+    {Quantity::kinetic_energy, "kinetic_energy", "J", scalar},
+    {Quantity::total_energy, "total_energy", "J", scalar},
+    {Quantity::momentum, "momentum", "kg m/s", vector},
+    {Quantity::angular_momentum, "angular_momentum", "kg m2/s", vector},
+    {Quantity::max_displacement, "max_displacement", "m", scalar},
+    {Quantity::mean_displacement, "mean_displacement", "m", vector},
+    {Quantity::frequency, "frequency", "Hz", scalar},
+    {Quantity::fluid_volume, "fluid_volume", "m3", scalar},
+    {Quantity::fluid_pressure, "fluid_pressure", "Pa", scalar},
+};
+
+const QuantityInfo& info(Quantity q) {
+  return *std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                       [&](const QuantityInfo& i) { return i.quantity == q; });
+}
+
+void push(std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); }
+void push(std::vector<double>& out, const Mat3d& m) {
+  for (int i = 0; i < 3; ++i) push(out, m.row(i));
+}
+
+/// Strains and stresses of bodies in one state, each made when it is first asked for.
+using TensorFields = std::map<int, TensorField>;
+
+void push_point_value(std::vector<double>& out, const ResolvedProbe& probe, const SimulatedBody& owner,
+                      const ProbePoint& p, const State& state, TensorFields& fields) {
+  const ModelBody& body = *owner.body;
+  const FieldValue f = field_at(p.field, state);
+  switch (probe.probe->quantity) {
+    case Quantity::displacement:
+      push(out, f.u);
+      break;
+    case Quantity::position:
+      push(out, p.X + f.u);
+      break;
+    case Quantity::rotation:
+      push(out, rotation_vector(polar_increment(owner.vertices ? f.H : f.D)));
+      break;
+    case Quantity::velocity: {
+      Vec3d v;
+      for (std::size_t k = 0; k < p.field.nodes.size(); ++k)
+        v += state.v[at(p.field.nodes[k])] * p.field.influences[k].w +
+             state.Q_dot[at(p.field.nodes[k])] * p.field.influences[k].b;
+      push(out, v);
+      break;
+    }
+    case Quantity::strain:
+      push(out, body.strain_at(p.field, state));
+      break;
+    default: {
+      TensorField& tensors = fields[probe.body];
+      if (!tensors) tensors = body.tensor_field(state);
+      push(out, tensors(p.field, p.nearest).stress);
+      break;
+    }
+  }
+}
+
+/// Deformed volume: Σ v det F over the integration points of a body (or all).
+double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  double volume = 0;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
+    const ModelBody& body = *s.bodies[b].body;
+    for (std::size_t q = 0; q < body.points().size(); ++q) {
+      const Mat3d H = field_at(body.attach_point(q), state).H;
+      volume += body.points()[q].volume * determinant(Mat3d::identity() + H);
+    }
+  }
+  return volume;
+}
+
+struct Energies {
+  double elastic = 0, stabilization = 0, potential = 0;
+};
+
+/// Groups of points that tether the material of a body, or of all.
+std::set<int> tether_groups(const Simulation& s, int body) {
+  std::set<int> groups;
+  for (const TetheredMaterial& m : s.tethered)
+    if (body < 0 || m.body == body) groups.insert(s.model.tethers[at(m.tether)].group);
+  return groups;
+}
+
+Energies energies(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap) {
+  Energies e;
+  const BlockEnergies& of = snap.acting->energies;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
+    const ModelBody& body = *s.bodies[b].body;
+    for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
+      e.elastic += of.groups[at(g)];
+      e.stabilization += of.stabilization[at(g)];
+    }
+    for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
+      e.elastic += of.blocks[at(block)];
+    for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
+      e.elastic += of.shells[at(shell)];
+  }
+  for (const int group : tether_groups(s, probe.body)) e.stabilization += of.stabilization[at(group)];
+  const std::vector<Spring>& springs = s.model.points.springs;
+  for (std::size_t k = 0; k < springs.size(); ++k)
+    if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), springs[k].node)) e.elastic += of.springs[k];
+  const std::vector<double> factors = s.factors(snap.state->time);
+  std::vector<char> chosen(at(s.model.node_count()), 0);
+  for (const int i : probe.nodes) chosen[at(i)] = 1;
+  for (const DeadLoad& load : s.model.loads)
+    for (const NodeLoad& n : load.nodes)
+      if (chosen[at(n.node)] != 0)
+        e.potential -= factors[at(load.schedule)] *
+                       (dot(n.force, snap.state->u[at(n.node)]) + contract(n.couple, snap.state->D[at(n.node)]));
+  SurfaceForces forces;
+  for (const SurfaceLoad& load : s.model.surfaces) {
+    if (chosen[at(load.shares[0].node)] == 0) continue;
+    evaluate(load, *snap.state, factors, forces);
+    e.potential += forces.energy;
+  }
+  return e;
+}
+
+double kinetic_energy(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  double energy = 0;
+  for (const int i : probe.nodes)
+    energy += 0.5 * inertia_product(s.model.inertia[at(i)], state.v[at(i)], state.Q_dot[at(i)]);
+  return energy;
+}
+
+Momentum momentum(const Simulation& s, const ResolvedProbe& probe, const State& state) {
+  Momentum sum;
+  for (const int i : probe.nodes) {
+    const Momentum m = momentum_of(s.model.inertia[at(i)], s.model.rest_position[at(i)] + state.u[at(i)],
+                                   Mat3d::identity() + state.D[at(i)], state.v[at(i)], state.Q_dot[at(i)], probe.about);
+    sum.linear += m.linear;
+    sum.angular += m.angular;
+  }
+  return sum;
+}
+
+/// Force and moment that supports (or, where nothing is held, loads) exert on the nodes.
+void support_force(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap, std::vector<double>& held,
+                   Vec3d& force, Vec3d& moment) {
+  std::vector<char> chosen(at(s.model.node_count()), 0);
+  for (const int i : probe.nodes) chosen[at(i)] = 1;
+  const auto add = [&](int node, const Vec3d& f, const Vec3d& torque) {
+    const Vec3d x = s.model.rest_position[at(node)] + snap.state->u[at(node)];
+    force += f;
+    moment += torque + cross(x - probe.about, f);
+  };
+  bool any = false;
+  if (held.empty()) held = held_forces(s, *snap.acting);
+  for (const FrameConstraint& c : s.model.constraints) {
+    if (chosen[at(c.node)] == 0) continue;
+    any = true;
+    Vec3d f, t;
+    const double* g = held.data() + s.model.points.dofs.begin(c.node);
+    for (int k = 0; k < 3; ++k) f[k] = g[k];
+    const Mat3d A = Mat3d::identity() + snap.state->D[at(c.node)];
+    if (s.model.kind(c.node) == FrameKind::rigid)
+      for (int k = 0; k < 3; ++k) t[k] = g[3 + k];
+    else if (s.model.kind(c.node) == FrameKind::affine)
+      t = axl(A * transpose(frame_variation(FrameKind::affine, g + 3, A)));
+    add(c.node, f, t);
+  }
+  for (const int t : probe.tethered) {
+    const TetheredMaterial& m = s.tethered[at(t)];
+    any = true;
+    const Tether& tether = s.model.tethers[at(m.tether)];
+    const Vec3d f = snap.acting->tether_forces[at(m.tether)], u = field_at(m.field, *snap.state).u;
+    const bool turn = squared_norm(tether.arm) > 0;  // a couple
+    if (!turn) force += f;
+    moment += turn ? cross(tether.arm + u, f) : cross(tether.X + u - probe.about, f);
+  }
+  if (any) return;
+  const std::vector<double> factors = s.factors(snap.state->time);
+  for (std::size_t l = 0; l < s.model.loads.size(); ++l) {
+    if (static_cast<int>(l) == s.gravity_load) continue;
+    const DeadLoad& load = s.model.loads[l];
+    for (const NodeLoad& n : load.nodes) {
+      if (chosen[at(n.node)] == 0) continue;
+      const Mat3d Q = Mat3d::identity() + snap.state->D[at(n.node)];
+      const double factor = factors[at(load.schedule)];
+      add(n.node, n.force * factor, (axl(Q * transpose(n.couple)) + n.torque) * factor);
+    }
+  }
+  for (const FollowerLoad& load : s.model.followers)
+    for_each_share(load, *snap.state, factors[at(load.schedule)],
+                   [&](int node, const Vec3d& f, const Mat3d& couple, const Vec3d& torque) {
+                     if (chosen[at(node)] == 0) return;
+                     const Mat3d Q = Mat3d::identity() + snap.state->D[at(node)];
+                     add(node, f, axl(Q * transpose(couple)) + torque);
+                   });
+  SurfaceForces forces;
+  for (const SurfaceLoad& load : s.model.surfaces) {
+    evaluate(load, *snap.state, factors, forces);
+    for (int v = 0; v < load.vertex_count(); ++v)
+      for (const SurfaceShare& share : load.shares_of(v)) {
+        if (chosen[at(share.node)] == 0) continue;
+        const Mat3d Q = Mat3d::identity() + snap.state->D[at(share.node)];
+        add(share.node, forces.force[at(v)] * share.w, cross(Q * share.b, forces.force[at(v)]));
+      }
+  }
+}
+
+std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap,
+                              TensorFields& fields, std::vector<double>& held) {
+  std::vector<double> out;
+  const Quantity q = probe.probe->quantity;
+  const State& state = *snap.state;
+  if (!probe.points.empty()) {
+    for (const ProbePoint& p : probe.points) push_point_value(out, probe, s.bodies[at(probe.body)], p, state, fields);
+    return out;
+  }
+  switch (q) {
+    case Quantity::force:
+    case Quantity::moment: {
+      Vec3d force, moment;
+      support_force(s, probe, snap, held, force, moment);
+      push(out, q == Quantity::force ? force : moment);
+      break;
+    }
+    case Quantity::volume:
+      out.push_back(deformed_volume(s, probe, state));
+      break;
+    case Quantity::mass: {
+      double mass = 0;  // of nodes, or of whole bodies: nodes that bodies share carry the mass of both
+      for (const int i : probe.nodes) mass += probe.probe->where ? s.model.inertia[at(i)].mass : 0.0;
+      for (std::size_t b = 0; b < s.bodies.size() && !probe.probe->where; ++b)
+        if (probe.body < 0 || static_cast<std::size_t>(probe.body) == b) mass += s.bodies[b].body->mass();
+      out.push_back(mass);
+      break;
+    }
+    case Quantity::energy:
+      out.push_back(energies(s, probe, snap).elastic);
+      break;
+    case Quantity::kinetic_energy:
+      out.push_back(kinetic_energy(s, probe, state));
+      break;
+    case Quantity::total_energy: {
+      const Energies e = energies(s, probe, snap);
+      out.push_back(e.elastic + e.stabilization + kinetic_energy(s, probe, state) + e.potential);
+      break;
+    }
+    case Quantity::momentum:
+      push(out, momentum(s, probe, state).linear);
+      break;
+    case Quantity::angular_momentum:
+      push(out, momentum(s, probe, state).angular);
+      break;
+    case Quantity::max_displacement:
+      out.push_back(displacement_of_matter(s, probe, state).largest());
+      break;
+    case Quantity::mean_displacement:
+      push(out, displacement_of_matter(s, probe, state).mean());
+      break;
+    case Quantity::fluid_volume:
+      out.push_back(fluid_state(s, probe.fluid, state).volume);
+      break;
+    case Quantity::fluid_pressure:
+      out.push_back(fluid_state(s, probe.fluid, state).pressure);
+      break;
+    default:
+      out.push_back(snap.frequency);
+      break;
+  }
+  return out;
+}
+
+}  // namespace
+
+ReachedParts needed_parts(const Simulation& s) {
+  ReachedParts parts;
+  for (const ResolvedProbe& probe : s.probes) {
+    const Quantity q = probe.probe->quantity;
+    parts.forces = parts.forces || q == Quantity::force || q == Quantity::moment;
+    parts.energies = parts.energies || q == Quantity::energy || q == Quantity::total_energy;
+  }
+  for (const SimulatedBody& b : s.bodies) parts.slots = parts.slots || !b.interfaces.empty();
+  if (parts.slots || !s.couplings.empty()) parts.forces = parts.energies = true;
+  return parts;
+}
+
+std::vector<double> held_forces(const Simulation& s, const ReachedForces& acting) {
+  std::vector<double> forces = acting.gradient;
+  const DofFilter filter(s.model);
+  filter.to_local(forces);
+  filter.keep_fixed(forces);
+  filter.to_global(forces);
+  return forces;
+}
+
+std::vector<std::vector<double>> probe_values(const Simulation& s, const ProbedState& snap) {
+  TensorFields fields;
+  std::vector<double> held;  // of all probes, made for the first that asks
+  std::vector<std::vector<double>> values;
+  for (const ResolvedProbe& probe : s.probes) values.push_back(values_of(s, probe, snap, fields, held));
+  return values;
+}
+
+std::vector<double> probe_value(const Simulation& s, std::size_t probe, const ProbedState& snap) {
+  TensorFields fields;
+  std::vector<double> held;
+  return values_of(s, s.probes[probe], snap, fields, held);
+}
+
+ProbeShape probe_shape(Quantity quantity) { return info(quantity).shape; }
+std::string probe_unit(Quantity quantity) { return info(quantity).unit; }
+std::string unit_of_quantity(std::string_view name) {
+  return std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                      [&](const QuantityInfo& i) { return i.name == name; })
+      ->unit;
+}
+std::string quantity_name(Quantity quantity) { return info(quantity).name; }
+
+std::vector<std::string> probe_columns(const ResolvedProbe& probe) {
+  const ProbeShape shape = info(probe.probe->quantity).shape;
+  const char* axes[3] = {"x", "y", "z"};
+  std::vector<std::string> parts;
+  if (shape == scalar) parts = {""};
+  if (shape == vector)
+    for (const char* a : axes) parts.push_back(std::string(".") + a);
+  if (shape == matrix)
+    for (const char* a : axes)
+      for (const char* b : axes) parts.push_back(std::string(".") + a + b);
+  std::vector<std::string> columns;
+  const std::size_t points = std::max<std::size_t>(1, probe.points.size());
+  for (std::size_t i = 0; i < points; ++i)
+    for (const std::string& part : parts)
+      columns.push_back(probe.probe->name + (probe.probe->at_is_list ? "[" + std::to_string(i) + "]" : "") + part);
+  return columns;
+}
+
+}  // namespace fascia

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "assembly/specification/scene.hpp"
+
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fascia {
+
+/// One thing that is wrong in a scene, and what would be right.
+struct Diagnostic {
+  Place place;
+  std::string message;  ///< "what is wrong; what would be right"
+
+  /// FILE:LINE:COLUMN: key.path: message
+  std::string text() const;
+};
+
+/// Everything that is wrong with a scene. Exit status 2.
+class SceneError : public std::exception {
+ public:
+  explicit SceneError(std::vector<Diagnostic> diagnostics);
+  const char* what() const noexcept override { return text_.c_str(); }
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+
+ private:
+  std::vector<Diagnostic> diagnostics_;
+  std::string text_;
+};
+
+}  // namespace fascia
