@@ -42,6 +42,10 @@ fascia_package(fascia fascia ""
   "Simulator of connective tissue and the organs that it ties together"
   "Meshless bodies on frames, finite elements and shells, coupled through shared\nframes; statics, dynamics and modes of scenes that are described in TOML files.")
 set(CPACK_DEBIAN_FASCIA_PACKAGE_RECOMMENDS "fascia-picture, bash-completion")
+fascia_package(dev libfascia-dev "fascia (= ${PROJECT_VERSION})"
+  "Headers of the simulator fascia"
+  "For C++ programs that build a model, step it and drive it themselves:\nfind_package(fascia) of CMake, and an example.")
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 if(TARGET fascia-picture)
   fascia_package(picture fascia-picture "fascia (= ${PROJECT_VERSION})"
     "Pictures of fascia's results"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the Debian packages fascia, fascia-picture and, where there is a CUDA toolkit, fascia-cuda.
+# Makes the Debian packages fascia, libfascia-dev, fascia-picture and, where there is a CUDA toolkit, fascia-cuda.
 set -euo pipefail
 root=$(cd -P "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/cmake/setup.sh"

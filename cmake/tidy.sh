@@ -43,7 +43,7 @@ ninja -C build/release -t deps 2>/dev/null | awk -v root="$root/" '
     sub(/^\.\.\/\.\.\//, "", path)
     if (source == "") {
       source = path
-      ours = source ~ /^(core|meshless|fem|shells|coupling|gpu|io|app)\/.*\.cpp$/ && !(source in seen)
+      ours = source ~ /^(core|meshless|fem|shells|coupling|gpu|io|assembly|fascia|app)\/.*\.cpp$/ && !(source in seen)
       seen[source] = 1
     }
     if (ours) print source "\t" path
@@ -98,7 +98,7 @@ fi
 
 # Headers that changed and did not pass: each includes what it uses. One that comes first in the source of its own name
 # has been compiled by itself.
-find core meshless fem shells coupling gpu io app -name '*.hpp' -print0 | xargs -0 grep -L 'cuda_runtime' |
+find core meshless fem shells coupling gpu io assembly fascia app -name '*.hpp' -print0 | xargs -0 grep -L 'cuda_runtime' |
   while read -r header; do
     own=${header%.hpp}.cpp
     [ -f "$own" ] && [ "$(grep -m1 '^#include' "$own")" = "#include \"$header\"" ] || printf '%s\0' "$header"
