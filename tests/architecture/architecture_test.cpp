@@ -31,15 +31,19 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"coupling", {"core"}},
     {"gpu", {"core"}},
     {"io", {"core"}},
-    {"app", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io"}},
-    {"tests", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io", "app"}},
-    {"bench", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io", "app", "tests"}}};
+    {"assembly", {"core", "meshless", "fem", "shells", "coupling"}},
+    {"fascia", {"core", "assembly", "gpu"}},
+    {"examples", {"fascia"}},
+    {"app", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io", "assembly", "fascia"}},
+    {"tests", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io", "assembly", "fascia", "app"}},
+    {"bench", {"core", "meshless", "fem", "shells", "coupling", "gpu", "io", "assembly", "fascia", "app", "tests"}}};
 
 /// Rooms of a folder from the ground up: each may include those before it, none after.
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"core",
      {"base", "space", "math", "geometry", "physics", "structure", "body", "node", "step", "linear", "levels",
       "executor", "tangent", "solver", "run"}},
+    {"assembly", {"specification", "simulation", "bodies", "actions", "build"}},
     {"gpu", {"space", "tiles", "elements", "blocks", "actions", "system", "explicit", "run"}}};
 
 /// Sources and headers of a room.
@@ -65,6 +69,8 @@ bool is_source(const fs::path& path) {
   static const std::set<std::string> endings = {".cpp", ".hpp", ".cu", ".cuh"};
   return endings.contains(path.extension().string());
 }
+
+bool is_header(const std::string& file) { return file.ends_with(".hpp") || file.ends_with(".cuh"); }
 
 /// Every source file of the project, relative to the root, in a fixed order.
 std::vector<std::string> source_files() {
@@ -187,9 +193,27 @@ TEST(Architecture, FilesFitInAHead) {
 
 TEST(Architecture, HeadersAreGuarded) {
   for (const std::string& file : source_files()) {
-    if (!file.ends_with(".hpp") && !file.ends_with(".cuh")) continue;
+    if (!is_header(file)) continue;
     const auto lines = lines_of(kRoot / file);
     EXPECT_TRUE(std::find(lines.begin(), lines.end(), "#pragma once") != lines.end()) << file;
+  }
+}
+
+// A comment is read without the one before it, in an editor or a list: it starts with what it describes.
+TEST(Architecture, CommentsOfHeadersNameWhatTheyDescribe) {
+  const std::set<std::string> folders = {"core", "fascia"};
+  const std::regex comment(R"re(^\s*///)re"), first(R"re(^\s*/// *(What|Of|The same)\b)re");
+  const std::regex beside(R"re(///< *(What|Of|The same)\b)re");
+  for (const std::string& file : source_files()) {
+    if (!folders.contains(first_folder(file)) || !is_header(file)) continue;
+    bool inside = false;
+    int number = 0;
+    for (const std::string& line : lines_of(kRoot / file)) {
+      ++number;
+      const bool fragment = (!inside && std::regex_search(line, first)) || std::regex_search(line, beside);
+      EXPECT_FALSE(fragment) << file << ":" << number << ": " << line;
+      inside = std::regex_search(line, comment);
+    }
   }
 }
 
