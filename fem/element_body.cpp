@@ -15,8 +15,8 @@ namespace fascia {
 
 namespace {
 
-/// Above this Poisson ratio linear elements lock (docs/manual.md, "Nearly incompressible tissue"); rounding of λ and μ
-/// must not decide about the ratio itself.
+/// Above this Poisson ratio linear elements lock (docs/manual/elements.md, "Nearly incompressible tissue"); rounding of
+/// λ and μ must not decide about the ratio itself.
 constexpr double kLockingPoisson = 0.45 + 1e-9;
 
 double mean_edge(const ElementMesh& mesh) {

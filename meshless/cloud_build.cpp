@@ -17,7 +17,8 @@ namespace {
 /// Supports in spacings: short ones integrate best (docs/decisions/scattered_frames.md).
 constexpr double kMlsSupport = 1.8, kKernelSupport = 2.0;
 constexpr int kShepardNeighbours = 8;
-/// Spacing of integration points over that of frames: bending needs the points to see the section (docs/manual.md).
+/// Spacing of integration points over that of frames: bending needs the points to see the section
+/// (docs/manual/meshless.md).
 constexpr double kPointSpacing = 0.4;
 
 /// Samples of matter as a choice asks for.

@@ -13,7 +13,7 @@ namespace fascia {
 
 namespace {
 
-/// Above this Poisson ratio full integration locks (docs/manual.md, "Nearly incompressible tissue").
+/// Above this Poisson ratio full integration locks (docs/manual/meshless.md, "Nearly incompressible tissue").
 constexpr double kSelectivePoisson = 0.45 + 1e-9;  // rounding of λ and μ must not decide about 0.45 itself
 
 }  // namespace

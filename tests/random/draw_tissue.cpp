@@ -1,3 +1,4 @@
+#include "assembly/actions/actions.hpp"
 #include "tests/random/random_scene.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,7 @@
 #include "tests/random/random_scene.hpp"
 
+#include "assembly/actions/actions.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "assembly/actions/actions.hpp"
 #include "tests/random/draws.hpp"
 #include "tests/random/mesh_file.hpp"
 

@@ -1,5 +1,5 @@
 #include "app/reader/parse.hpp"
-#include "app/scene/errors.hpp"
+#include "assembly/specification/errors.hpp"
 #include "core/base/errors.hpp"
 
 #include <cstddef>
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (zero != std::string_view::npos) overrides.emplace_back(input.substr(zero + 1));
   try {
     fascia::app::parse_scene_text(input.substr(0, zero), "fuzz.toml", overrides);
-  } catch (const fascia::app::SceneError&) {
+  } catch (const fascia::SceneError&) {
   } catch (const fascia::FileError&) {
   }
   return 0;
