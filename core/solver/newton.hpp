@@ -103,6 +103,7 @@ class Newton {
   static constexpr double kNoDecrement = 1e-12;    ///< the same of a correction of 1e-6 of the motion
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
+  static constexpr int kCircles = 4;               ///< iterations after the least residual that rounding left
   static constexpr int kUnsolvedStands = 5;        ///< the same, where conjugate gradients do not get to their end
   static constexpr double kReduced = kLargestShare;
 
@@ -121,12 +122,17 @@ class Newton {
     if (!current_.converged()) return false;
     if (!current_.by_rounding) return true;
     const bool reduced = current_.residual <= kReduced * first_residual_ && small_correction_;
-    return !unsolved_ && (reduced || standing_ >= kStands);
+    return !unsolved_ && (reduced || standing_ >= kStands || circling_ >= kCircles);
   }
 
-  /// Counts full steps in a row that did not reduce the residual.
+  /// Counts full steps in a row that did not reduce the residual, and those between states of rounding alone that did
+  /// not reduce the least residual of these: they may go round in a circle, up and down.
   void count_standing(double before) {
     standing_ = current_.finite() && current_.residual >= kFalls * before ? standing_ + 1 : 0;
+    const bool rounding = current_.converged() && current_.by_rounding;
+    if (!rounding) least_ = std::numeric_limits<double>::infinity();
+    circling_ = rounding && current_.residual >= kFalls * least_ ? circling_ + 1 : 0;
+    if (circling_ == 0 && rounding) least_ = current_.residual;
   }
 
   /// True where the residual is a small share of the loads, the last corrections were small, and it falls no further.
@@ -248,6 +254,8 @@ class Newton {
   double leap_ = 0;                   ///< rotation of the indefinite step that left the mark; 0 of a definite one
   double leap_cap_ = kIndefiniteCap;  ///< what such a step may be now
   double first_residual_ = 0;
+  double least_ = std::numeric_limits<double>::infinity();  ///< residual of states of rounding, in a row
+  int circling_ = 0;
   double last_decrement_ = 0;  ///< of a search that found nothing better [J]
 };
 

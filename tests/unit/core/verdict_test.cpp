@@ -197,6 +197,40 @@ TEST(NewtonVerdict, StagnationNearTheSolutionIsSaid) {
   EXPECT_NE(solve(system, 50).status, NewtonStatus::converged) << "a symmetrised correction says nothing";
 }
 
+/// Rounding that goes up and down in a circle, by more than a half each time, is rounding: a tethered body that is
+/// moved as a whole, without load.
+TEST(NewtonVerdict, RoundingMayGoRoundInACircle) {
+  struct Circling {
+    int evaluations = 0, steps = 0;
+    Evaluation evaluate() {
+      const double residual = evaluations == 0 ? 1.0 : evaluations % 2 == 0 ? 3.5e-9 : 8e-9;
+      ++evaluations;
+      Evaluation e;
+      judge(std::array{part(residual, 0, 0, 1e-6)}, std::array{0}, kTolerance, e);
+      e.energy_scale = 1e-9;
+      return e;
+    }
+    static DirectionReport direction() {
+      DirectionReport report;
+      report.slope = -1e-10;
+      return report;
+    }
+    static double largest_step(double wanted) { return wanted; }
+    void apply(double) { ++steps; }
+    static void save() {}
+    static void restore() {}
+    static bool has_prescribed_increment() { return false; }
+    static bool conservative() { return true; }
+    static bool compares_energies() { return true; }
+  } system;
+  const SolverSettings settings;
+  Newton newton(system, settings);
+  const NewtonReport r = newton.solve();
+  EXPECT_EQ(r.status, NewtonStatus::converged);
+  EXPECT_EQ(r.convergence, Convergence::rounding);
+  EXPECT_LE(system.steps, 8);
+}
+
 /// A first, large correction that leaves 1e-6 of itself, which is within the rounding floor.
 TEST(NewtonVerdict, RoundingIsNotReachedByALargeCorrection) {
   OneSpring system{[](double x) { return x - 1; }, [](double x) { return x == 0 ? 1 - 1e-6 : 1.0; }, 1e-5};
