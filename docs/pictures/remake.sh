@@ -20,6 +20,13 @@ if [ $# -eq 0 ]; then
   for picture in "$here"/*.png; do set -- "$@" "$(basename "$picture" .png)"; done
 fi
 for name in "$@"; do
+  if [ "$name" = frames ]; then  # of the soft cantilever
+    "$fascia" run "$root/scenes/soft_cantilever.toml" --quiet --output "$work/frames"
+    xvfb-run -a "$(dirname "$fascia")/fascia-picture" "$work/frames/beam_00000.vtu" "$here/frames.png" --frames \
+      --view 0.5,0.3,1 --size 1000x667
+    echo frames.png
+    continue
+  fi
   options=()
   [ -z "${settings[$name]:-}" ] || options=(--set "${settings[$name]}")
   "$fascia" run "$root/scenes/$name.toml" --quiet --output "$work/$name" "${options[@]}"
