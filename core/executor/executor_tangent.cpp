@@ -112,8 +112,7 @@ double CpuExecutor::largest_step(const State& state, std::span<const double> dir
   if (blocks.empty()) return 1;
   const BlockDirection motion = direction_of(direction, Q);
   double longest = 1;
-  for (UserExecutor& block : blocks)
-    longest = std::min(longest, block.largest_step(state_of(state, {}, 0), motion));
+  for (UserExecutor& block : blocks) longest = std::min(longest, block.largest_step(state_of(state, {}, 0), motion));
   return longest;
 }
 
