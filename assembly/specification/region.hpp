@@ -43,10 +43,10 @@ struct IdsRegion {
   std::vector<int> ids{};
 };
 struct AllOfRegion {
-  std::vector<Region> parts{};
+  std::vector<Region> parts;
 };
 struct AnyOfRegion {
-  std::vector<Region> parts{};
+  std::vector<Region> parts;
 };
 struct NotRegion {
   std::shared_ptr<const Region> part;
