@@ -30,7 +30,7 @@ class ImplicitStepper {
     before_ = state;
     failures_ = 0;
     const int solves = run.indefinite_solves;
-    const NewtonReport report = advanced(state, factors, end, dt, run);
+    NewtonReport report = advanced(state, factors, end, dt, run);
     note_indefinite(run, solves, end);
     if (!acceptable(report, settings_)) {
       fail(report, end, run);
