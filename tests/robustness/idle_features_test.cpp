@@ -23,24 +23,26 @@ struct Feature {
 
 const Feature kShells{
     "shells",
-    {"shells/", "core/executor/shell_executor", "core/structure/shell_block", "app/assembly/shell_meshes"},
+    {"shells/", "core/executor/shell_executor", "core/structure/shell_block", "assembly/bodies/shell_meshes"},
     {}};
 const Feature kElements{
-    "elements", {"fem/", "core/executor/element_", "core/structure/element_block", "app/assembly/element_bodies"}, {}};
+    "elements",
+    {"fem/", "core/executor/element_", "core/structure/element_block", "assembly/bodies/element_bodies"},
+    {}};
 const Feature kMeshless{"meshless bodies", {"meshless/"}, {}};
 const Feature kCouplings{
     "couplings",
     {"coupling/", "core/tangent/dependents", "core/executor/spring_executor", "core/structure/dependent_inertia",
-     "app/actions/couplings", "app/assembly/carried_surface", "app/results/coupling_report"},
+     "assembly/actions/couplings", "assembly/bodies/carried_surface", "app/results/coupling_report"},
     {"DependentNodes", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "SpringExecutor",
      "add_couplings", "move_inertia_to_hosts", "move_idle_inertia_to_hosts", "coupling_report"}};
-const Feature kTethers{"tethers", {"app/actions/tethers"}, {}};
+const Feature kTethers{"tethers", {"assembly/actions/tethers"}, {}};
 const Feature kSurfaces{"fluids and pressure",
                         {"core/structure/surface_load", "core/structure/face_rule", "core/executor/surface_tangent",
-                         "core/solver/surface_loads", "app/actions/surface_loads"},
+                         "core/solver/surface_loads", "assembly/actions/surface_loads"},
                         {"SurfaceLoads", "add_fluids"}};
 const Feature kPaths{"paths and imperfections",
-                     {"core/solver/path_", "core/run/path_", "core/run/limit_point", "app/actions/imperfection"},
+                     {"core/solver/path_", "core/run/path_", "core/run/limit_point", "assembly/actions/imperfection"},
                      {"largest_rotation_in", "add_imperfection"}};
 const Feature kExplicit{"explicit dynamics", {"core/run/explicit_", "core/run/stable_step"}, {}};
 const Feature kModes{"modes", {"core/run/modes"}, {}};
