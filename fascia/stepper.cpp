@@ -2,6 +2,7 @@
 
 #include "assembly/actions/actions.hpp"
 #include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/matter.hpp"
 #include "assembly/simulation/probe_values.hpp"
 #include "assembly/simulation/solver_settings.hpp"
 #include "assembly/specification/check.hpp"
@@ -25,7 +26,7 @@ namespace fascia {
 
 namespace {
 
-/// What a stepper advances; other kinds of solution are runs of their own.
+/// Refuses what a stepper does not advance: other kinds of solution are runs of their own.
 void require_steps(const Scene& scene) {
   const Solver& solver = scene.solver;
   const auto refuse = [&](const char* what) {
@@ -60,7 +61,7 @@ struct Pose {
   Mat3d D{};
   Vec3d u{}, center{};
 
-  /// The same motion about another center.
+  /// This motion, told about another center.
   Pose about(const Vec3d& c) const { return {D, u + D * (c - center), c}; }
 };
 
@@ -245,6 +246,7 @@ StepReport Stepper::step(double dt) {
   }
   StepReport report;
   report.converged = run.status == RunStatus::converged;
+  report.at_limit = run.steps_at_limit > 0;
   report.stable = !run.stability.is_unstable();
   report.message = run.message;
   report.newton_iterations = run.newton_iterations;
@@ -348,6 +350,11 @@ Rows Stepper::surface_points(int body) {
     buffer.wanted = true;
   }
   return {buffer.values.data(), static_cast<int>(count), 3};
+}
+
+int Stepper::inverted_points(int body) {
+  parts_->require_body(body);
+  return folded_points(parts_->simulation.bodies[at(body)], parts_->steps->state()).inverted;
 }
 
 std::vector<double> Stepper::probe(std::string_view name) {

@@ -42,6 +42,7 @@ struct RigidMotion {
 /// How a step went.
 struct StepReport {
   bool converged = false;  ///< false: the state stayed as it was
+  bool at_limit = false;   ///< it was accepted above the tolerance, as Solver::on_limit = proceed asks
   bool stable = true;      ///< of statics: no soft direction was found in which the equilibrium is unstable
   std::string message;     ///< why it did not converge, and what to try
   double time = 0;         ///< that was reached [s]; in statics the load factor
@@ -111,6 +112,10 @@ class Stepper {
   /// The surface of a body, for drawing and for contact: corners of its triangles, and the places of its points.
   std::span<const std::array<int, 3>> surface_triangles(int body) const;
   Rows surface_points(int body);  ///< (points × 3) [m]
+
+  /// Integration points of a body that are turned inside out: with the laws of some elements an equilibrium, and no
+  /// state of matter. A run in statics ends as "inverted" there.
+  int inverted_points(int body);
 
   /// The value of a probe of the scene: one number, 3, 9 by rows, or as many for each of its places.
   std::vector<double> probe(std::string_view name);

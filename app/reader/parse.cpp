@@ -4,6 +4,7 @@
 #include "app/reader/readers.hpp"
 #include "app/reader/text_checks.hpp"
 #include "app/reader/validate.hpp"
+#include "assembly/specification/check.hpp"
 #include "core/base/errors.hpp"
 
 #include <fmt/format.h>
@@ -90,7 +91,7 @@ Scene read_scene(const TableReader& table, const std::filesystem::path& path) {
   for (const TableReader& load : table.tables("loads")) scene.loads.push_back(read_load(load, bodies));
   for (const TableReader& coupling : table.tables("couplings"))
     scene.couplings.push_back(read_coupling(coupling, bodies));
-  check_circles(scene.bodies, table.diagnostics());
+  for (const Diagnostic& circle : circles_of(scene.bodies)) table.diagnostics().add(circle.place, circle.message);
   check_surfaces(scene, bodies, table.diagnostics());
   scene.solver = read_solver(table, bodies);
   const std::optional<SolverKind> kind = read_solver_kind(table);

@@ -119,8 +119,6 @@ void check_other_body(const std::string& name, const Place& place, const std::st
 
 Coupling read_coupling(const TableReader& table, const std::vector<std::string>& bodies);
 
-/// Reports bodies that need one another, by the nodes that they share and the space between bodies that they fill.
-void check_circles(const std::vector<Body>& bodies, Diagnostics& diagnostics);
 /// Reports surfaces that no coupling carries.
 /// @param names  of all bodies; couplings of others, which are reported elsewhere, may carry any surface
 void check_surfaces(const Scene& scene, const std::vector<std::string>& names, Diagnostics& diagnostics);

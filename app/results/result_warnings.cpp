@@ -1,5 +1,7 @@
 #include "app/results/result_warnings.hpp"
 
+#include "assembly/simulation/matter.hpp"
+
 #include "core/base/index.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +15,6 @@ namespace fascia::app {
 namespace {
 
 /// Determinant of the mean of two rotations a right angle apart: below, a blend no longer follows them.
-constexpr double kResolved = 0.5;
 
 /// A triangle with less of its area collapses: strains of that size are no physical state of this law.
 constexpr double kCollapsed = 0.1;
@@ -220,15 +221,12 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
       add_shell_warnings(b, end, judged, run, warnings);
       continue;
     }
-    int inverted = 0, unresolved = 0;
+    const FoldedPoints folded = folded_points(b, end);
+    const int inverted = folded.inverted;
     const bool rigid = !b.vertices && !s.scene.bodies[index].affine;
+    const int unresolved = rigid ? folded.unresolved : 0;
     const Formulation formulation = s.scene.bodies[index].formulation;
     const bool linear = formulation == Formulation::linear;
-    for (std::size_t q = 0; q < b.body->points().size(); ++q) {
-      const FieldValue f = field_at(b.body->attach_point(q), end);
-      inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
-      unresolved += rigid && determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
-    }
     if (inverted > 0 && linear)
       warnings.add("inverted",
                    fmt::format("body \"{}\": {} of {} integration points are turned inside out: the displacements are "

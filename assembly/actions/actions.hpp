@@ -2,7 +2,7 @@
 
 #include "assembly/simulation/simulation.hpp"
 
-/// What holds, drives, loads, couples and measures the bodies of a simulation: parts of build_simulation().
+/// Constraints, drivers, loads, couplings and probes of a simulation: parts of build_simulation().
 namespace fascia {
 
 void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< constraints.cpp
@@ -14,7 +14,7 @@ void add_couplings(Simulation& simulation, PointSetBuilder& points);
 /// @throws SceneError  no face selected
 void add_pressure(Simulation& simulation, int body, const Load& load, int schedule);
 void add_fluids(Simulation& simulation);  ///< surface_loads.cpp
-/// Of a static solve: every body is held, by supports or through couplings; support.cpp.
+/// Checks that every body of a static solve is held, by supports or through couplings; support.cpp.
 /// @throws SceneError  what is free, with the motion
 void check_support(const Simulation& simulation);
 void resolve_probes(Simulation& simulation);      ///< probe_setup.cpp
@@ -25,7 +25,7 @@ void resolve_controlled(Simulation& simulation);  ///< probe_setup.cpp
 /// @throws SceneError  nothing can buckle
 void add_imperfection(Simulation& simulation);
 
-/// Of central differences: the largest time step that is stable at the start [s], into Simulation::stable_step. An
+/// Puts the largest time step of central differences that is stable at the start [s] into Simulation::stable_step. An
 /// automatic step begins with it, and the steps are then those that the duration would take if it stayed.
 /// @throws SceneError  where time_step is larger
 void settle_time_step(Simulation& simulation, MechanicalSystem& system);

@@ -29,6 +29,16 @@ Vec3d MatterDisplacement::mean() const {
   return sum_ * (1 / static_cast<double>(std::max<std::size_t>(1, places_)));
 }
 
+FoldedPoints folded_points(const SimulatedBody& b, const State& state) {
+  FoldedPoints folded;
+  for (std::size_t q = 0; q < b.body->points().size(); ++q) {
+    const FieldValue f = field_at(b.body->attach_point(q), state);
+    folded.inverted += determinant(Mat3d::identity() + f.H) <= 0 ? 1 : 0;
+    folded.unresolved += determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
+  }
+  return folded;
+}
+
 MatterDisplacement displacement_of_matter(const Simulation& s, const ResolvedProbe& probe, const State& state) {
   MatterDisplacement displacement;
   if (probe.probe->where) {

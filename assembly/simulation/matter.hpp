@@ -21,6 +21,16 @@ class MatterDisplacement {
   std::size_t places_ = 0;
 };
 
+/// The least determinant of a blended rotation that frames resolve.
+inline constexpr double kResolved = 0.5;
+
+/// Integration points of a body where its field has left what it can say.
+struct FoldedPoints {
+  int inverted = 0;    ///< turned inside out: det F ≤ 0
+  int unresolved = 0;  ///< neighbouring frames are turned against each other by more than a right angle or so
+};
+FoldedPoints folded_points(const SimulatedBody& body, const State& state);
+
 /// Of what a probe measures: the nodes of its region, or the matter of its body or of all bodies.
 MatterDisplacement displacement_of_matter(const Simulation& simulation, const ResolvedProbe& probe, const State& state);
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-/// What holds, drives, loads and couples bodies. SI units.
+/// Constraints, motions, loads and couplings of bodies. SI units.
 namespace fascia {
 
 struct Motion {

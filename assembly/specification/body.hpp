@@ -18,7 +18,7 @@
 /// Bodies: what they are made of, and how they are cut into frames, elements or triangles. SI units.
 namespace fascia {
 
-/// What the results of a scene, or of one body, must be worth. What the scene leaves out is chosen so.
+/// How much the results of a scene, or of one body, must be worth. The rest of the scene is chosen so.
 struct StatedNeed {
   Place place{};
   std::optional<double> error{};       ///< of the probe, or of the largest displacement of each body; relative
@@ -87,7 +87,7 @@ struct ThicknessUse {
   double value = 0;  ///< [m]
 };
 
-/// What fills a closed body: either a pressure or a bulk modulus.
+/// Filling of a closed body: either a pressure or a bulk modulus.
 struct Fluid {
   Place place{};
   std::optional<double> pressure{}, bulk_modulus{};  ///< [Pa]
@@ -125,7 +125,7 @@ enum class Formulation { large_strain, corotational, linear };
 /// Remedy of tetrahedra against volumetric locking; automatic: chosen by Poisson's ratio.
 enum class Locking { automatic, none, f_bar };
 
-/// What cuts a cell of a shell into triangles, see shells/generate.hpp.
+/// Diagonals that cut the cells of a shell into triangles, see shells/generate.hpp.
 enum class CellDiagonal { right, left, alternating };
 
 /// Cells of a generated mesh.

@@ -26,7 +26,7 @@ std::size_t dimension(const Domain& d) {
   return std::holds_alternative<LineDomain>(d) ? 1 : is_flat(d) ? 2 : 3;
 }
 
-/// Whether a body of a model can have a domain.
+/// True where a body of a model can have a domain.
 bool fits(BodyModel model, const Domain& d) {
   const bool block = std::holds_alternative<BlockDomain>(d), box = std::holds_alternative<BoxDomain>(d);
   const bool line = std::holds_alternative<LineDomain>(d), ring = std::holds_alternative<AnnulusDomain>(d);
@@ -57,7 +57,7 @@ class Check {
     parts_.finite(scene_.world.gravity, world);
     parts_.schedule(scene_.world.schedule, world);
     for (const Body& b : scene_.bodies) body(b);
-    circles();
+    for (Diagnostic& circle : circles_of(scene_.bodies)) wrong_.push_back(std::move(circle));
     for (const Constraint& c : scene_.constraints) constraint(c);
     for (const Load& l : scene_.loads) load(l);
     for (const Coupling& c : scene_.couplings) coupling(c);
@@ -168,28 +168,6 @@ class Check {
     const auto carries = [&](const Coupling& c) { return c.kind != CouplingKind::spring && c.body == b.name; };
     if (b.model == BodyModel::surface && std::none_of(scene_.couplings.begin(), scene_.couplings.end(), carries))
       parts_.wrong(b.place, "rides on nothing; embed or weld it");
-  }
-
-  /// Bodies that a body shares with or lies between must be there first.
-  void circles() {
-    std::map<const Body*, int> way;  // 1: on it, 2: done
-    const auto visit = [&](const auto& self, const Body* b) -> bool {
-      if (const int seen = way[b]; seen != 0) return seen == 1;
-      way[b] = 1;
-      std::vector<std::string> needs;
-      if (b->shares)
-        for (const SharedNodes& share : *b->shares) needs.push_back(share.body);
-      if (const BetweenDomain* gap = between(b->domain))
-        needs.insert(needs.end(), gap->bodies.begin(), gap->bodies.end());
-      bool circle = false;
-      for (const std::string& name : needs)
-        if (const auto found = bodies_.find(name); found != bodies_.end() && found->second != b)
-          circle = self(self, found->second) || circle;
-      way[b] = 2;
-      return circle;
-    };
-    for (const Body& b : scene_.bodies)
-      if (visit(visit, &b)) return parts_.wrong(b.place, "closes a circle: what it shares or lies between leads back");
   }
 
   void constraint(const Constraint& c) {

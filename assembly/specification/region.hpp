@@ -59,7 +59,7 @@ struct Region {
       shape;
 };
 
-/// What lies in a box between two corners [m].
+/// Region of all that lies in a box between two corners [m].
 inline Region in_box(const Vec3d& min, const Vec3d& max) { return {{}, BoxRegion{min, max}}; }
 
 }  // namespace fascia

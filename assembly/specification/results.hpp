@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// What a run measures and writes.
+/// Probes of a run, and the results that it writes.
 namespace fascia {
 
 enum class Quantity {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/// What is simulated.
+/// A scene: all that is simulated, and how.
 namespace fascia {
 
 struct Scene {
@@ -34,7 +34,7 @@ struct Scene {
   /// Something is needed, of the scene or of a body.
   bool states_need() const;
 
-  /// Whether a key is written: "loads[0].over".
+  /// True where a key is written: "loads[0].over".
   bool says(const std::string& key) const { return places.contains(key); }
   /// Where a key is written; where it is not, the table that would hold it.
   Place place_of(const std::string& key) const;

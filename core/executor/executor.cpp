@@ -79,11 +79,7 @@ void CpuExecutor::note_motion(const State& state, std::span<double> motion) {
   node_parts_.sum<0, 1>(loops::NodeMotion{nodes_of(set_), {state.u.data(), state.D.data()}}, motion.data());
 }
 
-void CpuExecutor::start_from(const State& state) {
-  for (UserExecutor& block : std::get<Several<UserExecutor>>(blocks_))
-    if (block.follow()) ++pattern_;
-  note_motion(state, start_motion_);
-}
+void CpuExecutor::start_from(const State& state) { note_motion(state, start_motion_); }
 
 NodeSum CpuExecutor::sum_at(int node) {
   NodeSum sum;
@@ -123,6 +119,8 @@ long CpuExecutor::evaluations() { return evaluations_so_far; }
 
 void CpuExecutor::sum_terms(const State& state, const StrainHistory& history, bool all, std::span<double> gradient) {
   ++evaluations_so_far;
+  for (UserExecutor& block : std::get<Several<UserExecutor>>(blocks_))
+    if (block.follow()) ++pattern_;
   for_each_block(
       [&](auto& block, std::size_t b) { block.compute_forces(state_of(state, history, b), all, part_motion_); });
   sum_forces(state, all, gradient);

@@ -64,11 +64,11 @@ class CpuExecutor {
   /// Where tethers pull to: (groups with axes × 3 × 8) [m]. Zero at first.
   std::span<double> targets() { return std::get<Several<PointExecutor>>(blocks_).front().targets(); }
 
-  /// Where a step starts: increments of its states carry the rounding of that motion. Follows user blocks whose cells
-  /// have changed.
-  /// @throws InputError  a cell that names a node that there is not; nothing is followed then
+  /// Where a step starts: increments of its states carry the rounding of that motion.
   void start_from(const State& state);
-  /// Changes where cells of user blocks have changed, so that the pattern of the matrix has.
+  /// Changes where cells of user blocks have changed, so that the pattern of the matrix has: gradient() and forces()
+  /// follow them.
+  /// @throws (these two) InputError  a cell that names a node that there is not; the block is followed no further
   long pattern() const { return pattern_; }
 
   /// Gradient of the internal energy by degrees of freedom: force, then torque or what is conjugate to A (overwritten).

@@ -86,8 +86,9 @@ struct StaticsSettings {
   double from = 0, to = 1;  ///< load factors; the state is an equilibrium of the first
 };
 
-/// Equilibrium under loads and boundary motions that grow with the load factor from 0 to 1. A load step that does not
-/// converge is cut in half, down to 1/1024; shorter steps end on the multiples of 1/load_steps too.
+/// Equilibrium under loads and boundary motions that grow with the load factor, from 0 to 1 where nothing else is said.
+/// A load step that does not converge is cut in half, down to 1/1024; shorter steps end on the multiples of
+/// 1/load_steps too.
 ///
 /// A system is a MechanicalSystem, or one of the same functions on another processor, with its own kind of state.
 template <class System>

@@ -4,6 +4,7 @@
 #include "core/run/model_stepper.hpp"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -26,11 +27,11 @@ class SystemStepper final : public ModelStepper {
       : model_(model),
         settings_(settings),
         stepping_(stepping),
-        make_system_([this, &model, &arguments...](std::optional<System>& system) {
-          system.emplace(model, arguments..., settings_);
-        }),
+        make_system_(
+            [this, &model, &arguments...] { return std::make_unique<System>(model, arguments..., settings_); }),
+        system_(make_system_()),
+        implicit_(std::in_place, *system_, settings_, stepping.scheme),
         state_(start) {
-    make();
     if constexpr (!kOnHost) pose_ = Pose(start);
   }
 
@@ -97,7 +98,10 @@ class SystemStepper final : public ModelStepper {
     grown.time = here.state.time;
     if (here.state.memory.size() == model_.points.memory.size()) grown.memory = here.state.memory;
     here.state = std::move(grown);
-    make();
+    std::unique_ptr<System> anew = make_system_();
+    implicit_.reset();
+    system_ = std::move(anew);
+    implicit_.emplace(*system_, settings_, stepping_.scheme);
     restore(here, factors);
   }
 
@@ -143,17 +147,11 @@ class SystemStepper final : public ModelStepper {
     reached_ = looked_ = false;
   }
 
-  void make() {
-    implicit_.reset();
-    make_system_(system_);
-    implicit_.emplace(*system_, settings_, stepping_.scheme);
-  }
-
   const Model& model_;
   SolverSettings settings_;
   SteppingSettings stepping_;
-  std::function<void(std::optional<System>&)> make_system_;
-  std::optional<System> system_;
+  std::function<std::unique_ptr<System>()> make_system_;
+  std::unique_ptr<System> system_;
   std::optional<ImplicitStepper<System>> implicit_;
   State state_;
   [[no_unique_address]] std::conditional_t<kOnHost, Nothing, Pose> pose_;

@@ -1,6 +1,7 @@
 #include "core/structure/edit.hpp"
 
 #include "core/base/errors.hpp"
+#include "core/physics/solid_law.hpp"
 
 #include <algorithm>
 #include <string>
@@ -81,10 +82,13 @@ void check(const Edit& edit, const Model& model) {
       if (node < 0 || node >= nodes)
         throw InputError("an edit adds points to node " + std::to_string(node) + "; the model has " +
                          std::to_string(nodes) + " with those that it adds");
-    for (const PointSample& point : added.points)
+    for (const PointSample& point : added.points) {
+      check_own_constants(added.rule.law, point);
+      if (point.viscosity) throw InputError("an edit adds a point that remembers stresses; these cannot join");
       if (point.influences.size() != added.nodes.size() || !(point.volume > 0))
         throw InputError("an edit adds a point with " + std::to_string(point.influences.size()) + " influences of " +
                          std::to_string(added.nodes.size()) + " nodes, or without volume");
+    }
   }
 }
 

@@ -16,7 +16,8 @@
 
 namespace fascia::documents_test {
 
-// What a machine can check of documents: links lead somewhere, what stands in backticks exists, commands can be pasted.
+// A machine can check of documents that links lead somewhere, that names in backticks exist, that commands can be
+// pasted.
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,7 +61,7 @@ std::vector<Document> documents() {
   return all;
 }
 
-/// What stands between `open` and the next `close`, again and again.
+/// Texts between `open` and the next `close`, again and again.
 std::vector<std::string> between(const std::string& text, const std::string& open, char close) {
   std::vector<std::string> found;
   for (std::size_t begin = text.find(open); begin != std::string::npos;) {

@@ -46,7 +46,7 @@ inline Scene driven_block(SolverKind kind) {
   return scene;
 }
 
-/// The same of tetrahedra.
+/// That block, of tetrahedra.
 inline Scene driven_tetrahedra(SolverKind kind) {
   Scene scene = driven_block(kind);
   Body& block = scene.bodies[0];

@@ -300,7 +300,7 @@ TEST(Viscosity, WhatIsLeftNearAPointIsBounded) {
   for (const double swing : {1e-3, 1e-9, 1e-100}) {
     const RememberedStress past{fading * swing, left, 0.4};
     EXPECT_LE(norm(past.at(other) - left), (1 + 1e-12) * (norm(left) + 0.4 * norm(other - past.fading))) << swing;
-    // What swings alike is told without error at any moment.
+    // A stress that swings alike is told without error at any moment.
     EXPECT_LT(norm(past.at(past.fading * 1.7) - left * 1.7), 1e-12 * norm(left)) << swing;
   }
 }

@@ -30,8 +30,8 @@ Scene with_solver(Scene scene, LinearMethod method, PreconditionerKind precondit
   return scene;
 }
 
-/// What follows a snapshot is the same whether the stepper went on or came back: of all schemes, with direct solves and
-/// with preconditioners that are kept from solve to solve.
+/// The steps after a snapshot are the same whether the stepper went on or came back: of all schemes, with direct solves
+/// and with preconditioners that are kept from solve to solve.
 TEST(Snapshots, WhatFollowsIsTheSameBitForBit) {
   for (const SolverKind kind :
        {SolverKind::implicit_euler, SolverKind::bdf2, SolverKind::newmark, SolverKind::midpoint, SolverKind::statics})
@@ -75,7 +75,7 @@ TEST(Snapshots, OfAGpuToo) {
   }
 }
 
-/// What tethers pull at a state is told of that state, whatever was told before.
+/// The pull of tethers is told of the state at hand, whatever was told before.
 TEST(Snapshots, ForcesOfTethersAreThoseOfTheState) {
   test::take_host_as_device();
   for (const char* backend : {"cpu", "cuda"}) {

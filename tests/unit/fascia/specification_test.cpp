@@ -94,6 +94,42 @@ TEST(Specification, MistakesAreNamedByTheirKey) {
             "couplings.tie.to: is the body itself; must be another one");
 }
 
+TEST(Specification, PartsThatDoNotFitAreNamed) {
+  EXPECT_EQ(trouble([](Scene& s) { s.bodies[0].frames = GridFrames{}; }),
+            "bodies.block.frames: is missing; give GridFrames, CountedSamples, SpacedSamples or ListedFrames");
+  EXPECT_EQ(trouble([](Scene& s) { s.bodies[0].model = BodyModel::shell; }),
+            "bodies.block.domain: is no domain for this model of body");
+  EXPECT_EQ(trouble([](Scene& s) {
+              s.bodies[0].domain = LineDomain{{}, {{0, 0, 1}}};
+              s.bodies[0].frames = GridFrames{{5}};
+            }),
+            "bodies.block.radius: is missing; a line needs one");
+  EXPECT_EQ(trouble([](Scene& s) {
+              s.bodies[0].model = BodyModel::rigid;
+              s.bodies[0].domain = CylinderDomain{{}, {{0, 0, 1}}, 0.1};
+            }),
+            "bodies.block.cells: is missing; give MeshCells::count");
+  EXPECT_EQ(trouble([](Scene& s) { s.bodies[0].shares = {{.body = "block"}}; }),
+            "bodies.block.share.body: is the body itself; must be another one");
+  EXPECT_EQ(trouble([](Scene& s) {
+              s.bodies.push_back(s.bodies[0]);
+              s.bodies[1].name = "other";
+              s.bodies[0].shares = {{.body = "other"}};
+              s.bodies[1].shares = {{.body = "block"}};
+            }),
+            "bodies.other.share.body: closes a circle, block → other → block; share and between must not lead back to "
+            "a body");
+  EXPECT_EQ(trouble([](Scene& s) { s.constraints[0].where.shape = HalfspaceRegion{}; }),
+            "constraints[0]: has a half-space without a normal");
+  EXPECT_EQ(trouble([](Scene& s) { s.constraints[0].where.shape = AllOfRegion{}; }),
+            "constraints[0]: has a region that joins no regions");
+  EXPECT_EQ(trouble([](Scene& s) { s.world.schedule.profile = TableProfile{}; }),
+            "world.gravity: has a table without rows");
+  EXPECT_EQ(trouble([](Scene& s) { s.bodies[0].materials[0].material.law = Law::linear; }),
+            "bodies.block.material: has a law that is none of a material; take one of large strain");
+  EXPECT_EQ(trouble([](Scene& s) { s.solver.backend = "gpu"; }), "solver: backend = \"gpu\" is none that there is");
+}
+
 /// A mesh that a program has in memory.
 TEST(Specification, AMeshInMemoryIsABody) {
   Mesh mesh;

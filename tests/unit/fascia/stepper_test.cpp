@@ -271,6 +271,26 @@ TEST(StepperOf, AStepThatFailsLeavesTheState) {
   EXPECT_TRUE(stepper.step(1e-3).converged);  // the foot stayed where it was
 }
 
+/// An end above the tolerance, or inside out, is told.
+TEST(StepperOf, DoubtfulEndsAreTold) {
+  Scene scene = test::driven_tetrahedra(SolverKind::statics);
+  scene.solver.newton_max_iterations = 1;
+  scene.solver.on_limit = OnLimit::proceed;
+  Stepper stepper(scene);
+  stepper.set_motion(0, {.rotation = {{0.3, 0, 0}}});
+  const StepReport report = stepper.step(1);
+  EXPECT_TRUE(report.converged && report.at_limit);
+  EXPECT_EQ(stepper.inverted_points(0), 0);
+  Scene flat = test::driven_tetrahedra(SolverKind::statics);
+  flat.world.gravity = {};
+  flat.constraints.push_back(flat.constraints[0]);
+  flat.constraints[1].where = in_box({{-1, -1, 0.079}}, {{1, 1, 1}});
+  flat.constraints[1].driver = "head";
+  Stepper folded(flat);
+  folded.set_motion(folded.driver("head"), {.translation = {{0, 0, -0.2}}});
+  if (folded.step(1).converged) EXPECT_GT(folded.inverted_points(0), 0);
+}
+
 TEST(StepperOf, OtherKindsAreRefused) {
   Scene scene = test::driven_block(SolverKind::central_differences);
   EXPECT_EQ(refusal([&] { Stepper{scene}; }),

@@ -42,7 +42,7 @@ struct Group {
   std::vector<PointSample> points;
 };
 
-/// What both models are made from.
+/// A recipe that both models are made from.
 struct Recipe {
   std::vector<AddedNode> nodes;
   std::vector<Group> groups, new_groups;
@@ -282,6 +282,9 @@ TEST(Edits, ARefusedEditLeavesEveryBit) {
   edit = recipe.edit;
   edit.added[0].points[0].influences.pop_back();
   EXPECT_NE(refused(edit).find("influences of 5 nodes"), std::string::npos);
+  edit = recipe.edit;
+  edit.added[0].rule.law = Law::mooney_rivlin;  // without its constants
+  EXPECT_NE(refused(edit).find("constants of its law's own"), std::string::npos);
   EXPECT_EQ(refused(recipe.edit), "");
   before = all();
   EXPECT_EQ(refused({.points = {recipe.edit.points[0]}}).substr(0, 20), "an edit takes point ");
