@@ -19,7 +19,7 @@ fascia::Mesh parse(std::string_view text) {
   using namespace fascia::io;
   if (!text.starts_with('O')) return parse_gmsh(text, "fuzz.msh");
   std::vector<std::string> messages;
-  return mesh_of_vtk(*parse_off(text, "fuzz.off", messages), "fuzz.off", 0, 0, MidNodes::drop);
+  return mesh_of_vtk(*parse_off(text, "fuzz.off", messages), "fuzz.off", 0, 0, fascia::MidNodes::drop);
 }
 
 }  // namespace
