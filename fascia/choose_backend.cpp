@@ -63,6 +63,12 @@ std::string not_as_asked(const Simulation& s, Backend backend) {
                      missing.empty() ? "and there is none" : "which does not compute " + missing);
 }
 
+bool is_of_device(const std::exception& e) {
+  return dynamic_cast<const gpu::NoDevice*>(&e) != nullptr ||
+         dynamic_cast<const gpu::DeviceMemoryError*>(&e) != nullptr ||
+         dynamic_cast<const gpu::DeviceLost*>(&e) != nullptr || dynamic_cast<const gpu::NotShared*>(&e) != nullptr;
+}
+
 const char* name_of(Backend backend) { return backend == Backend::cuda ? "cuda" : "cpu"; }
 
 }  // namespace fascia

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "assembly/simulation/simulation.hpp"
-#include "fascia/stepper.hpp"
+#include "fascia/backend.hpp"
 
+#include <exception>
 #include <string>
 
 namespace fascia {
@@ -23,5 +24,8 @@ std::string precision_of(const Simulation& simulation, Backend backend);
 std::string not_as_asked(const Simulation& simulation, Backend backend);
 
 const char* name_of(Backend backend);
+
+/// Whether an error is one of a device, of a type that programs do not see.
+bool is_of_device(const std::exception& error);
 
 }  // namespace fascia

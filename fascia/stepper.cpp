@@ -13,7 +13,6 @@
 #include "core/run/model_stepper.hpp"
 #include "fascia/choose_backend.hpp"
 #include "gpu/run/run.hpp"
-#include "gpu/space/device.hpp"
 
 #include <fmt/format.h>
 
@@ -43,15 +42,7 @@ void require_steps(const Scene& scene) {
 Simulation built(Scene scene) {
   name_places(scene);
   require_steps(scene);
-  check_specification(scene);
-  return build_simulation(std::move(scene));
-}
-
-/// Errors of a device, whose types programs do not see.
-bool is_of_device(const std::exception& e) {
-  return dynamic_cast<const gpu::NoDevice*>(&e) != nullptr ||
-         dynamic_cast<const gpu::DeviceMemoryError*>(&e) != nullptr ||
-         dynamic_cast<const gpu::DeviceLost*>(&e) != nullptr || dynamic_cast<const gpu::NotShared*>(&e) != nullptr;
+  return build_checked(std::move(scene));
 }
 
 bool is_finite(const Vec3d& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
@@ -359,13 +350,9 @@ int Stepper::inverted_points(int body) {
 
 std::vector<double> Stepper::probe(std::string_view name) {
   Parts& p = *parts_;
-  const std::vector<ResolvedProbe>& probes = p.simulation.probes;
-  const auto found =
-      std::find_if(probes.begin(), probes.end(), [&](const ResolvedProbe& r) { return r.probe->name == name; });
-  if (found == probes.end()) throw InputError(fmt::format("the scene has no probe \"{}\"", name));
+  const std::size_t index = probe_index(p.simulation, name);
   const ReachedForces& acting = p.acting();
-  return probe_value(p.simulation, static_cast<std::size_t>(found - probes.begin()),
-                     {&p.steps->state(), &acting, 0, 0});
+  return probe_value(p.simulation, index, {&p.steps->state(), &acting, 0, 0});
 }
 
 Snapshot Stepper::snapshot() {

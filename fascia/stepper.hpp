@@ -1,36 +1,18 @@
 #pragma once
 
+#include "fascia/backend.hpp"
+#include "fascia/rows.hpp"
 #include "fascia/scene.hpp"
 
 #include <array>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 /// Simulation of a scene step by step, for programs that draw, drive or control it while it runs.
 namespace fascia {
-
-enum class Backend { cpu, cuda };
-
-/// A backend that was asked for and is not there, or does not compute the scene.
-class BackendError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Numbers in rows, in memory of the stepper. The address stays the same as long as the stepper lives; the numbers are
-/// those of the last step. Nobody reads them while step() or restore() runs.
-struct Rows {
-  const double* data = nullptr;
-  int rows = 0, columns = 0;
-
-  std::span<const double> operator[](int row) const {
-    return {data + static_cast<std::ptrdiff_t>(row) * columns, static_cast<std::size_t>(columns)};
-  }
-};
 
 /// A rigid motion of places X at rest: x = center + R (X − center) + translation.
 struct RigidMotion {
@@ -67,6 +49,9 @@ class Snapshot {
 /// Statics and the implicit schemes of Solver::kind can be stepped, on the processor or, with Solver::backend = "cuda",
 /// on a GPU. Solver::time_step and Solver::steps are not used. A call that is refused, by an exception of type
 /// InputError with a sentence, changes nothing. One stepper is used by one thread at a time.
+///
+/// The address of a view stays the same as long as the stepper lives; its numbers are those of the last step. Nobody
+/// reads them while step() or restore() runs.
 class Stepper {
  public:
   /// @throws SceneError    what is wrong with the scene: the place is the key of the field
@@ -118,6 +103,7 @@ class Stepper {
   int inverted_points(int body);
 
   /// The value of a probe of the scene: one number, 3, 9 by rows, or as many for each of its places.
+  /// @throws StateError  a value is not finite
   std::vector<double> probe(std::string_view name);
 
   /// Preconditioners are made anew after a snapshot, so that what follows it is the same, bit for bit, as what follows

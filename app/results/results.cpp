@@ -119,7 +119,7 @@ void ResultFiles::add_probes(double time, const ProbedState& snap) {
   std::string row = fmt::format("{}", time);
   last_ = probe_values(simulation_, snap);
   for (const std::vector<double>& values : last_)
-    for (const double value : values) row += std::isfinite(value) ? fmt::format(",{:.17g}", value) : ",";
+    for (const double value : values) row += fmt::format(",{:.17g}", value);
   if (tells_time_step()) row += fmt::format(",{:.17g}", snap.time_step);
   csv_->append(row + "\n");
 }

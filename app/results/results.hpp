@@ -1,12 +1,11 @@
 #pragma once
 
-#include "app/results/coupling_report.hpp"
 #include "app/results/probes.hpp"
 #include "app/results/step_seconds.hpp"
 #include "app/run/recovery.hpp"
 #include "assembly/simulation/simulation.hpp"
 #include "core/run/drivers.hpp"
-#include "fascia/choose_backend.hpp"
+#include "fascia/run/run_simulation.hpp"
 #include "io/result_writer.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -81,12 +80,11 @@ struct RunTimes {
 nlohmann::ordered_json running_summary(const Simulation& s, const nlohmann::ordered_json& provenance);
 const char* status_name(RunStatus status);
 
-/// summary.json. Modes put a list into the probes of quantity frequency.
-/// @param fluids  of Simulation::fluids at the end; none of modes
-/// @param couplings  see coupling_report()
-nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, const RunReport& run,
-                               const RunTimes& times, int threads, const std::vector<nlohmann::json>& probe_values,
-                               double stabilization_energy, const std::vector<FluidState>& fluids,
-                               const CouplingReports& couplings, const nlohmann::ordered_json& provenance);
+/// summary.json of a run that ended, with its couplings and the fluids in bodies.
+/// @param warnings  all: of the scene and of the run
+/// @param probe_values  of modes, frequencies are lists
+nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const RunTimes& times, int threads,
+                               const Warnings& warnings, const std::vector<nlohmann::json>& probe_values,
+                               const nlohmann::ordered_json& provenance);
 
 }  // namespace fascia::app

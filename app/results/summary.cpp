@@ -1,6 +1,8 @@
+#include "app/results/coupling_report.hpp"
 #include "app/results/results.hpp"
 #include "app/run/process_memory.hpp"
 #include "app/version.hpp"
+#include "fascia/choose_backend.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -69,23 +71,27 @@ nlohmann::ordered_json running_summary(const Simulation& s, const nlohmann::orde
   return j;
 }
 
-nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, const RunReport& run,
-                               const RunTimes& times, int threads, const std::vector<nlohmann::json>& probe_values,
-                               double stabilization_energy, const std::vector<FluidState>& fluids,
-                               const CouplingReports& couplings, const nlohmann::ordered_json& provenance) {
+nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const RunTimes& times, int threads,
+                               const Warnings& warnings, const std::vector<nlohmann::json>& probe_values,
+                               const nlohmann::ordered_json& provenance) {
+  const RunReport& run = end.report;
+  const bool modes = s.scene.solver.kind == SolverKind::modes;  // about the rest state, where nothing acts
   nlohmann::ordered_json j = summary_head(s, status_name(run.status), run.message);
   j["convergence"] = run.convergence;
-  j["backend"] = name_of(backend);
-  j["gpus"] = gpus;
-  j["precision"] = precision_of(s, backend);
+  j["backend"] = name_of(end.backend);
+  j["gpus"] = end.gpus;
+  j["precision"] = precision_of(s, end.backend);
   j["threads"] = threads;
   j["library"] = tuning();
   j["bodies"] = bodies_of(s);
-  for (std::size_t f = 0; f < fluids.size(); ++f)
+  for (std::size_t f = 0; f < (modes ? 0 : s.fluids.size()); ++f) {
+    const FluidState fluid = fluid_state(s, static_cast<int>(f), end.state);
     j["bodies"][s.bodies[static_cast<std::size_t>(s.fluids[f].body)].name]["fluid"] = {
-        {"volume", finite(fluids[f].volume)}, {"pressure", finite(fluids[f].pressure)}};
+        {"volume", finite(fluid.volume)}, {"pressure", finite(fluid.pressure)}};
+  }
   j["couplings"] = nlohmann::ordered_json::object();
-  for (const auto& [name, report] : couplings) j["couplings"][name] = report;
+  if (!modes)
+    for (const auto& [name, report] : coupling_report(s, end.acting, end.state)) j["couplings"][name] = report;
   j["dofs"] = s.model.free_dof_count();
   j["steps"] = run.steps;
   j["simulated_time"] = is_dynamic(s.scene.solver.kind) ? run.time : 0.0;
@@ -93,7 +99,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, c
   j["linear_iterations"] = run.linear_iterations;
   j["residual"] = finite(run.residual);
   j["residual_floor"] = finite(run.residual_floor);
-  j["stabilization_energy"] = finite(stabilization_energy);
+  j["stabilization_energy"] = finite(end.stabilization);
   j["seconds"] = {{"setup", times.setup},
                   {"solve", times.solve},
                   {"output", times.output},
@@ -102,7 +108,7 @@ nlohmann::ordered_json summary(const Simulation& s, Backend backend, int gpus, c
                   {"step_p99", times.steps.percentile(0.99)},
                   {"step_max", times.steps.percentile(1.0)}};
   j["peak_memory_bytes"] = static_cast<std::uint64_t>(peak_memory());
-  j["warnings"] = s.warnings.summary();
+  j["warnings"] = warnings.summary();
   j["doubts"] = run.doubts;
   j["probes"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < s.probes.size(); ++i) {

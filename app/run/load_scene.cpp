@@ -4,11 +4,9 @@
 #include "app/reader/parse.hpp"
 #include "app/results/tell_warnings.hpp"
 #include "app/run/memory.hpp"
-#include "assembly/actions/actions.hpp"
 #include "assembly/build/build_simulation.hpp"
-#include "assembly/simulation/solver_settings.hpp"
-#include "core/solver/mechanical_system.hpp"
 #include "fascia/choose_backend.hpp"
+#include "fascia/run/run_simulation.hpp"
 
 #include <fmt/format.h>
 
@@ -36,12 +34,7 @@ Simulation build_within_memory(Scene scene) {
 
 Simulation load_scene(Scene scene) {
   Simulation s = build_within_memory(std::move(scene));
-  add_imperfection(s);
-  if (s.scene.solver.kind == SolverKind::central_differences) {
-    ThreadPool pool(s.scene.solver.threads);
-    MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
-    settle_time_step(s, system);
-  }
+  make_ready(s);
   warn_of_the_implausible(s);
   tell(s.warnings, s.scene.path);
   return s;

@@ -4,6 +4,7 @@
 #include "assembly/bodies/bodies.hpp"
 #include "assembly/bodies/domains.hpp"
 #include "assembly/bodies/neighbours.hpp"
+#include "assembly/specification/check.hpp"
 #include "assembly/specification/errors.hpp"
 #include "core/base/errors.hpp"
 #include "core/base/index.hpp"
@@ -196,6 +197,12 @@ Simulation build_simulation(Scene scene) {
   resolve_probes(s);
   resolve_controlled(s);
   return s;
+}
+
+Simulation build_checked(Scene scene) {
+  name_places(scene);
+  check_specification(scene);
+  return build_simulation(std::move(scene));
 }
 
 }  // namespace fascia

@@ -10,4 +10,8 @@ namespace fascia {
 /// @throws FileError, InputError  meshes
 Simulation build_simulation(Scene scene);
 
+/// The same for a scene that no reader has checked: everything that its description shows is looked at first.
+/// @throws SceneError  all that is wrong there, by key; and as build_simulation()
+Simulation build_checked(Scene scene);
+
 }  // namespace fascia

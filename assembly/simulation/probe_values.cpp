@@ -1,10 +1,13 @@
 #include "assembly/simulation/probe_values.hpp"
 
 #include "assembly/simulation/matter.hpp"
+#include "core/base/errors.hpp"
 #include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
 #include "core/node/dof_filter.hpp"
 #include "core/structure/inertia.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -300,6 +303,9 @@ std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, c
       out.push_back(snap.frequency);
       break;
   }
+  if (std::any_of(out.begin(), out.end(), [](double value) { return !std::isfinite(value); }))
+    throw StateError(fmt::format("probe \"{}\": {} is not finite; the state that it shows is wrong", probe.probe->name,
+                                 quantity_name(probe.probe->quantity)));
   return out;
 }
 
@@ -332,6 +338,13 @@ std::vector<std::vector<double>> probe_values(const Simulation& s, const ProbedS
   std::vector<std::vector<double>> values;
   for (const ResolvedProbe& probe : s.probes) values.push_back(values_of(s, probe, snap, fields, held));
   return values;
+}
+
+std::size_t probe_index(const Simulation& s, std::string_view name) {
+  const auto found =
+      std::find_if(s.probes.begin(), s.probes.end(), [&](const ResolvedProbe& r) { return r.probe->name == name; });
+  if (found == s.probes.end()) throw InputError(fmt::format("the scene has no probe \"{}\"", name));
+  return static_cast<std::size_t>(found - s.probes.begin());
 }
 
 std::vector<double> probe_value(const Simulation& s, std::size_t probe, const ProbedState& snap) {

@@ -24,7 +24,10 @@ ReachedParts needed_parts(const Simulation& s);
 std::vector<double> held_forces(const Simulation& s, const ReachedForces& acting);
 
 /// Values of all probes, of each as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).
+/// @throws StateError  a value is not finite
 std::vector<std::vector<double>> probe_values(const Simulation& s, const ProbedState& at);
+/// The number of a probe. @throws InputError  the scene has none of this name
+std::size_t probe_index(const Simulation& s, std::string_view name);
 /// Values of one of them.
 std::vector<double> probe_value(const Simulation& s, std::size_t probe, const ProbedState& at);
 

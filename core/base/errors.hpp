@@ -22,7 +22,7 @@ class InputError : public std::runtime_error {
   Blame blame;
 };
 
-/// A state that a run reached and that no result file can show: a number of it is not finite. Exit status 3.
+/// A state that a run reached and that no result can show: a number of it is not finite. Exit status 3.
 class StateError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/run/run_status.hpp"
 #include "core/solver/mechanical_system.hpp"
 
 #include <cmath>
@@ -10,9 +11,6 @@
 #include <vector>
 
 namespace fascia {
-
-/// unstable, inverted: an equilibrium, but one that no body rests in.
-enum class RunStatus { converged, not_converged, diverged, interrupted, unstable, inverted };
 
 /// Figures that a driver tells after each accepted step.
 struct StepInfo {

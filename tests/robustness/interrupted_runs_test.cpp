@@ -200,5 +200,18 @@ TEST_F(InterruptedRuns, AStateThatIsNotFiniteLosesNoOther) {
   EXPECT_EQ(summary("out").at("status"), "diverged");
 }
 
+TEST_F(InterruptedRuns, OfExplicitStepsTellWhatThereIs) {
+  write("explicit.toml",
+        with(kCantilever, "kind = \"static\"", "kind = \"explicit\"\ntime_step = \"1 ms\"\nsteps = 100000000") +
+            "[output]\nevery = 1\n");
+  const ProgramResult program = stopped({"run", "explicit.toml", "--quiet", "--output", "out"}, SIGINT, 700);
+  EXPECT_EQ(program.status, 130) << program.err;
+  const nlohmann::json told = summary("out");
+  const double time = told["simulated_time"];
+  EXPECT_GT(told["steps"], 0);
+  EXPECT_NEAR(time, 1e-3 * told["steps"].get<double>(), 1e-9 * time);
+  EXPECT_TRUE(fs::exists(folder_ / "out/explicit.pvd"));
+}
+
 }  // namespace
 }  // namespace fascia::interrupted_runs_test

@@ -1,6 +1,8 @@
 // Frames of 12 degrees of freedom: accuracy, exactness under rigid and uniform motions, beside rigid frames.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +26,7 @@ double largest_entry(const nlohmann::json& value) {
 
 /// |u - u_ref| / |u_ref| of the soft beam's tip [%]; prints a row.
 double soft_error(const Grid& n, const std::string& drilling) {
-  const SceneRun run("affine_cantilever", {grid_setting("beam", n), "bodies.beam.weights.drilling=" + drilling});
+  const SolvedScene run("affine_cantilever", {grid_setting("beam", n), "bodies.beam.weights.drilling=" + drilling});
   const Vector u = run.vector("tip");
   const double error = 100 * std::hypot(u[0] + 1.5987, u[1] + 6.5096, u[2]) / std::hypot(1.5987, 6.5096);
   std::printf("%2d x %d x %d   %-8s %10.4f %10.4f %8.2f %% %8d\n", n[0], n[1], n[2], drilling.c_str(), u[0], u[1],
@@ -59,7 +61,7 @@ TEST(AffineCantilever, SoftBeam) {
 }
 
 TEST(AffineCantilever, DefaultDrillingIsThreeThousandths) {
-  const SceneRun standard("affine_cantilever"), set("affine_cantilever", {"bodies.beam.weights.drilling=0.003"});
+  const SolvedScene standard("affine_cantilever"), set("affine_cantilever", {"bodies.beam.weights.drilling=0.003"});
   EXPECT_EQ(standard.summary()["probes"].dump(), set.summary()["probes"].dump());
 }
 
@@ -68,7 +70,7 @@ double steel_error(const std::string& scene, const Grid& n, double reference, co
                    const std::string& label) {
   Settings settings{grid_setting("beam", n)};
   settings.insert(settings.end(), more.begin(), more.end());
-  const SceneRun run(scene, settings);
+  const SolvedScene run(scene, settings);
   const double sag = -run.vector("tip")[1], error = 100 * (sag / reference - 1);
   std::printf("%2d x %d x %d   %-32s %10.6f %+8.2f %%\n", n[0], n[1], n[2], label.c_str(), sag, error);
   return error;
@@ -129,10 +131,10 @@ TEST(AffineMotion, LedByOneEnd) {
                         {"[0,1,0]", "700 degree", {0, 1, 0}, 700},
                         {"[1,-2,0.7]", "77 degree", {1, -2, 0.7}, 77}};
   for (const Turn& t : turns) {
-    const SceneRun run("led_by_one_end",
-                       {affine("beam"), std::string("constraints[0].move.rotate.axis=") + t.axis,
-                        std::string("constraints[0].move.rotate.angle='") + t.angle + "'",
-                        "probes.strain={body='beam',at=[[0,0,0],[0.2,0.1,0.1],[1,0.3,0.2]],quantity='strain'}"});
+    const SolvedScene run("led_by_one_end",
+                          {affine("beam"), std::string("constraints[0].move.rotate.axis=") + t.axis,
+                           std::string("constraints[0].move.rotate.angle='") + t.angle + "'",
+                           "probes.strain={body='beam',at=[[0,0,0],[0.2,0.1,0.1],[1,0.3,0.2]],quantity='strain'}"});
     const double length = std::hypot(t.n[0], t.n[1], t.n[2]), a = t.degrees * std::acos(-1.0) / 180;
     const Vector X{1, 0.15, 0.1}, n{t.n[0] / length, t.n[1] / length, t.n[2] / length}, u = run.vector("end");
     const Vector cross{n[1] * X[2] - n[2] * X[1], n[2] * X[0] - n[0] * X[2], n[0] * X[1] - n[1] * X[0]};
@@ -154,13 +156,13 @@ TEST(AffineMotion, LedByOneEnd) {
 /// One end turns against the other by a whole turn: the way counts, though the end is where it was.
 TEST(AffineMotion, AWholeTwistIsNotForgotten) {
   const auto energy = [](const char* kind, const char* steps) {
-    const SceneRun run("led_by_one_end",
-                       {std::string("bodies.beam.frames={grid=[5,3,3],kind='") + kind + "'}",
-                        "constraints=[{body='beam',where={box={min=[-0.01,-1,-1],max=[0.01,1,1]}},fix='all'},"
-                        "{body='beam',where={box={min=[0.99,-1,-1],max=[1.01,1,1]}},"
-                        "move={rotate={axis=[1,0,0],angle='360 degree',center=[1,0.15,0.1]}}}]",
-                        std::string("solver.load_steps=") + steps, "solver.newton.max_iterations=100",
-                        "solver.accept=['unstable','inverted']"});
+    const SolvedScene run("led_by_one_end",
+                          {std::string("bodies.beam.frames={grid=[5,3,3],kind='") + kind + "'}",
+                           "constraints=[{body='beam',where={box={min=[-0.01,-1,-1],max=[0.01,1,1]}},fix='all'},"
+                           "{body='beam',where={box={min=[0.99,-1,-1],max=[1.01,1,1]}},"
+                           "move={rotate={axis=[1,0,0],angle='360 degree',center=[1,0.15,0.1]}}}]",
+                           std::string("solver.load_steps=") + steps, "solver.newton.max_iterations=100",
+                           "solver.accept=['unstable','inverted']"});
     std::printf("360 degrees, %-6s load_steps = %-6s energy %.6f J, %d Newton iterations\n", kind, steps,
                 run.number("energy"), run.newton_iterations());
     return run.number("energy");
@@ -171,7 +173,7 @@ TEST(AffineMotion, AWholeTwistIsNotForgotten) {
 }
 
 TEST(AffineDynamics, FreeFallIsTheSchemesWithoutStrain) {
-  const SceneRun run("free_fall", {affine("beam")});
+  const SolvedScene run("free_fall", {affine("beam")});
   const double exact = -9.81 * 0.04 * 0.04 * 25 * 26 / 2;
   for (const Vector& u : run.vectors("points")) {
     EXPECT_NEAR(u[1] / exact, 1, 1e-12);
@@ -190,7 +192,7 @@ TEST(AffineDynamics, ATumblingBoxKeepsItsMomentum) {
   const Vector inertia{2.0 / 12 * (0.16 + 0.04), 2.0 / 12 * (1 + 0.04), 2.0 / 12 * (1 + 0.16)};
   const Vector start{inertia[0] * 0.4, inertia[1] * -0.3, inertia[2] * 3}, momentum{0.6, 0.2, -0.4};
   const auto loss = [&](const Settings& settings, const char* label) {
-    const SceneRun run("tumbling_box", settings);
+    const SolvedScene run("tumbling_box", settings);
     const Vector p = run.vector("momentum"), L = run.vector("angular_momentum");
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(p[k], momentum[k], 1e-12);
     const double lost =
@@ -209,7 +211,7 @@ TEST(AffineDynamics, ATumblingBoxKeepsItsMomentum) {
 TEST(AffineTraction, LateralContractionIsExact) {
   const double exact = std::sqrt(1 - 0.3 * (std::pow(1 + 3e-3 / 6, 2) - 1)) - 1;
   const auto error = [&](const Settings& settings, const char* label) {
-    const SceneRun run("traction_free_ends", settings);
+    const SolvedScene run("traction_free_ends", settings);
     double largest = 0;
     for (const Vector& u : run.vectors("surface")) largest = std::max(largest, std::abs(u[1] / exact - 1));
     std::printf("%-26s largest error of u_r %.1e, force %.4f N\n", label, largest, run.vector("pull")[0]);
@@ -223,7 +225,7 @@ TEST(AffineTraction, LateralContractionIsExact) {
 /// Each stops iterating where its own residual is small: a tight tolerance takes that difference away.
 TEST(AffineBesideRigid, EachBodyIsTheSameAsAlone) {
   const Settings tight{"solver.newton.tolerance=1e-12"};
-  const SceneRun both("affine_beside_rigid", tight);
+  const SolvedScene both("affine_beside_rigid", tight);
   const char *names[] = {"rigid", "affine"}, *others[] = {"affine", "rigid"};
   for (std::size_t k = 0; k < 2; ++k) {
     std::ifstream file(fascia::test::source_dir().string() + "/scenes/affine_beside_rigid.toml");
@@ -242,7 +244,7 @@ TEST(AffineBesideRigid, EachBodyIsTheSameAsAlone) {
     const TemporaryFolder folder;
     const std::string path = (folder.path / "alone").string();
     std::ofstream(path + ".toml") << alone;
-    const SceneRun run(path, tight);
+    const SolvedScene run(path, tight);
     const std::string probe = names[k] + std::string("_tip");
     const Vector a = run.vector(probe), b = both.vector(probe);
     const double d = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) / std::hypot(a[0], a[1], a[2]);
@@ -256,8 +258,8 @@ TEST(AffineModes, AFreeGridHasSixZeroFrequencies) {
   std::printf("frames      drilling   number 6 [1/s]   number 7\n");
   for (const Grid& n : {Grid{4, 3, 3}, Grid{7, 5, 5}})
     for (const char* drilling : {"0.001", "0.003", "0.1", "1"}) {
-      const SceneRun run("free_modes", {affine("block"), grid_setting("block", n),
-                                        std::string("bodies.block.weights.drilling=") + drilling});
+      const SolvedScene run("free_modes", {affine("block"), grid_setting("block", n),
+                                           std::string("bodies.block.weights.drilling=") + drilling});
       const nlohmann::json f = run.probe("frequency");
       ASSERT_EQ(f.size(), 10u);
       std::printf("%d x %d x %d   %-8s %16.1e %10.4f\n", n[0], n[1], n[2], drilling, f[5].get<double>(),

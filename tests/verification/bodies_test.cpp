@@ -1,6 +1,6 @@
 // Organs: bodies immersed in a grid of frames.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ double obj_volume(const std::filesystem::path& path) {
   return std::abs(volume);
 }
 
-void report(const SceneRun& run, double exact) {
+void report(const SolvedScene& run, double exact) {
   const nlohmann::json& liver = run.summary()["bodies"]["liver"];
   const double rest = liver["volume"].get<double>(), deformed = run.number("volume");
   std::printf("%d frames, %d points; %d Newton iterations, %d load steps\n", liver["frames"].get<int>(),
@@ -62,7 +62,7 @@ TEST(Bodies, LiverFromASurfaceFile) {
   const std::filesystem::path mesh = fascia::test::shared_dir() / "meshes" / "liver_sofa_surface.obj";
   if (!std::filesystem::exists(mesh))
     GTEST_SKIP() << "the surface " << mesh << " is not part of the project and is not here";
-  const SceneRun run("liver_surface", {"bodies.liver.domain.file='" + mesh.string() + "'"});
+  const SolvedScene run("liver_surface", {"bodies.liver.domain.file='" + mesh.string() + "'"});
   ASSERT_TRUE(run.ok());
   const int frames = run.summary()["bodies"]["liver"]["frames"].get<int>(),
             points = run.summary()["bodies"]["liver"]["points"].get<int>();
@@ -72,7 +72,7 @@ TEST(Bodies, LiverFromASurfaceFile) {
 }
 
 TEST(Bodies, LiverLikeEllipsoid) {
-  const SceneRun run("liver_like");
+  const SolvedScene run("liver_like");
   ASSERT_TRUE(run.ok());
   report(run, 4.0 / 3 * std::numbers::pi * 0.1 * 0.045 * 0.075);
   EXPECT_NEAR(run.vector("support_force")[1], 1.5 * 9.81, 1e-5);

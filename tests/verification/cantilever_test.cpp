@@ -1,5 +1,5 @@
 // Bosman, Duriez and Cotin 2014, figures 3, 6, 7 and 8: beams under their own weight.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ constexpr double kEulerBernoulli = 0.150441, kSolid = 0.15017;  // tip of the st
 
 /// Signed error of the steel beam's tip against Euler-Bernoulli [%]; prints a row.
 double steel_error(const Grid& grid) {
-  const SceneRun run("steel_cantilever", {grid_setting("beam", grid)});
+  const SolvedScene run("steel_cantilever", {grid_setting("beam", grid)});
   const double sag = -run.vector("tip")[1];
   const double error = 100 * (sag / kEulerBernoulli - 1);
   std::printf("%2d x %d x %d   %10.6f   %8.6f %+7.2f %%   %7.5f %+7.2f %%\n", grid[0], grid[1], grid[2], sag,
@@ -113,8 +113,8 @@ TEST(SoftCantilever, FullLoad) {
   const SoftCase cases[] = {{{9, 3, 3}, 5}, {{21, 3, 3}, 3.5}, {{33, 4, 4}, INFINITY}, {{65, 5, 5}, 1.5}};
   double previous = 100;
   for (const auto& [grid, bound] : cases) {
-    const SceneRun run("soft_cantilever",
-                       {grid_setting("beam", grid), "probes.axis_rotation.at=" + frame_positions(grid)});
+    const SolvedScene run("soft_cantilever",
+                          {grid_setting("beam", grid), "probes.axis_rotation.at=" + frame_positions(grid)});
     const Vector tip = run.vector("tip");
     const double error = tip_error(tip, -1.5987, -6.5096), turn = largest_turn(run.vectors("axis_rotation"), grid);
     const double slope = run.vector("tip_rotation")[2];
@@ -141,7 +141,7 @@ TEST(SoftCantilever, SmallerLoadAndStifferMaterial) {
                         {"160 kPa", "materials.silicone.young='160 kPa'", -0.12403, -1.86025}};
   std::printf("33 x 4 x 4       u_x [m]     u_y [m]    reference [m]            error\n");
   for (const Case& c : cases) {
-    const SceneRun run("soft_cantilever", {grid_setting("beam", grid), c.setting});
+    const SolvedScene run("soft_cantilever", {grid_setting("beam", grid), c.setting});
     const Vector tip = run.vector("tip");
     const double error = tip_error(tip, c.x, c.y);
     std::printf("%-12s %11.6f %11.6f   (%.6f, %.5f) %7.2f %%\n", c.name, tip[0], tip[1], c.x, c.y, error);
@@ -150,7 +150,7 @@ TEST(SoftCantilever, SmallerLoadAndStifferMaterial) {
 }
 
 TEST(ThreeBeams, StifferHangsLess) {
-  const SceneRun run("three_beams");
+  const SolvedScene run("three_beams");
   const double young[] = {50e3, 100e3, 500e3};
   const char* names[] = {"soft", "medium", "stiff"};
   double previous = 1;

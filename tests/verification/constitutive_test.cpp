@@ -1,5 +1,5 @@
 // Closed forms of St Venant-Kirchhoff material on one block; unit cube, E = 1 kPa, nu = 0.3.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@ constexpr double kLambda = kYoung * kPoisson / ((1 + kPoisson) * (1 - 2 * kPoiss
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-Matrix stress(const SceneRun& run) {
+Matrix stress(const SolvedScene& run) {
   const nlohmann::json rows = run.probe("stress");
   Matrix s{};
-  for (std::size_t i = 0; i < 3; ++i) s[i] = SceneRun::as_vector(rows.is_array() ? rows[i] : nlohmann::json());
+  for (std::size_t i = 0; i < 3; ++i) s[i] = SolvedScene::as_vector(rows.is_array() ? rows[i] : nlohmann::json());
   return s;
 }
 
@@ -48,15 +48,15 @@ double uniaxial(double l) { return kYoung * l * (l * l - 1) / 2; }
 double side(double l) { return std::sqrt(1 - kPoisson * (l * l - 1)); }
 
 /// The block with its faces at l along each axis, nothing solved.
-SceneRun imposed(const std::array<double, 3>& l) {
-  return SceneRun("svk_imposed_stretch", {translation(1, {l[0] - 1, 0, 0}), translation(3, {0, l[1] - 1, 0}),
-                                          translation(5, {0, 0, l[2] - 1})});
+SolvedScene imposed(const std::array<double, 3>& l) {
+  return SolvedScene("svk_imposed_stretch", {translation(1, {l[0] - 1, 0, 0}), translation(3, {0, l[1] - 1, 0}),
+                                             translation(5, {0, 0, l[2] - 1})});
 }
 
 TEST(Constitutive, UniaxialSolved) {
   print_header();
   for (const double l : {0.7, 0.8, 0.9, 1.1, 1.25, 1.5}) {
-    const SceneRun run("svk_uniaxial", {translation(1, {l - 1, 0, 0})});
+    const SolvedScene run("svk_uniaxial", {translation(1, {l - 1, 0, 0})});
     const double P = uniaxial(l), w = side(l);
     compare("uniaxial force", l, run.vector("force_x")[0], P, std::abs(P));
     compare("uniaxial side", l, 1 + run.vector("corner")[1], w, w);
@@ -70,7 +70,7 @@ TEST(Constitutive, UniaxialImposed) {
   print_header();
   for (const double l : {0.3, 0.5, 1 / std::sqrt(3.0), 0.7, 2.0}) {
     const double P = uniaxial(l), w = side(l);
-    const SceneRun run = imposed({l, w, w});
+    const SolvedScene run = imposed({l, w, w});
     compare("uniaxial force", l, run.vector("force_x")[0], P, std::abs(P));
     compare("lateral force", l, run.vector("force_y")[1], 0, std::abs(P));
     compare("uniaxial Cauchy stress", l, stress(run)[0][0], P / (w * w), std::abs(P) / (w * w));
@@ -93,7 +93,7 @@ TEST(Constitutive, LimitPoint) {
 TEST(Constitutive, Confined) {
   print_header();
   for (const double l : {0.5, 1 / std::sqrt(3.0), 0.7, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0}) {
-    const SceneRun run = imposed({l, 1, 1});
+    const SolvedScene run = imposed({l, 1, 1});
     const double P = (kLambda + 2 * kMu) * l * (l * l - 1) / 2, lateral = kLambda * (l * l - 1) / 2;
     compare("confined force", l, run.vector("force_x")[0], P, std::abs(P));
     compare("confined side force", l, run.vector("force_z")[2], lateral, std::abs(P));
@@ -104,7 +104,7 @@ TEST(Constitutive, Confined) {
 TEST(Constitutive, SimpleShear) {
   print_header();
   for (const double g : {0.1, 0.5, 1.0}) {
-    const SceneRun run("svk_simple_shear", {translation(1, {g, 0, 0})});
+    const SolvedScene run("svk_simple_shear", {translation(1, {g, 0, 0})});
     const double M = kLambda + 2 * kMu;
     const Matrix exact{{{kLambda * g * g / 2 + kMu * g * g, kMu * g + M * g * g * g / 2, 0},
                         {kMu * g, M * g * g / 2, 0},
@@ -127,7 +127,7 @@ TEST(Constitutive, SimpleShear) {
 TEST(Constitutive, Equibiaxial) {
   print_header();
   for (const double l : {0.8, 0.9, 1.1, 1.25}) {
-    const SceneRun run("svk_equibiaxial", {translation(1, {l - 1, 0, 0}), translation(3, {0, l - 1, 0})});
+    const SolvedScene run("svk_equibiaxial", {translation(1, {l - 1, 0, 0}), translation(3, {0, l - 1, 0})});
     const double P = kYoung * l * (l * l - 1) / (2 * (1 - kPoisson));
     const double thickness = std::sqrt(1 - 2 * kPoisson / (1 - kPoisson) * (l * l - 1));
     compare("equibiaxial force", l, run.vector("force_x")[0], P, std::abs(P));

@@ -1,5 +1,6 @@
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,11 +48,11 @@ nlohmann::json solve(const std::string& text) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path / "case";
   std::ofstream(file.string() + ".toml") << text;
-  const SceneRun run(file.string());
+  const SolvedScene run(file.string());
   return run.summary();
 }
 
-double energy(const nlohmann::json& summary) { return SceneRun::as_number(summary["probes"]["energy"]["value"]); }
+double energy(const nlohmann::json& summary) { return SolvedScene::as_number(summary["probes"]["energy"]["value"]); }
 
 /// Half a turn, prescribed on positions alone; and a whole turn of a thinner bar, which no increment tells from none.
 TEST(Constraints, ATurnOfPositionsWindsTheBody) {
@@ -87,14 +88,12 @@ TEST(Constraints, AMovedScatteredRegionConvergesAsOnAGrid) {
 }
 
 TEST(Constraints, ContradictionsOnScatteredMaterialAreRefused) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path / "case.toml";
-  std::ofstream(file) << bar(kFrames[2], move_end("fix = \"position\"") +
-                                             move_end("move = { translate = [0.02, 0, 0], axes = [\"x\", \"y\"] }"));
-  const ProgramResult r = run_program({fascia::test::program(), "check", file.string()}, {});
-  EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.err.find("constraints[2]: prescribes another value than an earlier constraint"), std::string::npos)
-      << r.err;
+  const SolvedScene r =
+      SolvedScene::of_text(bar(kFrames[2], move_end("fix = \"position\"") +
+                                               move_end("move = { translate = [0.02, 0, 0], axes = [\"x\", \"y\"] }")));
+  EXPECT_EQ(r.status(), "refused");
+  EXPECT_NE(r.message().find("constraints[2]: prescribes another value than an earlier constraint"), std::string::npos)
+      << r.message();
 }
 
 /// The torque of a point reaches the section as a torque: half way, no frame knows how it was applied.
@@ -103,7 +102,7 @@ TEST(Constraints, APointTorqueTwistsAffineBodiesAsRigidOnes) {
   for (const char* frames : kFrames) {
     const nlohmann::json s =
         solve(bar(frames, "[[loads]]\nbody = \"bar\"\nat = [1, 0.125, 0.125]\ntorque = [1e-4, 0, 0]\n"));
-    const double turn = SceneRun::as_vector(s["probes"]["turn"]["value"])[0];
+    const double turn = SolvedScene::as_vector(s["probes"]["turn"]["value"])[0];
     std::printf("%-36s turned by %.4e rad in the middle\n", frames, turn);
     if (rigid == 0) rigid = turn;
     EXPECT_NEAR(turn / rigid, 1, 0.1) << frames;
@@ -119,7 +118,7 @@ TEST(Constraints, AllIsAllInAnyAxes) {
           rod(0.05, std::string("poisson_disk = 0.12, kind = \"") + kind + "\"", std::string(axes) + "fix = \"all\"",
               "[[loads]]\nbody = \"rod\"\nat = [1, 0, 0]\nforce = [0, 2e-2, 1e-2]\n[solver]\nkind = \"static\"\n"
               "[probes.tip]\nbody = \"rod\"\nat = [1, 0, 0]\nquantity = \"displacement\"\n"));
-      const std::array<double, 3> tip = SceneRun::as_vector(s["probes"]["tip"]["value"]);
+      const std::array<double, 3> tip = SolvedScene::as_vector(s["probes"]["tip"]["value"]);
       std::printf("%-8s tip %.8f %.8f %.8f\n", kind, tip[0], tip[1], tip[2]);
       if (*axes == '\0') first = tip;
       for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(tip[k], first[k], 1e-7 * std::abs(first[1])) << kind;

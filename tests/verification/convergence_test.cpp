@@ -1,5 +1,5 @@
 // Error against the spacing of the frames.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ TEST(Convergence, HangingColumnIsOfSecondOrder) {
   std::printf("frames along   error / tip   order\n");
   double previous = 0;
   for (const int n : {3, 5, 9, 17, 33, 65}) {
-    const SceneRun run("hanging_column", {grid_setting("column", {n, 2, 2})});
+    const SolvedScene run("hanging_column", {grid_setting("column", {n, 2, 2})});
     const auto u = run.vectors("along");
     ASSERT_EQ(u.size(), 5u);
     double error = 0;
@@ -59,7 +59,7 @@ TEST(Convergence, SoftCantileverAtATenthOfGravity) {
   double previous = 0;
   for (const int n : {1, 2, 4}) {
     const std::array<int, 3> grid{8 * n + 1, 2 * n + 1, 2 * n + 1};
-    const SceneRun run("soft_cantilever", {grid_setting("beam", grid), "world.gravity=[0,-0.981,0]"});
+    const SolvedScene run("soft_cantilever", {grid_setting("beam", grid), "world.gravity=[0,-0.981,0]"});
     const auto u = run.vector("tip");
     const double error = std::hypot(u[0] - x, u[1] - y, u[2]) / std::hypot(x, y);
     const double order = previous > 0 ? std::log2(previous / error) : 0;

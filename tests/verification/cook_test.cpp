@@ -1,19 +1,19 @@
 // Cook's membrane, and closed forms of the elastic laws in finite elements and in meshless bodies.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
 namespace fascia::test::cook_test {
 namespace {
 
 using Vector = std::array<double, 3>;
 
-SceneRun run(const std::string& scene, const Settings& settings) {
-  return SceneRun(scene, settings, {"--threads", "1"});
-}
+SolvedScene run(const std::string& scene, const Settings& settings) { return SolvedScene(scene, settings, 1); }
 
 std::string number(double v) {
   char line[40];
@@ -64,7 +64,7 @@ TEST(CookMembrane, LinearPlaneStress) {
   for (const Family& f : kFamilies) {
     std::array<double, 3> middle{}, top{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const SceneRun cook = run("cook_linear", panel(f, 8 << i));
+      const SolvedScene cook = run("cook_linear", panel(f, 8 << i));
       middle[i] = cook.vector("middle")[1];
       top[i] = cook.vector("top")[1];
     }
@@ -78,9 +78,10 @@ TEST(CookMembrane, ThicknessDoesNotMatter) {
   std::array<double, 2> middle{};
   for (const double t : {0.5, 0.05}) {
     const std::string z = number(t);
-    const SceneRun cook = run("cook_linear", {"bodies.panel.domain.block.corners=[[0,0,0],[48,44,0],[48,60,0],[0,44,0],"
-                                              "[0,0," +
-                                              z + "],[48,44," + z + "],[48,60," + z + "],[0,44," + z + "]]"});
+    const SolvedScene cook =
+        run("cook_linear", {"bodies.panel.domain.block.corners=[[0,0,0],[48,44,0],[48,60,0],[0,44,0],"
+                            "[0,0," +
+                            z + "],[48,44," + z + "],[48,60," + z + "],[0,44," + z + "]]"});
     middle[t < 0.1] = cook.vector("middle")[1];
     std::printf("%9.2f %13.5f\n", t, middle[t < 0.1]);
   }
@@ -132,7 +133,7 @@ std::string constraint(const std::string& low, const std::string& high, const st
 }
 
 /// @param actions  constraints and loads
-SceneRun run_cube(const Cube& cube, const std::string& law, const std::string& actions) {
+SolvedScene run_cube(const Cube& cube, const std::string& law, const std::string& actions) {
   const TemporaryFolder folder;
   const std::string file = (folder.path / "case").string();
   std::string held;
@@ -172,7 +173,7 @@ std::string sliding() {
 }
 
 /// The cube stretched along y, its sides free or held.
-SceneRun stretched(const Cube& cube, const std::string& law, double stretch, bool confined) {
+SolvedScene stretched(const Cube& cube, const std::string& law, double stretch, bool confined) {
   const std::string top = constraint("-1, 0.99, -1", "2, 2, 2",
                                      "move = { translate = [0, " + number(stretch - 1) + ", 0], axes = [\"y\"] }");
   const std::string sides =
@@ -209,13 +210,13 @@ void compare(const char* body, const char* what, double l, double computed, doub
 TEST(ElementLaws, UniaxialStress) {
   for (const Cube& cube : kCubes) {
     for (const double l : {0.3, 0.8, 3.0}) {
-      const SceneRun cube_run = stretched(cube, "neo-hookean", l, false);
+      const SolvedScene cube_run = stretched(cube, "neo-hookean", l, false);
       const Uniaxial exact = neo_hookean(l);
       compare(cube.name, "neo-Hookean force", l, cube_run.vector("force")[1], exact.P);
       compare(cube.name, "neo-Hookean side", l, 1 + cube_run.vector("corner")[0], exact.side);
     }
     for (const double l : {0.65, 1.5}) {
-      const SceneRun cube_run = stretched(cube, "st-venant-kirchhoff", l, false);
+      const SolvedScene cube_run = stretched(cube, "st-venant-kirchhoff", l, false);
       const Uniaxial exact = st_venant_kirchhoff(l);
       compare(cube.name, "St V.-K. force", l, cube_run.vector("force")[1], exact.P);
       compare(cube.name, "St V.-K. side", l, 1 + cube_run.vector("corner")[0], exact.side);
@@ -248,7 +249,7 @@ TEST(ElementLaws, SimpleShear) {
       const bool quadratic = std::string(cube.body).find("order = 2") != std::string::npos;
       const double M = kLambda + 2 * kMu;
       const Vector svk = run_cube(cube, "st-venant-kirchhoff", actions + (quadratic ? middle : "")).vector("force");
-      const SceneRun neo = run_cube(cube, "neo-hookean", actions + (quadratic ? middle : ""));
+      const SolvedScene neo = run_cube(cube, "neo-hookean", actions + (quadratic ? middle : ""));
       compare(cube.name, "St V.-K. shear", g, svk[0], kMu * g + M * g * g * g / 2);
       compare(cube.name, "St V.-K. normal", g, svk[1], M * g * g / 2);
       compare(cube.name, "neo-Hookean shear", g, neo.vector("force")[0], kMu * g);
@@ -274,7 +275,7 @@ TEST(ElementLaws, StrongCompression) {
       std::printf("%-18s St V.-K.    %8.4f %10.6f %10.6f\n", cube->name, P / kYoung, reached, l);
       EXPECT_NEAR(reached, l, 1e-6) << "next to the limit point";
     }
-    const SceneRun beyond = pushed(*cube, "st-venant-kirchhoff", -0.195 * kYoung);
+    const SolvedScene beyond = pushed(*cube, "st-venant-kirchhoff", -0.195 * kYoung);
     std::printf("%-18s St V.-K.    %8.4f %10.6f  none\n", cube->name, -0.195, 1 + beyond.vector("corner")[1]);
     EXPECT_LT(beyond.number("volume"), 0);
     EXPECT_EQ(beyond.summary()["warnings"].size(), 1u);

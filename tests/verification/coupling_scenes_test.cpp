@@ -1,6 +1,6 @@
 // The scenes of couplings, run by the program: forces balance, and the numbers that their headers name.
 #include "tests/support/cases.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double kGravity = 9.81;
 const std::string kNoPicture = "output.picture.size=[16,16]";
 
-double weight(const SceneRun& run) {
+double weight(const SolvedScene& run) {
   double mass = 0;
   for (const nlohmann::json& body : run.summary().value("bodies", nlohmann::json::object()))
     mass += body.value("mass", 0.0);
@@ -23,16 +23,16 @@ double weight(const SceneRun& run) {
 }
 
 /// Force of a coupling [N].
-std::array<double, 3> force(const SceneRun& run, const std::string& coupling) {
-  return SceneRun::as_vector(run.summary()["couplings"][coupling]["force"]);
+std::array<double, 3> force(const SolvedScene& run, const std::string& coupling) {
+  return SolvedScene::as_vector(run.summary()["couplings"][coupling]["force"]);
 }
 
 /// Force of a tissue on one of its bodies [N].
-std::array<double, 3> force(const SceneRun& run, const std::string& tissue, const std::string& body) {
-  return SceneRun::as_vector(run.summary()["couplings"][tissue]["on"][body]["force"]);
+std::array<double, 3> force(const SolvedScene& run, const std::string& tissue, const std::string& body) {
+  return SolvedScene::as_vector(run.summary()["couplings"][tissue]["on"][body]["force"]);
 }
 
-void expect_sound(const SceneRun& run) {
+void expect_sound(const SolvedScene& run) {
   ASSERT_TRUE(run.ok());
   EXPECT_EQ(run.summary()["status"], "converged");
   EXPECT_EQ(run.summary()["warnings"].dump(), "[]");
@@ -47,7 +47,7 @@ std::array<double, 3> sum(const std::array<double, 3>& a, const std::array<doubl
 }
 
 TEST(CouplingScenes, TissueCarriesAForceFromWallToWall) {
-  const SceneRun run("coupled_surfaces", {kNoPicture});
+  const SolvedScene run("coupled_surfaces", {kNoPicture});
   expect_sound(run);
   expect_near(run.vector("rim"), {-4, 1, 0}, 4e-6);
   expect_near(force(run, "tissue", "upper"), {4, -1, 0}, 4e-6);
@@ -58,7 +58,7 @@ TEST(CouplingScenes, TissueCarriesAForceFromWallToWall) {
 
 TEST(CouplingScenes, AFillingBladderLiftsTheUterus) {
   // In longer steps it moves alike to three digits.
-  const SceneRun run("uterus_bladder", {kNoPicture, full_size() ? "title='full'" : "solver.time_step=0.04"});
+  const SolvedScene run("uterus_bladder", {kNoPicture, full_size() ? "title='full'" : "solver.time_step=0.04"});
   expect_sound(run);
   double lowest = 0, cervix = 0;
   for (const auto& row : run.history()) {
@@ -76,7 +76,7 @@ TEST(CouplingScenes, AFillingBladderLiftsTheUterus) {
 }
 
 TEST(CouplingScenes, ALiverHangsFromTheDiaphragm) {
-  const SceneRun run("hanging_liver", {kNoPicture});
+  const SolvedScene run("hanging_liver", {kNoPicture});
   expect_sound(run);
   const double W = weight(run);
   EXPECT_NEAR(W, 18.300, 0.01 * 18.3);
@@ -92,8 +92,8 @@ TEST(CouplingScenes, ALiverHangsFromTheDiaphragm) {
 }
 
 TEST(CouplingScenes, ALiverBreathes) {
-  const SceneRun run("breathing_liver",
-                     {kNoPicture, "solver.duration=3.2", full_size() ? "title='full'" : "solver.time_step=0.04"});
+  const SolvedScene run("breathing_liver",
+                        {kNoPicture, "solver.duration=3.2", full_size() ? "title='full'" : "solver.time_step=0.04"});
   expect_sound(run);
   double highest = -1;
   for (const auto& row : run.history())
@@ -104,7 +104,7 @@ TEST(CouplingScenes, ALiverBreathes) {
 }
 
 TEST(CouplingScenes, FiveTissuesBetweenSixOrgans) {
-  const SceneRun run("five_tissues", {kNoPicture});
+  const SolvedScene run("five_tissues", {kNoPicture});
   expect_sound(run);
   const double W = weight(run);
   EXPECT_EQ(run.summary()["couplings"].size(), 5u);
@@ -115,7 +115,7 @@ TEST(CouplingScenes, FiveTissuesBetweenSixOrgans) {
 }
 
 TEST(CouplingScenes, AHandCarriesPlateCushionAndBone) {
-  const SceneRun run("bone_plate", {kNoPicture});
+  const SolvedScene run("bone_plate", {kNoPicture});
   expect_sound(run);
   const double W = weight(run);
   EXPECT_NEAR(W, 3.475, 0.01 * 3.475);
@@ -125,7 +125,7 @@ TEST(CouplingScenes, AHandCarriesPlateCushionAndBone) {
 }
 
 TEST(CouplingScenes, WhatPressesASurfacePressesItsHost) {
-  const SceneRun run("riding_surface", {kNoPicture});
+  const SolvedScene run("riding_surface", {kNoPicture});
   expect_sound(run);
   const double F = run.vector("table")[1];
   expect_near(force(run, "skin_on_organ"), run.vector("table"), 1e-6 * F);
@@ -136,8 +136,8 @@ TEST(CouplingScenes, WhatPressesASurfacePressesItsHost) {
 
 TEST(CouplingScenes, SoftSpringsLetGoAndStiffOnesHold) {
   for (const double stiffness : {20.0, 40.0}) {
-    const SceneRun run("ligament_springs",
-                       {kNoPicture, "couplings.soft_along_x.stiffness=" + std::to_string(stiffness)});
+    const SolvedScene run("ligament_springs",
+                          {kNoPicture, "couplings.soft_along_x.stiffness=" + std::to_string(stiffness)});
     expect_sound(run);
     expect_near(force(run, "soft_along_x"), {-1, 0, 0}, 1e-6);
     expect_near(force(run, "stiff_along_x"), {-1, 0, 0}, 1e-6);

@@ -1,8 +1,9 @@
 #include "app/reader/parse.hpp"
-#include "app/run/gpu_run.hpp"
 #include "app/run/run_scene.hpp"
 #include "assembly/build/build_simulation.hpp"
 #include "assembly/simulation/solver_settings.hpp"
+#include "fascia/backend.hpp"
+#include "fascia/run/gpu_run.hpp"
 #include "gpu/space/device.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/verification/break_device.hpp"
@@ -24,20 +25,21 @@ class DeviceLost : public ::testing::TestWithParam<std::string> {
         build_simulation(app::parse_scene_file(fascia::test::source_dir() / "scenes" / (GetParam() + ".toml"), {})));
     state_ = simulation_->initial;
   }
-  std::optional<app::GpuRun> run(const std::string& backend, const gpu::DeviceObserver& observe) {
+  std::optional<GpuRun> run(const std::string& backend, const gpu::DeviceObserver& observe) {
     simulation_->scene.solver.backend = backend;
-    return app::run_on_gpu(
+    return run_on_gpu(
         *simulation_, state_, [this](double t) { return simulation_->factors(t); },
-        settings_of(simulation_->scene.solver), warnings_, observe);
+        settings_of(simulation_->scene.solver), [this](const std::string& text) { warnings_.push_back(text); },
+        observe);
   }
   std::optional<Simulation> simulation_;
   State state_;
-  Warnings warnings_;
+  std::vector<std::string> warnings_;
 };
 
 TEST_P(DeviceLost, OnTheWayEndsTheRunWithWhatWasSeen) {
   State seen;
-  const std::optional<app::GpuRun> run = this->run("auto", [&](const StepInfo& step, ReachedStep& device) {
+  const std::optional<GpuRun> run = this->run("auto", [&](const StepInfo& step, ReachedStep& device) {
     seen = device.state();
     if (step.step == 3) break_device();
     return true;

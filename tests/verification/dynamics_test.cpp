@@ -1,5 +1,5 @@
 // Implicit Euler against what the scheme must do exactly, and against statics.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ TEST(Dynamics, FreeFall) {
   std::printf("step [s]  steps    u_y [m]            scheme             error      strain\n");
   for (const double h : {0.004, 0.04, 1.0}) {
     const int n = 25;
-    const SceneRun run("free_fall", {"solver.time_step=" + number(h)});
+    const SolvedScene run("free_fall", {"solver.time_step=" + number(h)});
     const double exact = -9.81 * h * h * n * (n + 1) / 2;
     double worst = 0, strain = 0;
     for (const Vector& u : run.vectors("points"))
@@ -42,8 +42,8 @@ TEST(Dynamics, EnergyNeverGrowsWithoutLoad) {
   std::printf("step [s]  steps   energy first   last [J]   largest growth / first\n");
   const std::pair<double, int> cases[] = {{1e-3, 300}, {1e-2, 150}, {1e-1, 60}, {1, 30}};
   for (const auto& [h, steps] : cases) {
-    const SceneRun run("struck_beam", {"solver.time_step=" + number(h), "solver.steps=" + std::to_string(steps),
-                                       "output.every_steps=1"});
+    const SolvedScene run("struck_beam", {"solver.time_step=" + number(h), "solver.steps=" + std::to_string(steps),
+                                          "output.every_steps=1"});
     const auto rows = run.history();
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(steps) + 1);
     double growth = -INFINITY;
@@ -55,11 +55,11 @@ TEST(Dynamics, EnergyNeverGrowsWithoutLoad) {
 }
 
 TEST(Dynamics, DampedRunEndsAtTheStaticAnswer) {
-  const SceneRun still("soft_cantilever", {grid_setting("beam", {9, 3, 3})});
+  const SolvedScene still("soft_cantilever", {grid_setting("beam", {9, 3, 3})});
   const Vector reference = still.vector("tip");
   std::printf("step [s]     u_x [m]      u_y [m]    static (%.6f, %.6f)   difference\n", reference[0], reference[1]);
   for (const double h : {0.1, 1.0}) {
-    const SceneRun run("settling_beam", {"solver.time_step=" + number(h)});
+    const SolvedScene run("settling_beam", {"solver.time_step=" + number(h)});
     const Vector u = run.vector("tip");
     const double error = norm({u[0] - reference[0], u[1] - reference[1], u[2] - reference[2]}) / norm(reference);
     std::printf("%8.2f %12.6f %12.6f %40.5f %%\n", h, u[0], u[1], 100 * error);
@@ -80,7 +80,7 @@ TEST(Dynamics, TumblingBox) {
   std::printf("step [s]   L(0) error   KE(0) error   momentum error   |L| left   energy left\n");
   double previous_loss = 0;
   for (const double h : {0.02, 0.01, 0.005}) {
-    const SceneRun run("tumbling_box", {"solver.time_step=" + number(h), "output.every_steps=1"});
+    const SolvedScene run("tumbling_box", {"solver.time_step=" + number(h), "output.every_steps=1"});
     const auto rows = run.history();  // time, momentum, angular momentum, kinetic and total energy
     ASSERT_GT(rows.size(), 10u);
     const Vector L0{rows[0][4], rows[0][5], rows[0][6]}, L{rows.back()[4], rows.back()[5], rows.back()[6]};

@@ -1,6 +1,7 @@
 // Finite elements: other programs' results on the same meshes, the soft cantilever, closed forms, frequencies.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,12 +27,10 @@ std::string number(double v) {
   return line;
 }
 
-SceneRun run(const std::string& scene, const Settings& settings) {
-  return SceneRun(scene, settings, {"--threads", "1"});
-}
+SolvedScene run(const std::string& scene, const Settings& settings) { return SolvedScene(scene, settings, 1); }
 
 /// A scene that is written here.
-SceneRun run_text(const std::string& scene, const Settings& settings = {}) {
+SolvedScene run_text(const std::string& scene, const Settings& settings = {}) {
   const TemporaryFolder folder;
   const std::string file = (folder.path / "case").string();
   std::ofstream(file + ".toml") << scene;
@@ -62,9 +61,9 @@ TEST(LiverTetrahedra, SameMeshAsOtherPrograms) {
       const std::filesystem::path file =
           fascia::test::shared_dir() / "meshes" / (m.name + std::string(version) + ".msh");
       if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-      const SceneRun liver = run("liver_tetrahedra", {"bodies.liver.domain.file='" + file.string() + "'",
-                                                      "probes.farthest.at=[" + number(m.place[0]) + "," +
-                                                          number(m.place[1]) + "," + number(m.place[2]) + "]"});
+      const SolvedScene liver = run("liver_tetrahedra", {"bodies.liver.domain.file='" + file.string() + "'",
+                                                         "probes.farthest.at=[" + number(m.place[0]) + "," +
+                                                             number(m.place[1]) + "," + number(m.place[2]) + "]"});
       const Vector u = liver.vector("farthest");
       std::printf("%s%s   %.11f  %.10f   %.9f %.10f %.9f\n", m.name, version, liver.number("sag"), m.largest, u[0],
                   u[1], u[2]);
@@ -83,7 +82,7 @@ TEST(SoftCantileverElements, QuadraticHexahedraOnTheSameMesh) {
   const Case cases[] = {{{16, 2, 2}, {-1.582189, -6.471733, 6.678654}}, {{32, 4, 4}, {-1.593629, -6.497999, 6.706954}}};
   std::printf("cells       u_x, u_y, max |u| [m]            reference\n");
   for (const Case& c : cases) {
-    const SceneRun beam = run("soft_cantilever_hexahedra", {"bodies.beam.domain.box.cells=" + text(c.cells)});
+    const SolvedScene beam = run("soft_cantilever_hexahedra", {"bodies.beam.domain.box.cells=" + text(c.cells)});
     const Vector tip = beam.vector("tip");
     const double largest = beam.number("largest");
     std::printf("%2d x %d x %d   %.7f %.7f %.7f   %.6f %.6f %.6f\n", c.cells[0], c.cells[1], c.cells[2], tip[0], tip[1],
@@ -110,8 +109,8 @@ TEST(SoftCantileverElements, Hexahedra) {
                         "probes.tip.at=[[16,0,0],[16,0.5,0.5]]"};
     Settings turning = mesh;
     turning.push_back("bodies.beam.formulation='corotational'");
-    const SceneRun svk = run("soft_cantilever_hexahedra", mesh),
-                   corotational = run("soft_cantilever_hexahedra", turning);
+    const SolvedScene svk = run("soft_cantilever_hexahedra", mesh),
+                      corotational = run("soft_cantilever_hexahedra", turning);
     const std::vector<Vector> u = svk.vectors("tip"), w = corotational.vectors("tip");
     ASSERT_TRUE(u.size() == 2 && w.size() == 2);
     const double corner = percent(-u[1][1], 6.575);
@@ -134,7 +133,7 @@ TEST(SoftCantileverElements, SerendipityBesideTriquadratic) {
   std::printf("cells       20 nodes [%%]   27 nodes [%%]\n");
   double previous = -100;
   for (const auto& [cells, other] : cases) {
-    const SceneRun beam =
+    const SolvedScene beam =
         run("soft_cantilever_hexahedra", {"bodies.beam.domain.box.cells=" + text(cells), "probes.tip.at=[16,0.5,0.5]"});
     const double error = percent(-beam.vector("tip")[1], 6.575);
     std::printf("%2d x %d x %d   %10.2f %14.2f\n", cells[0], cells[1], cells[2], error, other);
@@ -186,7 +185,7 @@ void write_beam(const std::filesystem::path& path, const Cells& cells, const Spl
   file << "$EndElements\n";
 }
 
-SceneRun beam_of_mesh(const std::filesystem::path& mesh, const std::string& formulation) {
+SolvedScene beam_of_mesh(const std::filesystem::path& mesh, const std::string& formulation) {
   return run_text("[world]\ngravity = [0, -9.81, 0]\n[bodies.beam]\nmodel = \"tetrahedra\"\ndomain = { file = \"" +
                   mesh.string() + "\" }\nmass = 5\nmaterial = { young = 40e3, poisson = 0.3 }\nformulation = \"" +
                   formulation + R"("
@@ -261,7 +260,7 @@ TEST(SoftCantileverElements, TetrahedraOfMirroredCells) {
 // Tractions are integrated over the curved faces of quadratic elements, not over flat facets between their nodes.
 TEST(ElementLoads, TractionOnARoundFace) {
   for (const char* model : {"tetrahedra", "hexahedra"}) {
-    const SceneRun rod = run_text(std::string("[bodies.rod]\nmodel = \"") + model + R"("
+    const SolvedScene rod = run_text(std::string("[bodies.rod]\nmodel = \"") + model + R"("
 domain = { cylinder = { from = [0, 0, 0], to = [0.1, 0, 0], radius = 0.01, cells = [4, 8] } }
 order = 2
 density = 1000
@@ -290,13 +289,13 @@ where = { box = { min = [-0.001, -1, -1], max = [0.001, 1, 1] } }
 // A Poisson ratio of 0.45 is not above 0.45, whatever rounding makes of lambda and mu.
 TEST(ElementLoads, StiffnessDoesNotChooseTheElements) {
   for (const char* young : {"5e6", "5e3", "8e7", "2e8"}) {
-    const SceneRun block = run_text(std::string(R"(silence = ["held"]
+    const SolvedScene block = run_text(std::string(R"(silence = ["held"]
 [bodies.block]
 model = "tetrahedra"
 domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
 density = 1000
 material = { poisson = 0.45, young = )") +
-                                    young + R"( }
+                                       young + R"( }
 [[constraints]]
 body = "block"
 where = "all"
@@ -336,7 +335,7 @@ quantity = "frequency"
                         {"torsion 1", 45.08, 1},  {"bending 4", 53.77, 2}, {"axial 1", 79.19, 1},
                         {"bending 5", 87.7, 2}};
   for (const int across : {2, 3}) {
-    const SceneRun beam =
+    const SolvedScene beam =
         run_text(scene, {"bodies.beam.domain.box.cells=" + text({across == 2 ? 32 : 16, across, across})});
     const nlohmann::json f = beam.probe("frequency");
     ASSERT_EQ(f.size(), 12u);

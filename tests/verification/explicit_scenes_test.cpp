@@ -1,12 +1,11 @@
 // Central differences through scenes: against implicit kinds, the stable step, what ends a run early, what is written.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 
 namespace fascia::test::explicit_scenes_test {
@@ -25,8 +24,6 @@ Settings with(Settings settings, const Settings& more) {
   settings.insert(settings.end(), more.begin(), more.end());
   return settings;
 }
-
-const std::string kScene = fascia::test::source_dir().string() + "/scenes/explicit_cantilever.toml";
 
 /// The beam of the scene as a meshless body with this domain, thickness or radius, and frames.
 Settings meshless(const std::string& rest) {
@@ -60,7 +57,7 @@ double apart(const Rows& a, const Rows& b) {
 
 Rows tip_history(const Settings& body, const std::string& kind, double h) {
   const Settings solver{"solver={kind='" + kind + "',time_step=" + number(h) + ",duration=0.2}", "output.every=0.04"};
-  return SceneRun("explicit_cantilever", with(body, solver), {"--threads", "1"}).history();
+  return SolvedScene("explicit_cantilever", with(body, solver), 1).history();
 }
 
 /// Within 1 % of every implicit kind at all saved times, in every discretisation.
@@ -95,28 +92,20 @@ TEST(ExplicitScenes, DifferenceFallsWithTheSquareOfTheStep) {
   }
 }
 
-/// What the program says of a scene with a step far above the limit, and whether it wrote anything.
+SolvedScene run_with(const Settings& settings) { return SolvedScene::of_file("explicit_cantilever", settings, 1); }
+
+/// What is said of a scene with a step far above the limit.
 struct Refusal {
-  ProgramResult program;
-  bool written = false;
+  std::string status, message;
   double limit = NAN;  ///< "above the stable step, LIMIT s"
 };
 
-ProgramResult run_with(const Settings& settings, const std::filesystem::path& out, const ProgramOptions& how = {}) {
-  std::vector<std::string> command{
-      fascia::test::program(), "run", kScene, "--quiet", "--threads", "1", "--output", out.string()};
-  for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
-  return run_program(command, how);
-}
-
 Refusal refusal(const Settings& settings) {
-  const TemporaryFolder folder;
-  Refusal r;
-  r.program = run_with(with(settings, {"solver.time_step=10"}), folder.path / "out");
-  r.written = !std::filesystem::is_empty(folder.path);
+  const SolvedScene run = run_with(with(settings, {"solver.time_step=10"}));
+  Refusal r{run.status(), run.message()};
   const std::string before = "above the stable step, ";
-  const std::size_t at = r.program.err.find(before);
-  if (at != std::string::npos) r.limit = std::stod(r.program.err.substr(at + before.size()));
+  const std::size_t at = r.message.find(before);
+  if (at != std::string::npos) r.limit = std::stod(r.message.substr(at + before.size()));
   return r;
 }
 
@@ -163,19 +152,16 @@ TEST(ExplicitScenes, StableStepOfEveryKindOfBody) {
   std::printf("%-28s %12s %14s %14s\n", "body", "limit [s]", "least energy", "most energy");
   for (const auto& [name, body] : variants()) {
     const Refusal r = refusal(body);
-    EXPECT_EQ(r.program.status, 2) << name;
-    EXPECT_FALSE(r.written) << name;
-    EXPECT_NE(r.program.err.find("solver.time_step: 10 s is above the stable step"), std::string::npos)
-        << r.program.err;
-    ASSERT_GT(r.limit, 0) << name << r.program.err;
-    const TemporaryFolder folder;
-    const ProgramResult advised = run_with(
-        with(body, {"solver={kind='explicit',steps=1,time_step=" + number(r.limit) + "}"}), folder.path / "out");
-    EXPECT_EQ(advised.status, 0) << name << ": the limit in the message is above the limit\n" << advised.err;
-    const SceneRun run("explicit_cantilever",
-                       with(body, {"solver={kind='explicit',steps=2000,time_step=" + number(0.9994 * r.limit) + "}",
-                                   "output={every_steps=250}"}),
-                       {"--threads", "1"});
+    EXPECT_EQ(r.status, "refused") << name;
+    EXPECT_NE(r.message.find("solver.time_step: 10 s is above the stable step"), std::string::npos) << r.message;
+    ASSERT_GT(r.limit, 0) << name << r.message;
+    const SolvedScene advised =
+        run_with(with(body, {"solver={kind='explicit',steps=1,time_step=" + number(r.limit) + "}"}));
+    EXPECT_TRUE(advised.ok()) << name << ": the limit in the message is above the limit\n" << advised.message();
+    const SolvedScene run("explicit_cantilever",
+                          with(body, {"solver={kind='explicit',steps=2000,time_step=" + number(0.9994 * r.limit) + "}",
+                                      "output={every_steps=250}"}),
+                          1);
     if (!run.ok()) continue;
     // From the horizontal at rest nothing is gained; the weight's work in a sag by a tenth of the length is the scale.
     const double scale = 1000 * 0.04 * 9.81 * 0.05;
@@ -195,79 +181,54 @@ TEST(ExplicitScenes, StableStepOfEveryKindOfBody) {
 
 /// Pulled to a multiple of its length the material stiffens, so that the step at rest no longer serves.
 TEST(ExplicitScenes, StiffeningMaterialEndsWithAdvice) {
-  const TemporaryFolder folder;
-  const ProgramResult program =
+  const SolvedScene run =
       run_with({"loads=[{body='beam',where={box={min=[0.99,-1,-1],max=[1.01,1,1]}},total_force=[1e5,0,0],over=0.2}]",
-                "output.every=0.01", "solver.time_step=1.7e-3"},
-               folder.path / "out");
-  EXPECT_EQ(program.status, 3) << program.err;
-  EXPECT_NE(program.err.find("the material stiffened: its stable step shrank to"), std::string::npos) << program.err;
-  EXPECT_NE(program.err.find("step "), std::string::npos);
-  std::ifstream file(folder.path / "out" / "summary.json");
-  const nlohmann::json summary = nlohmann::json::parse(file, nullptr, false);
-  ASSERT_FALSE(summary.is_discarded());
-  std::printf("%s\n", summary.value("message", "").c_str());
+                "output.every=0.01", "solver.time_step=1.7e-3"});
+  const nlohmann::json& summary = run.summary();
+  std::printf("%s\n", run.message().c_str());
+  EXPECT_NE(run.message().find("the material stiffened: its stable step shrank to"), std::string::npos);
+  EXPECT_NE(run.message().find("step "), std::string::npos);
   EXPECT_EQ(summary["status"], "diverged");
   EXPECT_GT(summary["steps"], 10);
   std::printf("steps %d, simulated time %.6f s\n", summary["steps"].get<int>(),
               summary["simulated_time"].get<double>());
   EXPECT_LT(summary["simulated_time"], 0.2);
-  const auto tip = SceneRun::as_vector(summary["probes"]["tip"]["value"]);
+  const auto tip = SolvedScene::as_vector(summary["probes"]["tip"]["value"]);
   EXPECT_TRUE(std::isfinite(tip[0]));
   EXPECT_GT(tip[0], 0.05) << "what was computed until then";
-  EXPECT_TRUE(std::filesystem::exists(folder.path / "out" / "explicit_cantilever.pvd"));
+  EXPECT_GT(run.saved(), 1);
 }
 
 /// The same with steps that follow it: they shrink, and the last column of probes.csv says so.
 TEST(ExplicitScenes, AutomaticStepsFollowAStiffeningMaterial) {
-  const SceneRun run(
+  const SolvedScene run(
       "explicit_cantilever",
       {"loads=[{body='beam',where={box={min=[0.99,-1,-1],max=[1.01,1,1]}},total_force=[1e5,0,0],over=0.2}]",
        "output.every=0.01", "solver.time_step='auto'"});
   ASSERT_TRUE(run.ok());
   EXPECT_EQ(run.summary()["simulated_time"], 0.2);
-  const std::string header = run.bytes("probes.csv").substr(0, run.bytes("probes.csv").find('\n'));
-  EXPECT_TRUE(header.ends_with(",time_step")) << header;
+  EXPECT_EQ(run.columns().back(), "time_step");
   const Rows rows = run.history();
   ASSERT_EQ(rows.size(), 21U);
   std::printf("%d steps, from %.3e s to %.3e s\n", run.summary()["steps"].get<int>(), rows.front().back(),
               rows.back().back());
   EXPECT_LT(rows.back().back(), 0.6 * rows.front().back());
-  const SceneRun given("explicit_cantilever");
-  EXPECT_EQ(given.bytes("probes.csv").find("time_step"), std::string::npos) << "constant steps have no such column";
+  const SolvedScene given("explicit_cantilever");
+  EXPECT_NE(given.columns().back(), "time_step") << "constant steps have no such column";
 }
 
 /// Every kind ends at its duration, whatever the step.
 TEST(ExplicitScenes, RunsEndAtTheirDuration) {
   for (const std::string kind : {"implicit-euler", "bdf2", "newmark", "midpoint", "explicit"})
     for (const std::string duration : {"0.0105", "0.01", "0.0007"}) {
-      const SceneRun run("explicit_cantilever",
-                         {"bodies.beam.domain.box.cells=[5,1,1]",
-                          "solver={kind='" + kind + "',time_step=1e-3,duration=" + duration + "}"});
+      const SolvedScene run("explicit_cantilever",
+                            {"bodies.beam.domain.box.cells=[5,1,1]",
+                             "solver={kind='" + kind + "',time_step=1e-3,duration=" + duration + "}"});
       ASSERT_TRUE(run.ok());
       EXPECT_EQ(run.summary()["simulated_time"], std::stod(duration)) << kind;
       EXPECT_EQ(run.history().back()[0], std::stod(duration)) << kind;
       EXPECT_EQ(run.summary()["steps"], std::ceil(std::stod(duration) * 1e3 - 1e-9)) << kind;
     }
-}
-
-TEST(ExplicitScenes, InterruptedRunWritesWhatThereIs) {
-  const TemporaryFolder folder;
-  ProgramOptions how;
-  how.signal = SIGINT;
-  how.signal_after = std::chrono::milliseconds(700);
-  const ProgramResult program = run_with(
-      {"solver={kind='explicit',time_step=1e-3,steps=100000000}", "output={every=1}"}, folder.path / "out", how);
-  EXPECT_EQ(program.status, 130) << program.err;
-  std::ifstream file(folder.path / "out" / "summary.json");
-  const nlohmann::json summary = nlohmann::json::parse(file, nullptr, false);
-  ASSERT_FALSE(summary.is_discarded());
-  const double time = summary["simulated_time"];
-  std::printf("interrupted after %d steps, %.3f s: %s\n", summary["steps"].get<int>(), time,
-              summary.value("message", "").c_str());
-  EXPECT_GT(summary["steps"], 0);
-  EXPECT_NEAR(time, 1e-3 * summary["steps"].get<double>(), 1e-9 * time);
-  EXPECT_TRUE(std::filesystem::exists(folder.path / "out" / "explicit_cantilever.pvd"));
 }
 
 /// Saved times, steps and the like mean the same as for implicit kinds.
@@ -285,25 +246,21 @@ TEST(ExplicitScenes, OutputAsOfImplicitKinds) {
     Rows rows[2];
     for (int k = 0; k < 2; ++k) {
       const std::string kind = k == 0 ? "explicit" : "midpoint";
-      const SceneRun run("explicit_cantilever", {"bodies.beam.domain.box.cells=[5,1,1]", c.output,
-                                                 "solver={kind='" + kind + "',time_step=1e-3," + c.steps + "}"});
+      const SolvedScene run("explicit_cantilever", {"bodies.beam.domain.box.cells=[5,1,1]", c.output,
+                                                    "solver={kind='" + kind + "',time_step=1e-3," + c.steps + "}"});
       ASSERT_TRUE(run.ok());
       rows[k] = run.history();
       EXPECT_EQ(run.summary()["steps"], std::lround(rows[k].back()[0] / 1e-3)) << c.output;
       EXPECT_NEAR(run.summary()["simulated_time"], rows[k].back()[0], 1e-12);
       EXPECT_GT(run.summary()["seconds"]["step_median"], 0);
       EXPECT_LE(run.summary()["seconds"]["step_median"], run.summary()["seconds"]["step_max"]);
-      const std::string series = run.bytes("explicit_cantilever.pvd");
-      std::size_t saved = 0;
-      for (std::size_t at = series.find("<DataSet "); at != std::string::npos; at = series.find("<DataSet ", at + 1))
-        ++saved;
-      EXPECT_EQ(saved % rows[k].size(), 0U) << "as many states as rows";
+      EXPECT_EQ(run.saved(), static_cast<int>(rows[k].size())) << "as many states as rows";
     }
     ASSERT_EQ(rows[0].size(), c.rows) << c.output;
     ASSERT_EQ(rows[1].size(), c.rows) << c.output;
     for (std::size_t i = 0; i < c.rows; ++i) EXPECT_NEAR(rows[0][i][0], rows[1][i][0], 1e-12) << c.output;
   }
-  const SceneRun automatic("explicit_cantilever", {"solver.time_step='auto'"});
+  const SolvedScene automatic("explicit_cantilever", {"solver.time_step='auto'"});
   const double limit = refusal({}).limit;
   EXPECT_NEAR(automatic.summary()["steps"].get<double>(), 5 * std::ceil(0.04 / limit), 0.05 * 0.2 / limit)
       << "about the stable step at rest, in parts of the saved times";
@@ -315,15 +272,13 @@ TEST(ExplicitScenes, DrivenBodiesAreNotCalledUnstable) {
   for (const std::string profile :
        {"profile='linear',over=0.1", "profile='smooth',over=0.1", "profile={sine={period=0.4}}"}) {
     for (const std::string gravity : {"-9.81", "0", "9.81"}) {
-      const TemporaryFolder folder;
-      const ProgramResult program =
+      const SolvedScene run =
           run_with({"constraints[0]={body='beam',where={box={min=[-0.001,-1,-1],max=[0.001,1,1]}},"
                     "move={translate=[0,0,0.05]}," +
                         profile + "}",
                     "world.gravity=[0,0," + gravity + "]", "solver={kind='explicit',time_step=1e-3,steps=150}",
-                    "output={every_steps=75}"},
-                   folder.path / "out");
-      EXPECT_EQ(program.status, 0) << profile << ", gravity " << gravity << ": " << program.err;
+                    "output={every_steps=75}"});
+      EXPECT_TRUE(run.ok()) << profile << ", gravity " << gravity << ": " << run.message();
     }
   }
 }

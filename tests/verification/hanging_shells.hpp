@@ -1,6 +1,7 @@
 #pragma once
 
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <fmt/format.h>
 
@@ -154,7 +155,7 @@ quantity = "displacement"
         fmt::format("[[loads]]\nbody = \"all\"\nwhere = {{ group = \"{}\" }}\ntotal_force = [0, 0, {}]\nover = 1\n",
                     wall, -(1000 - kDensity) * kGravity * kWallVolume);
   std::ofstream(folder.path / "solid.toml") << scene;
-  const SceneRun run((folder.path / "solid").string(), {}, {"--threads", "1"});
+  const SolvedScene run((folder.path / "solid").string(), {}, 1);
   EXPECT_NEAR(run.vector("reaction")[2], kWeight, 1e-4 * kWeight);
   return {-run.vector("centre")[2], mean_sag(run.vectors("square"))};
 }
@@ -163,7 +164,7 @@ quantity = "displacement"
 inline Sag sag_of_coupled(const Settings& settings = {}) {
   Settings all = settings;
   all.push_back("probes.square={body=\"lower\",quantity=\"displacement\",at=" + points_of_square(-1, 0) + "}");
-  const SceneRun run("hanging_shells", all, {"--threads", "1"});
+  const SolvedScene run("hanging_shells", all, 1);
   const double weight = 11 * 9.81;
   EXPECT_NEAR(run.vector("reaction")[2], weight, 1e-6 * weight);
   return {-run.vector("lower_centre")[2], mean_sag(run.vectors("square"))};

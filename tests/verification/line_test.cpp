@@ -1,6 +1,7 @@
 // Lines of frames against rod theory: L = 1, R = 0.01, E = 100 kPa, nu = 0.3 unless said otherwise.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,10 +52,9 @@ Line line_of(const std::string& frames) {
 }
 
 nlohmann::json run_text(const std::string& text) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path / "case";
-  std::ofstream(file.string() + ".toml") << text;
-  return SceneRun(file.string()).summary();
+  const SolvedScene run = SolvedScene::of_text(text);
+  EXPECT_TRUE(run.ok()) << run.message();
+  return run.summary();
 }
 
 std::string body_text(const Line& line) {
@@ -77,7 +77,7 @@ nlohmann::json clamped(const Line& line, const Vector& end, const std::string& l
 }
 
 Vector value(const nlohmann::json& probes, const char* name) {
-  return probes.contains(name) ? SceneRun::as_vector(probes[name]["value"]) : Vector{NAN, NAN, NAN};
+  return probes.contains(name) ? SolvedScene::as_vector(probes[name]["value"]) : Vector{NAN, NAN, NAN};
 }
 
 /// Displacement or rotation of the end over rod theory (Euler-Bernoulli, Saint-Venant), for small loads.
@@ -219,7 +219,7 @@ TEST(Line, Elastica) {
                         {6, 0.56541117, 0.74457115},    {8, 0.49517227, 0.78498237},    {10, 0.4450044, 0.81060902}};
   std::printf("P L^2/(E I)     x [m]   error        y [m]   error   Newton\n");
   for (const Case& c : cases) {
-    const SceneRun run("elastica", {"loads[0].total_force=" + toml(Vector{0, c.load * Rod{}.EI(), 0})});
+    const SolvedScene run("elastica", {"loads[0].total_force=" + toml(Vector{0, c.load * Rod{}.EI(), 0})});
     const Vector tip = run.vector("tip");
     std::printf("%8.2f   %10.6f %+.3f %%   %10.6f %+.3f %%   %d\n", c.load, tip[0], 100 * (tip[0] / c.x - 1), tip[1],
                 100 * (tip[1] / c.y - 1), run.newton_iterations());
@@ -233,7 +233,7 @@ TEST(Line, RollsUpToACircle) {
   const Rod rod;
   std::printf("frames   moment / (E I theta/L)   rod       error      Newton   steps\n");
   for (const int n : {41, 61, 81}) {
-    const SceneRun run("roll_up", {"bodies.line.frames.grid=[" + std::to_string(n) + "]"});
+    const SolvedScene run("roll_up", {"bodies.line.frames.grid=[" + std::to_string(n) + "]"});
     const double theta = 2 * kPi, squared = theta * theta * rod.R * rod.R / (4 * rod.L * rod.L);
     const double ratio = -run.vector("moment")[2] / (rod.EI() * theta / rod.L), expected = 1 - 4 * squared;
     const Vector tip = run.vector("tip"), middle = run.vector("middle");
@@ -254,9 +254,9 @@ struct Twist {
 Twist twist(const std::string& scene, int n, double angle = 180, double radius = 0.01) {
   std::string at;
   for (int k = 0; k < n; ++k) at += (k > 0 ? "," : "[") + toml(Vector{1.0 * k / (n - 1), 0, 0});
-  const SceneRun run(scene,
-                     {"bodies.line.frames.grid=[" + std::to_string(n) + "]", "bodies.line.radius=" + toml(radius),
-                      "probes.turns.at=" + at + "]", "constraints[1].move.rotate.angle=" + toml(angle * kPi / 180)});
+  const SolvedScene run(scene,
+                        {"bodies.line.frames.grid=[" + std::to_string(n) + "]", "bodies.line.radius=" + toml(radius),
+                         "probes.turns.at=" + at + "]", "constraints[1].move.rotate.angle=" + toml(angle * kPi / 180)});
   Twist result;
   for (const Vector& r : run.vectors("turns")) {
     result.degrees.push_back(r[0] * 180 / kPi);
@@ -300,7 +300,7 @@ TEST(Line, ByThePapersOwnRuleHasNoRodInIt) {
   const double expected[] = {15.83, 3.957, 0.989};
   for (std::size_t k = 0; k < 3; ++k) {
     const int n = 9 * (1 << k) + 1;
-    const SceneRun run(
+    const SolvedScene run(
         "line_cantilever",
         {"bodies.line.frames.grid=[" + std::to_string(n) + "]", "solver.linear.kind=cg",
          "bodies.line.points.per_cell=[6]", "bodies.line.points.through=1", "bodies.line.weights.blend=full",
@@ -314,7 +314,7 @@ TEST(Line, ByThePapersOwnRuleHasNoRodInIt) {
 /// Rounding leaves 1e-5 Hz of a rigid motion; the first bending of a free rod has 0.178 Hz, within 1 % with 10 frames.
 TEST(Line, ThatIsFreeHasSixRigidMotions) {
   for (const char* frames : {"{grid=[10]}", "{count=40}", "{grid=[10],kind=\"affine\"}"}) {
-    const SceneRun run("line_free_modes", {std::string("bodies.line.frames=") + frames});
+    const SolvedScene run("line_free_modes", {std::string("bodies.line.frames=") + frames});
     const nlohmann::json f = run.probe("frequency");
     ASSERT_EQ(f.size(), 10U) << frames;
     std::printf("%-28s", frames);
@@ -349,7 +349,7 @@ TEST(Line, FallsWithoutStrain) {
 }
 
 TEST(Line, SwingsWithFallingEnergy) {
-  const SceneRun run("line_swing");
+  const SolvedScene run("line_swing");
   const auto rows = run.history();  // time, tip (3), total energy, strain energy
   ASSERT_EQ(rows.size(), 51U);
   const double weight = 1000 * kPi * 1e-4 * 9.81;
@@ -365,9 +365,8 @@ TEST(Line, SwingsWithFallingEnergy) {
   EXPECT_NEAR(lowest, -1, 0.02) << "it keeps its length; half its weight over E A stretches it by 0.5 %";
 }
 
-/// Exit status 2, one line that names the key, no results.
+/// The message names the key.
 TEST(Line, RefusesWhatIsNoRod) {
-  const std::string scene = (fascia::test::source_dir() / "scenes" / "line_cantilever.toml").string();
   const struct {
     const char* setting;
     const char* said;
@@ -378,21 +377,15 @@ TEST(Line, RefusesWhatIsNoRod) {
                {"bodies.line.domain.line.to=[0,0,0]", "bodies.line.domain.line.to: "},
                {"bodies.line.thickness=0.1", "bodies.line.thickness: "}};
   for (const auto& c : cases) {
-    const TemporaryFolder folder;
-    const ProgramResult r = run_program({fascia::test::program(), "run", scene, "--set", c.setting, "--output",
-                                         (folder.path / "out").string(), "--quiet"});
-    EXPECT_EQ(r.status, 2) << c.setting;
-    EXPECT_FALSE(std::filesystem::exists(folder.path / "out")) << c.setting;
-    EXPECT_NE(r.err.find(c.said), std::string::npos) << c.setting << ": " << r.err;
+    const SolvedScene r = SolvedScene::of_file("line_cantilever", {c.setting});
+    EXPECT_EQ(r.status(), "refused") << c.setting;
+    EXPECT_NE(r.message().find(c.said), std::string::npos) << c.setting << ": " << r.message();
   }
-  const TemporaryFolder folder;
-  const std::string file = (folder.path / "no_radius.toml").string();
   std::string text = body_text({});
   text.erase(text.find("radius"), text.find("material") - text.find("radius"));
-  std::ofstream(file) << text;
-  const ProgramResult r = run_program({fascia::test::program(), "check", file});
-  EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.err.find("bodies.line.radius: is missing"), std::string::npos) << r.err;
+  const SolvedScene r = SolvedScene::of_text(text);
+  EXPECT_EQ(r.status(), "refused");
+  EXPECT_NE(r.message().find("bodies.line.radius: is missing"), std::string::npos) << r.message();
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Natural frequencies.
 #include "tests/support/coupled_scene.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace fascia::test::modes_test {
 namespace {
 
 TEST(Modes, SteelCantilever) {
-  const SceneRun run("beam_modes");
+  const SolvedScene run("beam_modes");
   struct Mode {
     const char* name;
     double solid;
@@ -34,7 +34,7 @@ TEST(Modes, SteelCantilever) {
 
 TEST(Modes, FreeBlockHasSixZeros) {
   for (const char* weights : {"trilinear", "linear"}) {
-    const SceneRun run("free_modes", {std::string("bodies.block.weights.kind='") + weights + "'"});
+    const SolvedScene run("free_modes", {std::string("bodies.block.weights.kind='") + weights + "'"});
     const nlohmann::json f = run.probe("frequency");
     ASSERT_EQ(f.size(), 10u);
     std::printf("%-10s", weights);
@@ -49,7 +49,7 @@ TEST(Modes, FreeBlockHasSixZeros) {
 TEST(Modes, FreeMotionsAloneSettle) {
   for (const char* scene : {"line_free_modes", "free_modes"})
     for (const int count : {1, 5, 6, 7}) {
-      const SceneRun run(scene, {"solver.count=" + std::to_string(count)});
+      const SolvedScene run(scene, {"solver.count=" + std::to_string(count)});
       const nlohmann::json f = run.probe("frequency");
       ASSERT_EQ(f.size(), static_cast<std::size_t>(count));
       for (int i = 0; i < count; ++i)

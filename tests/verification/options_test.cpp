@@ -1,5 +1,5 @@
 // Other ways to the same answer, and what the other weights, rules and integrations are worth.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ Settings with(Settings settings, const Settings& more) {
 }
 
 TEST(Options, ConjugateGradientsAgreeWithCholesky) {
-  const SceneRun direct("soft_cantilever", {"solver.linear.kind='cholesky'"});
-  const SceneRun iterative("soft_cantilever", {"solver.linear.kind='cg'", "solver.linear.max_iterations=5000"});
+  const SolvedScene direct("soft_cantilever", {"solver.linear.kind='cholesky'"});
+  const SolvedScene iterative("soft_cantilever", {"solver.linear.kind='cg'", "solver.linear.max_iterations=5000"});
   const double d = difference(iterative.vector("tip"), direct.vector("tip"));
   std::printf("soft cantilever 21 x 3 x 3: CHOLMOD (%.9f, %.9f), CG (%.9f, %.9f), difference %.1e; %d CG iterations\n",
               direct.vector("tip")[0], direct.vector("tip")[1], iterative.vector("tip")[0], iterative.vector("tip")[1],
@@ -34,9 +34,9 @@ TEST(Options, ConjugateGradientsAgreeWithCholesky) {
 }
 
 TEST(Options, MaterialTangentConvergesToTheSameAnswer) {
-  const SceneRun full("soft_cantilever", kSmall);
-  const SceneRun material("soft_cantilever",
-                          with(kSmall, {"solver.tangent='material'", "solver.newton.max_iterations=500"}));
+  const SolvedScene full("soft_cantilever", kSmall);
+  const SolvedScene material("soft_cantilever",
+                             with(kSmall, {"solver.tangent='material'", "solver.newton.max_iterations=500"}));
   const double d = difference(material.vector("tip"), full.vector("tip"));
   std::printf("tangent    Newton   u_y [m]\nfull     %8d %12.9f\nmaterial %8d %12.9f   difference %.1e\n",
               full.newton_iterations(), full.vector("tip")[1], material.newton_iterations(), material.vector("tip")[1],
@@ -46,7 +46,7 @@ TEST(Options, MaterialTangentConvergesToTheSameAnswer) {
 
 /// Tip of the steel beam with linear weights against Euler-Bernoulli [%].
 double linear_steel_error(int along, const char* weights) {
-  const SceneRun run("steel_cantilever", {grid_setting("beam", {along, 5, 5}), weights});
+  const SolvedScene run("steel_cantilever", {grid_setting("beam", {along, 5, 5}), weights});
   return 100 * (-run.vector("tip")[1] / 0.150441 - 1);
 }
 
@@ -68,7 +68,7 @@ TEST(Options, LinearWeightsOfTheSoftBeam) {
   double previous = -100;
   for (const auto& [grid, expected] : cases) {
     const auto error = [&g = grid](const char* weights) {
-      const SceneRun run("soft_cantilever", {grid_setting("beam", g), weights, "probes.tip.at=[16,0.5,0.5]"});
+      const SolvedScene run("soft_cantilever", {grid_setting("beam", g), weights, "probes.tip.at=[16,0.5,0.5]"});
       return 100 * (-run.vector("tip")[1] / 6.586 - 1);
     };
     const double full = error("bodies.beam.weights={kind='linear',blend='full',drilling=0}");
@@ -81,7 +81,7 @@ TEST(Options, LinearWeightsOfTheSoftBeam) {
 }
 
 TEST(Options, PaperRuleTurnsFramesAway) {
-  const SceneRun paper("paper_rule"), half("soft_cantilever", kSmall);
+  const SolvedScene paper("paper_rule"), half("soft_cantilever", kSmall);
   const auto turned = paper.vectors("axis_rotation"), sound = half.vectors("axis_rotation");
   ASSERT_EQ(turned.size(), 5u);
   std::printf("x [m]     paper's rule (rx, ry, rz) [rad]      default\n");
@@ -111,10 +111,10 @@ TEST(Options, SelectiveIntegration) {
       {{25, 5, 5}, "0.499", "full", "0.001", -46},     {{25, 3, 3}, "0.49", "full", "0.001", -25}};
   std::printf("frames        nu      integration  drilling   sag [m]    error    measured before\n");
   for (const Case& c : cases) {
-    const SceneRun run("nearly_incompressible",
-                       {grid_setting("beam", c.grid), std::string("bodies.beam.material.poisson=") + c.poisson,
-                        std::string("bodies.beam.points.integration='") + c.integration + "'",
-                        std::string("bodies.beam.weights.drilling=") + c.drilling});
+    const SolvedScene run("nearly_incompressible",
+                          {grid_setting("beam", c.grid), std::string("bodies.beam.material.poisson=") + c.poisson,
+                           std::string("bodies.beam.points.integration='") + c.integration + "'",
+                           std::string("bodies.beam.weights.drilling=") + c.drilling});
     const double sag = -run.vector("tip")[1], error = 100 * (sag / 0.150441 - 1);
     std::printf("%2d x %d x %d   %-6s  %-10s  %-6s %11.6f %+8.2f %% %+7.1f %%\n", c.grid[0], c.grid[1], c.grid[2],
                 c.poisson, c.integration, c.drilling, sag, error, c.expected);
@@ -136,11 +136,11 @@ TEST(Options, ResultsDoNotDependOnTheUnitOfLength) {
     std::snprintf(mass, sizeof mass, "bodies.beam.mass=%.17g", 5 * s * s * s);
     std::snprintf(gravity, sizeof gravity, "world.gravity=[0,%.17g,0]", -9.81 / s);
     const std::string support = "{box={min=" + list(-0.01, -1, -1) + ",max=" + list(0.01, 1, 1) + "}}";
-    const SceneRun run("soft_cantilever",
-                       {"bodies.beam.domain.box={min=" + list(0, -0.5, -0.5) + ",max=" + list(16, 0.5, 0.5) + "}", mass,
-                        gravity, "constraints[0].where=" + support, "probes.support_force.where=" + support,
-                        "probes.tip.at=" + list(16, 0, 0), "probes.tip_rotation.at=" + list(16, 0, 0),
-                        "probes.axis_rotation.at=" + list(8, 0, 0), "solver.newton.tolerance=1e-11"});
+    const SolvedScene run("soft_cantilever",
+                          {"bodies.beam.domain.box={min=" + list(0, -0.5, -0.5) + ",max=" + list(16, 0.5, 0.5) + "}",
+                           mass, gravity, "constraints[0].where=" + support, "probes.support_force.where=" + support,
+                           "probes.tip.at=" + list(16, 0, 0), "probes.tip_rotation.at=" + list(16, 0, 0),
+                           "probes.axis_rotation.at=" + list(8, 0, 0), "solver.newton.tolerance=1e-11"});
     Vector u = run.vector("tip");
     for (double& c : u) c /= 16 * s;
     if (s == 1) reference = u;

@@ -1,5 +1,6 @@
-// The same bits for any number of threads.
+// The same bits for any number of threads, by the program and by the library.
 #include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,12 +32,28 @@ TEST_P(Threads, OneAndTwoGiveTheSameBits) {
   std::printf("%s: probes and fields identical\n", c.name);
 }
 
+/// Most cases here are solved by the library in a test's own process: it gives the program's numbers.
+TEST_P(Threads, TheLibraryGivesTheProgramsBits) {
+  const Case& c = GetParam();
+  const SceneRun program(c.scene, c.settings, {"--threads", "2"});
+  const SolvedScene library(c.scene, c.settings, 2);
+  ASSERT_TRUE(program.ok() && library.ok());
+  EXPECT_EQ(program.columns(), library.columns());
+  EXPECT_EQ(program.history(), library.history());
+  EXPECT_EQ(program.summary()["probes"].dump(), library.summary()["probes"].dump());
+  for (const char* key : {"status", "message", "convergence", "bodies", "couplings", "steps", "newton_iterations",
+                          "linear_iterations", "residual", "warnings", "doubts"})
+    EXPECT_EQ(program.summary()[key], library.summary()[key]) << key;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, Threads,
     ::testing::Values(Case{"cholesky", "soft_cantilever", {"solver.linear.kind='cholesky'"}},
                       Case{"cg", "soft_cantilever", {"bodies.beam.frames.grid=[9,3,3]", "solver.linear.kind='cg'"}},
                       Case{"dynamics", "struck_beam", {"solver.steps=40"}}, Case{"immersed", "traction_free_ends", {}},
-                      Case{"modes", "free_modes", {}}),
+                      Case{"modes", "free_modes", {}}, Case{"path", "snap_through", {}},
+                      Case{"explicit", "explicit_cantilever", {"solver.time_step='auto'"}},
+                      Case{"coupled", "bone_plate", {}}),
     [](const auto& c) { return std::string(c.param.name); });
 
 }  // namespace

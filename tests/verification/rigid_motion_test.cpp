@@ -1,5 +1,5 @@
 // Rigid motions strain nothing.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ const Turn kTurns[] = {{"720 degrees about z",
                         {1, -2, 0.7},
                         77}};
 
-double placement_error(const SceneRun& run, const Turn& turn) {
+double placement_error(const SolvedScene& run, const Turn& turn) {
   const Vector X{1, 0.15, 0.1}, x = rotated(X, turn.axis, turn.degrees * std::acos(-1.0) / 180), u = run.vector("end");
   return std::hypot(X[0] + u[0] - x[0], X[1] + u[1] - x[1], X[2] + u[2] - x[2]);
 }
@@ -55,7 +55,7 @@ double placement_error(const SceneRun& run, const Turn& turn) {
 TEST(RigidMotion, AllFramesPrescribed) {
   std::printf("motion                   energy/(mu V)   stress/mu   strain   force/(mu A)   place [m]   volume\n");
   for (const Turn& turn : kTurns) {
-    const SceneRun run("rigid_turn", {turn.setting});
+    const SolvedScene run("rigid_turn", {turn.setting});
     const double energy = run.number("energy") / (kMu * kVolume), s = largest_entry(run.probe("stress")) / kMu;
     const double strain = largest_entry(run.probe("strain")), force = largest_entry(run.probe("force")) / (kMu * kFace);
     const double place = placement_error(run, turn), volume = std::abs(run.number("volume") / kVolume - 1);
@@ -73,7 +73,7 @@ TEST(RigidMotion, AllFramesPrescribed) {
 TEST(RigidMotion, LedByOneEnd) {
   std::printf("motion                   energy/(mu V)   place [m]\n");
   for (const Turn& turn : kTurns) {
-    const SceneRun run("led_by_one_end", {turn.setting});
+    const SolvedScene run("led_by_one_end", {turn.setting});
     const double energy = run.number("energy") / (kMu * kVolume), place = placement_error(run, turn);
     std::printf("%-24s %12.1e %11.1e\n", turn.name, energy, place);
     EXPECT_LT(energy, 1e-20);

@@ -1,6 +1,8 @@
 // Solids on scattered frames: moving least squares against the reference, the 2014 paper's weights, a real surface.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,18 +22,15 @@ std::string scene_file(const std::string& name) {
   return (fascia::test::source_dir() / "scenes" / (name + ".toml")).string();
 }
 
-/// How the program ends where it need not succeed.
-ProgramResult call(const std::string& command, const std::string& scene, const Settings& settings) {
-  const TemporaryFolder folder;
-  std::vector<std::string> line{fascia::test::program(), command, scene_file(scene)};
+/// What `fascia check` says.
+ProgramResult check(const std::string& scene, const Settings& settings) {
+  std::vector<std::string> line{fascia::test::program(), "check", scene_file(scene)};
   for (const std::string& s : settings) line.insert(line.end(), {"--set", s});
-  ProgramOptions how;
-  how.directory = folder.path;
-  return run_program(line, how);
+  return run_program(line);
 }
 
 /// |u - u_ref| / |u_ref| of the soft cantilever's tip [%]; prints a row.
-double tip_error(const std::string& label, const SceneRun& run) {
+double tip_error(const std::string& label, const SolvedScene& run) {
   const Vector u = run.vector("tip");
   const double error = 100 * std::hypot(u[0] + 1.5987, u[1] + 6.5096, u[2]) / std::hypot(1.5987, 6.5096);
   const auto count = [&](const char* what) { return run.ok() ? run.summary()["bodies"]["beam"][what].get<int>() : 0; };
@@ -48,28 +47,28 @@ void print_header() {
 std::string spaced(double frames) { return "bodies.beam.frames.poisson_disk=" + std::to_string(frames); }
 
 /// The scene as it stands: spacing 0.5, points 0.2, seed 1.
-const SceneRun& standard() {
-  static const SceneRun run(kScene);
+const SolvedScene& standard() {
+  static const SolvedScene run(kScene);
   return run;
 }
 
 TEST(ScatteredCantilever, EverySeedIsWithinSixPercent) {
   print_header();
-  const auto expect_near = [](const std::string& label, const SceneRun& run) {
+  const auto expect_near = [](const std::string& label, const SolvedScene& run) {
     EXPECT_LT(tip_error(label, run), 6.0);
     EXPECT_NEAR(run.vector("support_force")[1], 5 * 9.81, 1e-6) << "the ties of the held face carry the weight";
   };
   expect_near("seed 1", standard());
   for (const char* seed : {"2", "3"})
-    expect_near(std::string("seed ") + seed, SceneRun(kScene, {std::string("bodies.beam.frames.seed=") + seed}));
+    expect_near(std::string("seed ") + seed, SolvedScene(kScene, {std::string("bodies.beam.frames.seed=") + seed}));
 }
 
 TEST(ScatteredCantilever, ErrorFallsWithTheSpacing) {
   print_header();
-  const double error[] = {tip_error("spacing 1.0", SceneRun(kScene, {spaced(1.0)})),
-                          tip_error("spacing 0.7", SceneRun(kScene, {spaced(0.7)})),
+  const double error[] = {tip_error("spacing 1.0", SolvedScene(kScene, {spaced(1.0)})),
+                          tip_error("spacing 0.7", SolvedScene(kScene, {spaced(0.7)})),
                           tip_error("spacing 0.5", standard()),
-                          tip_error("spacing 0.4", SceneRun(kScene, {spaced(0.4)}))};
+                          tip_error("spacing 0.4", SolvedScene(kScene, {spaced(0.4)}))};
   for (std::size_t k = 1; k < 4; ++k) EXPECT_LT(error[k], error[k - 1]);
 }
 
@@ -77,9 +76,9 @@ TEST(ScatteredCantilever, ErrorFallsWithTheSpacing) {
 TEST(ScatteredCantilever, ErrorFallsWithMorePoints) {
   print_header();
   const std::string points = "bodies.beam.points.poisson_disk=";
-  const double coarse = tip_error("points 0.25", SceneRun(kScene, {points + "0.25"}));
+  const double coarse = tip_error("points 0.25", SolvedScene(kScene, {points + "0.25"}));
   const double normal = tip_error("points 0.2", standard());
-  const double fine = tip_error("points 0.1667", SceneRun(kScene, {points + "0.1667"}));
+  const double fine = tip_error("points 0.1667", SolvedScene(kScene, {points + "0.1667"}));
   EXPECT_LT(normal, coarse);
   EXPECT_LT(fine, normal);
 }
@@ -90,7 +89,7 @@ TEST(ScatteredWeights, CheckSaysHowFarTheyAreFromLinearConsistency) {
   print_header();
   for (const char* kind : {"mls", "shepard", "wendland", "cubic-spline"}) {
     const std::string setting = std::string("bodies.beam.weights.kind='") + kind + "'";
-    const ProgramResult said = call("check", kScene, {setting, spaced(0.8)});
+    const ProgramResult said = check(kScene, {setting, spaced(0.8)});
     EXPECT_EQ(said.status, 0);
     int told = 0;
     for (const std::string& line : lines_of(said.out)) {
@@ -100,19 +99,19 @@ TEST(ScatteredWeights, CheckSaysHowFarTheyAreFromLinearConsistency) {
       EXPECT_EQ(line.find("reproduced") != std::string::npos, std::string(kind) == "mls");
     }
     EXPECT_EQ(told, 1);
-    tip_error(kind, SceneRun(kScene, {setting, spaced(0.8)}));
+    tip_error(kind, SolvedScene(kScene, {setting, spaced(0.8)}));
   }
 }
 
 /// Largest error of the strain of a stretch by `pull` over the length 2, relative to E_xx.
-double strain_error(const SceneRun& run, double pull) {
+double strain_error(const SolvedScene& run, double pull) {
   const double stretch = 1 + pull / 2, E = (stretch * stretch - 1) / 2;
   double largest = 0;
   for (const nlohmann::json& strain : run.probe("strain"))
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) {
         const double exact = i != j ? 0.0 : i == 0 ? E : -0.3 * E;
-        largest = std::max(largest, std::abs(SceneRun::as_number(strain.at(i).at(j)) - exact) / E);
+        largest = std::max(largest, std::abs(SolvedScene::as_number(strain.at(i).at(j)) - exact) / E);
       }
   return largest;
 }
@@ -121,8 +120,8 @@ double strain_error(const SceneRun& run, double pull) {
 TEST(ScatteredPatch, UniaxialStretch) {
   std::printf("weights      points at   strain error   Newton\n");
   const auto error = [](const char* kind, const char* points) {
-    const SceneRun run("scattered_stretch", {std::string("bodies.block.weights.kind='") + kind + "'",
-                                             std::string("bodies.block.points.poisson_disk=") + points});
+    const SolvedScene run("scattered_stretch", {std::string("bodies.block.weights.kind='") + kind + "'",
+                                                std::string("bodies.block.points.poisson_disk=") + points});
     const double e = strain_error(run, 0.02);
     std::printf("%-12s %s %16.2e %8d\n", kind, points, e, run.newton_iterations());
     return e;
@@ -137,8 +136,8 @@ TEST(ScatteredModes, AFreeCloudHasSixZeroFrequencies) {
   std::printf("kind     seed   number 6 [1/s]   number 7\n");
   for (const char* kind : {"rigid", "affine"})
     for (int seed = 1; seed <= 3; ++seed) {
-      const SceneRun run("free_modes", {std::string("bodies.block.frames={poisson_disk=0.08,seed=") +
-                                        std::to_string(seed) + ",kind='" + kind + "'}"});
+      const SolvedScene run("free_modes", {std::string("bodies.block.frames={poisson_disk=0.08,seed=") +
+                                           std::to_string(seed) + ",kind='" + kind + "'}"});
       const nlohmann::json f = run.probe("frequency");
       ASSERT_EQ(f.size(), 10u);
       std::printf("%-8s %4d %16.1e %10.4f\n", kind, seed, f[5].get<double>(), f[6].get<double>());
@@ -173,7 +172,7 @@ double enclosed_volume(const std::filesystem::path& file) {
 
 TEST(ScatteredVolume, OfThePointsIsTheBodys) {
   for (const double spacing : {1.0, 0.7}) {
-    const SceneRun run(kScene, {"world.gravity=[0,0,0]", spaced(spacing)});
+    const SolvedScene run(kScene, {"world.gravity=[0,0,0]", spaced(spacing)});
     EXPECT_NEAR(run.number("volume") / 16, 1, 1e-12);
   }
 }
@@ -187,13 +186,14 @@ class ScatteredLiver : public ::testing::Test {
 };
 
 TEST_F(ScatteredLiver, HangsAndMovesRigidlyWithoutEnergy) {
-  const SceneRun hung("scattered_liver");
+  const SolvedScene hung("scattered_liver");
   ASSERT_TRUE(hung.ok());
   EXPECT_EQ(hung.summary()["status"], "converged");
   const nlohmann::json body = hung.summary()["bodies"]["liver"];
   EXPECT_NEAR(body["frames"].get<int>(), 120, 12);
   EXPECT_NEAR(body["points"].get<int>(), 2000, 100);
-  const SceneRun free("scattered_liver", {"constraints=[]", "solver={kind='implicit-euler',time_step=0.01,steps=5}"});
+  const SolvedScene free("scattered_liver",
+                         {"constraints=[]", "solver={kind='implicit-euler',time_step=0.01,steps=5}"});
   const double volume = enclosed_volume(file_) * std::pow(0.031317, 3);
   std::printf(
       "sag %.4f m, %d Newton iterations; energy hung %.2e J, falling freely %.1e J; volume %.12e, surface %.12e\n",
@@ -209,7 +209,7 @@ TEST_F(ScatteredLiver, HangsAndMovesRigidlyWithoutEnergy) {
 TEST(ScatteredMotion, TetheredBodyKeepsItsTotalEnergy) {
   double drift[2] = {0, 0};
   for (int k = 0; k < 2; ++k) {
-    const SceneRun run(
+    const SolvedScene run(
         kScene, {"solver={kind='midpoint',time_step=" + std::to_string(2e-3 / (1 << k)) + ",duration=0.1}", spaced(0.9),
                  "probes={scene={quantity='total_energy'},"
                  "beam={body='beam',quantity='total_energy'},"
@@ -228,8 +228,8 @@ TEST(ScatteredMotion, TetheredBodyKeepsItsTotalEnergy) {
 
 /// The ties of a held region turn with it; what follows strains nothing.
 TEST(ScatteredMotion, LedByOneEnd) {
-  const SceneRun run("led_by_one_end",
-                     {"bodies.beam.frames={poisson_disk=0.2}", "constraints[0].move.rotate.angle='20 degree'"});
+  const SolvedScene run("led_by_one_end",
+                        {"bodies.beam.frames={poisson_disk=0.2}", "constraints[0].move.rotate.angle='20 degree'"});
   const double mu_volume = 10e3 / 2.6 * 0.06, angle = std::acos(-1.0) / 9;
   const Vector u = run.vector("end");
   const double place = std::hypot(1 + u[0] - std::cos(angle) + 0.15 * std::sin(angle),
@@ -242,14 +242,14 @@ TEST(ScatteredMotion, LedByOneEnd) {
 
 TEST(ScatteredReproducible, SameSeedSameNumbers) {
   const Settings first{spaced(1.0), "bodies.beam.frames.seed=1"};
-  const SceneRun one(kScene, first, {"--threads", "1"});
-  EXPECT_EQ(one.difference_to(SceneRun(kScene, first, {"--threads", "1"})), "") << "the same run again";
-  EXPECT_EQ(one.difference_to(SceneRun(kScene, first, {"--threads", "2"})), "") << "two threads";
-  EXPECT_NE(one.difference_to(SceneRun(kScene, {spaced(1.0), "bodies.beam.frames.seed=2"}, {"--threads", "1"})), "");
+  const SolvedScene one(kScene, first, 1);
+  EXPECT_EQ(one.history(), SolvedScene(kScene, first, 1).history()) << "the same run again";
+  EXPECT_EQ(one.history(), SolvedScene(kScene, first, 2).history()) << "two threads";
+  EXPECT_NE(one.history(), SolvedScene(kScene, {spaced(1.0), "bodies.beam.frames.seed=2"}, 1).history());
   const auto sampled = [](const char* seed) {
     return Settings{spaced(1.0), std::string("bodies.beam.points={poisson_disk=0.4,seed=") + seed + "}"};
   };
-  EXPECT_NE(SceneRun(kScene, sampled("7")).difference_to(SceneRun(kScene, sampled("8"))), "")
+  EXPECT_NE(SolvedScene(kScene, sampled("7")).history(), SolvedScene(kScene, sampled("8")).history())
       << "the points have a seed of their own";
 }
 
@@ -277,15 +277,15 @@ TEST(ScatteredFrames, FromAFileAreTheSameAsWrittenOut) {
   }
   const std::string file = (folder.path / "frames.csv").string();
   std::ofstream(file) << csv;
-  const SceneRun written(kScene, {"bodies.beam.frames={positions=" + list + "],rotations=" + turns + "]}"});
-  const SceneRun read(kScene, {"bodies.beam.frames={file='" + file + "'}"});
-  const SceneRun straight(kScene, {"bodies.beam.frames={positions=" + list + "]}"});
+  const SolvedScene written(kScene, {"bodies.beam.frames={positions=" + list + "],rotations=" + turns + "]}"});
+  const SolvedScene read(kScene, {"bodies.beam.frames={file='" + file + "'}"});
+  const SolvedScene straight(kScene, {"bodies.beam.frames={positions=" + list + "]}"});
   ASSERT_TRUE(written.ok() && read.ok());
   print_header();
   tip_error("positions", written);
   tip_error("file", read);
   EXPECT_EQ(written.summary()["probes"].dump(), read.summary()["probes"].dump());
-  EXPECT_EQ(written.difference_to(read), "");
+  EXPECT_EQ(written.history(), read.history());
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_NEAR(straight.vector("tip")[k] / read.vector("tip")[k], 1, 1e-7) << "the rest axes of a frame are free";
 }
@@ -304,12 +304,12 @@ TEST(ScatteredErrors, NameThePlaceAndARemedy) {
       {"bodies.beam.frames={count=10000000}", "bodies.beam.frames.count", "use fewer frames"},
       {"bodies.beam.points={count=100000000}", "bodies.beam.points.count", "use fewer points"}};
   for (const Wrong& w : all) {
-    const ProgramResult said = call("run", kScene, {w.setting});
-    std::printf("%s", said.err.c_str());
-    EXPECT_EQ(said.status, 2) << w.setting;
-    EXPECT_EQ(lines_of(said.err).size(), 1u) << "one error, one line";
-    EXPECT_NE(said.err.find(w.place), std::string::npos) << w.setting;
-    EXPECT_NE(said.err.find(w.remedy), std::string::npos) << w.setting;
+    const SolvedScene said = SolvedScene::of_file(kScene, {w.setting});
+    std::printf("%s\n", said.message().c_str());
+    EXPECT_EQ(said.status(), "refused") << w.setting;
+    EXPECT_EQ(said.message().find('\n'), std::string::npos) << "one error, one line";
+    EXPECT_NE(said.message().find(w.place), std::string::npos) << w.setting;
+    EXPECT_NE(said.message().find(w.remedy), std::string::npos) << w.setting;
   }
 }
 

@@ -1,6 +1,7 @@
 // Sheets: plate theory, solid elements, the 2014 paper's figure 4, organs' walls, matter that thins out.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -68,7 +69,7 @@ nlohmann::json run(const std::string& scene) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path / "case";
   std::ofstream(file.string() + ".toml") << scene;
-  const SceneRun run(file.string(), {}, {"--threads", "1"});
+  const SolvedScene run(file.string(), {}, 1);
   return run.summary();
 }
 
@@ -78,7 +79,7 @@ nlohmann::json value(const nlohmann::json& summary, const std::string& probe) {
 }
 
 Vector vector_of(const nlohmann::json& summary, const std::string& probe) {
-  return SceneRun::as_vector(value(summary, probe));
+  return SolvedScene::as_vector(value(summary, probe));
 }
 
 /// Force over the closed form of plane stress, E b t s (s² − 1)/2 at the stretch s = 1.01.
@@ -157,17 +158,17 @@ TEST(Sheet, StripAgainstPlateTheory) {
 }
 
 TEST(Sheet, TwoThicknessesHaveTheirVolume) {
-  const SceneRun halves("sheet_two_thicknesses");
+  const SolvedScene halves("sheet_two_thicknesses");
   EXPECT_NEAR(halves.summary()["bodies"]["strip"]["volume"].get<double>(), 0.003, 1e-12);
 }
 
 TEST(Sheet, ThePapersSheet) {
-  const SceneRun coarse("paper_sheet"),
+  const SolvedScene coarse("paper_sheet"),
       fine("paper_sheet", {"bodies.sheet.frames.grid=[49,25]", "bodies.sheet.points={per_cell=[2,2]}"}),
       own("paper_sheet",
           {"bodies.sheet.points={per_cell=[7,2],through=1}", "bodies.sheet.weights={blend='full',drilling=0}",
            "loads=[{body='sheet',where={box={min=[6,-4,-1],max=[6,4,1]}},force_per_node=[0,0,-42.857142857142854]}]"});
-  const auto sag = [](const SceneRun& run, const char* name) {
+  const auto sag = [](const SolvedScene& run, const char* name) {
     const double middle = -run.vector("middle")[2], end = -run.vectors("ends")[0][2];
     std::printf("%-18s middle %.4f m, ends %.4f m, %d points, %d Newton iterations\n", name, middle, end,
                 run.summary()["bodies"]["sheet"]["points"].get<int>(), run.newton_iterations());
@@ -231,7 +232,7 @@ TEST(Sheet, AFreeSheetHasSixZeroModes) {
       {"7 x 5, affine", {"bodies.sheet.frames={grid=[7,5],kind='affine'}"}},
       {"scattered", {"bodies.sheet.frames={poisson_disk=0.05}"}}};
   for (const auto& [name, settings] : flat)
-    expect_six_zeros(name, SceneRun("sheet_modes", settings).probe("frequency"));
+    expect_six_zeros(name, SolvedScene("sheet_modes", settings).probe("frequency"));
   const TemporaryFolder folder;
   // A tube: closed around, open at both ends, its section an ellipse that narrows.
   write_patch(folder.path / "sheet.obj", 48, 24, true, [](double u, double v) {
@@ -241,7 +242,7 @@ TEST(Sheet, AFreeSheetHasSixZeroModes) {
   std::ofstream(folder.path / "tube.toml")
       << file_sheet("0.005", "frames = { count = 120 }\npoints = { count = 1000 }\n",
                     "[solver]\nkind = \"modes\"\ncount = 8\n[probes.frequency]\nquantity = \"frequency\"\n");
-  expect_six_zeros("curved, scattered", SceneRun((folder.path / "tube").string()).probe("frequency"));
+  expect_six_zeros("curved, scattered", SolvedScene((folder.path / "tube").string()).probe("frequency"));
 }
 
 /// A quarter of a circle of radius 1 m, clamped at its top, a force F on its end: by Castigliano, with k = F R³/(E I),
@@ -264,7 +265,7 @@ TEST(Sheet, AQuarterCylinderBendsByTheory) {
             std::string(vertical ? "[0, 0, 1e-6]" : "[1e-6, 0, 0]") +
             "\n[solver]\nkind = \"static\"\n[probes.end]\nbody = \"sheet\"\nat = [1, 0, 0]\nquantity = "
             "\"displacement\"\n");
-    const SceneRun run((folder.path / "arc").string());
+    const SolvedScene run((folder.path / "arc").string());
     const Vector u = run.vector("end");
     const double x = u[0] / (k * (vertical ? 0.5 : pi / 4)), z = u[2] / (k * (vertical ? 3 * pi / 4 - 2 : 0.5));
     std::printf("%-12s %.4f %.4f\n", vertical ? "vertical" : "horizontal", x, z);
@@ -283,11 +284,9 @@ TEST(Sheet, AThicknessAboveTheCurvatureRadiusIsRefused) {
       << file_sheet("0.12", "frames = { count = 40 }\n",
                     "[world]\ngravity = [0, 0, -1]\n[solver]\nkind = \"implicit-euler\"\n"
                     "time_step = 0.01\nsteps = 1\n");
-  ProgramOptions how;
-  how.directory = folder.path;
-  const ProgramResult result = run_program({fascia::test::program(), "run", "thick.toml"}, how);
-  EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.err.find("larger than its curvature radius"), std::string::npos) << result.err;
+  const SolvedScene result = SolvedScene::of_file((folder.path / "thick").string());
+  EXPECT_EQ(result.status(), "refused");
+  EXPECT_NE(result.message().find("larger than its curvature radius"), std::string::npos) << result.message();
 }
 
 /// The liver's surface, or a skip where it is not.
@@ -301,7 +300,7 @@ bool liver_is_here() {
 
 TEST(Sheet, LiverWall) {
   if (!liver_is_here()) GTEST_SKIP() << "the surface liver_sofa_surface.obj is not part of the project and is not here";
-  const SceneRun run("sheet_liver", liver_settings());
+  const SolvedScene run("sheet_liver", liver_settings());
   const nlohmann::json& liver = run.summary()["bodies"]["liver"];
   const double weight = liver["mass"].get<double>() * 9.81;
   std::printf("liver wall: %d frames, %d points, sag %.4f m, %d Newton iterations, support %.6f N, weight %.6f N\n",
@@ -317,14 +316,14 @@ TEST(Sheet, LiverWallMovesWithoutStrain) {
   settings.insert(settings.end(), {"world.gravity=[0,0,0]",
                                    "constraints=[{body='liver',where='all',move={translate=[0.1,"
                                    "-0.05,0.2],rotate={axis=[1,2,3],angle=2}}}]"});
-  const SceneRun run("sheet_liver", settings);
+  const SolvedScene run("sheet_liver", settings);
   const double volume = run.summary()["bodies"]["liver"]["volume"].get<double>(), energy = run.number("energy");
   std::printf("liver wall turned by 2 rad: energy / (E V) = %.1e\n", energy / (20e3 * volume));
   EXPECT_LT(energy, 1e-12 * 20e3 * volume);
 }
 
 TEST(Sheet, AVolumeThinsOut) {
-  const SceneRun run("thinning_volume");
+  const SolvedScene run("thinning_volume");
   const auto along = run.vectors("along");
   ASSERT_EQ(along.size(), 4u);
   const double sheet = (along[3][0] - along[2][0]) / 0.02, bar = 0.02 / (10e3 * 0.01 * 0.002);
@@ -346,7 +345,7 @@ TEST(Sheet, AFreeSheetFallsWithoutStrain) {
         "[world]\ngravity = [0, 0, -9.81]\n[probes.energy]\nbody = \"strip\"\nquantity = \"energy\"\n[probes.corner]\n"
         "body = \"strip\"\nat = [1, 0.1, 0]\nquantity = \"displacement\"\n",
         "kind = \"implicit-euler\"\ntime_step = 0.01\nsteps = 20"));
-    const double energy = SceneRun::as_number(value(j, "energy")) / (kYoung * kWidth * kThickness);
+    const double energy = SolvedScene::as_number(value(j, "energy")) / (kYoung * kWidth * kThickness);
     const double fallen = -9.81 * 1e-4 * 20 * 21 / 2;  // −g h² n (n + 1)/2 of implicit Euler
     std::printf("fall, %s: energy / (E V) %.1e, place %.1e\n", frames, energy, vector_of(j, "corner")[2] / fallen - 1);
     EXPECT_LT(energy, 1e-20);

@@ -1,9 +1,11 @@
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <numbers>
 
 /// Cases in which a plausible solver returns a wrong number: each is held against a closed form or against itself.
@@ -48,7 +50,7 @@ nlohmann::json run(const std::string& text) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path / "case";
   std::ofstream(file.string() + ".toml") << text;
-  const SceneRun run(file.string());
+  const SolvedScene run(file.string());
   return run.summary();
 }
 

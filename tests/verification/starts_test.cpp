@@ -2,11 +2,11 @@
 // at another equilibrium, or with a reason; never with a number that is none.
 #include "app/extremes/cells.hpp"
 #include "app/reader/parse.hpp"
-#include "app/results/result_warnings.hpp"
 #include "assembly/build/build_simulation.hpp"
 #include "assembly/simulation/simulation.hpp"
 #include "assembly/simulation/solver_settings.hpp"
 #include "core/base/errors.hpp"
+#include "fascia/run/result_warnings.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/solve_where.hpp"
 
@@ -58,7 +58,7 @@ Solved ended(Simulation& s, const State& from, Where where, double tolerance) {
   settings.max_iterations = 15;
   Solved run = solve(s, where, settings);
   Warnings warnings;
-  app::add_result_warnings(s, run.state, run.report, warnings);
+  add_result_warnings(s, run.state, run.report, warnings);
   return run;
 }
 

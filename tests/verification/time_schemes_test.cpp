@@ -1,5 +1,5 @@
 // Time schemes through scenes: order, what each does exactly, damping, statics, moving supports, threads.
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,27 +38,18 @@ Settings steps_of(const std::string& kind, double h, int steps, const char* tole
 }
 
 /// A run on one thread whose rows of probes.csv are found by the names in its header.
-class TimedRun : public SceneRun {
+class TimedRun : public SolvedScene {
  public:
-  TimedRun(const std::string& scene, const Settings& settings) : SceneRun(scene, settings, {"--threads", "1"}) {
-    const std::string text = bytes("probes.csv"), head = text.substr(0, text.find('\n')) + ",";
-    for (std::size_t begin = 0; begin < head.size(); begin = head.find(',', begin) + 1)
-      names_.push_back(head.substr(begin, head.find(',', begin) - begin));
-    rows_ = history();
-  }
-  std::size_t size() const { return rows_.size(); }
+  TimedRun(const std::string& scene, const Settings& settings) : SolvedScene(scene, settings, 1) {}
+  std::size_t size() const { return history().size(); }
   double at(std::size_t row, const std::string& name) const {
-    const auto found = std::find(names_.begin(), names_.end(), name);
-    EXPECT_NE(found, names_.end()) << name;
-    return found == names_.end() ? NAN : rows_.at(row).at(static_cast<std::size_t>(found - names_.begin()));
+    const auto found = std::find(columns().begin(), columns().end(), name);
+    EXPECT_NE(found, columns().end()) << name;
+    return found == columns().end() ? NAN : history().at(row).at(static_cast<std::size_t>(found - columns().begin()));
   }
   Vector vector_at(std::size_t row, const std::string& name) const {
     return {at(row, name + ".x"), at(row, name + ".y"), at(row, name + ".z")};
   }
-
- private:
-  std::vector<std::string> names_;
-  std::vector<std::vector<double>> rows_;
 };
 
 /// First order of implicit Euler, second of the others: differences of halved steps fall by 2 or 4. A body that tumbles
@@ -247,8 +238,8 @@ TEST(TimeSchemes, DampedOscillatorAgainstTheClosedForm) {
 /// with omega of kind = "modes" on the same mesh.
 TEST(TimeSchemes, FirstModeDecaysAsRayleighDampingSays) {
   const Settings small{"bodies.beam.domain.box.cells=[6,1,1]", "world.gravity=[0,0,-1e-3]"};
-  const SceneRun modes("explicit_cantilever", with(small, {"solver={kind='modes',count=2}", "output={}",
-                                                           "probes={first={quantity='frequency'}}"}));
+  const SolvedScene modes("explicit_cantilever", with(small, {"solver={kind='modes',count=2}", "output={}",
+                                                              "probes={first={quantity='frequency'}}"}));
   ASSERT_TRUE(modes.ok());
   const double omega = 2 * std::numbers::pi * modes.probe("first")[0].get<double>();
   const double sag =
@@ -345,9 +336,9 @@ TEST(TimeSchemes, ThreadsDoNotMatter) {
           with(steps_of(kind, is_explicit(kind) ? 1e-4 : 1e-2, 3),
                {"bodies.beam.model='" + model + "'", "bodies.beam.domain.box.cells=[16,3,3]", "output={every_steps=1}",
                 "bodies.beam.material.damping={mass=1,stiffness=1e-4}"});
-      const SceneRun one("explicit_cantilever", settings, {"--threads", "1"});
-      const SceneRun two("explicit_cantilever", settings, {"--threads", "2"});
-      EXPECT_EQ(one.bytes("probes.csv"), two.bytes("probes.csv")) << model << kind;
+      const SolvedScene one("explicit_cantilever", settings, 1);
+      const SolvedScene two("explicit_cantilever", settings, 2);
+      EXPECT_EQ(one.history(), two.history()) << model << kind;
       EXPECT_EQ(one.summary()["probes"], two.summary()["probes"]) << model << kind;
       EXPECT_EQ(two.summary().value("threads", 0), 2);
     }

@@ -1,6 +1,7 @@
 // Volume of finite elements: rotation and swelling, nearly incompressible material.
 #include "tests/support/paths.hpp"
-#include "tests/support/scene_run.hpp"
+#include "tests/support/solved_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +14,10 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-SceneRun run(const std::string& scene, const Settings& settings) {
-  return SceneRun(scene, settings, {"--threads", "1"});
-}
+SolvedScene run(const std::string& scene, const Settings& settings) { return SolvedScene(scene, settings, 1); }
 
 /// A scene that is written here.
-SceneRun run_text(const std::string& scene, const Settings& settings = {}) {
+SolvedScene run_text(const std::string& scene, const Settings& settings = {}) {
   const TemporaryFolder folder;
   const std::string file = (folder.path / "case").string();
   std::ofstream(file + ".toml") << scene;
@@ -35,7 +34,7 @@ double percent(double value, double reference) { return 100 * (value / reference
 
 /// Change of volume [%] where the top stands 1, 2 and 3 diameters aside, between the states of a growing force.
 std::array<double, 3> swelling(const Settings& settings) {
-  const SceneRun cylinder = run("pushed_cylinder", settings);
+  const SolvedScene cylinder = run("pushed_cylinder", settings);
   const double rest = cylinder.summary()["bodies"]["cylinder"]["volume"].get<double>();
   std::array<double, 3> result{NAN, NAN, NAN};
   double aside = 0, change = 0;  // of the state before
@@ -115,10 +114,10 @@ TEST(ElementRotation, CostsNothingUnlessLinear) {
   constexpr double kLambda = 1e4 * 0.3 / (1.3 * 0.4), kMu = 1e4 / 2.6;
   std::printf("elements                       energy / E V\n");
   for (const Case& c : cases) {
-    const SceneRun turned = run_text("[bodies.block]\n" + std::string(c.body) +
-                                     "\ndomain = { box = { min = [1, 0, 0], max = [3, 1, 1], cells = [2, 1, 1] } }\n"
-                                     "density = 1000\nmaterial = { " +
-                                     c.law + "young = 1e4, poisson = 0.3 }\n" + R"(
+    const SolvedScene turned = run_text("[bodies.block]\n" + std::string(c.body) +
+                                        "\ndomain = { box = { min = [1, 0, 0], max = [3, 1, 1], cells = [2, 1, 1] } }\n"
+                                        "density = 1000\nmaterial = { " +
+                                        c.law + "young = 1e4, poisson = 0.3 }\n" + R"(
 [[constraints]]
 body = "block"
 where = "all"
@@ -196,7 +195,7 @@ TEST(VolumetricLocking, Cantilever) {
   const std::array<double, 5> fine{-0.120910, -0.118698, -0.117339, -0.116661, -0.116526};  // 24 x 6 x 6 cells
   const auto error = locking_table(fine, [](const Element& e, double nu) {
     const std::string cells = e.order == 1 ? "[16,4,4]" : "[8,2,2]";
-    const SceneRun block =
+    const SolvedScene block =
         run_text(with_elements("nearly_incompressible_block", "bodies.block", e),
                  {"bodies.block.domain.box.cells=" + cells, "materials.tissue.poisson=" + number(nu)});
     return block.vector("tip")[2];
@@ -216,7 +215,7 @@ TEST(VolumetricLocking, CookMembrane) {
   const std::array<double, 5> fine{6.27613, 5.75116, 5.54272, 5.48032, 5.46204};  // 32 x 32 cells
   const auto error = locking_table(fine, [](const Element& e, double nu) {
     const std::string cells = e.order == 1 ? "[16,16,1]" : "[8,8,1]";
-    const SceneRun cook =
+    const SolvedScene cook =
         run_text(with_elements("cook_neo_hookean", "bodies.panel", e),
                  {"bodies.panel.domain.block.cells=" + cells, "materials.panel.poisson=" + number(nu)});
     return cook.vector("top")[1];
@@ -270,7 +269,7 @@ TEST(VolumetricLocking, AveragedCookConverges) {
 double volume_change(const nlohmann::json& rows) {
   std::array<Vector, 3> C{};
   for (std::size_t i = 0; i < 3; ++i) {
-    C[i] = SceneRun::as_vector(rows[i]);
+    C[i] = SolvedScene::as_vector(rows[i]);
     for (double& v : C[i]) v *= 2;
     C[i][i] += 1;
   }
@@ -300,7 +299,7 @@ TEST(VolumetricLocking, VolumeAtPoints) {
   std::printf("locking   mean J - 1   rms J - 1   largest |J - 1|   of the body\n");
   std::array<double, 2> rms{};
   for (std::size_t l = 0; l < 2; ++l) {
-    const SceneRun block =
+    const SolvedScene block =
         run_text(with_elements("nearly_incompressible_block", "bodies.block", kElements[l]) +
                      "[probes.strain]\nbody = \"block\"\nquantity = \"strain\"\nat = " + places + "]\n",
                  {"bodies.block.domain.box.cells=[16,4,4]"});
@@ -324,7 +323,7 @@ TEST(VolumetricLocking, VolumeAtPoints) {
 // A confined column under pressure, soft below and stiff above: each half shortens as if it were alone.
 TEST(VolumetricLocking, MaterialsThatMeet) {
   for (const char* locking : {"none", "f-bar"}) {
-    const SceneRun column = run_text(std::string("[bodies.column]\nlocking = \"") + locking + R"("
+    const SolvedScene column = run_text(std::string("[bodies.column]\nlocking = \"") + locking + R"("
 model = "tetrahedra"
 domain = { box = { min = [0, 0, 0], max = [0.1, 0.1, 0.4], cells = [2, 2, 8] } }
 density = 1000
@@ -370,7 +369,7 @@ TEST(FreeModes, ExactlySixZeros) {
   std::printf("tetrahedra               nu   six lowest, seventh [Hz]\n");
   for (const double nu : {0.3, 0.499})
     for (const Case& c : cases) {
-      const SceneRun block = run_text(
+      const SolvedScene block = run_text(
           "[bodies.block]\nmodel = \"tetrahedra\"\ndomain = { box = { min = [0, 0, 0], max = [0.3, 0.2, 0.2], cells "
           "= " +
           std::string(c.cells) + " } }\n" + c.keys + "\ndensity = 1000\nmaterial = { young = 1e4, poisson = " +

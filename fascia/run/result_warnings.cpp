@@ -1,4 +1,4 @@
-#include "app/results/result_warnings.hpp"
+#include "fascia/run/result_warnings.hpp"
 
 #include "assembly/simulation/matter.hpp"
 
@@ -10,11 +10,9 @@
 #include <array>
 #include <cmath>
 
-namespace fascia::app {
+namespace fascia {
 
 namespace {
-
-/// Determinant of the mean of two rotations a right angle apart: below, a blend no longer follows them.
 
 /// A triangle with less of its area collapses: strains of that size are no physical state of this law.
 constexpr double kCollapsed = 0.1;
@@ -261,4 +259,4 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   }
 }
 
-}  // namespace fascia::app
+}  // namespace fascia

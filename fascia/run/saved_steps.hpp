@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-namespace fascia::app {
+namespace fascia {
 
 /// Says which steps of a run are saved: of dynamics every so many seconds or steps, 25 a simulated second otherwise,
 /// and the last.
@@ -52,4 +52,4 @@ class StandingState final : public ReachedStep {
   const State& state_;
 };
 
-}  // namespace fascia::app
+}  // namespace fascia

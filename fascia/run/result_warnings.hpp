@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fascia::app {
+namespace fascia {
 
 /// Looks for load steps in which the elastic energy falls by half although every load and motion grew: the body found
 /// another equilibrium, which may lack a turn that it was given.
@@ -26,4 +26,4 @@ class SnapWatch {
 /// What a user must know of a result that converged; a run with steps above the tolerance counts as not converged.
 void add_result_warnings(const Simulation& simulation, const State& end, RunReport& run, Warnings& warnings);
 
-}  // namespace fascia::app
+}  // namespace fascia

@@ -1,8 +1,5 @@
-#include "app/run/gpu_run.hpp"
-#include "app/run/messages.hpp"
+#include "fascia/run/gpu_run.hpp"
 
-#include "app/results/tell_warnings.hpp"
-#include "app/run/run_scene.hpp"
 #include "assembly/simulation/solver_settings.hpp"
 #include "core/base/errors.hpp"
 #include "fascia/stepper.hpp"
@@ -12,7 +9,7 @@
 
 #include <algorithm>
 
-namespace fascia::app {
+namespace fascia {
 
 namespace {
 
@@ -25,13 +22,8 @@ RunReport broken_off(RunReport seen, const std::string& why) {
   return seen;
 }
 
-void warn(const Simulation& s, const std::string& text, Warnings& warnings) {
-  warnings.add("backend", text);
-  tell(warnings, s.scene.path);
-}
-
 /// GPUs that share the run. @throws BackendError  fewer than were asked for
-std::vector<int> devices_of(const Simulation& s, Warnings& warnings) {
+std::vector<int> devices_of(const Simulation& s, const BackendWarning& warn) {
   const Solver& solver = s.scene.solver;
   if (solver.gpus == 1) return {};
   std::string reason;
@@ -39,7 +31,7 @@ std::vector<int> devices_of(const Simulation& s, Warnings& warnings) {
   const int found = static_cast<int>(devices.size());
   if (found == solver.gpus) return devices;
   if (solver.backend != "auto") throw BackendError(fmt::format("gpus = {}, but {}", solver.gpus, reason));
-  warn(s, fmt::format("gpus = {}, but {}; {} compute{}", solver.gpus, reason, found, found == 1 ? "s" : ""), warnings);
+  warn(fmt::format("gpus = {}, but {}; {} compute{}", solver.gpus, reason, found, found == 1 ? "s" : ""));
   return devices;
 }
 
@@ -57,12 +49,13 @@ RunReport run_kind(const Simulation& s, State& state, const FactorFunction& fact
 }  // namespace
 
 std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const FactorFunction& factors,
-                                 const SolverSettings& asked, Warnings& warnings, const gpu::DeviceObserver& observe,
+                                 const SolverSettings& asked, const BackendWarning& warn,
+                                 const gpu::DeviceObserver& observe,
                                  const std::function<bool(const StepInfo&)>& observed) {
   const Solver& solver = s.scene.solver;
   const bool may_choose = solver.backend == "auto";
   SolverSettings settings = asked;
-  settings.devices = devices_of(s, warnings);
+  settings.devices = devices_of(s, warn);
   RunReport seen;
   const gpu::DeviceObserver watch = [&](const StepInfo& step, ReachedStep& reached) {
     seen.steps = step.step;
@@ -79,7 +72,7 @@ std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const Factor
       return run();
     } catch (const gpu::NotShared& e) {
       if (!may_choose) throw BackendError(fmt::format("{}; use gpus = 1", e.what()));
-      warn(s, fmt::format("{}; one computes", e.what()), warnings);
+      warn(fmt::format("{}; one computes", e.what()));
       settings.devices.clear();
       return run();
     }
@@ -88,18 +81,16 @@ std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const Factor
   } catch (const gpu::DeviceMemoryError& e) {
     if (seen.steps > 0) return GpuRun{broken_off(seen, e.what()), gpus()};
     if (!may_choose) throw BackendError(e.what());
-    warn(s,
-         fmt::format("{}; the processor goes on{}", e.what(),
-                     solver.precision == "double" ? "" : ", in double precision"),
-         warnings);
+    warn(fmt::format("{}; the processor goes on{}", e.what(),
+                     solver.precision == "double" ? "" : ", in double precision"));
     return std::nullopt;
   } catch (const InputError& e) {  // more of something than the GPU's code can number
     if (seen.steps > 0 || !may_choose) throw;
-    warn(s, fmt::format("{}; the processor goes on", e.what()), warnings);
+    warn(fmt::format("{}; the processor goes on", e.what()));
     return std::nullopt;
   } catch (const gpu::NoDevice& e) {
     throw BackendError(e.what());
   }
 }
 
-}  // namespace fascia::app
+}  // namespace fascia

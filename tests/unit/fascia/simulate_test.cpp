@@ -1,0 +1,165 @@
+// Whole runs by one call: they are the program's, of every kind of solution, and end as they are told.
+#include "fascia/simulate.hpp"
+
+#include "app/reader/parse.hpp"
+#include "fascia/scene_file.hpp"
+#include "fascia/stepper.hpp"
+#include "tests/support/paths.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace fascia::simulate_test {
+namespace {
+
+Scene scene_of(const std::string& name, const std::vector<std::string>& settings = {}) {
+  return read_scene_file(test::source_dir() / "scenes" / (name + ".toml"), settings);
+}
+
+TEST(Simulate, AStepperTakesTheSameSteps) {
+  const std::vector<std::string> settings{"output={every_steps=1}", "solver.steps=5", "solver.backend='cpu'"};
+  Stepper stepper(scene_of("settling_beam", settings));
+  const double dt = scene_of("settling_beam", settings).solver.time_step;
+  int seen = 0;
+  const RunOutcome run = simulate(scene_of("settling_beam", settings), [&](const RunState& state) {
+    if (state.time() == 0) return true;
+    EXPECT_TRUE(stepper.step(dt).converged);
+    const Rows a = state.displacements(), b = stepper.displacements();
+    EXPECT_EQ(std::vector(a.data, a.data + 3 * a.rows), std::vector(b.data, b.data + 3 * b.rows));
+    EXPECT_EQ(state.rest_positions().rows, stepper.node_count());
+    EXPECT_EQ(state.velocities().columns, 3);
+    ++seen;
+    return true;
+  });
+  EXPECT_EQ(run.status, RunStatus::converged) << run.message;
+  EXPECT_EQ(seen, 5);
+  EXPECT_EQ(run.steps, 5);
+  EXPECT_EQ(run.backend, Backend::cpu);
+}
+
+TEST(Simulate, FollowsPathsPastLimitPoints) {
+  std::vector<double> factors;
+  const RunOutcome run = simulate(scene_of("snap_through"), [&](const RunState& state) {
+    factors.push_back(state.time());
+    return true;
+  });
+  EXPECT_EQ(run.status, RunStatus::converged) << run.message;
+  ASSERT_FALSE(factors.empty());
+  EXPECT_EQ(factors.back(), 1.0);
+  EXPECT_FALSE(std::is_sorted(factors.begin(), factors.end())) << "it has turned";
+  int passed = 0;
+  for (const std::string& warning : run.warnings) passed += warning.find("limit point passed") == 0 ? 1 : 0;
+  EXPECT_EQ(passed, 2);
+}
+
+/// A clamped bar vibrates along its axis with f = (2 k − 1) c / (4 L).
+TEST(Simulate, FindsModes) {
+  const Scene scene = app::parse_scene_text(R"(
+[bodies.bar]
+model = "hexahedra"
+order = 2
+domain = { box = { min = [0, 0, 0], max = [1, 0.1, 0.1], cells = [10, 1, 1] } }
+density = 1000
+material = { young = 1e6, poisson = 0 }
+[[constraints]]
+body = "bar"
+where = "all"
+fix = ["y", "z"]
+[[constraints]]
+body = "bar"
+where = { box = { min = [-1, -1, -1], max = [1e-6, 1, 1] } }
+fix = "all"
+[solver]
+kind = "modes"
+modes = 2
+[probes.f]
+quantity = "frequency"
+)",
+                                            "bar.toml", {});
+  std::vector<double> shown;
+  const RunOutcome run = simulate(scene, [&](const RunState& state) {
+    EXPECT_EQ(state.time(), static_cast<double>(shown.size() + 1));
+    shown.push_back(state.probe("f").at(0));
+    return true;
+  });
+  EXPECT_EQ(run.status, RunStatus::converged) << run.message;
+  ASSERT_EQ(run.frequencies.size(), 2u);
+  EXPECT_EQ(shown, run.frequencies);
+  const double c = std::sqrt(1e6 / 1000);
+  EXPECT_NEAR(run.frequencies[0], c / 4, 1e-5 * c);
+  EXPECT_NEAR(run.frequencies[1], 3 * c / 4, 1e-3 * c);
+}
+
+TEST(Simulate, TakesExplicitSteps) {
+  double last = -1;
+  const RunOutcome run = simulate(scene_of("explicit_cantilever", {"solver.time_step='auto'"}), [&](const RunState& s) {
+    EXPECT_GT(s.time(), last);
+    last = s.time();
+    return true;
+  });
+  EXPECT_EQ(run.status, RunStatus::converged) << run.message;
+  EXPECT_EQ(last, run.time);
+  EXPECT_GT(run.steps, 50);
+}
+
+TEST(Simulate, EndsWhereItIsTold) {
+  int seen = 0;
+  const RunOutcome run = simulate(scene_of("settling_beam", {"output={every_steps=1}", "solver.backend='cpu'"}),
+                                  [&](const RunState&) { return ++seen < 3; });
+  EXPECT_EQ(run.status, RunStatus::interrupted);
+  EXPECT_EQ(seen, 3);
+}
+
+/// A cube pressed flat: J = 0 in the last step, where stresses have no value.
+TEST(Simulate, NoProbeIsANumberThatIsNone) {
+  const Scene scene = app::parse_scene_text(R"(
+[bodies.c]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
+density = 1000
+material = { young = 1e4, poisson = 0.0 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
+fix = "all"
+[[constraints]]
+body = "c"
+where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
+move = { translate = [-1, 0, 0] }
+over = "1 s"
+[solver]
+kind = "implicit-euler"
+time_step = "40 ms"
+duration = "1 s"
+[probes.s]
+body = "c"
+at = [0.5, 0.5, 0.5]
+quantity = "stress"
+)",
+                                            "cube.toml", {});
+  double last = -1;
+  const RunOutcome run = simulate(scene, [&](const RunState& state) {
+    for (const double value : state.probe("s")) EXPECT_TRUE(std::isfinite(value));
+    last = state.time();
+    return true;
+  });
+  EXPECT_EQ(run.status, RunStatus::diverged);
+  EXPECT_NE(run.message.find("not finite"), std::string::npos) << run.message;
+  EXPECT_GT(last, 0.9);
+}
+
+TEST(Simulate, MistakesAreSentences) {
+  EXPECT_THROW(simulate(scene_of("settling_beam"), [](const RunState& s) { return !s.probe("nothing").empty(); }),
+               InputError);
+  EXPECT_THROW(simulate(Scene{}), SceneError);
+  Scene scene = scene_of("settling_beam");
+  scene.bodies.at(0).density = -1;
+  EXPECT_THROW(simulate(scene), SceneError);
+}
+
+}  // namespace
+}  // namespace fascia::simulate_test
