@@ -5,7 +5,7 @@
 
 namespace fascia {
 
-/// A view of numbers in rows, whose memory belongs to who gave it.
+/// A view of numbers in rows, whose memory belongs to whoever gave it.
 struct Rows {
   const double* data = nullptr;
   int rows = 0, columns = 0;

@@ -1,6 +1,7 @@
 #include "fascia/simulate.hpp"
 
 #include "assembly/build/build_simulation.hpp"
+#include "assembly/specification/check.hpp"
 #include "core/base/index.hpp"
 #include "fascia/choose_backend.hpp"
 #include "fascia/run/run_simulation.hpp"
@@ -16,14 +17,16 @@ Rows rows_of(const std::vector<Vec3d>& values) {
 }
 
 /// Hands the states of a run to a function.
-class Looking final : public RunListener {
+}  // namespace
+
+class RunStates final : public RunListener {
  public:
-  Looking(const Simulation& simulation, const std::function<bool(const RunState&)>& look)
+  RunStates(const Simulation& simulation, const std::function<bool(const RunState&)>& look)
       : simulation_(simulation), look_(look) {}
 
   bool stops() override { return stops_; }
-  void show(double time, const ProbedState& at) override {
-    if (look_ && !look_({time, simulation_, at})) stops_ = true;
+  void show(double time, const ProbedState& at, const ProbeValues& values) override {
+    if (look_ && !look_(RunState(time, simulation_, at, values))) stops_ = true;
   }
 
  private:
@@ -32,10 +35,13 @@ class Looking final : public RunListener {
   bool stops_ = false;
 };
 
+namespace {
+
 RunOutcome outcome_of(const Simulation& s, RunEnd end) {
   RunReport& run = end.report;
   RunOutcome out;
   out.status = run.status;
+  out.done = end.done();
   out.message = std::move(run.message);
   out.time = run.time;
   out.seconds = end.solve_seconds;
@@ -58,19 +64,19 @@ RunOutcome outcome_of(const Simulation& s, RunEnd end) {
 Rows RunState::rest_positions() const { return rows_of(simulation_.model.rest_position); }
 Rows RunState::displacements() const { return rows_of(at_.state->u); }
 Rows RunState::velocities() const { return rows_of(at_.state->v); }
-std::vector<double> RunState::probe(std::string_view name) const {
-  return probe_value(simulation_, probe_index(simulation_, name), at_);
-}
+std::vector<double> RunState::probe(std::string_view name) const { return values_[probe_index(simulation_, name)]; }
 
 RunOutcome simulate(Scene scene, const std::function<bool(const RunState&)>& look) {
+  name_places(scene);
+  check_run(scene);
   Simulation s = build_checked(std::move(scene));
   make_ready(s);
   try {
     const Backend backend = choose_backend(s);
     if (const std::string lost = not_as_asked(s, backend); !lost.empty()) s.warnings.add("backend", lost);
     ThreadPool pool(s.scene.solver.threads);
-    Looking looking(s, look);
-    return outcome_of(s, run_simulation(s, backend, pool, looking));
+    RunStates states(s, look);
+    return outcome_of(s, run_simulation(s, backend, pool, states));
   } catch (const std::exception& e) {
     if (is_of_device(e)) throw BackendError(e.what());
     throw;

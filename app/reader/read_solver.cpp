@@ -1,5 +1,6 @@
 #include "app/reader/readers.hpp"
 #include "app/scene/solver_words.hpp"
+#include "assembly/specification/check.hpp"
 
 #include <fmt/format.h>
 
@@ -22,10 +23,9 @@ void read_linear(const TableReader& linear, Solver& solver) {
   solver.linear_tolerance = linear.number("tolerance").value_or(solver.linear_tolerance);
 }
 
-/// Steps of a duration, the last one cut; what is left below a millionth of a step lengthens the last one.
 int steps_of(const TableReader& table, double duration, double time_step) {
-  const double steps = std::ceil(duration / time_step - 1e-6);
-  if (steps <= 1e9) return std::max(1, static_cast<int>(steps));
+  const double steps = step_count(duration, time_step);
+  if (steps <= 1e9) return static_cast<int>(steps);
   table.error("duration", fmt::format("takes {:.3g} steps of {} s; must take at most 1e9", steps, time_step));
   return 1;
 }

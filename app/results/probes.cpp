@@ -5,6 +5,7 @@
 namespace fascia::app {
 
 nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values) {
+  if (values.empty()) return nullptr;  // no state was shown
   const ProbeShape shape = probe_shape(probe.probe->quantity);
   const std::size_t size = shape == ProbeShape::scalar ? 1 : shape == ProbeShape::vector ? 3 : 9;
   const auto one = [&](std::size_t i) -> nlohmann::json {

@@ -8,7 +8,7 @@
 
 namespace fascia::app {
 
-/// Values of a probe as they nest: a number, a vector, a matrix, a list of these.
+/// Values of a probe as they nest: a number, a vector, a matrix, a list of these; null where there are none.
 nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values);
 
 }  // namespace fascia::app

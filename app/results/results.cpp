@@ -115,12 +115,12 @@ void ResultFiles::open() {
   csv_.emplace(directory_ / "probes.csv", head);
 }
 
-void ResultFiles::add_probes(double time, const ProbedState& snap) {
+void ResultFiles::add_probes(double time, const ProbeValues& values, double time_step) {
   std::string row = fmt::format("{}", time);
-  last_ = probe_values(simulation_, snap);
-  for (const std::vector<double>& values : last_)
-    for (const double value : values) row += fmt::format(",{:.17g}", value);
-  if (tells_time_step()) row += fmt::format(",{:.17g}", snap.time_step);
+  last_ = values;
+  for (const std::vector<double>& of_probe : last_)
+    for (const double value : of_probe) row += fmt::format(",{:.17g}", value);
+  if (tells_time_step()) row += fmt::format(",{:.17g}", time_step);
   csv_->append(row + "\n");
 }
 

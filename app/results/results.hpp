@@ -30,7 +30,8 @@ class ResultFiles {
   /// Begins probes.csv. @throws FileError
   void open();
   /// A row of probes.csv. @param time  load factor in statics, number of the mode in modes
-  void add_probes(double time, const ProbedState& at);
+  /// @param time_step  that ended there, of steps that follow the state [s]
+  void add_probes(double time, const ProbeValues& values, double time_step);
   /// The .vtu files of a state. @param time  in the .pvd, where times must not decrease: of a path its step
   /// @throws FileError, InputError
   void add_state(double time, const State& state);
@@ -81,10 +82,9 @@ nlohmann::ordered_json running_summary(const Simulation& s, const nlohmann::orde
 const char* status_name(RunStatus status);
 
 /// summary.json of a run that ended, with its couplings and the fluids in bodies.
-/// @param warnings  all: of the scene and of the run
 /// @param probe_values  of modes, frequencies are lists
 nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const RunTimes& times, int threads,
-                               const Warnings& warnings, const std::vector<nlohmann::json>& probe_values,
+                               const std::vector<nlohmann::json>& probe_values,
                                const nlohmann::ordered_json& provenance);
 
 }  // namespace fascia::app

@@ -35,9 +35,9 @@ void RunResult::write(const nlohmann::ordered_json& summary) const {
   io::replace_file(directory_.path() / "summary.json", json_text(summary) + "\n");
 }
 
-void RunResult::add_probes(double time, const ProbedState& at) {
+void RunResult::add_probes(double time, const ProbeValues& values, double time_step) {
   const std::lock_guard lock(writing_);
-  files_.add_probes(time, at);
+  files_.add_probes(time, values, time_step);
   has_rows_ = true;
 }
 

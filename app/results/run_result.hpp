@@ -24,7 +24,7 @@ class RunResult {
   const nlohmann::ordered_json& provenance() const { return running_.at("provenance"); }
 
   /// These do what those of ResultFiles do.
-  void add_probes(double time, const ProbedState& at);
+  void add_probes(double time, const ProbeValues& values, double time_step);
   void add_state(double time, const State& state);
   std::vector<std::string> add_failed(const Failure& failure);
   const std::vector<double>& last_values(std::size_t probe) const { return files_.last_values(probe); }

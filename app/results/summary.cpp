@@ -72,7 +72,7 @@ nlohmann::ordered_json running_summary(const Simulation& s, const nlohmann::orde
 }
 
 nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const RunTimes& times, int threads,
-                               const Warnings& warnings, const std::vector<nlohmann::json>& probe_values,
+                               const std::vector<nlohmann::json>& probe_values,
                                const nlohmann::ordered_json& provenance) {
   const RunReport& run = end.report;
   const bool modes = s.scene.solver.kind == SolverKind::modes;  // about the rest state, where nothing acts
@@ -108,7 +108,7 @@ nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const Run
                   {"step_p99", times.steps.percentile(0.99)},
                   {"step_max", times.steps.percentile(1.0)}};
   j["peak_memory_bytes"] = static_cast<std::uint64_t>(peak_memory());
-  j["warnings"] = warnings.summary();
+  j["warnings"] = s.warnings.summary();
   j["doubts"] = run.doubts;
   j["probes"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < s.probes.size(); ++i) {

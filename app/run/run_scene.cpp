@@ -25,6 +25,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace fascia::app {
@@ -41,23 +42,25 @@ class ShownRun final : public RunListener {
         options_(options),
         stop_(stop),
         estimate_(estimate),
-        progress_(options.quiet || options.json, options.verbose, s.scene.solver.kind == SolverKind::statics),
         modes_(s.probes.size(), nlohmann::json::array()) {}
 
   bool stops() override { return stop_.requested(); }
-  void iterating(const IterationInfo& iteration) override { progress_.update(iteration); }
+  void begins() override {
+    progress_.emplace(options_.quiet || options_.json, options_.verbose, s_.scene.solver.kind == SolverKind::statics);
+  }
+  void iterating(const IterationInfo& iteration) override { progress_->update(iteration); }
   void stepped(const StepInfo& step) override {
     steps_.add(step.seconds);
-    progress_.update(step);
+    progress_->update(step);
     files_.note(step);
   }
   void save(double number, const State& state) override { files_.add_state(number, state); }
-  void show(double time, const ProbedState& at) override {
-    files_.add_probes(time, at);
+  void show(double time, const ProbedState& at, const ProbeValues& values) override {
+    files_.add_probes(time, values, at.time_step);
     if (estimate_) estimate_->add(time, *at.state);
     if (s_.scene.solver.kind != SolverKind::modes) return;
     for (std::size_t i = 0; i < s_.probes.size(); ++i) {
-      const nlohmann::json value = probe_json(s_.probes[i], files_.last_values(i));
+      const nlohmann::json value = probe_json(s_.probes[i], values[i]);
       if (s_.probes[i].probe->quantity == Quantity::frequency)
         modes_[i].push_back(value);
       else
@@ -66,7 +69,7 @@ class ShownRun final : public RunListener {
   }
   void warned(Warnings& warnings) override { tell(warnings, s_.scene.path); }
   void ended(const SolverChoice* choice) override {
-    progress_.finish();
+    progress_->finish();
     if (options_.verbose && choice) say("{}\n", told(*choice));
   }
 
@@ -86,32 +89,28 @@ class ShownRun final : public RunListener {
   const RunOptions& options_;
   Interruption& stop_;
   ErrorEstimate* estimate_;
-  Progress progress_;
+  std::optional<Progress> progress_;  ///< from the first step on
   StepSeconds steps_;
   std::vector<nlohmann::json> modes_;
 };
 
-/// A run with what its summary says of it.
+/// A run with what else its summary tells.
 struct Outcome {
   RunEnd end;
-  nlohmann::ordered_json summary;
+  nlohmann::ordered_json failure;  ///< null: none
+  StepSeconds steps;
+  std::vector<nlohmann::json> probes;
 };
 
 Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
-                 Interruption& stop, ErrorEstimate* estimate, double setup) {
+                 Interruption& stop, ErrorEstimate* estimate) {
   ShownRun shown(s, files, options, stop, estimate);
-  Outcome out{run_simulation(s, backend, pool, shown), {}};
-  RunEnd& end = out.end;
-  nlohmann::ordered_json failure;
-  if (end.failed) failure = keep_failed(s, end.state, !end.shown, end.report, files);
-  RunTimes times{end.setup_seconds + setup, end.solve_seconds, end.output_seconds, end.processor_seconds,
-                 shown.steps()};
-  tell(end.warnings, options.scene);
-  Warnings warnings = s.warnings;
-  warnings.add(end.warnings);
-  out.summary = summary(s, end, times, pool.size(), warnings, shown.probes(), files.provenance());
-  if (!failure.is_null()) out.summary["failure"] = failure;
-  if (options.complete) options.complete(out.summary);
+  Outcome out;
+  out.end = run_simulation(s, backend, pool, shown);
+  const bool may_fail = out.end.failed && s.scene.solver.kind != SolverKind::modes;
+  if (may_fail) out.failure = keep_failed(s, out.end.state, !out.end.shown, out.end.report, files);
+  out.steps = shown.steps();
+  out.probes = shown.probes();
   return out;
 }
 
@@ -133,13 +132,13 @@ void finish(const Simulation& s, RunResult& files, const nlohmann::ordered_json&
 
 /// The run. What was saved before an error stays, with a summary that tells it.
 Outcome computed(const Simulation& s, Backend backend, ThreadPool& pool, RunResult& files, const RunOptions& options,
-                 Interruption& stop, ErrorEstimate* estimate, double setup) {
+                 Interruption& stop, ErrorEstimate* estimate) {
   const auto fail = [&](RunStatus status, const std::exception& e) {
     files.end(status, e.what());
     if (files.shown()) say("{}: it ended early{}\n", options.scene.string(), kept(s, true));
   };
   try {
-    return simulate(s, backend, pool, files, options, stop, estimate, setup);
+    return simulate(s, backend, pool, files, options, stop, estimate);
   } catch (const StateError& e) {
     fail(RunStatus::diverged, e);
     throw;
@@ -185,14 +184,22 @@ int run_scene(const RunOptions& options) {
     say("\n{}: interrupted within a step{}\n", options.scene.string(), kept(s, saved));
   });
   ThreadPool pool(s.scene.solver.threads);
-  Outcome out = computed(s, backend, pool, files, options, stop, estimate.get(), seconds_since(start));
-  const RunReport& run = out.end.report;
-  nlohmann::ordered_json& j = out.summary;
+  const double setup = seconds_since(start);
+  Outcome out = computed(s, backend, pool, files, options, stop, estimate.get());
+  const RunEnd& end = out.end;
+  const RunReport& run = end.report;
+  tell(out.end.warnings, options.scene);
+  s.warnings.add(end.warnings);
+  const RunTimes times{end.setup_seconds + setup, end.solve_seconds, end.output_seconds, end.processor_seconds,
+                       out.steps};
+  nlohmann::ordered_json j = summary(s, end, times, pool.size(), out.probes, files.provenance());
+  if (!out.failure.is_null()) j["failure"] = out.failure;
+  if (options.complete) options.complete(j);
   finish(s, files, j);
   if (s.scene.output.picture && run.status != RunStatus::interrupted)
-    make_picture(s, files.path(), s.scene.solver.kind == SolverKind::modes ? out.end.frequencies : files.times(),
+    make_picture(s, files.path(), s.scene.solver.kind == SolverKind::modes ? end.frequencies : files.times(),
                  run.status);
-  const bool done = out.end.done();
+  const bool done = end.done();
   const bool estimated = !estimate || (done && add_estimate(s, options, *estimate, files, stop, j));
   if (options.json)
     fmt::print("{}\n", json_text(j));

@@ -242,8 +242,9 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Probed
   }
 }
 
-std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap,
-                              TensorFields& fields, std::vector<double>& held) {
+/// Values of a probe, finite or not.
+std::vector<double> raw_values_of(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap,
+                                  TensorFields& fields, std::vector<double>& held) {
   std::vector<double> out;
   const Quantity q = probe.probe->quantity;
   const State& state = *snap.state;
@@ -303,6 +304,12 @@ std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, c
       out.push_back(snap.frequency);
       break;
   }
+  return out;
+}
+
+std::vector<double> values_of(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap,
+                              TensorFields& fields, std::vector<double>& held) {
+  std::vector<double> out = raw_values_of(s, probe, snap, fields, held);
   if (std::any_of(out.begin(), out.end(), [](double value) { return !std::isfinite(value); }))
     throw StateError(fmt::format("probe \"{}\": {} is not finite; the state that it shows is wrong", probe.probe->name,
                                  quantity_name(probe.probe->quantity)));
@@ -332,10 +339,10 @@ std::vector<double> held_forces(const Simulation& s, const ReachedForces& acting
   return forces;
 }
 
-std::vector<std::vector<double>> probe_values(const Simulation& s, const ProbedState& snap) {
+ProbeValues probe_values(const Simulation& s, const ProbedState& snap) {
   TensorFields fields;
   std::vector<double> held;  // of all probes, made for the first that asks
-  std::vector<std::vector<double>> values;
+  ProbeValues values;
   for (const ResolvedProbe& probe : s.probes) values.push_back(values_of(s, probe, snap, fields, held));
   return values;
 }

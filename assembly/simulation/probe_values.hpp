@@ -23,12 +23,15 @@ ReachedParts needed_parts(const Simulation& s);
 /// Forces by degrees of freedom that hold the constrained ones, in the axes of the world; those of free ones are zero.
 std::vector<double> held_forces(const Simulation& s, const ReachedForces& acting);
 
+/// Of each probe its numbers in a row.
+using ProbeValues = std::vector<std::vector<double>>;
+
 /// Values of all probes, of each as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).
 /// @throws StateError  a value is not finite
-std::vector<std::vector<double>> probe_values(const Simulation& s, const ProbedState& at);
+ProbeValues probe_values(const Simulation& s, const ProbedState& at);
 /// The number of a probe. @throws InputError  the scene has none of this name
 std::size_t probe_index(const Simulation& s, std::string_view name);
-/// Values of one of them.
+/// Values of one of them. @throws StateError  one is not finite
 std::vector<double> probe_value(const Simulation& s, std::size_t probe, const ProbedState& at);
 
 /// How many numbers a value has: 1, 3 or 9.

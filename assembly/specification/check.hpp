@@ -19,4 +19,11 @@ std::vector<Diagnostic> circles_of(const std::vector<Body>& bodies);
 /// @throws SceneError  everything that is wrong
 void check_specification(const Scene& scene);
 
+/// Steps of a duration, the last one cut; what is left below a millionth of a step lengthens the last one.
+double step_count(double duration, double time_step);
+
+/// Looks for what a whole run needs of its solver, and gives it the number of steps of its duration.
+/// @throws SceneError  everything that is wrong
+void check_run(Scene& scene);
+
 }  // namespace fascia

@@ -89,6 +89,8 @@ void name_places(Scene& scene) {
     if (p.where) name_region(*p.where, "probes." + p.name + ".where");
   }
   name_place(scene.solver.place, "solver");
+  name_place(scene.solver.time_step_place, "solver.time_step");
+  if (scene.solver.controlled) name_place(scene.solver.controlled->at_place, "solver.controlled.at");
   name_place(scene.solver.imperfection_place, "solver.imperfection");
 }
 

@@ -57,13 +57,17 @@ std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const Factor
   SolverSettings settings = asked;
   settings.devices = devices_of(s, warn);
   RunReport seen;
+  bool observing = false;  // an error is the observer's
   const gpu::DeviceObserver watch = [&](const StepInfo& step, ReachedStep& reached) {
     seen.steps = step.step;
     seen.time = step.time;
     seen.newton_iterations += step.newton.iterations;
     seen.linear_iterations += step.newton.linear_iterations;
     seen.residual = std::max(seen.residual, step.newton.last.relative);
-    return observe(step, reached);
+    observing = true;
+    const bool goes_on = observe(step, reached);
+    observing = false;
+    return goes_on;
   };
   const auto gpus = [&] { return std::max(1, static_cast<int>(settings.devices.size())); };
   const auto run = [&] { return GpuRun{run_kind(s, state, factors, settings, watch, observed), gpus()}; };
@@ -85,7 +89,7 @@ std::optional<GpuRun> run_on_gpu(const Simulation& s, State& state, const Factor
                      solver.precision == "double" ? "" : ", in double precision"));
     return std::nullopt;
   } catch (const InputError& e) {  // more of something than the GPU's code can number
-    if (seen.steps > 0 || !may_choose) throw;
+    if (observing || seen.steps > 0 || !may_choose) throw;
     warn(fmt::format("{}; the processor goes on", e.what()));
     return std::nullopt;
   } catch (const gpu::NoDevice& e) {

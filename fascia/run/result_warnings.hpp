@@ -23,7 +23,7 @@ class SnapWatch {
   std::string warning_;
 };
 
-/// What a user must know of a result that converged; a run with steps above the tolerance counts as not converged.
+/// Adds what a user must know of a result that converged; a run with steps above the tolerance counts as not converged.
 void add_result_warnings(const Simulation& simulation, const State& end, RunReport& run, Warnings& warnings);
 
 }  // namespace fascia

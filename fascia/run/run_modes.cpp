@@ -93,8 +93,15 @@ RunEnd run_modes(const Simulation& s, ThreadPool& pool, RunListener& listener) {
   for (std::size_t m = 0; m < modes.frequency.size(); ++m) {
     const State state = shape_of(s, modes.shape[m], 0.1 * size);
     const auto number = static_cast<double>(m + 1);
+    const ProbedState probed{&state, nullptr, modes.frequency[m]};
+    const ProbeValues values = probe_values(s, probed);
     listener.save(number, state);
-    listener.show(number, {&state, nullptr, modes.frequency[m]});
+    listener.show(number, probed, values);
+    if (m + 1 == modes.frequency.size() || !listener.stops()) continue;
+    end.report.status = RunStatus::interrupted;
+    end.report.message = fmt::format("interrupted after {} modes of {}", m + 1, modes.frequency.size());
+    end.failed = true;
+    break;
   }
   end.output_seconds = seconds_since(start);
   return end;

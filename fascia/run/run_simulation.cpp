@@ -47,6 +47,7 @@ class Steps {
   }
 
   RunEnd take() {
+    listener_.begins();
     const Clock::time_point start = Clock::now();
     const double processor = fascia::processor_seconds();
     if (path())
@@ -113,6 +114,11 @@ class Steps {
   }
   void take_explicit() {
     save_where_it_stands(0);
+    if (!goes_on()) {
+      end_.report.status = RunStatus::interrupted;
+      end_.report.time = end_.state.time;
+      return;
+    }
     const auto observed = [this](const StepInfo& step) {
       time_step_ = step.time_step;
       listener_.stepped(step);
@@ -155,8 +161,10 @@ class Steps {
       const State& at = reached.state();
       reached.read(parts_, end_.acting);
       acting_is_known_ = true;
+      const ProbedState probed{&at, &end_.acting, 0, time_step_};
+      const ProbeValues values = probe_values(s_, probed);  // before a file is written: all of a state, or nothing
       if (fields) listener_.save(path() ? step : time, at);
-      listener_.show(time, {&at, &end_.acting, 0, time_step_});
+      listener_.show(time, probed, values);
       if (fields) saved_time_ = time;
       if (fields) saved_step_ = step;
     } catch (const StateError& e) {
@@ -193,10 +201,12 @@ class Steps {
     }
     const bool unsaved = path() ? saved_step_ != run.steps || saved_step_ == 0 : saved_time_ != end_.state.time;
     if (run.status == RunStatus::converged || !unsaved || !not_shown_.empty()) return;
-    if (statics() && run.steps > 0 && acting_is_known_)
+    if (!statics() || run.steps == 0 || !acting_is_known_) return save_where_it_stands(run.steps);
+    try {
       listener_.save(path() ? run.steps : end_.state.time, end_.state);
-    else
-      save_where_it_stands(run.steps);
+    } catch (const StateError& e) {
+      not_shown_ = e.what();
+    }
   }
 
   void judge() {

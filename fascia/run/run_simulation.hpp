@@ -13,23 +13,30 @@ namespace fascia {
 class RunListener {
  public:
   virtual ~RunListener() = default;
-  /// Asked after each step: whether the run is to end there.
+  /// Whether the run is to end: asked after each step and after each state that was shown, sometimes twice.
   virtual bool stops() { return false; }
+  /// All is set up, and steps follow; not of modes.
+  virtual void begins() {}
   /// Before each iteration of Newton's method.
   virtual void iterating(const IterationInfo&) {}
   /// After each step, shown or not.
   virtual void stepped(const StepInfo&) {}
   /// The fields of a state that is saved: the start, of dynamics the states that the scene's output asks for and the
-  /// last, of statics and paths likewise, of modes each shape. It comes before the state's row.
+  /// last, of statics and paths likewise, of modes each shape. The row of the state follows, but where a run of statics
+  /// that broke off saves its last state again.
   /// @param number  load factor, time [s], of a path its step, of modes the number of the mode
-  /// @throws StateError  a state with values that nothing can show: the run ends
+  /// @throws StateError  a state with values that nothing can show: the run ends as diverged; of modes it goes on
+  ///                     to the caller
   virtual void save(double number, const State& state) { (void)number, (void)state; }
-  /// Probes may be read: at each state that is saved, of statics and paths at each step.
-  /// @param time  load factor, time [s], number of the mode
-  virtual void show(double time, const ProbedState& at) = 0;
+  /// A row of probes: at each state that is saved, of statics and paths at each step.
+  /// @param time    load factor, time [s], number of the mode
+  /// @param values  of all probes, finite
+  /// @throws StateError  as save()
+  virtual void show(double time, const ProbedState& at, const ProbeValues& values) = 0;
   /// Warnings that are worth telling before the run goes on.
   virtual void warned(Warnings&) {}
-  /// No step follows. @param choice  of the linear solver; null where the processor solved no system
+  /// No step follows, though the last state may be saved yet; not of modes.
+  /// @param choice  of the linear solver; null where the processor solved no system
   virtual void ended(const SolverChoice* choice) { (void)choice; }
 };
 
@@ -52,11 +59,14 @@ struct RunEnd {
   bool done() const { return report.status == RunStatus::converged || (report.steps_at_limit > 0 && !failed); }
 };
 
-/// What a built scene lacks before its run: its imperfection, and of central differences the time step.
+/// Adds what a built scene lacks before its run: its imperfection, and of central differences the time step.
+/// @throws SceneError  an imperfection that nothing can give; a time step above the stable one
 void make_ready(Simulation& simulation);
 
 /// Takes all steps of a simulation, of whatever kind its solver is, on a backend that computes it.
-/// @throws StateError, BackendError
+/// @throws BackendError  a GPU that fails before a step was taken, where the scene asks for it
+/// @throws InputError    a node without inertia in dynamics, more than a GPU can number
+/// @throws StateError    a mode with a value that is not finite
 RunEnd run_simulation(const Simulation& simulation, Backend backend, ThreadPool& pool, RunListener& listener);
 
 }  // namespace fascia

@@ -203,6 +203,46 @@ TEST_F(CommandLine, WritesWhatThereIsWhenItDoesNotConverge) {
   EXPECT_NE(summary.at("message"), "");
 }
 
+/// A column under twice its Euler load, solved from its straight state.
+TEST_F(CommandLine, ExitsWith3WhereTheEndIsUnstableUnlessTheSceneAcceptsIt) {
+  write("column.toml", R"(
+[bodies.c]
+model = "hexahedra"
+order = 2
+domain = { box = { min = [0, -0.05, -0.05], max = [2, 0.05, 0.05], cells = [10, 1, 1] } }
+density = 1000
+material = { young = 1e6, poisson = 0.0 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -1, -1], max = [0.0001, 2, 2] } }
+fix = "all"
+[[loads]]
+body = "c"
+where = { box = { min = [1.9999, -1, -1], max = [2.01, 2, 2] } }
+total_force = [-10.28, 0, 0]
+[solver]
+kind = "static"
+load_steps = 2
+)");
+  EXPECT_EQ(fascia({"run", "column.toml", "--output", "out"}).status, 3);
+  EXPECT_EQ(summary("out")["status"], "unstable");
+  EXPECT_EQ(fascia({"run", "column.toml", "--output", "out", "--set", "solver.accept=['unstable']"}).status, 0);
+}
+
+TEST_F(CommandLine, ExitsWith0WhereStepsAboveTheToleranceAreAskedFor) {
+  write("scene.toml", kCantilever);
+  EXPECT_EQ(
+      fascia({"run", "scene.toml", "--output", "out", "--set", "solver.newton={max_iterations=1,on_limit='continue'}"})
+          .status,
+      0);
+  EXPECT_EQ(summary("out")["status"], "not-converged");
+}
+
+TEST_F(CommandLine, WritesNothingWhereAStepIsAboveTheStableOne) {
+  expect_refused(with(kCantilever, "kind = \"static\"", "kind = \"explicit\"\ntime_step = 1\nsteps = 2"),
+                 {"is above the stable step"});
+}
+
 TEST_F(CommandLine, StopsAtControlC) {
   write("scene.toml", with(dynamic_scene(), "steps = 10\n", "steps = 100000000\n"));
   ProgramOptions options;

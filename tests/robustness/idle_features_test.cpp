@@ -45,9 +45,10 @@ const Feature kPaths{"paths and imperfections",
                      {"core/solver/path_", "core/run/path_", "core/run/limit_point", "assembly/actions/imperfection"},
                      {"largest_rotation_in", "add_imperfection"}};
 const Feature kExplicit{"explicit dynamics", {"core/run/explicit_", "core/run/stable_step"}, {}};
-const Feature kModes{"modes", {"core/run/modes"}, {}};
-const Feature kGpu{
-    "GPU", {"gpu/", "app/run/gpu_run"}, {"device_functions_in_use", "device_module_exists", "module_file", "file_of"}};
+const Feature kModes{"modes", {"core/run/modes", "fascia/run/run_modes"}, {}};
+const Feature kGpu{"GPU",
+                   {"gpu/", "fascia/run/gpu_run"},
+                   {"device_functions_in_use", "device_module_exists", "module_file", "file_of"}};
 const Feature kCommands{"other commands",
                         {"app/bench/", "app/study/", "app/explain/", "app/estimate/", "app/verify/", "app/report/",
                          "app/rerun", "app/compare", "app/list", "app/run/check_scene", "app/results/picture"},

@@ -192,12 +192,72 @@ TEST_F(InterruptedRuns, AtRandomMomentsLeaveWholeResults) {
 
 /// Good states, and then one that is not finite.
 TEST_F(InterruptedRuns, AStateThatIsNotFiniteLosesNoOther) {
-  const fs::path scene = shared_dir() / "defects" / "crush_dyn.toml";
-  if (!fs::exists(scene)) GTEST_SKIP() << "no " << scene;
-  const ProgramResult result = fascia({"run", scene.string(), "--output", "out"});
+  write("crushed.toml", R"(
+[bodies.c]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
+density = 1000
+material = { young = 1e4, poisson = 0.0 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
+fix = "all"
+[[constraints]]
+body = "c"
+where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
+move = { translate = [-1, 0, 0] }
+over = "1 s"
+[solver]
+kind = "implicit-euler"
+time_step = "40 ms"
+duration = "1 s"
+)");
+  const ProgramResult result = fascia({"run", "crushed.toml", "--output", "out"});
   EXPECT_EQ(result.status, 3) << result.err;
-  expect_whole("crush_dyn", 2);
+  expect_whole("crushed", 2);
   EXPECT_EQ(summary("out").at("status"), "diverged");
+}
+
+/// A probe without a value ends a run like a field without one, before anything of the state is written.
+TEST_F(InterruptedRuns, AProbeThatIsNotFiniteLosesNoOther) {
+  write("crushed.toml", R"(
+[bodies.c]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
+density = 1000
+material = { young = 1e4, poisson = 0.0 }
+[[constraints]]
+body = "c"
+where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
+fix = "all"
+[[constraints]]
+body = "c"
+where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
+move = { translate = [-1, 0, 0] }
+over = "1 s"
+[solver]
+kind = "implicit-euler"
+time_step = "40 ms"
+duration = "1 s"
+[output]
+every_steps = 1
+fields = ["displacement"]
+[probes.s]
+body = "c"
+at = [0.5, 0.5, 0.5]
+quantity = "stress"
+)");
+  const ProgramResult result = fascia({"run", "crushed.toml", "--output", "out"});
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_NE(result.err.find("probe \"s\": stress is not finite"), std::string::npos) << result.err;
+  expect_whole("crushed", 2);
+  const std::string rows = read_text(folder_ / "out/probes.csv"), states = read_text(folder_ / "out/crushed.pvd");
+  const auto count = [](const std::string& text, const std::string& word) {
+    int found = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count(rows, "\n") - 1, count(states, "<DataSet "));
 }
 
 TEST_F(InterruptedRuns, OfExplicitStepsTellWhatThereIs) {

@@ -85,6 +85,16 @@ TEST_F(PathRuns, ThatNothingDrivesSaySo) {
       "do not move the controlled point along its direction");
 }
 
+/// A warning of the end is printed, once.
+TEST_F(PathRuns, SayOnceWhatTheyPassed) {
+  const ProgramResult result = run(kBar);
+  ASSERT_EQ(result.status, 0);
+  const std::string passed = "limit point passed at load factor 0.595643";
+  const std::size_t first = result.err.find(passed);
+  EXPECT_NE(first, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find(passed, first + 1), std::string::npos) << result.err;
+}
+
 TEST_F(PathRuns, ThatEndEarlyKeepWhatTheyHave) {
   expect_stopped(with(kBar, kControl, "control = \"arc-length\"\nmax_steps = 5"), "max_steps was reached");
   EXPECT_EQ(rows(), 5);

@@ -21,8 +21,7 @@ class Rows final : public RunListener {
   explicit Rows(const Simulation& s) : simulation_(s), values_(s.probes.size(), nlohmann::json::array()) {}
 
   void stepped(const StepInfo& step) override { seconds_.add(step.seconds); }
-  void show(double time, const ProbedState& at) override {
-    const std::vector<std::vector<double>> values = probe_values(simulation_, at);
+  void show(double time, const ProbedState& at, const ProbeValues& values) override {
     std::vector<double> row{time};
     for (std::size_t i = 0; i < values.size(); ++i) {
       row.insert(row.end(), values[i].begin(), values[i].end());
@@ -77,8 +76,7 @@ template <class Read>
 void SolvedScene::solve(const Read& read) {
   std::optional<Simulation> built;
   try {
-    built.emplace(app::build_within_memory(read()));
-    make_ready(*built);
+    built.emplace(app::load_scene(read()));
   } catch (const InputError& e) {
     summary_ = {{"status", "refused"}, {"message", e.what()}};
     return;
@@ -88,13 +86,14 @@ void SolvedScene::solve(const Read& read) {
   }
   Simulation& s = *built;
   const Backend backend = choose_backend(s);
+  app::warn_of_backend(s, backend);
   ThreadPool pool(s.scene.solver.threads);
   Rows rows(s);
   const RunEnd end = run_simulation(s, backend, pool, rows);
   s.warnings.add(end.warnings);
   const app::RunTimes times{end.setup_seconds, end.solve_seconds, end.output_seconds, end.processor_seconds,
                             rows.seconds()};
-  summary_ = nlohmann::json(app::summary(s, end, times, pool.size(), s.warnings, rows.values(), {}));
+  summary_ = nlohmann::json(app::summary(s, end, times, pool.size(), rows.values(), {}));
   ok_ = end.done();
   columns_ = {"time"};
   for (const ResolvedProbe& probe : s.probes)

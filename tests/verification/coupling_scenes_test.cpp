@@ -1,4 +1,4 @@
-// The scenes of couplings, run by the program: forces balance, and the numbers that their headers name.
+// The scenes of couplings, solved by the library: forces balance, and the numbers that their headers name.
 #include "tests/support/cases.hpp"
 #include "tests/support/solved_scene.hpp"
 

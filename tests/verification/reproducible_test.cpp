@@ -1,4 +1,6 @@
 // The same bits for any number of threads, by the program and by the library.
+#include "fascia/scene_file.hpp"
+#include "fascia/simulate.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/solved_scene.hpp"
 
@@ -41,6 +43,22 @@ TEST_P(Threads, TheLibraryGivesTheProgramsBits) {
   EXPECT_EQ(program.columns(), library.columns());
   EXPECT_EQ(program.history(), library.history());
   EXPECT_EQ(program.summary()["probes"].dump(), library.summary()["probes"].dump());
+  std::size_t row = 0;
+  Scene scene = read_scene_file(source_dir() / "scenes" / (c.scene + ".toml"), c.settings);
+  scene.solver.threads = 2;
+  const RunOutcome embedded = simulate(scene, [&](const RunState& state) {
+    std::vector<double> values{state.time()};
+    for (const Probe& probe : scene.probes)
+      for (const double value : state.probe(probe.name)) values.push_back(value);
+    std::vector<double> expected = row < program.history().size() ? program.history()[row] : std::vector<double>{};
+    if (scene.solver.time_step_automatic && !expected.empty()) expected.pop_back();
+    EXPECT_EQ(values, expected) << "row " << row;
+    ++row;
+    return true;
+  });
+  EXPECT_EQ(row, program.history().size());
+  EXPECT_TRUE(embedded.done) << embedded.message;
+  EXPECT_EQ(embedded.newton_iterations, program.newton_iterations());
   for (const char* key : {"status", "message", "convergence", "bodies", "couplings", "steps", "newton_iterations",
                           "linear_iterations", "residual", "warnings", "doubts"})
     EXPECT_EQ(program.summary()[key], library.summary()[key]) << key;
@@ -53,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"dynamics", "struck_beam", {"solver.steps=40"}}, Case{"immersed", "traction_free_ends", {}},
                       Case{"modes", "free_modes", {}}, Case{"path", "snap_through", {}},
                       Case{"explicit", "explicit_cantilever", {"solver.time_step='auto'"}},
-                      Case{"coupled", "bone_plate", {}}),
+                      Case{"coupled", "bone_plate", {}},
+                      Case{"scattered", "scattered_cantilever", {"bodies.beam.frames.poisson_disk=1.0"}}),
     [](const auto& c) { return std::string(c.param.name); });
 
 }  // namespace

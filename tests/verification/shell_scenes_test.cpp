@@ -1,4 +1,4 @@
-// The shell scenes, run by the program, against published tables, closed forms and the meshless sheet.
+// The shell scenes, solved by the library, against published tables, closed forms and the meshless sheet.
 #include "tests/support/paths.hpp"
 #include "tests/support/solved_scene.hpp"
 

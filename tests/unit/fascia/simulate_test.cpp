@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,8 @@ Scene scene_of(const std::string& name, const std::vector<std::string>& settings
 }
 
 TEST(Simulate, AStepperTakesTheSameSteps) {
-  const std::vector<std::string> settings{"output={every_steps=1}", "solver.steps=5", "solver.backend='cpu'"};
+  const std::vector<std::string> settings{"output={every_steps=1}",
+                                          "solver={kind='newmark',time_step=1e-2,steps=5,backend='cpu'}"};
   Stepper stepper(scene_of("settling_beam", settings));
   const double dt = scene_of("settling_beam", settings).solver.time_step;
   int seen = 0;
@@ -56,12 +59,12 @@ TEST(Simulate, FollowsPathsPastLimitPoints) {
   EXPECT_EQ(passed, 2);
 }
 
-/// A clamped bar vibrates along its axis with f = (2 k − 1) c / (4 L).
+/// A clamped bar vibrates along its axis as a chain of lumped masses a distance h apart: f = c / (π h) sin((2 m − 1) π
+/// h / (4 L)).
 TEST(Simulate, FindsModes) {
   const Scene scene = app::parse_scene_text(R"(
 [bodies.bar]
 model = "hexahedra"
-order = 2
 domain = { box = { min = [0, 0, 0], max = [1, 0.1, 0.1], cells = [10, 1, 1] } }
 density = 1000
 material = { young = 1e6, poisson = 0 }
@@ -75,7 +78,7 @@ where = { box = { min = [-1, -1, -1], max = [1e-6, 1, 1] } }
 fix = "all"
 [solver]
 kind = "modes"
-modes = 2
+count = 2
 [probes.f]
 quantity = "frequency"
 )",
@@ -89,9 +92,12 @@ quantity = "frequency"
   EXPECT_EQ(run.status, RunStatus::converged) << run.message;
   ASSERT_EQ(run.frequencies.size(), 2u);
   EXPECT_EQ(shown, run.frequencies);
+  constexpr double kPi = std::numbers::pi;
   const double c = std::sqrt(1e6 / 1000);
-  EXPECT_NEAR(run.frequencies[0], c / 4, 1e-5 * c);
-  EXPECT_NEAR(run.frequencies[1], 3 * c / 4, 1e-3 * c);
+  for (int m = 1; m <= 2; ++m) {
+    const double f = c / (kPi * 0.1) * std::sin((2 * m - 1) * kPi * 0.1 / 4);
+    EXPECT_NEAR(run.frequencies[static_cast<std::size_t>(m - 1)], f, 1e-8 * f);
+  }
 }
 
 TEST(Simulate, TakesExplicitSteps) {
@@ -159,6 +165,79 @@ TEST(Simulate, MistakesAreSentences) {
   Scene scene = scene_of("settling_beam");
   scene.bodies.at(0).density = -1;
   EXPECT_THROW(simulate(scene), SceneError);
+}
+
+TEST(Simulate, IsToldToEndAtAnyState) {
+  int seen = 0;
+  const auto first = [&](const RunState&) { return ++seen < 1; };
+  EXPECT_EQ(simulate(scene_of("explicit_cantilever"), first).status, RunStatus::interrupted);
+  EXPECT_EQ(seen, 1) << "the start";
+  seen = 0;
+  EXPECT_EQ(simulate(scene_of("free_modes"), first).status, RunStatus::interrupted);
+  EXPECT_EQ(seen, 1);
+  seen = 0;
+  EXPECT_EQ(simulate(scene_of("snap_through"), first).status, RunStatus::interrupted);
+  EXPECT_EQ(seen, 1);
+}
+
+TEST(Simulate, WhatTheCallerThrowsLeavesIt) {
+  struct Own {};
+  for (const char* scene : {"settling_beam", "explicit_cantilever", "snap_through", "free_modes"})
+    EXPECT_THROW(simulate(scene_of(scene), [](const RunState&) -> bool { throw Own{}; }), Own) << scene;
+}
+
+TEST(Simulate, StepsFollowFromTheDuration) {
+  Scene scene = scene_of("settling_beam", {"solver.backend='cpu'"});
+  scene.solver.time_step = 0.01;
+  scene.solver.steps = 0;
+  scene.solver.duration = 0.035;
+  const RunOutcome run = simulate(scene);
+  EXPECT_TRUE(run.done) << run.message;
+  EXPECT_EQ(run.steps, 4);
+  EXPECT_EQ(run.time, 0.035);
+}
+
+/// What a reader of files refuses is refused here too.
+TEST(Simulate, WhatARunLacksIsNamed) {
+  struct Case {
+    const char* said;
+    std::function<void(Scene&)> spoil;
+  };
+  const Case cases[] = {
+      {"time_step = 0 s", [](Scene& s) { s.solver.time_step = 0; }},
+      {"time_step = nan s", [](Scene& s) { s.solver.time_step = NAN; }},
+      {"a number of steps", [](Scene& s) { s.solver.duration.reset(), s.solver.steps = 0; }},
+      {"duration = -1 s", [](Scene& s) { s.solver.duration = -1; }},
+      {"at most 1e+09", [](Scene& s) { s.solver.duration = 1, s.solver.time_step = 1e-12; }},
+      {"for explicit dynamics alone", [](Scene& s) { s.solver.time_step_automatic = true; }},
+      {"needs a duration",
+       [](Scene& s) {
+         s.solver.kind = SolverKind::central_differences;
+         s.solver.time_step_automatic = true;
+         s.solver.duration.reset();
+       }},
+      {"one of statics", [](Scene& s) { s.solver.control = StaticControl::arc_length; }},
+      {"asks for 0 modes", [](Scene& s) { s.solver.kind = SolverKind::modes, s.solver.modes = 0; }},
+      {"max_steps = 0",
+       [](Scene& s) {
+         s.solver.kind = SolverKind::statics;
+         s.solver.control = StaticControl::arc_length;
+         s.solver.max_steps = 0;
+       }},
+      {"needs a displacement to control",
+       [](Scene& s) { s.solver.kind = SolverKind::statics, s.solver.control = StaticControl::displacement; }},
+      {"an estimate of errors", [](Scene& s) { s.output.estimate = EstimateBy::finer; }},
+  };
+  for (const Case& c : cases) {
+    Scene scene = scene_of("settling_beam");
+    c.spoil(scene);
+    try {
+      simulate(scene);
+      ADD_FAILURE() << c.said;
+    } catch (const SceneError& e) {
+      EXPECT_NE(std::string(e.what()).find(c.said), std::string::npos) << c.said << ": " << e.what();
+    }
+  }
 }
 
 }  // namespace
