@@ -9,7 +9,7 @@
 /// Scene files: in the library fascia::scene_files.
 namespace fascia {
 
-/// Reads a scene file; its meshes are read when a Stepper is built.
+/// Reads a scene file; its meshes are read when it is run, or a Stepper is built.
 /// @param overrides  "key.path=value", as of the program's --set
 /// @throws SceneError  everything that is wrong, with file, line and key; also a scene that states a need in the place
 ///                     of its resolution

@@ -16,7 +16,8 @@ namespace fascia {
 struct Simulation;
 struct ProbedState;
 
-/// A state that a run shows, as long as the call lasts that gets it.
+/// A state that a run shows; it is valid during the call that gets it. Shapes of modes are scaled so that the largest
+/// displacement is a tenth of the largest body.
 class RunState {
  public:
   double time() const { return time_; }  ///< [s]; of statics and paths the load factor, of modes the number of the mode
@@ -45,8 +46,8 @@ struct RunOutcome {
   bool done = true;     ///< it came to its end: it converged, or took steps above the tolerance as the scene asks for
   std::string message;  ///< what went wrong, where, and what to try; empty where nothing did
   double time = 0;      ///< that was reached [s]; of statics and paths the load factor
-  double seconds = 0;   ///< that the solution took
-  double residual = 0;  ///< largest of the steps, of what acts [-]
+  double seconds = 0;   ///< that the solution took, without set-up
+  double residual = 0;  ///< largest that a step left, as a part of the forces that act [-]
   int steps = 0, newton_iterations = 0, linear_iterations = 0;
   Backend backend = Backend::cpu;     ///< that took the steps
   int gpus = 0;                       ///< that shared them

@@ -37,12 +37,24 @@ void require_steps(const Scene& scene) {
   if (solver.kind == SolverKind::central_differences) refuse("explicit dynamics");
   if (solver.control != StaticControl::load) refuse("paths past limit points");
   if (solver.gpus > 1) refuse("several GPUs");
+  if (scene.states_need()) refuse("a scene that states a need, whose resolution `fascia run` chooses");
 }
 
 Simulation built(Scene scene) {
   name_places(scene);
   require_steps(scene);
   return build_checked(std::move(scene));
+}
+
+/// Calls a function; errors of a device become those that programs see.
+template <class Call>
+decltype(auto) translated(const Call& call) {
+  try {
+    return call();
+  } catch (const std::exception& e) {
+    if (is_of_device(e)) throw BackendError(e.what());
+    throw;
+  }
 }
 
 bool is_finite(const Vec3d& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
@@ -67,6 +79,7 @@ struct Buffer {
 struct Snapshot::Data {
   SteppingSnapshot steps;
   std::vector<Pose> from, to;          ///< of drivers
+  ReachedForces reached;               ///< with the inertia of the step that led there
   std::shared_ptr<const int> stepper;  ///< whose it is
 };
 
@@ -118,20 +131,27 @@ struct Stepper::Parts {
     }
   }
 
-  const ReachedForces& acting() {
-    if (read) return reached;
+  const State& state() {
+    return translated([&]() -> const State& { return steps->state(); });
+  }
+
+  /// Reads what acts at the present state. @param with_forces  whether probes need them or not
+  const ReachedForces& acting(bool with_forces) {
     ReachedParts parts = needed_parts(simulation);
-    parts.forces = parts.forces || forces.wanted;
-    steps->read(factors(steps->state().time, 0), parts, reached);
+    parts.forces = parts.forces || with_forces;
+    if (read && (has_forces || !parts.forces)) return reached;
+    translated([&] { steps->read(factors(steps->state().time, 0), parts, reached); });
     read = true;
+    has_forces = parts.forces;
     return reached;
   }
+  const ReachedForces& acting() { return acting(forces.wanted); }
 
   /// Drivers have arrived, or stay where they were. What is read from here on stands still.
   void end_step(bool converged) {
     (converged ? from : to) = converged ? to : from;
     place_motions(from);
-    read = false;
+    if (converged) read = false;  // else the state, and what acted there, stays
   }
 
   /// Fills what was asked for with the present state.
@@ -139,7 +159,7 @@ struct Stepper::Parts {
     const bool none = !positions.wanted && !rotations.wanted && !forces.wanted && !state_is_seen &&
                       std::none_of(surfaces.begin(), surfaces.end(), [](const Buffer& b) { return b.wanted; });
     if (none) return;
-    const State& state = steps->state();
+    const State& state = this->state();
     if (positions.wanted) fill_positions(state);
     if (rotations.wanted) fill_rotations(state);
     if (forces.wanted) fill_forces();
@@ -205,16 +225,12 @@ struct Stepper::Parts {
   std::vector<std::vector<Attachment>> attached;  ///< of the points of surfaces that were asked for
   bool state_is_seen = false;                     ///< displacements or velocities were asked for
   ReachedForces reached;
-  bool read = false;  ///< it is that of the present state
+  bool read = false;        ///< it is that of the present state
+  bool has_forces = false;  ///< so far as it is read
 };
 
 Stepper::Stepper(Scene scene) {
-  try {
-    parts_ = std::make_unique<Parts>(std::move(scene));
-  } catch (const std::exception& e) {
-    if (is_of_device(e)) throw BackendError(e.what());
-    throw;
-  }
+  parts_ = translated([&] { return std::make_unique<Parts>(std::move(scene)); });
 }
 Stepper::~Stepper() = default;
 Stepper::Stepper(Stepper&&) noexcept = default;
@@ -229,10 +245,9 @@ StepReport Stepper::step(double dt) {
   const Clock::time_point start = Clock::now();
   RunReport run;
   try {
-    run = p.steps->step(p.factors(time(), dt), dt);
-  } catch (const std::exception& e) {
+    run = translated([&] { return p.steps->step(p.factors(time(), dt), dt); });
+  } catch (...) {
     p.end_step(false);
-    if (is_of_device(e)) throw BackendError(e.what());
     throw;
   }
   StepReport report;
@@ -296,28 +311,27 @@ int Stepper::node_count(int body) const {
 
 Rows Stepper::displacements() {
   parts_->state_is_seen = true;
-  return {parts_->steps->state().u[0].v, node_count(), 3};
+  return {parts_->state().u[0].v, node_count(), 3};
 }
 Rows Stepper::velocities() {
   parts_->state_is_seen = true;
-  return {parts_->steps->state().v[0].v, node_count(), 3};
+  return {parts_->state().v[0].v, node_count(), 3};
 }
 Rows Stepper::positions() {
   const bool filled = parts_->positions.wanted;
   const Rows view = parts_->nodes_view(parts_->positions, 3);
-  if (!filled) parts_->fill_positions(parts_->steps->state());
+  if (!filled) parts_->fill_positions(parts_->state());
   return view;
 }
 Rows Stepper::rotations() {
   const bool filled = parts_->rotations.wanted;
   const Rows view = parts_->nodes_view(parts_->rotations, 9);
-  if (!filled) parts_->fill_rotations(parts_->steps->state());
+  if (!filled) parts_->fill_rotations(parts_->state());
   return view;
 }
 Rows Stepper::forces() {
   const bool filled = parts_->forces.wanted;
   const Rows view = parts_->nodes_view(parts_->forces, 3);
-  if (!filled) parts_->read = false;  // now with forces
   if (!filled) parts_->fill_forces();
   return view;
 }
@@ -337,7 +351,7 @@ Rows Stepper::surface_points(int body) {
     std::vector<Attachment> attached;
     for (std::size_t i = 0; i < count; ++i) attached.push_back(of.attach_surface(i));
     p.attached[at(body)] = std::move(attached);
-    p.fill_surface(at(body), p.steps->state());
+    p.fill_surface(at(body), p.state());
     buffer.wanted = true;
   }
   return {buffer.values.data(), static_cast<int>(count), 3};
@@ -345,22 +359,24 @@ Rows Stepper::surface_points(int body) {
 
 int Stepper::inverted_points(int body) {
   parts_->require_body(body);
-  return folded_points(parts_->simulation.bodies[at(body)], parts_->steps->state()).inverted;
+  return folded_points(parts_->simulation.bodies[at(body)], parts_->state()).inverted;
 }
 
 std::vector<double> Stepper::probe(std::string_view name) {
   Parts& p = *parts_;
   const std::size_t index = probe_index(p.simulation, name);
   const ReachedForces& acting = p.acting();
-  return probe_value(p.simulation, index, {&p.steps->state(), &acting, 0, 0});
+  return probe_value(p.simulation, index, {&p.state(), &acting, 0, 0});
 }
 
 Snapshot Stepper::snapshot() {
   Parts& p = *parts_;
   Snapshot out;
   const FactorFunction factors = p.factors(time(), 0);
-  out.data_ = std::make_shared<Snapshot::Data>(Snapshot::Data{p.steps->snapshot(factors), p.from, p.to, p.identity});
-  p.read = false;
+  ReachedForces reached = p.acting(true);
+  SteppingSnapshot steps = translated([&] { return p.steps->snapshot(factors); });
+  out.data_ =
+      std::make_shared<Snapshot::Data>(Snapshot::Data{std::move(steps), p.from, p.to, std::move(reached), p.identity});
   return out;
 }
 
@@ -372,8 +388,9 @@ void Stepper::restore(const Snapshot& snapshot) {
   p.from = data.from;
   p.to = data.to;
   p.place_motions(p.from);
-  p.steps->restore(data.steps, p.factors(data.steps.state.time, 0));
-  p.read = false;
+  translated([&] { p.steps->restore(data.steps, p.factors(data.steps.state.time, 0)); });
+  p.reached = data.reached;
+  p.read = p.has_forces = true;
   p.refresh();
 }
 

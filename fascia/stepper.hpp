@@ -24,12 +24,12 @@ struct RigidMotion {
 /// How a step went.
 struct StepReport {
   bool converged = false;  ///< false: the state stayed as it was
-  bool at_limit = false;   ///< it was accepted above the tolerance, as Solver::on_limit = proceed asks
-  bool stable = true;      ///< of statics: no soft direction was found in which the equilibrium is unstable
-  std::string message;     ///< why it did not converge, and what to try
+  bool at_limit = false;   ///< it converged only in that Solver::on_limit = proceed accepts it above the tolerance
+  bool stable = true;      ///< false: an equilibrium of statics is unstable; true also where that could not be told
+  std::string message;     ///< why it did not converge, and what to try; by the keys of scene files
   double time = 0;         ///< that was reached [s]; in statics the load factor
   double seconds = 0;      ///< that the step took
-  double residual = 0;     ///< largest of the step, of what acts [-]
+  double residual = 0;     ///< largest that was left, as a part of the forces that act [-]
   int newton_iterations = 0, linear_iterations = 0;
 };
 
@@ -47,8 +47,8 @@ class Snapshot {
 /// Builds what a scene describes and advances it on demand.
 ///
 /// Statics and the implicit schemes of Solver::kind can be stepped, on the processor or, with Solver::backend = "cuda",
-/// on a GPU. Solver::time_step and Solver::steps are not used. A call that is refused, by an exception of type
-/// InputError with a sentence, changes nothing. One stepper is used by one thread at a time.
+/// on a GPU. Solver::time_step, Solver::steps, Solver::duration and Output are not used. A call that throws InputError
+/// changes nothing. One stepper is used by one thread at a time; several may be used side by side.
 ///
 /// The address of a view stays the same as long as the stepper lives; its numbers are those of the last step. Nobody
 /// reads them while step() or restore() runs.
@@ -56,33 +56,33 @@ class Stepper {
  public:
   /// @throws SceneError    what is wrong with the scene: the place is the key of the field
   /// @throws FileError, InputError  meshes
-  /// @throws BackendError  a GPU that was asked for and is not there
+  /// @throws BackendError  a GPU that was asked for and is not there, lacks memory, or does not compute the scene
   explicit Stepper(Scene scene);
   ~Stepper();
   Stepper(Stepper&&) noexcept;
   Stepper& operator=(Stepper&&) noexcept;
 
-  /// Advances by dt [s]; in statics the load factor by dt: loads without a schedule act whole from 1 on. What fades or
-  /// oscillates is followed as the scheme does; a step after one that failed knows no step before.
-  /// @throws BackendError  a device that is lost, or has no memory left
+  /// Advances by dt [s], which may differ from step to step; in statics the load factor by dt: all loads grow until it
+  /// is 1, and stay. A scheme that knows the step before starts anew after a step that failed.
+  /// @throws InputError    a step that is not above 0, or lost beside the time
+  /// @throws BackendError  a device that is lost, or has no memory left; this and what reads the state
   StepReport step(double dt);
   double time() const;  ///< [s]; in statics the load factor
   Backend backend() const;
   /// Sentences on what should be known of the scene although nothing is wrong.
   std::vector<std::string> warnings() const;
 
-  /// The number of the driver that constraints name (Constraint::driver).
+  /// The number of the driver that constraints name (Constraint::driver). @throws InputError  none does
   int driver(std::string_view name) const;
   /// Says where a driver takes its region in the next step; it stays there until it is told otherwise. On the way it
   /// turns evenly, the shorter way round, and its center moves straight. After a step that failed the driver stands
   /// where it stood before, and is to be told anew.
   void set_motion(int driver, const RigidMotion& motion);
-  /// Where a driver is.
+  /// Where a driver is now; what it was told last shows after the step.
   RigidMotion motion(int driver) const;
 
   int body(std::string_view name) const;  ///< the number of a body, in the order of the scene
-  /// Nodes of all bodies [m], as rows: those of a body come one after the other.
-  int node_count() const;
+  int node_count() const;                 ///< rows of the views of nodes, those of a body one after the other
   int first_node(int body) const;
   int node_count(int body) const;
 
@@ -90,25 +90,28 @@ class Stepper {
   Rows velocities();     ///< (nodes × 3) [m/s]
   Rows positions();      ///< (nodes × 3) [m]
   Rows rotations();      ///< Q of frames since rest, by rows; I + F − I of affine ones, I of vertices (nodes × 9)
-  /// Forces with which constraints hold or move nodes (nodes × 3) [N]; where they hold the material of scattered
-  /// frames, on the nearest frame.
+  /// Forces of constraints on the nodes that they hold or move, with weight and inertia (nodes × 3) [N]; where they
+  /// hold the material of scattered frames, on the nearest frame. A snapshot, a return to it and a step that failed do
+  /// not change them.
   Rows forces();
 
-  /// The surface of a body, for drawing and for contact: corners of its triangles, and the places of its points.
+  /// The surface of a body: corners of its triangles, as rows of surface_points(), and the places of these. A line has
+  /// points alone; the surface of a shell is its middle.
   std::span<const std::array<int, 3>> surface_triangles(int body) const;
   Rows surface_points(int body);  ///< (points × 3) [m]
 
-  /// Integration points of a body that are turned inside out: with the laws of some elements an equilibrium, and no
-  /// state of matter. A run in statics ends as "inverted" there.
+  /// How many integration points of a body are turned inside out: above 0 its state is not physical, though some laws
+  /// have an equilibrium there. A run in statics ends as "inverted".
   int inverted_points(int body);
 
   /// The value of a probe of the scene: one number, 3, 9 by rows, or as many for each of its places.
   /// @throws StateError  a value is not finite
   std::vector<double> probe(std::string_view name);
 
-  /// Preconditioners are made anew after a snapshot, so that what follows it is the same, bit for bit, as what follows
-  /// restore().
+  /// Keeps the state, to which this stepper may return any number of times. What follows is the same bit for bit, for
+  /// preconditioners are made anew after both.
   Snapshot snapshot();
+  /// @throws InputError  an empty snapshot, or one of another stepper
   void restore(const Snapshot& snapshot);
 
  private:

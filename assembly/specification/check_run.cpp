@@ -75,6 +75,9 @@ double step_count(double duration, double time_step) { return std::max(1.0, std:
 void check_run(Scene& scene) {
   RunCheck check(scene.solver);
   check.look();
+  if (const std::optional<ControlledDisplacement>& c = scene.solver.controlled;
+      c && std::none_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) { return b.name == c->body; }))
+    check.found.push_back({c->at_place, fmt::format("is on the body \"{}\", which is not there", c->body)});
   if (scene.states_need())
     check.found.push_back({scene.solver.place, "states a need, and leaves its resolution to `fascia run`; choose it"});
   if (scene.output.estimate)

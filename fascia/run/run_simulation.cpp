@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 namespace fascia {
 
@@ -156,22 +157,35 @@ class Steps {
   void save(double time, int step, ReachedStep& reached, bool fields) {
     const Clock::time_point start = Clock::now();
     const double processor = fascia::processor_seconds();
+    if (const std::optional<ShownStep> shown = saved(time, step, reached, fields)) {
+      listener_.show(time, shown->at, shown->values);  // what this throws is the listener's own
+      if (fields) saved_time_ = time;
+      if (fields) saved_step_ = step;
+    }
+    end_.output_seconds += seconds_since(start);
+    output_processor_ += fascia::processor_seconds() - processor;
+  }
+
+  /// A step with the values of its probes.
+  struct ShownStep {
+    ProbedState at;
+    ProbeValues values;
+  };
+  /// Reads a step and saves it; none where it cannot be shown.
+  std::optional<ShownStep> saved(double time, int step, ReachedStep& reached, bool fields) {
     try {
       acting_is_known_ = false;
       const State& at = reached.state();
       reached.read(parts_, end_.acting);
       acting_is_known_ = true;
       const ProbedState probed{&at, &end_.acting, 0, time_step_};
-      const ProbeValues values = probe_values(s_, probed);  // before a file is written: all of a state, or nothing
+      ProbeValues values = probe_values(s_, probed);  // before a file is written: all of a state, or nothing
       if (fields) listener_.save(path() ? step : time, at);
-      listener_.show(time, probed, values);
-      if (fields) saved_time_ = time;
-      if (fields) saved_step_ = step;
+      return ShownStep{probed, std::move(values)};
     } catch (const StateError& e) {
       not_shown_ = e.what();
+      return std::nullopt;
     }
-    end_.output_seconds += seconds_since(start);
-    output_processor_ += fascia::processor_seconds() - processor;
   }
 
   /// No step led there: the start of explicit runs, and where a run broke off.

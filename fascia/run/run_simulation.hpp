@@ -31,7 +31,6 @@ class RunListener {
   /// A row of probes: at each state that is saved, of statics and paths at each step.
   /// @param time    load factor, time [s], number of the mode
   /// @param values  of all probes, finite
-  /// @throws StateError  as save()
   virtual void show(double time, const ProbedState& at, const ProbeValues& values) = 0;
   /// Warnings that are worth telling before the run goes on.
   virtual void warned(Warnings&) {}

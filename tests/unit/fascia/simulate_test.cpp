@@ -186,6 +186,12 @@ TEST(Simulate, WhatTheCallerThrowsLeavesIt) {
     EXPECT_THROW(simulate(scene_of(scene), [](const RunState&) -> bool { throw Own{}; }), Own) << scene;
 }
 
+/// Also where it is of a type that a run itself ends by.
+TEST(Simulate, AStateErrorOfTheCallerLeavesItToo) {
+  EXPECT_THROW(simulate(scene_of("settling_beam"), [](const RunState&) -> bool { throw StateError("mine"); }),
+               StateError);
+}
+
 TEST(Simulate, StepsFollowFromTheDuration) {
   Scene scene = scene_of("settling_beam", {"solver.backend='cpu'"});
   scene.solver.time_step = 0.01;
@@ -226,6 +232,11 @@ TEST(Simulate, WhatARunLacksIsNamed) {
        }},
       {"needs a displacement to control",
        [](Scene& s) { s.solver.kind = SolverKind::statics, s.solver.control = StaticControl::displacement; }},
+      {"is on the body \"orgn\", which is not there",
+       [](Scene& s) {
+         s.solver.kind = SolverKind::statics, s.solver.control = StaticControl::displacement;
+         s.solver.controlled = ControlledDisplacement{"orgn", {}, {}, {{1, 0, 0}}, {}};
+       }},
       {"an estimate of errors", [](Scene& s) { s.output.estimate = EstimateBy::finer; }},
   };
   for (const Case& c : cases) {

@@ -59,6 +59,33 @@ TEST(Snapshots, WhatFollowsIsTheSameBitForBit) {
     }
 }
 
+/// What acts at a state has the inertia of the step that led there. A program that keeps a state, comes back to it, or
+/// tries a step that fails sees no jump of the forces.
+TEST(Snapshots, ForcesStayWhereTheStateStays) {
+  test::take_host_as_device();
+  for (const char* backend : {"cpu", "cuda"})
+    for (const SolverKind kind : {SolverKind::implicit_euler, SolverKind::bdf2, SolverKind::newmark,
+                                  SolverKind::midpoint, SolverKind::statics}) {
+      Scene scene = test::driven_block(kind);
+      scene.solver.backend = backend;
+      Stepper stepper(scene);
+      go_on(stepper, 0, 3, 0.01);
+      const std::vector<double> force = stepper.probe("force");
+      const Snapshot snapshot = stepper.snapshot();
+      EXPECT_TRUE(same_bits(stepper.probe("force"), force)) << static_cast<int>(kind);
+      const Rows forces = stepper.forces();
+      const std::vector<double> all = copied(forces);
+      stepper.set_motion(0, {{{1e3, 0, 0}}, {{0, 0, 3}}, {}});
+      const bool converged = stepper.step(0.01).converged;
+      EXPECT_TRUE(converged || same_bits(stepper.probe("force"), force));
+      stepper.restore(snapshot);
+      go_on(stepper, 3, 2, 0.01);
+      stepper.restore(snapshot);
+      EXPECT_TRUE(same_bits(stepper.probe("force"), force)) << static_cast<int>(kind);
+      EXPECT_TRUE(same_bits(copied(forces), all)) << static_cast<int>(kind);
+    }
+}
+
 TEST(Snapshots, OfAGpuToo) {
   test::take_host_as_device();
   for (const SolverKind kind : {SolverKind::bdf2, SolverKind::midpoint}) {
