@@ -1,6 +1,7 @@
 // Runs that are stopped, killed, or cannot write: what was saved stays, whole, and the next run finds its way.
 #include "tests/robustness/scene_runs.hpp"
 #include "tests/support/cases.hpp"
+#include "tests/support/crushed_cube.hpp"
 #include "tests/support/paths.hpp"
 
 #include <chrono>
@@ -192,26 +193,7 @@ TEST_F(InterruptedRuns, AtRandomMomentsLeaveWholeResults) {
 
 /// Good states, and then one that is not finite.
 TEST_F(InterruptedRuns, AStateThatIsNotFiniteLosesNoOther) {
-  write("crushed.toml", R"(
-[bodies.c]
-model = "hexahedra"
-domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
-density = 1000
-material = { young = 1e4, poisson = 0.0 }
-[[constraints]]
-body = "c"
-where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
-fix = "all"
-[[constraints]]
-body = "c"
-where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
-move = { translate = [-1, 0, 0] }
-over = "1 s"
-[solver]
-kind = "implicit-euler"
-time_step = "40 ms"
-duration = "1 s"
-)");
+  write("crushed.toml", kCrushedCube);
   const ProgramResult result = fascia({"run", "crushed.toml", "--output", "out"});
   EXPECT_EQ(result.status, 3) << result.err;
   expect_whole("crushed", 2);
@@ -220,33 +202,8 @@ duration = "1 s"
 
 /// A probe without a value ends a run like a field without one, before anything of the state is written.
 TEST_F(InterruptedRuns, AProbeThatIsNotFiniteLosesNoOther) {
-  write("crushed.toml", R"(
-[bodies.c]
-model = "hexahedra"
-domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
-density = 1000
-material = { young = 1e4, poisson = 0.0 }
-[[constraints]]
-body = "c"
-where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
-fix = "all"
-[[constraints]]
-body = "c"
-where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
-move = { translate = [-1, 0, 0] }
-over = "1 s"
-[solver]
-kind = "implicit-euler"
-time_step = "40 ms"
-duration = "1 s"
-[output]
-every_steps = 1
-fields = ["displacement"]
-[probes.s]
-body = "c"
-at = [0.5, 0.5, 0.5]
-quantity = "stress"
-)");
+  write("crushed.toml",
+        std::string(kCrushedCube) + kStressProbe + "[output]\nevery_steps = 1\nfields = [\"displacement\"]\n");
   const ProgramResult result = fascia({"run", "crushed.toml", "--output", "out"});
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_NE(result.err.find("probe \"s\": stress is not finite"), std::string::npos) << result.err;

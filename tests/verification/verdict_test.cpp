@@ -1,4 +1,5 @@
 // What a run says of its end: stable or not, inside out, within tolerance, and what it keeps where it fails.
+#include "tests/support/crushed_cube.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/solved_scene.hpp"
 
@@ -269,30 +270,7 @@ quantity = "momentum"
 
 /// Pressed until J = 0: the states before are kept, and the status says that the run did not end well.
 TEST(Failure, KeepsWhatWasComputedBeforeAStateThatCannotBeShown) {
-  const Ended run(R"(
-[bodies.c]
-model = "hexahedra"
-domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
-density = 1000
-material = { young = 1e4, poisson = 0.0 }
-[[constraints]]
-body = "c"
-where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
-fix = "all"
-[[constraints]]
-body = "c"
-where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
-move = { translate = [-1, 0, 0] }
-over = "1 s"
-[solver]
-kind = "implicit-euler"
-time_step = "40 ms"
-duration = "1 s"
-[probes.s]
-body = "c"
-at = [0.5, 0.5, 0.5]
-quantity = "stress"
-)");
+  const Ended run(std::string(kCrushedCube) + kStressProbe);
   EXPECT_FALSE(run.ok());
   EXPECT_EQ(run.said(), "diverged");
   EXPECT_NE(run.message().find("not finite"), std::string::npos) << run.message();

@@ -4,6 +4,7 @@
 #include "app/reader/parse.hpp"
 #include "fascia/scene_file.hpp"
 #include "fascia/stepper.hpp"
+#include "tests/support/crushed_cube.hpp"
 #include "tests/support/paths.hpp"
 
 #include <gtest/gtest.h>
@@ -120,33 +121,8 @@ TEST(Simulate, EndsWhereItIsTold) {
   EXPECT_EQ(seen, 3);
 }
 
-/// A cube pressed flat: J = 0 in the last step, where stresses have no value.
 TEST(Simulate, NoProbeIsANumberThatIsNone) {
-  const Scene scene = app::parse_scene_text(R"(
-[bodies.c]
-model = "hexahedra"
-domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [1, 1, 1] } }
-density = 1000
-material = { young = 1e4, poisson = 0.0 }
-[[constraints]]
-body = "c"
-where = { box = { min = [-0.1, -0.1, -0.1], max = [0.01, 2, 2] } }
-fix = "all"
-[[constraints]]
-body = "c"
-where = { box = { min = [0.99, -0.1, -0.1], max = [1.01, 2, 2] } }
-move = { translate = [-1, 0, 0] }
-over = "1 s"
-[solver]
-kind = "implicit-euler"
-time_step = "40 ms"
-duration = "1 s"
-[probes.s]
-body = "c"
-at = [0.5, 0.5, 0.5]
-quantity = "stress"
-)",
-                                            "cube.toml", {});
+  const Scene scene = app::parse_scene_text(std::string(test::kCrushedCube) + test::kStressProbe, "cube.toml", {});
   double last = -1;
   const RunOutcome run = simulate(scene, [&](const RunState& state) {
     for (const double value : state.probe("s")) EXPECT_TRUE(std::isfinite(value));
