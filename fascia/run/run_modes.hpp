@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fascia/run/run_simulation.hpp"
+#include "fascia/run/run_listener.hpp"
 
 namespace fascia {
 
