@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"dynamics", "struck_beam", {"solver.steps=40"}}, Case{"immersed", "traction_free_ends", {}},
                       Case{"modes", "free_modes", {}}, Case{"path", "snap_through", {}},
                       Case{"explicit", "explicit_cantilever", {"solver.time_step='auto'"}},
-                      Case{"coupled", "bone_plate", {}},
+                      Case{"coupled", "ligament_springs", {}},
                       Case{"scattered", "scattered_cantilever", {"bodies.beam.frames.poisson_disk=1.0"}}),
     [](const auto& c) { return std::string(c.param.name); });
 
