@@ -25,7 +25,7 @@ std::string not_as_asked(const Simulation& simulation, Backend backend);
 
 const char* name_of(Backend backend);
 
-/// Whether an error is one of a device, of a type that programs do not see.
+/// Says that an error is one of a device, of a type that programs do not see.
 bool is_of_device(const std::exception& error);
 
 }  // namespace fascia

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <utility>
+
 namespace fascia::app {
 
 nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>& values) {
@@ -23,6 +25,16 @@ nlohmann::json probe_json(const ResolvedProbe& probe, const std::vector<double>&
   nlohmann::json all = nlohmann::json::array();
   for (std::size_t i = 0; i < values.size(); i += size) all.push_back(one(i));
   return all;
+}
+
+void take_row(const Simulation& s, const ProbeValues& row, std::vector<nlohmann::json>& summary) {
+  for (std::size_t i = 0; i < s.probes.size(); ++i) {
+    nlohmann::json value = probe_json(s.probes[i], row[i]);
+    if (s.probes[i].probe->quantity == Quantity::frequency)
+      summary[i].push_back(std::move(value));
+    else
+      summary[i] = std::move(value);
+  }
 }
 
 }  // namespace fascia::app

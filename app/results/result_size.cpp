@@ -26,7 +26,7 @@ struct Counts {
   bool at_most = false;
 };
 
-/// As many states as SaveRule of fascia/run saves.
+/// Counts as many states as SaveRule of fascia/run saves.
 Counts counts_of(const Scene& scene) {
   const Solver& solver = scene.solver;
   if (solver.kind == SolverKind::modes) return {1.0 * solver.modes, 1.0 * solver.modes};

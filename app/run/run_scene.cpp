@@ -58,14 +58,7 @@ class ShownRun final : public RunListener {
   void show(double time, const ProbedState& at, const ProbeValues& values) override {
     files_.add_probes(time, values, at.time_step);
     if (estimate_) estimate_->add(time, *at.state);
-    if (s_.scene.solver.kind != SolverKind::modes) return;
-    for (std::size_t i = 0; i < s_.probes.size(); ++i) {
-      const nlohmann::json value = probe_json(s_.probes[i], values[i]);
-      if (s_.probes[i].probe->quantity == Quantity::frequency)
-        modes_[i].push_back(value);
-      else
-        modes_[i] = value;
-    }
+    if (s_.scene.solver.kind == SolverKind::modes) take_row(s_, values, modes_);
   }
   void warned(Warnings& warnings) override { tell(warnings, s_.scene.path); }
   void ended(const SolverChoice* choice) override {

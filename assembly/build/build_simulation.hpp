@@ -10,7 +10,7 @@ namespace fascia {
 /// @throws FileError, InputError  meshes
 Simulation build_simulation(Scene scene);
 
-/// The same for a scene that no reader has checked: everything that its description shows is looked at first.
+/// Looks at everything that the description of a scene shows, for no reader has, and turns it into a model.
 /// @throws SceneError  all that is wrong there, by key; and as build_simulation()
 Simulation build_checked(Scene scene);
 

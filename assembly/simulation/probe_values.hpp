@@ -23,7 +23,7 @@ ReachedParts needed_parts(const Simulation& s);
 /// Forces by degrees of freedom that hold the constrained ones, in the axes of the world; those of free ones are zero.
 std::vector<double> held_forces(const Simulation& s, const ReachedForces& acting);
 
-/// Of each probe its numbers in a row.
+/// The numbers of each probe, in a row.
 using ProbeValues = std::vector<std::vector<double>>;
 
 /// Values of all probes, of each as numbers in a row; `shape` says how they nest (vector 3, matrix 3×3, list).

@@ -13,7 +13,7 @@ namespace fascia {
 class RunListener {
  public:
   virtual ~RunListener() = default;
-  /// Whether the run is to end: asked after each step and after each state that was shown, sometimes twice.
+  /// Says that the run is to end. It is asked after each step and after each state that was shown, sometimes twice.
   virtual bool stops() { return false; }
   /// All is set up, and steps follow; not of modes.
   virtual void begins() {}

@@ -85,7 +85,7 @@ class Steps {
     };
   }
 
-  /// Whether the GPU did it.
+  /// Has a GPU take the steps, and says that it did.
   bool on_gpu(const gpu::DeviceObserver& look, const std::function<bool(const StepInfo&)>& observed = {}) {
     if (end_.backend != Backend::cuda) return false;
     const auto warn = [this](const std::string& text) {
@@ -205,7 +205,7 @@ class Steps {
     listener_.ended(&choice);
   }
 
-  /// What was computed up to a failure is a result too.
+  /// Saves the state where a run failed, for what was computed up to there is a result too.
   void save_the_last() {
     RunReport& run = end_.report;
     if (!not_shown_.empty()) {

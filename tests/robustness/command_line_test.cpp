@@ -1,4 +1,5 @@
 #include "tests/robustness/scene_runs.hpp"
+#include "tests/support/column.hpp"
 
 #include <csignal>
 
@@ -205,28 +206,11 @@ TEST_F(CommandLine, WritesWhatThereIsWhenItDoesNotConverge) {
 
 /// A column under twice its Euler load, solved from its straight state.
 TEST_F(CommandLine, ExitsWith3WhereTheEndIsUnstableUnlessTheSceneAcceptsIt) {
-  write("column.toml", R"(
-[bodies.c]
-model = "hexahedra"
-order = 2
-domain = { box = { min = [0, -0.05, -0.05], max = [2, 0.05, 0.05], cells = [10, 1, 1] } }
-density = 1000
-material = { young = 1e6, poisson = 0.0 }
-[[constraints]]
-body = "c"
-where = { box = { min = [-0.1, -1, -1], max = [0.0001, 2, 2] } }
-fix = "all"
-[[loads]]
-body = "c"
-where = { box = { min = [1.9999, -1, -1], max = [2.01, 2, 2] } }
-total_force = [-10.28, 0, 0]
-[solver]
-kind = "static"
-load_steps = 2
-)");
-  EXPECT_EQ(fascia({"run", "column.toml", "--output", "out"}).status, 3);
+  write("column.toml", column(2 * kEuler));
+  const std::string steps = "solver.load_steps=2", accept = "solver.accept=['unstable']";
+  EXPECT_EQ(fascia({"run", "column.toml", "--output", "out", "--set", steps}).status, 3);
   EXPECT_EQ(summary("out")["status"], "unstable");
-  EXPECT_EQ(fascia({"run", "column.toml", "--output", "out", "--set", "solver.accept=['unstable']"}).status, 0);
+  EXPECT_EQ(fascia({"run", "column.toml", "--output", "out", "--set", steps, "--set", accept}).status, 0);
 }
 
 TEST_F(CommandLine, ExitsWith0WhereStepsAboveTheToleranceAreAskedFor) {

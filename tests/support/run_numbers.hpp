@@ -14,7 +14,7 @@ namespace fascia::test {
 /// "key.path=value", as after --set.
 using Settings = std::vector<std::string>;
 
-/// What a run of a scene tells: its summary and its rows of probes.
+/// The numbers that a run of a scene tells: its summary and its rows of probes.
 class RunNumbers {
  public:
   /// It came to its end.

@@ -23,15 +23,8 @@ class Rows final : public RunListener {
   void stepped(const StepInfo& step) override { seconds_.add(step.seconds); }
   void show(double time, const ProbedState& at, const ProbeValues& values) override {
     std::vector<double> row{time};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      row.insert(row.end(), values[i].begin(), values[i].end());
-      const ResolvedProbe& probe = simulation_.probes[i];
-      const nlohmann::json value = app::probe_json(probe, values[i]);
-      if (probe.probe->quantity == Quantity::frequency)
-        values_[i].push_back(value);
-      else
-        values_[i] = value;
-    }
+    for (const std::vector<double>& of_probe : values) row.insert(row.end(), of_probe.begin(), of_probe.end());
+    app::take_row(simulation_, values, values_);
     if (simulation_.scene.solver.time_step_automatic) row.push_back(at.time_step);
     rows_.push_back(std::move(row));
   }

@@ -21,7 +21,7 @@ class SolvedScene : public RunNumbers {
   /// @param threads  0: as the scene says
   explicit SolvedScene(const std::string& scene, Settings settings = {}, int threads = 0);
 
-  /// The same, and a scene as text, with any end.
+  /// A file, or a text, is solved to any end.
   static SolvedScene of_file(const std::string& scene, Settings settings = {}, int threads = 0);
   static SolvedScene of_text(const std::string& text, Settings settings = {});
 

@@ -94,7 +94,7 @@ TEST(ExplicitScenes, DifferenceFallsWithTheSquareOfTheStep) {
 
 SolvedScene run_with(const Settings& settings) { return SolvedScene::of_file("explicit_cantilever", settings, 1); }
 
-/// What is said of a scene with a step far above the limit.
+/// A scene with a step far above the limit is refused so.
 struct Refusal {
   std::string status, message;
   double limit = NAN;  ///< "above the stable step, LIMIT s"

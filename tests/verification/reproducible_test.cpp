@@ -1,4 +1,4 @@
-// The same bits for any number of threads, by the program and by the library.
+// Results have the same bits for any number of threads, by the program and by the library.
 #include "fascia/scene_file.hpp"
 #include "fascia/simulate.hpp"
 #include "tests/support/scene_run.hpp"

@@ -22,7 +22,7 @@ std::string scene_file(const std::string& name) {
   return (fascia::test::source_dir() / "scenes" / (name + ".toml")).string();
 }
 
-/// What `fascia check` says.
+/// Runs `fascia check`.
 ProgramResult check(const std::string& scene, const Settings& settings) {
   std::vector<std::string> line{fascia::test::program(), "check", scene_file(scene)};
   for (const std::string& s : settings) line.insert(line.end(), {"--set", s});

@@ -1,4 +1,5 @@
 // What a run says of its end: stable or not, inside out, within tolerance, and what it keeps where it fails.
+#include "tests/support/column.hpp"
 #include "tests/support/crushed_cube.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/solved_scene.hpp"
@@ -28,35 +29,6 @@ struct Ended {
     return run.summary()["probes"][probe]["value"][static_cast<std::size_t>(k)].get<double>();
   }
 };
-
-/// A column 2 m long and 0.1 m wide, clamped at its foot. Euler: π² E I / (4 L²) = 5.140 N for 1 MPa.
-std::string column(double force) {
-  return R"(
-[bodies.c]
-model = "hexahedra"
-order = 2
-domain = { box = { min = [0, -0.05, -0.05], max = [2, 0.05, 0.05], cells = [20, 2, 2] } }
-density = 1000
-material = { young = 1e6, poisson = 0.0 }
-[[constraints]]
-body = "c"
-where = { box = { min = [-0.1, -1, -1], max = [0.0001, 2, 2] } }
-fix = "all"
-[[loads]]
-body = "c"
-where = { box = { min = [1.9999, -1, -1], max = [2.01, 2, 2] } }
-total_force = [)" +
-         std::to_string(-force) + R"(, 0, 0]
-[solver]
-kind = "static"
-[probes.tip]
-body = "c"
-at = [2, 0, 0]
-quantity = "displacement"
-)";
-}
-
-constexpr double kEuler = 5.140;
 
 TEST(Stability, OfAColumnIsTheSameByFactorAndByConjugateGradients) {
   std::printf("load over Euler's   cholesky        cg\n");

@@ -179,7 +179,7 @@ TEST(Simulate, StepsFollowFromTheDuration) {
   EXPECT_EQ(run.time, 0.035);
 }
 
-/// What a reader of files refuses is refused here too.
+/// A run refuses what a reader of files refuses.
 TEST(Simulate, WhatARunLacksIsNamed) {
   struct Case {
     const char* said;

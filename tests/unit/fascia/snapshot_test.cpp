@@ -59,7 +59,7 @@ TEST(Snapshots, WhatFollowsIsTheSameBitForBit) {
     }
 }
 
-/// What acts at a state has the inertia of the step that led there. A program that keeps a state, comes back to it, or
+/// Forces at a state have the inertia of the step that led there. A program that keeps a state, comes back to it, or
 /// tries a step that fails sees no jump of the forces.
 TEST(Snapshots, ForcesStayWhereTheStateStays) {
   test::take_host_as_device();
