@@ -6,6 +6,7 @@
 #include "fascia/scene.hpp"
 
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,11 +66,14 @@ struct RunOutcome {
 ///              point, of dynamics the start, the states that Output::every or every_steps choose (25 a simulated
 ///              second where both are left out) and the last, of modes each shape. Where it returns false the run is
 ///              interrupted, unless that was the last state. What it throws leaves simulate().
+/// @param stop  asked before each iteration of Newton's method, and after each step and shape: a run that is told to
+///              stop is interrupted, at the last step that it finished
 /// @throws SceneError    what is wrong with the scene: the place is the key of the field
 /// @throws FileError, InputError  meshes; more than memory or a GPU can number
 /// @throws BackendError  a GPU that was asked for and is not there, has too little memory, or does not compute the
 /// scene
 /// @throws StateError    a mode with a value that is not finite
-RunOutcome simulate(Scene scene, const std::function<bool(const RunState&)>& look = {});
+RunOutcome simulate(Scene scene, const std::function<bool(const RunState&)>& look = {},
+                    const std::stop_token& stop = {});
 
 }  // namespace fascia

@@ -2,6 +2,7 @@
 
 #include "assembly/actions/actions.hpp"
 #include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/held_forces.hpp"
 #include "assembly/simulation/matter.hpp"
 #include "assembly/simulation/probe_values.hpp"
 #include "assembly/simulation/solver_settings.hpp"
@@ -12,6 +13,8 @@
 #include "core/math/rotation.hpp"
 #include "core/run/model_stepper.hpp"
 #include "fascia/choose_backend.hpp"
+#include "fascia/run/state_views.hpp"
+#include "fascia/run/stopped.hpp"
 #include "gpu/run/run.hpp"
 
 #include <fmt/format.h>
@@ -68,17 +71,12 @@ struct Pose {
   Pose about(const Vec3d& c) const { return {D, u + D * (c - center), c}; }
 };
 
-/// A view that was asked for, which every step fills again.
-struct Buffer {
-  bool wanted = false;
-  std::vector<double> values;
-};
-
 }  // namespace
 
 struct Snapshot::Data {
   SteppingSnapshot steps;
-  std::vector<Pose> from, to;          ///< of drivers
+  std::vector<Pose> from, to;  ///< of drivers
+  std::vector<double> dials, next_dials;
   ReachedForces reached;               ///< with the inertia of the step that led there
   std::shared_ptr<const int> stepper;  ///< whose it is
 };
@@ -88,8 +86,12 @@ struct Stepper::Parts {
       : simulation(built(std::move(scene))), pool(simulation.scene.solver.threads), from(simulation.drivers.size()) {
     add_imperfection(simulation);
     to = from;
+    next_dials = simulation.dial_values;
     const Solver& solver = simulation.scene.solver;
     SolverSettings settings = settings_of(solver);
+    settings.iterating = [this](const IterationInfo&) {
+      if (stop.stop_requested()) throw Stopped();
+    };
     const SteppingSettings stepping{solver.kind == SolverKind::statics, scheme_of(solver.kind), solver.load_steps};
     backend = solver.backend == "cuda" ? choose_backend(simulation) : Backend::cpu;
     if (const std::string lost = not_as_asked(simulation, backend); !lost.empty())
@@ -97,8 +99,6 @@ struct Stepper::Parts {
     const State& start = simulation.initial;
     steps = backend == Backend::cuda ? gpu::make_stepper(simulation.model, start, settings, stepping)
                                      : make_stepper(simulation.model, start, pool, settings, stepping);
-    surfaces.resize(simulation.bodies.size());
-    attached.resize(simulation.bodies.size());
   }
 
   bool statics() const { return simulation.scene.solver.kind == SolverKind::statics; }
@@ -106,9 +106,11 @@ struct Stepper::Parts {
   /// Factors of all schedules during a step.
   FactorFunction factors(double start, double dt) const {
     return [this, start, dt](double time) {
-      std::vector<double> f = simulation.factors(statics() ? std::min(time, 1.0) : time);
       const bool ends = dt > 0 && time >= start + dt;
       const double part = ends ? 1.0 : dt > 0 ? std::clamp((time - start) / dt, 0.0, 1.0) : 0.0;
+      std::vector<double> dials = simulation.dial_values;
+      for (std::size_t d = 0; d < dials.size(); ++d) dials[d] = std::lerp(dials[d], next_dials[d], part);
+      std::vector<double> f = simulation.factors(statics() ? std::min(time, 1.0) : time, dials);
       for (const Driver& driver : simulation.drivers)
         f[at(simulation.model.motions[at(driver.motion)].schedule)] = part;
       return f;
@@ -145,69 +147,30 @@ struct Stepper::Parts {
     has_forces = parts.forces;
     return reached;
   }
-  const ReachedForces& acting() { return acting(forces.wanted); }
+  const ReachedForces& acting() { return acting(views.has_forces()); }
 
-  /// Drivers have arrived, or stay where they were. What is read from here on stands still.
+  /// Drivers and dials have arrived, or stay where they were. What is read from here on stands still.
   void end_step(bool converged) {
     (converged ? from : to) = converged ? to : from;
+    (converged ? simulation.dial_values : next_dials) = converged ? next_dials : simulation.dial_values;
     place_motions(from);
     if (converged) read = false;  // else the state, and what acted there, stays
   }
 
   /// Fills what was asked for with the present state.
   void refresh() {
-    const bool none = !positions.wanted && !rotations.wanted && !forces.wanted && !state_is_seen &&
-                      std::none_of(surfaces.begin(), surfaces.end(), [](const Buffer& b) { return b.wanted; });
-    if (none) return;
-    const State& state = this->state();
-    if (positions.wanted) fill_positions(state);
-    if (rotations.wanted) fill_rotations(state);
-    if (forces.wanted) fill_forces();
-    for (std::size_t b = 0; b < surfaces.size(); ++b)
-      if (surfaces[b].wanted) fill_surface(b, state);
+    if (!views.any() && !state_is_seen) return;
+    if (views.has_forces()) acting();
+    views.fill(state(), reached);
   }
 
-  void fill_positions(const State& state) {
-    double* out = positions.values.data();
-    for (std::size_t i = 0; i < state.u.size(); ++i) {
-      const Vec3d x = simulation.model.rest_position[i] + state.u[i];
-      for (int k = 0; k < 3; ++k) *out++ = x[k];
-    }
-  }
-  void fill_rotations(const State& state) {
-    double* out = rotations.values.data();
-    for (std::size_t i = 0; i < state.u.size(); ++i) {
-      const Mat3d Q = Mat3d::identity() + state.D[i];
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) *out++ = Q(r, c);
-    }
-  }
-  void fill_forces() {
-    const std::vector<double> held = held_forces(simulation, acting());
-    for (int i = 0; i < simulation.model.node_count(); ++i)
-      std::copy_n(held.data() + simulation.model.points.dofs.begin(i), 3, forces.values.data() + 3 * at(i));
-    for (const TetheredMaterial& m : simulation.tethered) {
-      if (squared_norm(simulation.model.tethers[at(m.tether)].arm) > 0) continue;  // a couple
-      for (int k = 0; k < 3; ++k) forces.values[at(3 * m.frame + k)] += reached.tether_forces[at(m.tether)][k];
-    }
-  }
-  void fill_surface(std::size_t body, const State& state) {
-    const std::vector<Vec3d>& rest = simulation.bodies[body].body->surface().points;
-    double* out = surfaces[body].values.data();
-    for (std::size_t p = 0; p < rest.size(); ++p) {
-      const Vec3d x = rest[p] + field_at(attached[body][p], state).u;
-      for (int k = 0; k < 3; ++k) *out++ = x[k];
-    }
-  }
-
-  Rows nodes_view(Buffer& buffer, int columns) {
-    const int rows = simulation.model.node_count();
-    if (!std::exchange(buffer.wanted, true)) buffer.values.resize(at(rows) * at(columns));
-    return {buffer.values.data(), rows, columns};
-  }
   void require_driver(int driver) const {
     if (driver < 0 || at(driver) >= to.size())
       throw InputError(fmt::format("there is no driver number {}; the scene has {}", driver, to.size()));
+  }
+  void require_dial(int dial) const {
+    if (dial < 0 || at(dial) >= next_dials.size())
+      throw InputError(fmt::format("there is no dial number {}; the scene has {}", dial, next_dials.size()));
   }
   void require_body(int body) const {
     if (body < 0 || at(body) >= simulation.bodies.size())
@@ -220,10 +183,10 @@ struct Stepper::Parts {
   Backend backend = Backend::cpu;
   std::unique_ptr<ModelStepper> steps;
   std::vector<Pose> from, to;  ///< of drivers: where they are, and where the next step takes them
-  Buffer positions, rotations, forces;
-  std::vector<Buffer> surfaces;
-  std::vector<std::vector<Attachment>> attached;  ///< of the points of surfaces that were asked for
-  bool state_is_seen = false;                     ///< displacements or velocities were asked for
+  std::vector<double> next_dials;
+  std::stop_token stop;  ///< of the step that runs
+  StateViews views{simulation};
+  bool state_is_seen = false;  ///< displacements or velocities were asked for
   ReachedForces reached;
   bool read = false;        ///< it is that of the present state
   bool has_forces = false;  ///< so far as it is read
@@ -236,22 +199,26 @@ Stepper::~Stepper() = default;
 Stepper::Stepper(Stepper&&) noexcept = default;
 Stepper& Stepper::operator=(Stepper&&) noexcept = default;
 
-StepReport Stepper::step(double dt) {
+StepReport Stepper::step(double dt, const std::stop_token& stop) {
   if (!(dt > 0) || !std::isfinite(dt)) throw InputError(fmt::format("a step of {} s; must be above 0", dt));
   if (time() + dt == time())
     throw InputError(fmt::format("a step of {} s is lost beside the time, {} s; take a longer one", dt, time()));
   Parts& p = *parts_;
   p.place_motions(p.to);
   const Clock::time_point start = Clock::now();
+  StepReport report;
   RunReport run;
+  p.stop = stop;
   try {
     run = translated([&] { return p.steps->step(p.factors(time(), dt), dt); });
+    report.converged = run.status == RunStatus::converged;
+  } catch (const Stopped& e) {
+    report.stopped = true;
+    run.message = e.what();
   } catch (...) {
     p.end_step(false);
     throw;
   }
-  StepReport report;
-  report.converged = run.status == RunStatus::converged;
   report.at_limit = run.steps_at_limit > 0;
   report.stable = !run.stability.is_unstable();
   report.message = run.message;
@@ -293,6 +260,42 @@ RigidMotion Stepper::motion(int driver) const {
   return {pose.u, rotation_vector(pose.D), pose.center};
 }
 
+Wrench Stepper::driver_force(int driver, const std::optional<Vec3d>& about) {
+  Parts& p = *parts_;
+  p.require_driver(driver);
+  const Driver& of = p.simulation.drivers[at(driver)];
+  if (about && !is_finite(*about))
+    throw InputError(fmt::format("the point for the moment of the driver \"{}\" is not finite", of.name));
+  const Pose& pose = p.from[at(driver)];
+  const Wrench w =
+      force_of_motion(p.simulation, p.state(), p.acting(true), of.motion, about.value_or(pose.center + pose.u));
+  if (!is_finite(w.force) || !is_finite(w.moment))
+    throw StateError(fmt::format("the force of the driver \"{}\" is not finite", of.name));
+  return w;
+}
+
+int Stepper::dial(std::string_view name) const {
+  const std::vector<Dial>& dials = parts_->simulation.dials;
+  const auto found = std::find_if(dials.begin(), dials.end(), [&](const Dial& d) { return d.name == name; });
+  if (found == dials.end())
+    throw InputError(fmt::format("no load, fluid or gravity names a dial \"{}\"; set Schedule::dial", name));
+  return static_cast<int>(found - dials.begin());
+}
+
+void Stepper::set_dial(int dial, double value) {
+  Parts& p = *parts_;
+  p.require_dial(dial);
+  if (!std::isfinite(value))
+    throw InputError(
+        fmt::format("the value of the dial \"{}\" is {}; must be finite", p.simulation.dials[at(dial)].name, value));
+  p.next_dials[at(dial)] = value;
+}
+
+double Stepper::dial_value(int dial) const {
+  parts_->require_dial(dial);
+  return parts_->simulation.dial_values[at(dial)];
+}
+
 int Stepper::body(std::string_view name) const {
   const std::vector<SimulatedBody>& bodies = parts_->simulation.bodies;
   const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const SimulatedBody& b) { return b.name == name; });
@@ -317,24 +320,9 @@ Rows Stepper::velocities() {
   parts_->state_is_seen = true;
   return {parts_->state().v[0].v, node_count(), 3};
 }
-Rows Stepper::positions() {
-  const bool filled = parts_->positions.wanted;
-  const Rows view = parts_->nodes_view(parts_->positions, 3);
-  if (!filled) parts_->fill_positions(parts_->state());
-  return view;
-}
-Rows Stepper::rotations() {
-  const bool filled = parts_->rotations.wanted;
-  const Rows view = parts_->nodes_view(parts_->rotations, 9);
-  if (!filled) parts_->fill_rotations(parts_->state());
-  return view;
-}
-Rows Stepper::forces() {
-  const bool filled = parts_->forces.wanted;
-  const Rows view = parts_->nodes_view(parts_->forces, 3);
-  if (!filled) parts_->fill_forces();
-  return view;
-}
+Rows Stepper::positions() { return parts_->views.positions(parts_->state()); }
+Rows Stepper::rotations() { return parts_->views.rotations(parts_->state()); }
+Rows Stepper::forces() { return parts_->views.forces(parts_->acting(true)); }
 
 std::span<const std::array<int, 3>> Stepper::surface_triangles(int body) const {
   parts_->require_body(body);
@@ -342,19 +330,7 @@ std::span<const std::array<int, 3>> Stepper::surface_triangles(int body) const {
 }
 Rows Stepper::surface_points(int body) {
   parts_->require_body(body);
-  Parts& p = *parts_;
-  const ModelBody& of = *p.simulation.bodies[at(body)].body;
-  const std::size_t count = of.surface().points.size();
-  Buffer& buffer = p.surfaces[at(body)];
-  if (!buffer.wanted) {
-    buffer.values.resize(3 * count);
-    std::vector<Attachment> attached;
-    for (std::size_t i = 0; i < count; ++i) attached.push_back(of.attach_surface(i));
-    p.attached[at(body)] = std::move(attached);
-    p.fill_surface(at(body), p.state());
-    buffer.wanted = true;
-  }
-  return {buffer.values.data(), static_cast<int>(count), 3};
+  return parts_->views.surface(at(body), parts_->state());
 }
 
 int Stepper::inverted_points(int body) {
@@ -375,8 +351,8 @@ Snapshot Stepper::snapshot() {
   const FactorFunction factors = p.factors(time(), 0);
   ReachedForces reached = p.acting(true);
   SteppingSnapshot steps = translated([&] { return p.steps->snapshot(factors); });
-  out.data_ =
-      std::make_shared<Snapshot::Data>(Snapshot::Data{std::move(steps), p.from, p.to, std::move(reached), p.identity});
+  out.data_ = std::make_shared<Snapshot::Data>(Snapshot::Data{std::move(steps), p.from, p.to, p.simulation.dial_values,
+                                                              p.next_dials, std::move(reached), p.identity});
   return out;
 }
 
@@ -387,6 +363,8 @@ void Stepper::restore(const Snapshot& snapshot) {
   if (data.stepper != p.identity) throw InputError("a snapshot of another stepper; take one of this one");
   p.from = data.from;
   p.to = data.to;
+  p.simulation.dial_values = data.dials;
+  p.next_dials = data.next_dials;
   p.place_motions(p.from);
   translated([&] { p.steps->restore(data.steps, p.factors(data.steps.state.time, 0)); });
   p.reached = data.reached;

@@ -1,12 +1,15 @@
 #pragma once
 
+#include "core/math/wrench.hpp"
 #include "fascia/backend.hpp"
 #include "fascia/rows.hpp"
 #include "fascia/scene.hpp"
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +28,7 @@ struct RigidMotion {
 struct StepReport {
   bool converged = false;  ///< false: the state stayed as it was
   bool at_limit = false;   ///< it converged only in that Solver::on_limit = proceed accepts it above the tolerance
+  bool stopped = false;    ///< it did not converge, for it was asked to stop
   bool stable = true;      ///< false: an equilibrium of statics is unstable; true also where that could not be told
   std::string message;     ///< why it did not converge, and what to try; by the keys of scene files
   double time = 0;         ///< that was reached [s]; in statics the load factor
@@ -64,9 +68,10 @@ class Stepper {
 
   /// Advances by dt [s], which may differ from step to step; in statics the load factor by dt: all loads grow until it
   /// is 1, and stay. A scheme that knows the step before starts anew after a step that failed.
+  /// @param stop  asked before each iteration of Newton's method: a step that is told to stop is one that failed
   /// @throws InputError    a step that is not above 0, or lost beside the time
   /// @throws BackendError  a device that is lost, or has no memory left; this and what reads the state
-  StepReport step(double dt);
+  StepReport step(double dt, const std::stop_token& stop = {});
   double time() const;  ///< [s]; in statics the load factor
   Backend backend() const;
   /// Sentences on what should be known of the scene although nothing is wrong.
@@ -80,6 +85,20 @@ class Stepper {
   void set_motion(int driver, const RigidMotion& motion);
   /// Where a driver is now; what it was told last shows after the step.
   RigidMotion motion(int driver) const;
+  /// Force and moment that a driver exerts on what it moves, with weight and inertia, in the axes in which it moves it;
+  /// the hand that holds it feels the opposite. Like forces(), they are those that led to the present state.
+  /// @param about  of the moment [m]; left out: where the driver's center is now
+  /// @throws StateError  they are not finite
+  Wrench driver_force(int driver, const std::optional<Vec3d>& about = {});
+
+  /// The number of the dial that loads, fluids or gravity name (Schedule::dial). @throws InputError  none does
+  int dial(std::string_view name) const;
+  /// Says by what the next step multiplies the factors of the schedules that name the dial, at its end; on the way
+  /// there it changes evenly, from 1 at the start. The value stays until it is told otherwise; after a step that failed
+  /// it is what it was before, and is to be told anew.
+  void set_dial(int dial, double value);
+  /// The value of a dial now; what it was told last shows after the step.
+  double dial_value(int dial) const;
 
   int body(std::string_view name) const;  ///< the number of a body, in the order of the scene
   int node_count() const;                 ///< rows of the views of nodes, those of a body one after the other

@@ -142,7 +142,7 @@ Constraint read_constraint(const TableReader& table, const std::vector<std::stri
     constraint.schedule = read_schedule(table);
   } else {
     read_fix(table, constraint);
-    table.refuse({"over", "profile"}, "is used only with move");
+    table.refuse({"over", "profile", "dial"}, "is used only with move");
     constraint.driver = table.text("driver").value_or("");
   }
   return constraint;

@@ -102,6 +102,7 @@ Schedule read_schedule(const TableReader& table) {
   Schedule schedule;
   schedule.over = table.number("over").value_or(0);
   schedule.has_over = table.has("over");
+  schedule.dial = table.text("dial").value_or("");
   const Value* profile = table.value("profile");
   if (!profile) return schedule;
   if (const Array* rows = profile->as_array())

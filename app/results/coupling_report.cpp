@@ -4,6 +4,7 @@
 #include "core/base/index.hpp"
 #include "core/executor/point_executor.hpp"
 #include "core/executor/spring_executor.hpp"
+#include "core/math/wrench.hpp"
 #include "core/structure/inertia.hpp"
 
 #include <fmt/format.h>
@@ -18,26 +19,6 @@ namespace fascia::app {
 
 namespace {
 
-/// A force and its moment about the origin.
-struct Wrench {
-  Vec3d force{}, moment{};
-
-  void add(const Vec3d& x, const Vec3d& f, const Vec3d& torque) {
-    force += f;
-    moment += cross(x, f) + torque;
-  }
-  Wrench& operator+=(const Wrench& o) {
-    force += o.force;
-    moment += o.moment;
-    return *this;
-  }
-  Wrench& operator-=(const Wrench& o) {
-    force -= o.force;
-    moment -= o.moment;
-    return *this;
-  }
-};
-
 nlohmann::json json_of(const Vec3d& v) {
   const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
   return {finite(v[0]), finite(v[1]), finite(v[2])};
@@ -47,7 +28,7 @@ Vec3d place_of(const Simulation& s, const State& state, int node) {
   return s.model.rest_position[at(node)] + state.u[at(node)];
 }
 
-/// Weight of what moves with a node.
+/// Weight of what moves with a node, as all wrenches here about the origin.
 Wrench weight_of(const Simulation& s, const State& state, int node, const FrameInertia& inertia) {
   if (s.gravity_load < 0) return {};
   const double factor = s.factors(state.time)[at(s.model.loads[at(s.gravity_load)].schedule)];

@@ -136,6 +136,7 @@ Shape weights_schema();
 Key body_need_key();
 Key over_key();
 Key profile_key();
+Key dial_key();
 std::vector<Choice> field_choices();
 std::vector<Choice> shell_field_choices();  ///< that only shells have
 

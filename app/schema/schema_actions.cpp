@@ -43,7 +43,7 @@ Shape constraint_schema() {
                 key("axes", array(vector3("1"), 3, 3), "Three perpendicular directions instead of the global axes.")
                     .defaults("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
                 key("normal", vector3("1"), "With `fix = \"symmetry\"`."),
-                key("axis", vector3("1"), "With `fix = \"hinge\"`."), over_key(), profile_key()},
+                key("axis", vector3("1"), "With `fix = \"hinge\"`."), over_key(), profile_key(), dial_key()},
                {{{"fix", "move"}}});
 }
 
@@ -68,7 +68,7 @@ Shape load_schema() {
            "has any."),
        key("follower", boolean(), "Turns with the material; not for `traction`.")
            .defaults("false; true for `pressure`"),
-       over_key(), profile_key()},
+       over_key(), profile_key(), dial_key()},
       {{{"where", "at"}}});
 }
 

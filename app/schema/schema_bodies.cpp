@@ -31,7 +31,7 @@ Shape fluid_schema() {
                     .defaults("the rest volume"),
                 key("density", number("kg/m3", at_least(0)), "Of its weight in `world.gravity`; it has no inertia.")
                     .defaults("0"),
-                over_key(), profile_key()},
+                over_key(), profile_key(), dial_key()},
                {{{"pressure", "bulk_modulus"}}});
 }
 

@@ -64,4 +64,10 @@ Key profile_key() {
   return key("profile", reference("profile", profile_schema), "How the factor follows time.").defaults("\"linear\"");
 }
 
+Key dial_key() {
+  return key("dial", text("a name"),
+             "The name of a number by which a program that embeds the library multiplies the factor at every step; it "
+             "is 1 in `fascia run`.");
+}
+
 }  // namespace fascia::app

@@ -70,7 +70,7 @@ Key world_schema() {
   return key(
       "world",
       table({key("gravity", vector3("m/s2"), "Acceleration of free fall.").defaults("[0, 0, 0]"), over_key(),
-             profile_key(),
+             profile_key(), dial_key(),
              key("up", vector3("1"), "Direction that points up in pictures.")
                  .defaults("against gravity; without gravity z, or y where a picture's view is within 45 degrees "
                            "of the z axis")}),

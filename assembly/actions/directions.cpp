@@ -33,6 +33,7 @@ double scale_of(const Simulation& s, int motion, bool rotation, const Vec3d& X) 
 bool same_schedule(const Simulation& s, int a, int b) {
   const Schedule &first = s.schedules[at(s.model.motions[at(a)].schedule)],
                  &second = s.schedules[at(s.model.motions[at(b)].schedule)];
+  if (first.dial != second.dial) return false;
   const bool statics = s.scene.solver.kind == SolverKind::statics;
   for (const double t : {0.0, 0.013, 0.11, 0.371943, 0.718282, 1.0, 3.7, 41.0})
     if (std::abs(schedule_factor(first, t, statics) - schedule_factor(second, t, statics)) > 1e-12) return false;

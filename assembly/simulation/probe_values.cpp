@@ -1,10 +1,10 @@
 #include "assembly/simulation/probe_values.hpp"
 
+#include "assembly/simulation/held_forces.hpp"
 #include "assembly/simulation/matter.hpp"
 #include "core/base/errors.hpp"
 #include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
-#include "core/node/dof_filter.hpp"
 #include "core/structure/inertia.hpp"
 
 #include <fmt/format.h>
@@ -178,40 +178,27 @@ Momentum momentum(const Simulation& s, const ResolvedProbe& probe, const State& 
 }
 
 /// Force and moment that supports (or, where nothing is held, loads) exert on the nodes.
-void support_force(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap, std::vector<double>& held,
-                   Vec3d& force, Vec3d& moment) {
+Wrench support_force(const Simulation& s, const ResolvedProbe& probe, const ProbedState& snap,
+                     std::vector<double>& held) {
   std::vector<char> chosen(at(s.model.node_count()), 0);
   for (const int i : probe.nodes) chosen[at(i)] = 1;
+  Wrench sum;
   const auto add = [&](int node, const Vec3d& f, const Vec3d& torque) {
-    const Vec3d x = s.model.rest_position[at(node)] + snap.state->u[at(node)];
-    force += f;
-    moment += torque + cross(x - probe.about, f);
+    sum.add(s.model.rest_position[at(node)] + snap.state->u[at(node)] - probe.about, f, torque);
   };
   bool any = false;
   if (held.empty()) held = held_forces(s, *snap.acting);
   for (const FrameConstraint& c : s.model.constraints) {
     if (chosen[at(c.node)] == 0) continue;
     any = true;
-    Vec3d f, t;
-    const double* g = held.data() + s.model.points.dofs.begin(c.node);
-    for (int k = 0; k < 3; ++k) f[k] = g[k];
-    const Mat3d A = Mat3d::identity() + snap.state->D[at(c.node)];
-    if (s.model.kind(c.node) == FrameKind::rigid)
-      for (int k = 0; k < 3; ++k) t[k] = g[3 + k];
-    else if (s.model.kind(c.node) == FrameKind::affine)
-      t = axl(A * transpose(frame_variation(FrameKind::affine, g + 3, A)));
-    add(c.node, f, t);
+    const Wrench there = held_at(s, *snap.state, held, c);
+    add(c.node, there.force, there.moment);
   }
   for (const int t : probe.tethered) {
-    const TetheredMaterial& m = s.tethered[at(t)];
     any = true;
-    const Tether& tether = s.model.tethers[at(m.tether)];
-    const Vec3d f = snap.acting->tether_forces[at(m.tether)], u = field_at(m.field, *snap.state).u;
-    const bool turn = squared_norm(tether.arm) > 0;  // a couple
-    if (!turn) force += f;
-    moment += turn ? cross(tether.arm + u, f) : cross(tether.X + u - probe.about, f);
+    sum += held_material(s, *snap.state, *snap.acting, s.tethered[at(t)], probe.about);
   }
-  if (any) return;
+  if (any) return sum;
   const std::vector<double> factors = s.factors(snap.state->time);
   for (std::size_t l = 0; l < s.model.loads.size(); ++l) {
     if (static_cast<int>(l) == s.gravity_load) continue;
@@ -240,6 +227,7 @@ void support_force(const Simulation& s, const ResolvedProbe& probe, const Probed
         add(share.node, forces.force[at(v)] * share.w, cross(Q * share.b, forces.force[at(v)]));
       }
   }
+  return sum;
 }
 
 /// Values of a probe, finite or not.
@@ -255,9 +243,8 @@ std::vector<double> raw_values_of(const Simulation& s, const ResolvedProbe& prob
   switch (q) {
     case Quantity::force:
     case Quantity::moment: {
-      Vec3d force, moment;
-      support_force(s, probe, snap, held, force, moment);
-      push(out, q == Quantity::force ? force : moment);
+      const Wrench support = support_force(s, probe, snap, held);
+      push(out, q == Quantity::force ? support.force : support.moment);
       break;
     }
     case Quantity::volume:
@@ -328,15 +315,6 @@ ReachedParts needed_parts(const Simulation& s) {
   for (const SimulatedBody& b : s.bodies) parts.slots = parts.slots || !b.interfaces.empty();
   if (parts.slots || !s.couplings.empty()) parts.forces = parts.energies = true;
   return parts;
-}
-
-std::vector<double> held_forces(const Simulation& s, const ReachedForces& acting) {
-  std::vector<double> forces = acting.gradient;
-  const DofFilter filter(s.model);
-  filter.to_local(forces);
-  filter.keep_fixed(forces);
-  filter.to_global(forces);
-  return forces;
 }
 
 ProbeValues probe_values(const Simulation& s, const ProbedState& snap) {

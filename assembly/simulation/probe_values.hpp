@@ -20,9 +20,6 @@ struct ProbedState {
 /// Says which parts of what acts at a state the scene's probes read, and the report on its couplings.
 ReachedParts needed_parts(const Simulation& s);
 
-/// Forces by degrees of freedom that hold the constrained ones, in the axes of the world; those of free ones are zero.
-std::vector<double> held_forces(const Simulation& s, const ReachedForces& acting);
-
 /// The numbers of each probe, in a row.
 using ProbeValues = std::vector<std::vector<double>>;
 

@@ -13,10 +13,12 @@
 
 namespace fascia {
 
-std::vector<double> Simulation::factors(double time) const {
+std::vector<double> Simulation::factors(double time, std::span<const double> dials_then) const {
   std::vector<double> f;
   const bool statics = scene.solver.kind == SolverKind::statics, path = scene.solver.control != StaticControl::load;
   for (const Schedule& s : schedules) f.push_back(path ? path_factor(s, time) : schedule_factor(s, time, statics));
+  for (std::size_t d = 0; d < dials.size(); ++d)
+    for (const int schedule : dials[d].schedules) f[at(schedule)] *= dials_then[d];
   return f;
 }
 
@@ -28,7 +30,15 @@ int new_schedule(Simulation& s, const Schedule& schedule, const Place& place) {
                        "a smooth profile does not go with a load factor that the path decides (solver.control); "
                        "use \"linear\" or a table"}});
   s.schedules.push_back(schedule);
-  return static_cast<int>(s.schedules.size()) - 1;
+  const int index = static_cast<int>(s.schedules.size()) - 1;
+  if (schedule.dial.empty()) return index;
+  auto dial = std::find_if(s.dials.begin(), s.dials.end(), [&](const Dial& d) { return d.name == schedule.dial; });
+  if (dial == s.dials.end()) {
+    dial = s.dials.insert(dial, {schedule.dial, {}});
+    s.dial_values.push_back(1);
+  }
+  dial->schedules.push_back(index);
+  return index;
 }
 
 int body_index(const Simulation& s, const std::string& name) {

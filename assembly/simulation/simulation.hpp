@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,12 @@ struct Driver {
   int motion = 0;  ///< of the model
 };
 
+/// A number that the caller gives before each step, which multiplies the factors of some schedules.
+struct Dial {
+  std::string name;
+  std::vector<int> schedules;
+};
+
 /// A scene ready to run.
 struct Simulation {
   Scene scene;
@@ -99,6 +106,8 @@ struct Simulation {
   std::vector<TetheredMaterial> tethered;
   std::vector<FluidOfBody> fluids;
   std::vector<Driver> drivers;
+  std::vector<Dial> dials;
+  std::vector<double> dial_values;              ///< at the present state
   std::vector<BuiltCoupling> couplings;         ///< of Scene::couplings
   std::vector<FrameInertia> dependent_inertia;  ///< of dependent nodes, before their hosts took it over
   std::vector<FrameInertia> dependent_damping;  ///< what their hosts took over of Model::mass_damping; or empty
@@ -108,8 +117,9 @@ struct Simulation {
   int gravity_load = -1;   ///< index of gravity in Model::loads
   double stable_step = 0;  ///< of central differences [s]
 
-  /// Factors of all schedules at a time.
-  std::vector<double> factors(double time) const;
+  /// Factors of all schedules at a time, with the present values of dials, or with others.
+  std::vector<double> factors(double time) const { return factors(time, dial_values); }
+  std::vector<double> factors(double time, std::span<const double> dials_then) const;
 };
 
 /// Time between saved states of a dynamic run that names none [s].

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Schedule {
   double over = 0;
   bool has_over = false;
   std::variant<LinearProfile, SmoothProfile, TableProfile, SineProfile> profile;
+  std::string dial{};  ///< name of a number by which a program multiplies the factor (fascia/stepper.hpp); empty: none
 };
 
 /// Factor of a schedule at a time [s]; in statics at a load factor, which stands for time / `over`, or for time / the

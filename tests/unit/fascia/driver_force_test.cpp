@@ -1,0 +1,164 @@
+// Forces of drivers: the work that they do, what they carry, and which of them pulls along which axis.
+#include "core/base/index.hpp"
+#include "core/math/rotation.hpp"
+#include "fascia/stepper.hpp"
+#include "tests/support/stepped_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace fascia::driver_force_test {
+
+namespace {
+
+/// A rigid box of half a kilogram in a hand.
+Scene held_box(SolverKind kind) {
+  Scene scene = test::driven_block(kind);
+  Body& box = scene.bodies[0];
+  box.model = BodyModel::rigid;
+  box.domain = BoxDomain{{{0, 0, 0}}, {{0.1, 0.1, 0.05}}};
+  box.density = 1000;
+  box.materials.clear();
+  box.frames = {};
+  scene.constraints[0].where = {};
+  scene.constraints[0].driver = "hand";
+  scene.probes.clear();
+  return scene;
+}
+
+void expect_near(const Vec3d& a, const Vec3d& b, double tolerance, const char* of) {
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], tolerance) << of << ' ' << k;
+}
+
+/// In a turned pose the hand carries the weight, at the arm from its center to that of the mass.
+TEST(DriverForce, AHandCarriesTheWeight) {
+  Stepper stepper(held_box(SolverKind::statics));
+  const int hand = stepper.driver("hand");
+  const RigidMotion pose{{{0.3, -0.1, 0.2}}, {{0.4, -0.9, 0.3}}, {{0.1, 0, 0}}};
+  stepper.set_motion(hand, pose);
+  ASSERT_TRUE(stepper.step(1).converged);
+  const Mat3d R = Mat3d::identity() + rotation_increment(pose.rotation);
+  const Vec3d weight{{0, 0, -9.81 * 0.5}}, arm = R * (Vec3d{{0.05, 0.05, 0.025}} - pose.center);
+  const Wrench there = stepper.driver_force(hand);
+  expect_near(there.force, -weight, 1e-13, "force");
+  expect_near(there.moment, cross(arm, -weight), 1e-14, "moment");
+  const Vec3d about{{-0.2, 0.5, 0.7}};
+  expect_near(stepper.driver_force(hand, about).moment, cross(pose.center + pose.translation + arm - about, -weight),
+              1e-13, "moment about a point");
+}
+
+/// The first implicit Euler step from rest by d takes the acceleration d / dt².
+TEST(DriverForce, AHandAcceleratesTheMass) {
+  Stepper stepper(held_box(SolverKind::implicit_euler));
+  stepper.set_motion(0, {{{0.001, 0, 0.002}}, {}, {}});
+  ASSERT_TRUE(stepper.step(0.01).converged);
+  expect_near(stepper.driver_force(0).force, {{0.5 * 0.001 / 1e-4, 0, 0.5 * (0.002 / 1e-4 + 9.81)}}, 1e-11, "force");
+}
+
+Scene clamped(const char* kind) {
+  Scene scene = kind == std::string("tetrahedra") ? test::driven_tetrahedra(SolverKind::statics)
+                                                  : test::driven_block(SolverKind::statics);
+  if (kind == std::string("scattered")) scene.bodies[0].frames = CountedSamples{40, 1};
+  if (kind == std::string("affine")) scene.bodies[0].affine = true;
+  scene.world.gravity = {};
+  scene.solver.newton_tolerance = 1e-12;
+  Constraint top = scene.constraints[0];
+  top.where = in_box({{-1, -1, 0.079}}, {{1, 1, 1}});
+  top.driver.clear();
+  scene.constraints.push_back(top);
+  Probe energy;
+  energy.name = "energy";
+  energy.quantity = Quantity::total_energy;
+  scene.probes.push_back(energy);
+  return scene;
+}
+
+/// Slow motions do the work that the energy gains: dE = F · du + M · dθ, with M about the driver's center, of large
+/// deformation. Differences of 1e-4 of the size leave about 1e-7.
+TEST(DriverForce, DoesTheWorkThatTheEnergyGains) {
+  for (const char* kind : {"frames", "affine", "tetrahedra", "scattered"}) {
+    Stepper stepper(clamped(kind));
+    const RigidMotion pose{{{0.01, -0.004, 0.006}}, {{0.2, 0.1, -0.4}}, {{0.02, 0.03, -0.05}}};
+    double time = 0;
+    const auto energy_at = [&](const RigidMotion& motion) {
+      stepper.set_motion(0, motion);
+      const StepReport step = stepper.step(time == 0 ? 1 : 0.01);
+      EXPECT_TRUE(step.converged) << step.message;
+      time = stepper.time();
+      return stepper.probe("energy")[0];
+    };
+    energy_at(pose);
+    const Wrench there = stepper.driver_force(0);
+    for (int k = 0; k < 6; ++k) {
+      const double size = k < 3 ? 4e-6 : 1e-4;
+      const auto moved = [&](double by) {
+        RigidMotion m = pose;
+        if (k < 3) {
+          m.translation[k] += by;
+        } else {
+          Vec3d turn;
+          turn[k - 3] = by;
+          m.rotation = rotation_vector(compose_increments(rotation_increment(turn), rotation_increment(pose.rotation)));
+        }
+        return m;
+      };
+      const double slope = (energy_at(moved(size)) - energy_at(moved(-size))) / (2 * size);
+      const double scale = k < 3 ? norm(there.force) : norm(there.moment);
+      EXPECT_NEAR(k < 3 ? there.force[k] : there.moment[k - 3], slope, 1e-6 * scale) << kind << ' ' << k;
+    }
+  }
+}
+
+/// A probe over the region of a driver sums the same forces, in dynamics and on a GPU's way of stepping too.
+TEST(DriverForce, IsThatOfAProbeOverItsRegion) {
+  test::take_host_as_device();
+  for (const char* backend : {"cpu", "cuda"})
+    for (const SolverKind kind : {SolverKind::statics, SolverKind::newmark, SolverKind::midpoint}) {
+      Scene scene = test::driven_block(kind);
+      scene.solver.backend = backend;
+      Probe moment = scene.probes[1];
+      moment.name = "moment";
+      moment.quantity = Quantity::moment;
+      moment.about = Vec3d{{0.3, 0.1, -0.2}};
+      scene.probes.push_back(moment);
+      Stepper stepper(scene);
+      stepper.set_motion(0, {{{0.001, 0, 0}}, {{0, 0.03, 0}}, {{0.02, 0.02, 0}}});
+      ASSERT_TRUE(stepper.step(0.05).converged);
+      const Wrench there = stepper.driver_force(0, moment.about);
+      const std::vector<double> force = stepper.probe("force"), about = stepper.probe("moment");
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(there.force[k], force[at(k)], 1e-14) << backend;
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(there.moment[k], about[at(k)], 1e-15) << backend;
+    }
+}
+
+/// Where a support holds the same nodes along another axis, its force is not the driver's.
+TEST(DriverForce, IsAlongTheAxesThatTheDriverMoves) {
+  Scene scene = test::driven_tetrahedra(SolverKind::statics);
+  scene.constraints[0].fixed = {true, false, true, false, false, false};
+  Constraint side = scene.constraints[0];
+  side.fixed = {false, true, false, false, false, false};
+  side.driver.clear();
+  scene.constraints.push_back(side);
+  scene.world.gravity = {{1, 2, -9.81}};
+  Stepper stepper(scene);
+  ASSERT_TRUE(stepper.step(1).converged);
+  const Wrench there = stepper.driver_force(0);
+  const std::vector<double> all = stepper.probe("force");
+  EXPECT_NEAR(there.force[0], all[0], 1e-14);
+  EXPECT_EQ(there.force[1], 0);
+  EXPECT_GT(std::abs(all[1]), 0.1);
+  EXPECT_NEAR(there.force[2], all[2], 1e-14);
+}
+
+TEST(DriverForce, RefusesWhatIsNotThere) {
+  Stepper stepper(test::driven_block(SolverKind::statics));
+  EXPECT_THROW(stepper.driver_force(1), InputError);
+  EXPECT_THROW(stepper.driver_force(-1), InputError);
+  EXPECT_THROW(stepper.driver_force(0, Vec3d{{std::numeric_limits<double>::quiet_NaN(), 0, 0}}), InputError);
+}
+
+}  // namespace
+
+}  // namespace fascia::driver_force_test
