@@ -41,7 +41,7 @@ auto blaming(Blame blame, const Step& step) {
 /// @param fallback  spacing where the choice has none
 /// @param occupied  places that keep frames off, in the axes of the parts
 Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool frames, double fallback, int seed,
-                   std::span<const Vec3d> occupied = {}) {
+                   ThreadPool& pool, std::span<const Vec3d> occupied = {}) {
   const int others = static_cast<int>(occupied.size());
   Samples s;
   s.spacing = fallback;
@@ -56,10 +56,11 @@ Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool fr
   } else if (listed) {
     s.spacing = rough_spacing(parts, static_cast<int>(listed->position.size()) + others);
   }
-  s.matter = matter_for(parts, s.spacing);
+  s.matter = matter_for(parts, s.spacing, pool);
   if (counted && counted->count == 0 && others > 0) return s;
-  if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames, occupied);
-  s.places = listed ? places_at(s.matter, listed->position) : poisson_disk(s.matter, s.spacing, seed, frames, occupied);
+  if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames, pool, occupied);
+  s.places =
+      listed ? places_at(s.matter, listed->position) : poisson_disk(s.matter, s.spacing, seed, frames, pool, occupied);
   return s;
 }
 
@@ -145,10 +146,11 @@ void check_curvature(const std::vector<CloudPoint>& points, std::vector<std::str
 
 /// Points with their shares of the matter; sampled ones move along the tangents to the middle of their share, where
 /// linear fields are integrated exactly.
-std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing) {
-  Samples s = blaming(Blame::points, [&] { return samples_of(parts, choice, false, spacing, 2); });
+std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing,
+                                  ThreadPool& pool) {
+  Samples s = blaming(Blame::points, [&] { return samples_of(parts, choice, false, spacing, 2, pool); });
   const auto* listed = std::get_if<ListedChoice>(&choice);
-  std::vector<Share> shares = voronoi_shares(s.matter, s.places);
+  std::vector<Share> shares = voronoi_shares(s.matter, s.places, pool);
   if (listed && !listed->volume.empty()) {
     double sum = 0;
     for (const double v : listed->volume) sum += v;
@@ -203,6 +205,7 @@ void check_inside(const CloudSpec& spec, double size) {
 }  // namespace
 
 void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages) {
+  ThreadPool pool(choice.threads);
   const double size = size_of(choice.parts);
   const std::vector<Vec3d> occupied = positions_in_parts(choice.parts, choice.shared);
   const bool listed = std::holds_alternative<ListedChoice>(choice.frames);
@@ -210,15 +213,16 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   if (listed && !occupied.empty())
     left = unoccupied(std::get<ListedChoice>(choice.frames), occupied, kCoincident * size, messages);
   const SampleChoice& own = std::holds_alternative<ListedChoice>(left) ? left : choice.frames;
-  const Samples frames = blaming(Blame::frames, [&] { return samples_of(choice.parts, own, true, 0, 1, occupied); });
+  const Samples frames =
+      blaming(Blame::frames, [&] { return samples_of(choice.parts, own, true, 0, 1, pool, occupied); });
   CloudFrames set;
   set.frames = frames_of(choice, std::get_if<ListedChoice>(&own), frames.places);
   set.own = set.frames.size();
   check_frames(choice, set.frames, size);
   std::vector<double> spacing = own_spacing(choice, set.frames);
   spec.spacing = std::max(mean(spacing), 1e-9 * size);
-  spec.points =
-      points_of(choice.parts, choice.points, kPointSpacing * (listed || set.own == 0 ? spec.spacing : frames.spacing));
+  spec.points = points_of(choice.parts, choice.points,
+                          kPointSpacing * (listed || set.own == 0 ? spec.spacing : frames.spacing), pool);
   if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points", Blame::points);
   finish_cloud(choice.parts, spec);
   if (std::holds_alternative<ListedChoice>(choice.points)) check_inside(spec, size);
@@ -288,7 +292,8 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   double cells = 1;
   for (const int n : grid.count) cells *= n - 1;
   if (!std::holds_alternative<std::monostate>(choice.points)) {
-    spec.points = points_of(parts, choice.points, rough_spacing(parts, static_cast<int>(4 * cells)));
+    ThreadPool pool(choice.threads);
+    spec.points = points_of(parts, choice.points, rough_spacing(parts, static_cast<int>(4 * cells)), pool);
     balance_cells(parts, grid, spec.points);
   } else {
     spec.points = gauss_cells(choice, axes);

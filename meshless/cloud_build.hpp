@@ -47,6 +47,7 @@ struct ScatterSpec {
   std::optional<int> neighbours;
   std::optional<double> support;      ///< [m]
   std::vector<SharedFrame> shared{};  ///< of other bodies, in the placed body's axes; own frames stand around them
+  int threads = 1;                    ///< that sample; 0: as many as there are processors
 };
 
 /// Fills all of a spec that follows from the domain and the choice of frames, points and weights.
@@ -60,6 +61,7 @@ struct ThinGridSpec {
   SampleChoice points;        ///< instead of per_cell
   std::function<double(const Vec3d&)> extent;  ///< thickness or radius by rest position [m]
   std::vector<SharedFrame> shared;             ///< of other bodies, placed: each where the grid has a frame
+  int threads = 1;                             ///< as of ScatterSpec
 };
 
 /// @throws InputError  a shared frame where the grid has none

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <optional>
 #include <string>
 
 namespace fascia {
@@ -18,7 +17,7 @@ void check_pieces(const Matter& matter, double piece_size, double more) {
   constexpr double most = 5e7;
   if (!(piece_size > 0) || !std::isfinite(piece_size))
     throw InputError("the sampling needs a spacing that is positive; give the mean distance of samples in metres");
-  const double count = static_cast<double>(matter.pieces.size()) + more;
+  const double count = static_cast<double>(matter.pieces.size() + matter.voxels.size()) + more;
   if (count <= most) return;
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.2g", count);
@@ -71,11 +70,6 @@ class VoxelGrid {
   double expected_ = 1;
 };
 
-/// Counted in parts at first: whole numbers, whose sum is exact.
-void add_voxel(Matter& matter, const Vec3d& x, double parts) {
-  matter.pieces.push_back({x, parts, parts, 3, 3, Mat3d::identity(), 0});
-}
-
 /// Marks the voxels that the surface passes: a neighbour on the other side, or a piece of the surface inside.
 std::vector<char> cut_voxels(const VoxelGrid& grid, const std::vector<char>& inside,
                              std::span<const MatterPiece> surface) {
@@ -96,33 +90,69 @@ std::vector<char> cut_voxels(const VoxelGrid& grid, const std::vector<char>& ins
   return cut;
 }
 
-/// The part of a voxel inside, from a fine grid of tests; its centroid, or where that is outside the test next to it.
-std::optional<MatterPiece> voxel_part(const VoxelGrid& grid, int i, int j, int k,
-                                      const std::function<bool(const Vec3d&)>& contains) {
-  std::vector<Vec3d> found;
+/// The part of a voxel inside of a solid, in fine tests: whole numbers, whose sum is exact; 0: none.
+struct VoxelPart {
+  Vec3d x{};  ///< its centroid, or where that is outside the test next to it
+  double tests = 0;
+};
+
+VoxelPart voxel_part(const VoxelGrid& grid, int i, int j, int k, const std::function<bool(const Vec3d&)>& contains) {
+  std::array<Vec3d, kParts> found;
+  std::size_t count = 0;
   Vec3d sum{};
   for (int n = 0; n < kParts; ++n) {
     const auto fraction = [](int m) { return (m % kSubdivisions + 0.5) / kSubdivisions; };
     const Vec3d x =
         grid.place(i, j, k, fraction(n), fraction(n / kSubdivisions), fraction(n / (kSubdivisions * kSubdivisions)));
     if (!contains(x)) continue;
-    found.push_back(x);
+    found[count++] = x;
     sum += x;
   }
-  if (found.empty()) return std::nullopt;
-  MatterPiece piece;
-  piece.volume = static_cast<double>(found.size());
-  const Vec3d centroid = sum * (1.0 / static_cast<double>(found.size()));
-  piece.x = centroid;
-  if (contains(centroid)) return piece;
+  if (count == 0) return {};
+  const Vec3d centroid = sum * (1.0 / static_cast<double>(count));
+  VoxelPart part{centroid, static_cast<double>(count)};
+  if (contains(centroid)) return part;
   double least = std::numeric_limits<double>::max();
-  for (const Vec3d& x : found) {
-    const double squared = squared_norm(x - centroid);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double squared = squared_norm(found[n] - centroid);
     if (squared >= least * (1 - kTie)) continue;
     least = squared;
-    piece.x = x;
+    part.x = found[n];
   }
-  return piece;
+  return part;
+}
+
+/// The voxels of a domain that is not a box.
+void add_voxels(VoxelPieces& voxels, const VoxelGrid& grid, const SolidDomain& domain,
+                std::span<const MatterPiece> surface, ThreadPool& pool) {
+  std::vector<char> inside(grid.size());
+  pool.for_chunks(grid.count()[2], [&](int k) {
+    for (int j = 0; j < grid.count()[1]; ++j)
+      for (int i = 0; i < grid.count()[0]; ++i)
+        inside[grid.number(i, j, k)] = domain.contains(grid.place(i, j, k)) ? 1 : 0;
+  });
+  const std::vector<char> cut = cut_voxels(grid, inside, surface);
+  std::vector<std::array<int, 3>> taken;
+  grid.for_each([&](int i, int j, int k) {
+    const std::size_t voxel = grid.number(i, j, k);
+    if (inside[voxel] != 0 || cut[voxel] != 0) taken.push_back({i, j, k});
+  });
+  constexpr int kGrain = 64;
+  std::vector<VoxelPart> parts(taken.size());
+  pool.for_ranges(static_cast<int>(taken.size()), kGrain, [&](int begin, int end) {
+    for (int n = begin; n < end; ++n) {
+      const auto& [i, j, k] = taken[at(n)];
+      const bool whole = cut[grid.number(i, j, k)] == 0;
+      parts[at(n)] = whole ? VoxelPart{grid.place(i, j, k), kParts} : voxel_part(grid, i, j, k, domain.contains);
+    }
+  });
+  voxels.x.reserve(voxels.size() + parts.size());
+  voxels.volume.reserve(voxels.size() + parts.size());
+  for (const VoxelPart& part : parts) {
+    if (part.tests == 0) continue;
+    voxels.x.push_back(part.x);
+    voxels.volume.push_back(part.tests);
+  }
 }
 
 void add_faces(Matter& matter, const TriangleMesh& surface, double piece_size) {
@@ -153,43 +183,33 @@ std::function<bool(const Vec3d&)> inside_test(const SolidDomain& domain) {
 
 }  // namespace
 
-void add_solid(Matter& matter, const SolidDomain& domain, double piece_size) {
+void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, ThreadPool& pool) {
   check_pieces(matter, piece_size, 0);
   if (!(domain.volume > 0)) throw InputError("the domain has no volume; its surface must enclose some");
   const VoxelGrid grid(domain, piece_size);
   check_pieces(matter, piece_size, grid.expected() + expected_parts(domain.surface, piece_size));
   const std::size_t first_surface = matter.pieces.size();
   add_faces(matter, domain.surface, piece_size);
-  const std::size_t first = matter.pieces.size();
 
-  if (!domain.contains) {
-    matter.pieces.reserve(first + grid.size());
-    grid.for_each([&](int i, int j, int k) { add_voxel(matter, grid.place(i, j, k), kParts); });
+  VoxelPieces& voxels = matter.voxels;
+  const std::size_t first = voxels.size();
+  if (domain.contains) {
+    add_voxels(voxels, grid, domain, std::span(matter.pieces).subspan(first_surface), pool);
   } else {
-    std::vector<char> inside(grid.size());
-    grid.for_each(
-        [&](int i, int j, int k) { inside[grid.number(i, j, k)] = domain.contains(grid.place(i, j, k)) ? 1 : 0; });
-    const std::span<const MatterPiece> all(matter.pieces);
-    const std::vector<char> cut = cut_voxels(grid, inside, all.subspan(first_surface));
-    std::size_t most = 0;
-    for (std::size_t voxel = 0; voxel < grid.size(); ++voxel) most += inside[voxel] != 0 || cut[voxel] != 0 ? 1 : 0;
-    matter.pieces.reserve(first + most);
-    grid.for_each([&](int i, int j, int k) {
-      const std::size_t voxel = grid.number(i, j, k);
-      if (cut[voxel] == 0) {
-        if (inside[voxel] != 0) add_voxel(matter, grid.place(i, j, k), kParts);
-      } else if (const auto part = voxel_part(grid, i, j, k, domain.contains)) {
-        add_voxel(matter, part->x, part->volume);
-      }
+    voxels.x.resize(first + grid.size());
+    voxels.volume.resize(first + grid.size(), kParts);
+    pool.for_chunks(grid.count()[2], [&](int k) {
+      for (int j = 0; j < grid.count()[1]; ++j)
+        for (int i = 0; i < grid.count()[0]; ++i) voxels.x[first + grid.number(i, j, k)] = grid.place(i, j, k);
     });
   }
 
   double sum = 0;
-  for (std::size_t p = first; p < matter.pieces.size(); ++p) sum += matter.pieces[p].volume;
+  for (std::size_t p = first; p < voxels.size(); ++p) sum += voxels.volume[p];
   if (!(sum > 0)) throw InputError("no piece of the sampling falls inside the domain; use a smaller spacing");
-  for (std::size_t p = first; p < matter.pieces.size(); ++p) {
-    matter.pieces[p].volume *= domain.volume / sum;
-    matter.pieces[p].measure = matter.pieces[p].volume;
+  for (std::size_t p = first; p < voxels.size(); ++p) {
+    voxels.volume[p] *= domain.volume / sum;
+    matter.measure[3] += voxels.volume[p];
   }
   matter.volume += domain.volume;
   matter.piece_size = std::max(matter.piece_size, piece_size);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/thread_pool.hpp"
 #include "core/geometry/mesh.hpp"
 #include "core/math/mat3.hpp"
 #include "meshless/domain.hpp"
@@ -10,14 +11,13 @@
 
 namespace fascia {
 
-/// A small piece of matter, or a place on its boundary without volume of its own.
+/// A small piece of a sheet or line, or a place on a boundary without volume of its own.
 struct MatterPiece {
   Vec3d x{};           ///< rest position [m]; of a sheet or line: on its middle
   double volume = 0;   ///< [m³]; 0 on corners and on the faces of a solid
-  double measure = 0;  ///< length, area or volume of the piece in its feature [m, m², m³]; 0 on corners
+  double measure = 0;  ///< length or area of the piece in its feature [m, m²]; 0 on corners
   int dimension = 3;   ///< of the matter here: 3 solid, 2 sheet, 1 line
-  int feature = 3;     ///< dimension of the finest feature it lies on: 0 corner, 1 line, 2 face or inside of a sheet,
-                       ///< 3 inside of a solid
+  int feature = 2;     ///< dimension of the finest feature it lies on: 0 corner, 1 line, 2 face or inside of a sheet
   Mat3d axes = Mat3d::identity();  ///< columns: tangents first, then normals; of a solid the identity
   double extent = 0;               ///< thickness of a sheet, radius of a line [m]
 };
@@ -31,9 +31,19 @@ struct FeatureChain {
   bool closed = false;
 };
 
+/// Pieces of the insides of solids, by the million: a place and a volume each.
+struct VoxelPieces {
+  std::vector<Vec3d> x;        ///< rest positions [m]
+  std::vector<double> volume;  ///< [m³]
+
+  std::size_t size() const { return x.size(); }
+};
+
 /// Matter of any dimension, and of several, as a cloud of pieces.
 struct Matter {
-  std::vector<MatterPiece> pieces;
+  VoxelPieces voxels;               ///< of solids
+  std::vector<MatterPiece> pieces;  ///< of sheets and lines; of solids corners and faces
+  std::array<double, 4> measure{};  ///< by dimension: length, area and volume of what has a volume [m, m², m³]
   std::vector<FeatureChain> chains;
   std::vector<std::function<bool(const Vec3d&)>> solids;  ///< whether a point lies inside, one a solid
   double volume = 0;                                      ///< sum over the pieces [m³]
@@ -58,7 +68,7 @@ struct LinePart {
 ///
 /// @param piece_size  width of the pieces [m]; about a sixth of the spacing of the samples wanted
 /// @throws InputError  a size that is not positive, above 5·10⁷ pieces, a domain in which no piece falls
-void add_solid(Matter& matter, const SolidDomain& domain, double piece_size);
+void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, ThreadPool& pool);
 
 /// Cuts a sheet's triangles; volumes are area × thickness. Normals vary smoothly except across sharp edges.
 /// Edges are open, sharp or branched ones.

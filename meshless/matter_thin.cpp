@@ -104,6 +104,7 @@ void add_sheet(Matter& matter, const SheetPart& sheet, double piece_size) {
       // Opposite normals at the corners of a fold would leave no direction.
       const Vec3d normal = dot(p.normal, flat) > 0.3 ? p.normal : flat;
       matter.pieces.push_back({p.x, p.area * sheet.thickness[t], p.area, 2, 2, sheet_axes(normal), sheet.thickness[t]});
+      if (matter.pieces.back().volume > 0) matter.measure[2] += p.area;
     }
     volume += 0.5 * twice_area * sheet.thickness[t];
   }
@@ -132,9 +133,11 @@ void add_line(Matter& matter, const LinePart& line, double piece_size) {
     const Vec3d from = line.points[at(edges[e][0])], step = line.points[at(edges[e][1])] - from;
     const int count = std::max(1, static_cast<int>(std::ceil(norm(step) / piece_size * (1 - 1e-9))));
     const double part = norm(step) / count;
-    for (int k = 0; k < count; ++k)
+    for (int k = 0; k < count; ++k) {
       matter.pieces.push_back(
           {from + step * ((k + 0.5) / count), part * section, part, 1, 1, along[e].axes, line.radius});
+      matter.measure[1] += part;
+    }
   }
   matter.volume += length * section;
   matter.piece_size = std::max(matter.piece_size, piece_size);

@@ -132,6 +132,7 @@ void warn_of_thin_choices(const Body& body, const ModelBody& built, std::vector<
 void describe_thin_grid(const Body& body, const MatterParts& parts, const BodyBuild& build, CloudSpec& spec) {
   ThinGridSpec thin;
   thin.shared = build.shared;
+  thin.threads = build.threads;
   thin.parts = parts;
   thin.grid.count = std::get<GridFrames>(body.frames).count;
   const double scale = body.transform.scale;
@@ -218,7 +219,8 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build) {
                           scattered_kind(body.weights),
                           body.neighbours,
                           body.support,
-                          build.shared};
+                          build.shared,
+                          build.threads};
       scatter_cloud(scatter, spec, build.messages);
     }
     double volume = 0;

@@ -21,6 +21,7 @@ struct BodyBuild {
   std::vector<Interface> interfaces;
   std::string gap;  ///< what it fills between two bodies, in words
   std::vector<std::string> messages;
+  int threads = 1;  ///< that sample matter; 0: as many as there are processors
 };
 
 /// Adds a body's frames to the model and its points to the builder. The body refers to the scene's.

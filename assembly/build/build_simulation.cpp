@@ -111,7 +111,7 @@ std::string lost_digits(const ModelBody& body, std::span<const Vec3d> nodes) {
 
 SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
   try {
-    BodyBuild build{s.model, points, {}, {}, {}, {}, {}};
+    BodyBuild build{s.model, points, {}, {}, {}, {}, {}, s.scene.solver.threads};
     gather_neighbours(s, body, build);
     SimulatedBody b;
     b.name = body.name;

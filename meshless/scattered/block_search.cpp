@@ -1,69 +1,178 @@
 #include "meshless/scattered/block_search.hpp"
 
+#include "core/base/index.hpp"
+#include "core/geometry/bounds.hpp"
+#include "core/math/batch.hpp"
+#include "meshless/scattered/point_grid.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fascia {
+
 namespace {
 
 /// Blocks of this many spacings cost least: larger ones have longer lists, smaller ones more of them.
 constexpr double kEdge = 0.7;
+constexpr int kGrain = 64;  // blocks
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Lanes smaller(const Lanes& a, const Lanes& b) { return Lanes::of(a.v < b.v ? a.v : b.v); }
+
+/// Calls act(j, k) for the rows of cells in a box of them.
+template <class Act>
+void for_rows(const std::array<int, 3>& low, const std::array<int, 3>& high, const Act& act) {
+  for (int k = low[2]; k <= high[2]; ++k)
+    for (int j = low[1]; j <= high[1]; ++j) act(j, k);
+}
 
 }  // namespace
 
-BlockSearch::BlockSearch(std::span<const Vec3d> points, double spacing)
-    : points_(points), grid_(spacing), edge_(kEdge * spacing) {
-  for (const Vec3d& x : points) grid_.insert(x);
+BlockSearch::Cells::Cells(const Vec3d& min, const Vec3d& max, double width, double most) : low(min), edge(width) {
+  const auto along = [&](int a) { return 1 + std::floor((max[a] - min[a]) / edge); };
+  while (along(0) * along(1) * along(2) > most) edge *= 1.1;
+  for (int a = 0; a < 3; ++a) count[at(a)] = static_cast<int>(along(a));
 }
 
-BlockSearch::Block BlockSearch::list(const Cell& cell) {
-  Vec3d center{};
-  for (int a = 0; a < 3; ++a) center[a] = (static_cast<double>(cell[at(a)]) + 0.5) * edge_;
-  const int nearest = grid_.nearest(center, INFINITY, [](int) { return true; });
-  // No place in the block is farther from the centre than half its diagonal.
-  const double radius = norm(points_[at(nearest)] - center) + std::sqrt(3.0) * edge_;
-  std::vector<int> near;
-  grid_.visit_within(center, radius * (1 + 10 * kTie), [&](int i) { near.push_back(i); });
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  const std::size_t begin = point_.size();
-  for (const int i : near) add(i, points_[at(i)]);
-  while (point_.size() % kLanes > 0) add(-1, {{INFINITY, INFINITY, INFINITY}});
-  return {begin, point_.size()};
-}
-
-void BlockSearch::add(int point, const Vec3d& x) {
-  for (int a = 0; a < 3; ++a) place_[at(a)].push_back(x[a]);
-  point_.push_back(point);
-}
-
-int BlockSearch::nearest(const Vec3d& x) {
-  if (points_.empty()) return -1;
-  constexpr double farthest = 1e15;
-  Cell cell{};
+BlockSearch::Cell BlockSearch::Cells::of(const Vec3d& x) const {
+  Cell c{};
   for (int a = 0; a < 3; ++a)
-    cell[at(a)] = static_cast<std::int64_t>(std::clamp(std::floor(x[a] / edge_), -farthest, farthest));
-  if (cell != last_cell_ || last_.begin == last_.end) {
-    const auto [known, added] = blocks_.try_emplace(cell);
-    if (added) known->second = list(cell);
-    last_cell_ = cell;
-    last_ = known->second;
+    c[at(a)] = static_cast<int>(std::clamp((x[a] - low[a]) / edge, 0.0, static_cast<double>(count[at(a)] - 1)));
+  return c;
+}
+
+std::size_t BlockSearch::Cells::number(const Cell& c) const {
+  return at(c[0]) + at(count[0]) * (at(c[1]) + at(count[1]) * at(c[2]));
+}
+
+std::size_t BlockSearch::Cells::size() const { return at(count[0]) * at(count[1]) * at(count[2]); }
+
+Vec3d BlockSearch::Cells::middle(std::size_t number) const {
+  const std::size_t row = number / at(count[0]);
+  const std::array<std::size_t, 3> c{number % at(count[0]), row % at(count[1]), row / at(count[1])};
+  Vec3d x = low;
+  for (int a = 0; a < 3; ++a) x[a] += (static_cast<double>(c[at(a)]) + 0.5) * edge;
+  return x;
+}
+
+BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing)
+    : blocks_({}, {}, 1, 1), cells_({}, {}, 1, 1), begin_(2, 0) {
+  if (places.empty()) return;
+  const Bounds bounds = bounds_of(places);
+  const double most = std::max(1e6, 2.0 * static_cast<double>(places.size()));
+  blocks_ = Cells(bounds.low, bounds.high, kEdge * spacing, most);
+  cells_ = Cells(bounds.low, bounds.high, spacing, most);
+  std::vector<int> block;
+  block.reserve(places.size());
+  begin_.assign(blocks_.size() + 1, 0);
+  for (const Vec3d& x : places) {
+    block.push_back(static_cast<int>(blocks_.number(blocks_.of(x))));
+    ++begin_[at(block.back()) + 1];
   }
-  const auto squared = [&](std::size_t k) {
-    const double dx = place_[0][k] - x[0], dy = place_[1][k] - x[1], dz = place_[2][k] - x[2];
-    return dx * dx + dy * dy + dz * dz;
-  };
-  std::array<double, kLanes> least;
-  least.fill(INFINITY);
-  for (std::size_t k = last_.begin; k < last_.end; k += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double d = squared(k + lane);
-      least[lane] = d < least[lane] ? d : least[lane];
+  for (std::size_t b = 1; b < begin_.size(); ++b)
+    begin_[b] = begin_[b - 1] + (begin_[b] + kLanes - 1) / kLanes * kLanes;
+  for (AlignedVector<double>& x : x_) x.assign(begin_.back(), 0);
+  place_.assign(begin_.back(), -1);
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const std::size_t n = next[at(block[p])]++;
+    for (int a = 0; a < 3; ++a) x_[at(a)][n] = places[p][a];
+    place_[n] = static_cast<int>(p);
+  }
+}
+
+BlockSearch::Sorted BlockSearch::sorted(std::span<const Vec3d> points) const {
+  Sorted out{std::vector<int>(cells_.size() + 1, 0), std::vector<int>(points.size()),
+             std::vector<Vec3d>(points.size())};
+  for (const Vec3d& x : points) ++out.begin[cells_.number(cells_.of(x)) + 1];
+  for (std::size_t c = 1; c < out.begin.size(); ++c) out.begin[c] += out.begin[c - 1];
+  std::vector<int> next(out.begin.begin(), out.begin.end() - 1);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const std::size_t n = at(next[cells_.number(cells_.of(points[p]))]++);
+    out.index[n] = static_cast<int>(p);
+    out.x[n] = points[p];
+  }
+  return out;
+}
+
+/// The distance to the nearest point.
+double BlockSearch::distance_from(const Vec3d& x, const Sorted& points) const {
+  const Cell home = cells_.of(x);
+  double squared = kInfinity;
+  const int most = *std::max_element(cells_.count.begin(), cells_.count.end());
+  for (int ring = 1; ring <= most; ++ring) {
+    Cell low{}, high{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::max(0, home[a] - ring);
+      high[a] = std::min(cells_.count[a] - 1, home[a] + ring);
     }
-  const double most = *std::min_element(least.begin(), least.end()) * (1 + kTie);
-  std::size_t k = last_.begin;
-  while (squared(k) > most) ++k;
-  return point_[k];
+    for_rows(low, high, [&](int j, int k) {
+      const int end = points.begin[cells_.number({high[0], j, k}) + 1];
+      for (int n = points.begin[cells_.number({low[0], j, k})]; n < end; ++n)
+        squared = std::min(squared, squared_norm(points.x[at(n)] - x));
+    });
+    const double covered = ring * cells_.edge;  // beyond are points of other cells
+    if (squared <= covered * covered) break;
+  }
+  return std::sqrt(squared);
+}
+
+void BlockSearch::list(const Vec3d& middle, const Sorted& points, Candidates& out) const {
+  // No place in the block is farther from its middle than half its diagonal.
+  const double radius = (distance_from(middle, points) + std::sqrt(3.0) * blocks_.edge) * (1 + 10 * kTie);
+  const Vec3d reach{{radius, radius, radius}};
+  const Cell low = cells_.of(middle - reach), high = cells_.of(middle + reach);
+  for (std::vector<double>& x : out.x) x.clear();
+  out.index.clear();
+  for_rows(low, high, [&](int j, int k) {
+    const int end = points.begin[cells_.number({high[0], j, k}) + 1];
+    for (int n = points.begin[cells_.number({low[0], j, k})]; n < end; ++n) {
+      const Vec3d& x = points.x[at(n)];
+      if (squared_norm(x - middle) > radius * radius) continue;
+      for (int a = 0; a < 3; ++a) out.x[at(a)].push_back(x[a]);
+      out.index.push_back(points.index[at(n)]);
+    }
+  });
+}
+
+void BlockSearch::search(std::size_t first, std::size_t last, const Candidates& among,
+                         std::vector<int>& nearest) const {
+  const std::size_t count = among.index.size();
+  const Lanes infinity(kInfinity);
+  for (std::size_t n = first; n < last; n += at(kBatchWidth)) {
+    const Lanes x = Lanes::load(&x_[0][n]), y = Lanes::load(&x_[1][n]), z = Lanes::load(&x_[2][n]);
+    const auto squared = [&](std::size_t c) {
+      const Lanes dx = x - among.x[0][c], dy = y - among.x[1][c], dz = z - among.x[2][c];
+      return dx * dx + dy * dy + dz * dz;
+    };
+    Lanes least = infinity;
+    for (std::size_t c = 0; c < count; ++c) least = smaller(least, squared(c));
+    least *= 1 + kTie;
+    Lanes index = infinity;
+    for (std::size_t c = 0; c < count; ++c)
+      index = smaller(index, where_positive(squared(c) - least, infinity, Lanes(among.index[c])));
+    for (int lane = 0; lane < kBatchWidth; ++lane)
+      if (const int place = place_[n + at(lane)]; place >= 0) nearest[at(place)] = static_cast<int>(index.v[lane]);
+  }
+}
+
+std::vector<int> BlockSearch::nearest(std::span<const Vec3d> points, ThreadPool& pool) const {
+  const auto places =
+      static_cast<std::size_t>(std::count_if(place_.begin(), place_.end(), [](int p) { return p >= 0; }));
+  std::vector<int> nearest(places, -1);
+  if (points.empty()) return nearest;
+  const Sorted by_cell = sorted(points);
+  pool.for_ranges(static_cast<int>(blocks_.size()), kGrain, [&](int begin, int end) {
+    Candidates among;
+    for (std::size_t b = at(begin); b < at(end); ++b) {
+      if (begin_[b] == begin_[b + 1]) continue;
+      list(blocks_.middle(b), by_cell, among);
+      search(begin_[b], begin_[b + 1], among, nearest);
+    }
+  });
+  return nearest;
 }
 
 }  // namespace fascia

@@ -1,51 +1,65 @@
 #pragma once
 
-#include "meshless/scattered/point_grid.hpp"
+#include "core/base/aligned.hpp"
+#include "core/base/thread_pool.hpp"
+#include "core/math/vec3.hpp"
 
 #include <array>
-#include <cstdint>
+#include <cstddef>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 namespace fascia {
 
-/// The nearest of fixed points to each of many places that lie close together, as the voxels of a solid do: what can be
-/// nearest to a place in a cubic block is listed once for all of them.
+/// The nearest of some points to each of many places, as the voxels of a solid are, for points that move from call to
+/// call. Places are sorted into cubic blocks; what can be nearest in a block is listed once for all of them.
 class BlockSearch {
  public:
   /// @param spacing  about the distance between points [m]
-  BlockSearch(std::span<const Vec3d> points, double spacing);
+  BlockSearch(std::span<const Vec3d> places, double spacing);
 
-  /// The nearest point, of equals (PointGrid) the first; −1 where there is none.
-  int nearest(const Vec3d& x);
+  /// The nearest point to each place, of equals (kTie of point_grid.hpp) the first; −1 where there is none. The same
+  /// for any number of threads.
+  std::vector<int> nearest(std::span<const Vec3d> points, ThreadPool& pool) const;
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
-  struct CellHash {
-    std::size_t operator()(const Cell& c) const {
-      std::size_t sum = 0;
-      for (const std::int64_t i : c) sum = (sum ^ static_cast<std::size_t>(i)) * 0x9E3779B97F4A7C15ULL;
-      return sum ^ (sum >> 32);
-    }
-  };
-  /// Its part of the candidates, a multiple of kLanes.
-  struct Block {
-    std::size_t begin = 0, end = 0;
-  };
-  static constexpr std::size_t kLanes = 8;  ///< distances that are computed together
+  using Cell = std::array<int, 3>;
+  static constexpr std::size_t kLanes = 8;  ///< fills the batches of any processor
 
-  Block list(const Cell& cell);
-  void add(int point, const Vec3d& x);
+  /// Cells of one size that cover all places.
+  struct Cells {
+    Vec3d low{};
+    double edge = 0;  ///< [m]
+    Cell count{1, 1, 1};
 
-  std::span<const Vec3d> points_;
-  PointGrid grid_;
-  double edge_;  ///< of a block
-  std::unordered_map<Cell, Block, CellHash> blocks_;
-  std::array<std::vector<double>, 3> place_;  ///< of candidates, by axis
-  std::vector<int> point_;                    ///< of candidates, ascending in each block
-  Cell last_cell_{};
-  Block last_{};
+    /// @param width  wanted; it grows until there are at most so many cells
+    Cells(const Vec3d& min, const Vec3d& max, double width, double most);
+    /// Of places outside the outermost cell in their direction.
+    Cell of(const Vec3d& x) const;
+    std::size_t number(const Cell& c) const;
+    std::size_t size() const;
+    Vec3d middle(std::size_t number) const;
+  };
+  /// Points by cell.
+  struct Sorted {
+    std::vector<int> begin, index;  ///< of each cell in the arrays, and of each point in the caller's order
+    std::vector<Vec3d> x;
+  };
+  /// Points that can be nearest in a block, and their indices, as numbers that stand beside distances.
+  struct Candidates {
+    std::array<std::vector<double>, 3> x;
+    std::vector<double> index;
+  };
+
+  Sorted sorted(std::span<const Vec3d> points) const;
+  double distance_from(const Vec3d& x, const Sorted& points) const;
+  void list(const Vec3d& middle, const Sorted& points, Candidates& out) const;
+  void search(std::size_t first, std::size_t last, const Candidates& among, std::vector<int>& nearest) const;
+
+  Cells blocks_, cells_;            ///< of places, of points
+  std::vector<std::size_t> begin_;  ///< of each block in the arrays of places, multiples of kLanes
+  std::array<AlignedVector<double>, 3> x_;
+  std::vector<int> place_;  ///< in the caller's order; −1: fills up the lanes
 };
 
 }  // namespace fascia

@@ -37,13 +37,21 @@ class PointGrid {
   template <class Accept>
   bool any_within(const Vec3d& x, double radius, Accept&& accept) const {
     const Cell home = cell_of(x);
-    const auto gaps = gaps_around(home, x);
+    const Gaps gaps = gaps_around(home, x);
     const double most = radius * radius * (1 + kTie);
+    std::array<std::array<double, 3>, 3> squares{};  // of the gaps, and parts of the hashes, by axis and offset
+    std::array<std::array<std::uint64_t, 3>, 3> parts{};
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t o = 0; o < 3; ++o) {
+        squares[a][o] = gaps[a][o] * gaps[a][o] * (1 - 4 * kTie);
+        parts[a][o] = hash_part(a, home[a] + static_cast<int>(o) - 1);
+      }
     for (const auto& offset : kNearFirst) {
-      if (squared_gap(gaps, offset) > most) continue;
-      for (int i = first_in(home, offset); i >= 0; i = next_[at(i)]) {
-        const double squared = squared_norm(points_[at(i)] - x);
-        if (squared <= most && accept(i, squared)) return true;
+      const std::size_t i = at(offset[0] + 1), j = at(offset[1] + 1), k = at(offset[2] + 1);
+      if (squares[0][i] + squares[1][j] + squares[2][k] > most) continue;
+      for (int n = head_[(parts[0][i] + parts[1][j] + parts[2][k]) >> shift_]; n >= 0; n = next_[at(n)]) {
+        const double squared = squared_norm(points_[at(n)] - x);
+        if (squared <= most && accept(n, squared)) return true;
       }
     }
     return false;
@@ -150,12 +158,13 @@ class PointGrid {
   int first_in(const Cell& home, const Offset& o) const {
     return head_[slot({home[0] + o[0], home[1] + o[1], home[2] + o[2]})];
   }
+  static std::uint64_t hash_part(std::size_t axis, std::int64_t c) {
+    constexpr std::array<std::uint64_t, 3> kFactor{0x9E3779B97F4A7C15ULL, 0xC2B2AE3D27D4EB4FULL, 0x165667B19E3779F9ULL};
+    return static_cast<std::uint64_t>(c) * kFactor[axis];
+  }
   /// Upper bits of a sum of multiples spread neighbouring cells well.
   std::size_t slot(const Cell& c) const {
-    const std::uint64_t sum = static_cast<std::uint64_t>(c[0]) * 0x9E3779B97F4A7C15ULL +
-                              static_cast<std::uint64_t>(c[1]) * 0xC2B2AE3D27D4EB4FULL +
-                              static_cast<std::uint64_t>(c[2]) * 0x165667B19E3779F9ULL;
-    return static_cast<std::size_t>(sum >> shift_);
+    return static_cast<std::size_t>((hash_part(0, c[0]) + hash_part(1, c[1]) + hash_part(2, c[2])) >> shift_);
   }
   void link(int i) {
     int& head = head_[slot(cell_of(points_[at(i)]))];

@@ -12,12 +12,13 @@ namespace {
 void check_spacing(const Matter& matter, double spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw InputError("the spacing of samples is not positive; give their mean distance in metres");
-  if (matter.pieces.empty()) throw InputError("there is no matter to sample; the body needs a domain with volume");
+  if (matter.pieces.empty() && matter.voxels.size() == 0)
+    throw InputError("there is no matter to sample; the body needs a domain with volume");
 }
 
 /// The spacing of `count` samples were there no boundary: Σ measure / spacing^dimension = count.
 double boundless_spacing(const Matter& matter, int count) {
-  const std::array<double, 4> measure = measures(matter);
+  const std::array<double, 4>& measure = matter.measure;
   double low = 0, high = 0;
   for (int d = 1; d <= 3; ++d) high = std::max(high, std::pow(3 * measure[at(d)] / count, 1.0 / d));
   for (int round = 0; round < 100; ++round) {
@@ -32,19 +33,19 @@ double boundless_spacing(const Matter& matter, int count) {
 }  // namespace
 
 std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features,
-                                      std::span<const Vec3d> occupied) {
+                                      ThreadPool& pool, std::span<const Vec3d> occupied) {
   check_spacing(matter, spacing);
-  return with_features ? FrameSampler(matter, seed, occupied).places(spacing, true)
-                       : point_places(matter, spacing, seed);
+  return with_features ? FrameSampler(matter, seed, occupied, pool).places(spacing, true)
+                       : point_places(matter, spacing, seed, pool);
 }
 
-double spacing_for_count(const Matter& matter, int count, int seed, bool with_features,
+double spacing_for_count(const Matter& matter, int count, int seed, bool with_features, ThreadPool& pool,
                          std::span<const Vec3d> occupied) {
   if (count < 1) throw InputError("the number of samples is not positive; at least 1 is needed");
   check_spacing(matter, 1);
   double best = boundless_spacing(matter, count), best_error = INFINITY;
   std::optional<FrameSampler> frames;
-  if (with_features) frames.emplace(matter, seed, occupied);
+  if (with_features) frames.emplace(matter, seed, occupied, pool);
   const auto excess = [&](double s) {
     const double n = frames ? static_cast<double>(frames->places(s, false).size()) : expected_points(matter, s);
     if (std::abs(n - count) < best_error) {
@@ -77,13 +78,16 @@ double spacing_for_count(const Matter& matter, int count, int seed, bool with_fe
 
 std::vector<SamplePlace> places_at(const Matter& matter, std::span<const Vec3d> positions) {
   PointGrid grid(2 * matter.piece_size);
-  const std::vector<int> pieces = select_pieces(matter, [](const MatterPiece& p) { return p.volume > 0; });
-  if (pieces.empty()) throw InputError("there is no matter to sample; the body needs a domain with volume");
-  for (const int p : pieces) grid.insert(matter.pieces[at(p)].x);
+  const int voxels = static_cast<int>(matter.voxels.size());
+  const std::vector<int> thin = select_pieces(matter, [](const MatterPiece& p) { return p.volume > 0; });
+  if (voxels == 0 && thin.empty())
+    throw InputError("there is no matter to sample; the body needs a domain with volume");
+  for (const Vec3d& x : matter.voxels.x) grid.insert(x);
+  for (const int p : thin) grid.insert(matter.pieces[at(p)].x);
   std::vector<SamplePlace> places;
   for (const Vec3d& x : positions) {
     const int nearest = grid.nearest(x, INFINITY, [](int) { return true; });
-    places.push_back(place_of(matter.pieces[at(pieces[at(nearest)])]));
+    places.push_back(nearest < voxels ? voxel_place({}) : place_of(matter.pieces[at(thin[at(nearest - voxels)])]));
     places.back().x = x;
   }
   return places;

@@ -20,7 +20,7 @@ struct SamplePlace {
   double extent = 0;               ///< thickness of a sheet, radius of a line [m]
 };
 
-/// Places for samples; the same for the same seed.
+/// Places for samples; the same for the same seed, whatever the number of threads.
 ///
 /// With features (frames): corners first, then edges and lines at even intervals, faces and sheets, insides. Samples of
 /// lower features keep others off, whatever the matter's dimension; so two parts that touch share them.
@@ -30,12 +30,12 @@ struct SamplePlace {
 /// @param occupied  places that keep frames off as samples of lower features do [m]
 /// @throws InputError  a spacing that is not positive, or matter without pieces
 std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features,
-                                      std::span<const Vec3d> occupied = {});
+                                      ThreadPool& pool, std::span<const Vec3d> occupied = {});
 
 /// The spacing at which poisson_disk places about `count` samples.
 ///
 /// @throws InputError  a count that is not positive
-double spacing_for_count(const Matter& matter, int count, int seed, bool with_features,
+double spacing_for_count(const Matter& matter, int count, int seed, bool with_features, ThreadPool& pool,
                          std::span<const Vec3d> occupied = {});
 
 /// Positions that a user gave, with the dimension and axes of the matter nearest to each.
@@ -43,9 +43,8 @@ std::vector<SamplePlace> places_at(const Matter& matter, std::span<const Vec3d> 
 
 /// What belongs to a sample.
 struct Share {
-  Vec3d centroid{};         ///< [m]; of an empty share the sample itself
-  double volume = 0;        ///< [m³]
-  std::vector<int> pieces;  ///< ascending; on a line the one that two samples divide goes to the nearer
+  Vec3d centroid{};   ///< [m]; of an empty share the sample itself
+  double volume = 0;  ///< [m³]
 };
 
 /// The matter nearest to each sample (Voronoi cells). Volumes add up to the matter's. Shares hold matter of one
@@ -53,6 +52,6 @@ struct Share {
 /// A sample to which nothing is nearest has volume 0.
 ///
 /// @throws InputError  matter of a dimension that no sample has
-std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePlace> samples);
+std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePlace> samples, ThreadPool& pool);
 
 }  // namespace fascia

@@ -1,6 +1,8 @@
+#include "meshless/scattered/block_search.hpp"
 #include "meshless/scattered/scatter_parts.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace fascia {
 namespace {
@@ -43,27 +45,29 @@ class FrameSet {
   }
 
   /// Random places on pieces of a feature until no more fit.
-  void add_darts(const std::vector<Dart>& darts, double least) {
+  void add_darts(const PieceList& pieces, const std::vector<Dart>& darts, double least, ThreadPool& pool) {
     const double same = least * spacing_, lower = kLower * spacing_;
-    const auto conflict = [&](const MatterPiece& piece, const Vec3d& x) {
+    const int feature = pieces.solid() ? 3 : 2;
+    const auto conflict = [&](std::size_t, const Vec3d& x) {
       return grid_.any_within(x, std::max(same, lower), [&](int i, double squared) {
-        const double r = samples_[at(i)].feature == piece.feature ? same : lower;
+        const double r = samples_[at(i)].feature == feature ? same : lower;
         return squared < r * r * (1 - kTie);
       });
     };
-    throw_darts(matter_, darts, conflict, [&](const SamplePlace& place) { add(place); });
+    throw_darts(matter_, pieces, darts, pool, conflict, [&](const SamplePlace& place) { add(place); });
   }
 
   /// Evens out the samples of a feature among all of it and lower ones.
-  void relax(const std::vector<int>& pieces, int feature) {
+  void relax(const PieceList& pieces, ThreadPool& pool) {
+    const int feature = pieces.solid() ? 3 : 2;
+    std::optional<BlockSearch> in_solid;
+    if (pieces.solid()) in_solid.emplace(matter_.voxels.x, spacing_);
     for (int round = 0; round < kRounds; ++round) {
-      std::vector<int> owner;
-      owner.reserve(pieces.size());
-      for (const int p : pieces) {
-        const MatterPiece& piece = matter_.pieces[at(p)];
-        const int i = grid_.nearest(piece.x, INFINITY, [](int) { return true; });
-        const bool own = samples_[at(i)].feature == feature && alike(samples_[at(i)], piece);
-        owner.push_back(own ? i : -1);
+      std::vector<int> owner = in_solid ? in_solid->nearest(positions_of(samples_), pool) : nearest_samples(pieces);
+      for (std::size_t n = 0; n < pieces.size(); ++n) {
+        const SamplePlace& sample = samples_[at(owner[n])];
+        const bool own = sample.feature == feature && (pieces.solid() || alike(sample, pieces.thin(n)));
+        if (!own) owner[n] = -1;
       }
       move_to_middles(matter_, pieces, owner, samples_);
       grid_ = PointGrid(spacing_);
@@ -84,6 +88,13 @@ class FrameSet {
     samples_.push_back(place);
     grid_.insert(place.x);
   }
+  std::vector<int> nearest_samples(const PieceList& pieces) const {
+    std::vector<int> nearest;
+    nearest.reserve(pieces.size());
+    for (std::size_t n = 0; n < pieces.size(); ++n)
+      nearest.push_back(grid_.nearest(pieces.x(n), INFINITY, [](int) { return true; }));
+    return nearest;
+  }
 
   const Matter& matter_;
   double spacing_;
@@ -94,25 +105,26 @@ class FrameSet {
 
 }  // namespace
 
-FrameSampler::FrameSampler(const Matter& matter, int seed, std::span<const Vec3d> occupied)
-    : matter_(matter), occupied_(occupied) {
+FrameSampler::FrameSampler(const Matter& matter, int seed, std::span<const Vec3d> occupied, ThreadPool& pool)
+    : matter_(matter),
+      occupied_(occupied),
+      pool_(pool),
+      faces_(PieceList::of_thin(matter, select_pieces(matter, [](const MatterPiece& p) { return p.feature == 2; }))),
+      insides_(PieceList::of_solids(matter)) {
   std::mt19937 random(static_cast<std::uint32_t>(seed));
-  for (const int feature : {2, 3}) {
-    std::vector<int>& pieces = pieces_[at(feature - 2)];
-    pieces = select_pieces(matter, [&](const MatterPiece& p) { return p.feature == feature; });
-    darts_[at(feature - 2)] = random_darts(matter, pieces, random);
-  }
+  face_darts_ = random_darts(faces_, random);
+  inside_darts_ = random_darts(insides_, random);
 }
 
 std::vector<SamplePlace> FrameSampler::places(double spacing, bool relaxed) const {
   FrameSet frames(matter_, spacing, occupied_);
   frames.add_corners();
   frames.add_chains();
-  frames.add_darts(darts_[0], kFace);
-  frames.add_darts(darts_[1], kInside);
+  frames.add_darts(faces_, face_darts_, kFace, pool_);
+  frames.add_darts(insides_, inside_darts_, kInside, pool_);
   if (relaxed) {
-    frames.relax(pieces_[0], 2);
-    frames.relax(pieces_[1], 3);
+    frames.relax(faces_, pool_);
+    frames.relax(insides_, pool_);
   }
   return frames.take();
 }

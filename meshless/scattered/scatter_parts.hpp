@@ -1,20 +1,23 @@
 #pragma once
 
-#include "meshless/scattered/block_search.hpp"
+#include "core/base/thread_pool.hpp"
 #include "meshless/scattered/point_grid.hpp"
 #include "meshless/scattered/scatter.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 /// Steps shared by the sampling of frames and of integration points.
 namespace fascia {
 
 SamplePlace place_of(const MatterPiece& piece);
+/// A place in a solid.
+inline SamplePlace voxel_place(const Vec3d& x) { return {x, 3, 3, Mat3d::identity(), 0}; }
 
 /// Whether two places can share matter: of one dimension; normals of sheets, tangents of lines within 60°.
 template <class A, class B>
@@ -32,9 +35,6 @@ inline double rounded(double positive) { return std::round(positive * (1 + kTie)
 /// Whether a point lies in some solid.
 bool inside(const Matter& matter, const Vec3d& x);
 
-/// Length, area and volume of the matter, by dimension [m, m², m³].
-std::array<double, 4> measures(const Matter& matter);
-
 /// The pieces that `take` accepts.
 template <class Take>
 std::vector<int> select_pieces(const Matter& matter, Take&& take) {
@@ -44,30 +44,68 @@ std::vector<int> select_pieces(const Matter& matter, Take&& take) {
   return chosen;
 }
 
+/// Pieces to sample, of one feature: the voxels of a matter, or some of its other pieces.
+class PieceList {
+ public:
+  static PieceList of_solids(const Matter& matter) { return {matter, {}, true}; }
+  static PieceList of_thin(const Matter& matter, std::vector<int> pieces) { return {matter, std::move(pieces), false}; }
+
+  bool solid() const { return solid_; }
+  std::size_t size() const { return solid_ ? matter_->voxels.size() : index_.size(); }
+  const Vec3d& x(std::size_t n) const { return solid_ ? matter_->voxels.x[n] : thin(n).x; }
+  double measure(std::size_t n) const { return solid_ ? matter_->voxels.volume[n] : thin(n).measure; }
+  /// Of sheets, lines and boundaries.
+  const MatterPiece& thin(std::size_t n) const { return matter_->pieces[at(index_[n])]; }
+  SamplePlace place(std::size_t n) const { return solid_ ? voxel_place(x(n)) : place_of(thin(n)); }
+
+ private:
+  PieceList(const Matter& matter, std::vector<int> index, bool solid)
+      : matter_(&matter), index_(std::move(index)), solid_(solid) {}
+
+  const Matter* matter_;
+  std::vector<int> index_;  ///< into Matter::pieces
+  bool solid_;
+};
+
 /// A place to try.
 struct Dart {
   Vec3d x{};
-  int piece = 0;
+  int piece = 0;  ///< of the list
 };
 
 /// The pieces in random order; inside of solids each at a random place of its voxel, which leaves no trace of the
 /// voxels in the distances.
-std::vector<Dart> random_darts(const Matter& matter, std::vector<int> pieces, std::mt19937& random);
+std::vector<Dart> random_darts(const PieceList& pieces, std::mt19937& random);
 
 /// Tries darts in turn, first as they are, then, where that is outside of the solid, at their pieces.
 ///
-/// @param conflict  whether a place is too near to others: conflict(place)
+/// Whether a dart meets a sample that is there already is asked by all threads, for many darts at once; what is left is
+/// tried in turn.
+/// @param conflict  whether a place is too near to others: conflict(piece of the list, place)
 /// @param add       takes a place
 template <class Conflict, class Add>
-void throw_darts(const Matter& matter, std::span<const Dart> darts, Conflict&& conflict, Add&& add) {
-  for (const Dart& dart : darts) {
-    if (conflict(matter.pieces[at(dart.piece)], dart.x)) continue;
-    SamplePlace place = place_of(matter.pieces[at(dart.piece)]);
-    if (inside(matter, dart.x))
-      place.x = dart.x;
-    else if (place.x != dart.x && conflict(matter.pieces[at(dart.piece)], place.x))
-      continue;
-    add(place);
+void throw_darts(const Matter& matter, const PieceList& pieces, std::span<const Dart> darts, ThreadPool& pool,
+                 Conflict&& conflict, Add&& add) {
+  constexpr std::size_t kFirst = 2048;
+  constexpr int kGrain = 1024;
+  std::vector<char> meets;
+  for (std::size_t begin = 0, end = 0; begin < darts.size(); begin = end) {
+    end = std::min(darts.size(), std::max(kFirst, 2 * begin));  // samples grow slower than darts are thrown
+    const std::span<const Dart> some = darts.subspan(begin, end - begin);
+    meets.resize(some.size());
+    pool.for_ranges(static_cast<int>(some.size()), kGrain, [&](int first, int last) {
+      for (std::size_t n = at(first); n < at(last); ++n) meets[n] = conflict(at(some[n].piece), some[n].x) ? 1 : 0;
+    });
+    for (std::size_t n = 0; n < some.size(); ++n) {
+      const std::size_t piece = at(some[n].piece);
+      if (meets[n] != 0 || conflict(piece, some[n].x)) continue;
+      SamplePlace place = pieces.place(piece);
+      if (inside(matter, some[n].x))
+        place.x = some[n].x;
+      else if (place.x != some[n].x && conflict(piece, place.x))
+        continue;
+      add(place);
+    }
   }
 }
 
@@ -81,17 +119,17 @@ std::vector<SamplePlace> places_on(const FeatureChain& chain, std::span<const do
 /// surface to the piece nearest to it.
 ///
 /// @param owner  the sample of each piece, −1: none
-void move_to_middles(const Matter& matter, std::span<const int> pieces, std::span<const int> owner,
+void move_to_middles(const Matter& matter, const PieceList& pieces, std::span<const int> owner,
                      std::vector<SamplePlace>& samples);
 
-/// The sample to which a piece belongs.
+/// The sample to which a piece of a sheet or a line belongs.
 class OwnerSearch {
  public:
   OwnerSearch(const Matter& matter, std::span<const SamplePlace> samples);
   /// Of the piece's dimension, with like directions unless those are more than two spacings away; −1: none.
-  int owner(const MatterPiece& piece) { return owner(piece, piece.x); }
+  int owner(const MatterPiece& piece) const { return owner(piece, piece.x); }
   /// The same for another point of the piece.
-  int owner(const MatterPiece& piece, const Vec3d& x);
+  int owner(const MatterPiece& piece, const Vec3d& x) const;
 
  private:
   struct OneDimension {
@@ -101,27 +139,29 @@ class OwnerSearch {
   };
   std::span<const SamplePlace> samples_;
   std::array<OneDimension, 3> dimension_;  ///< of lines and faces
-  std::vector<int> solid_sample_;          ///< by point of the search
-  std::vector<Vec3d> solid_place_;
-  std::optional<BlockSearch> solid_;
 };
+
+/// About the distance between so many samples in solids [m].
+double spacing_in_solids(const Matter& matter, std::size_t count);
+std::vector<Vec3d> positions_of(std::span<const SamplePlace> samples);
 
 /// Frames of a body at any spacing, from the same darts.
 class FrameSampler {
  public:
   /// @param occupied  as of poisson_disk()
-  FrameSampler(const Matter& matter, int seed, std::span<const Vec3d> occupied);
+  FrameSampler(const Matter& matter, int seed, std::span<const Vec3d> occupied, ThreadPool& pool);
   /// @param relaxed  evens the distances out; the number stays
   std::vector<SamplePlace> places(double spacing, bool relaxed) const;
 
  private:
   const Matter& matter_;
   std::span<const Vec3d> occupied_;
-  std::array<std::vector<int>, 2> pieces_;  ///< of faces, insides
-  std::array<std::vector<Dart>, 2> darts_;
+  ThreadPool& pool_;
+  PieceList faces_, insides_;
+  std::vector<Dart> face_darts_, inside_darts_;
 };
 
-std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed);
+std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed, ThreadPool& pool);
 /// How many point_places aims at.
 double expected_points(const Matter& matter, double spacing);
 

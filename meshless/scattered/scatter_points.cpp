@@ -1,6 +1,8 @@
+#include "meshless/scattered/block_search.hpp"
 #include "meshless/scattered/scatter_parts.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace fascia {
 namespace {
@@ -14,13 +16,15 @@ double wanted(double measure, int dimension, double spacing) {
   return measure > 0 ? std::max(1.0, rounded(measure / std::pow(spacing, dimension))) : 0;
 }
 
-std::vector<SamplePlace> throw_at(const Matter& matter, std::span<const Dart> darts, double least) {
+std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces, std::span<const Dart> darts,
+                                  double least, ThreadPool& pool) {
   std::vector<SamplePlace> samples;
   PointGrid grid(least);
-  const auto conflict = [&](const MatterPiece& piece, const Vec3d& x) {
-    return grid.any_within(x, least, [&](int i, double) { return alike(samples[at(i)], piece); });
+  const auto conflict = [&](std::size_t n, const Vec3d& x) {
+    return grid.any_within(x, least,
+                           [&](int i, double) { return pieces.solid() || alike(samples[at(i)], pieces.thin(n)); });
   };
-  throw_darts(matter, darts, conflict, [&](const SamplePlace& place) {
+  throw_darts(matter, pieces, darts, pool, conflict, [&](const SamplePlace& place) {
     samples.push_back(place);
     grid.insert(place.x);
   });
@@ -28,14 +32,15 @@ std::vector<SamplePlace> throw_at(const Matter& matter, std::span<const Dart> da
 }
 
 /// Darts about as many as wanted: samples gather at the boundary, so the distance depends on the shape.
-std::vector<SamplePlace> throw_about(const Matter& matter, std::span<const Dart> darts, int dimension, double spacing,
-                                     double count) {
+std::vector<SamplePlace> throw_about(const Matter& matter, const PieceList& pieces, std::span<const Dart> darts,
+                                     double spacing, double count, ThreadPool& pool) {
   constexpr int most_trials = 8;
+  const int dimension = pieces.solid() ? 3 : 2;
   double least = spacing / kSaturated[at(dimension)];
   std::vector<SamplePlace> best;
   double best_error = INFINITY;
   for (int trial = 0; trial < most_trials && best_error > 0.01 * count; ++trial) {
-    std::vector<SamplePlace> samples = throw_at(matter, darts, least);
+    std::vector<SamplePlace> samples = throw_at(matter, pieces, darts, least, pool);
     const double n = static_cast<double>(samples.size());
     least *= std::pow(n / count, 1.0 / dimension);
     if (std::abs(n - count) >= best_error) continue;
@@ -45,19 +50,33 @@ std::vector<SamplePlace> throw_about(const Matter& matter, std::span<const Dart>
   return best;
 }
 
+/// Evens out the distances between samples of some pieces.
+void relax(const Matter& matter, const PieceList& pieces, std::vector<SamplePlace>& samples, ThreadPool& pool) {
+  std::optional<BlockSearch> in_solid;
+  if (pieces.solid()) in_solid.emplace(matter.voxels.x, spacing_in_solids(matter, samples.size()));
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<int> owner;
+    if (in_solid) {
+      owner = in_solid->nearest(positions_of(samples), pool);
+    } else {
+      const OwnerSearch search(matter, samples);
+      for (std::size_t n = 0; n < pieces.size(); ++n) owner.push_back(search.owner(pieces.thin(n)));
+    }
+    move_to_middles(matter, pieces, owner, samples);
+  }
+}
+
 }  // namespace
 
 double expected_points(const Matter& matter, double spacing) {
-  const std::array<double, 4> measure = measures(matter);
-  double count = wanted(measure[2], 2, spacing) + wanted(measure[3], 3, spacing);
+  double count = wanted(matter.measure[2], 2, spacing) + wanted(matter.measure[3], 3, spacing);
   for (const FeatureChain& chain : matter.chains)
     if (chain.dimension == 1) count += interval_count(chain, spacing);
   return count;
 }
 
-std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed) {
+std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed, ThreadPool& pool) {
   std::mt19937 random(static_cast<std::uint32_t>(seed));
-  const std::array<double, 4> measure = measures(matter);
   std::vector<SamplePlace> all;
   for (const FeatureChain& chain : matter.chains) {
     if (chain.dimension != 1) continue;
@@ -68,20 +87,15 @@ std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int 
     const std::vector<SamplePlace> places = places_on(chain, fractions);
     all.insert(all.end(), places.begin(), places.end());
   }
-  for (const int dimension : {2, 3}) {
-    const std::vector<int> pieces =
-        select_pieces(matter, [&](const MatterPiece& p) { return p.volume > 0 && p.dimension == dimension; });
-    if (pieces.empty()) continue;
-    const std::vector<Dart> darts = random_darts(matter, pieces, random);
-    std::vector<SamplePlace> samples =
-        throw_about(matter, darts, dimension, spacing, wanted(measure[at(dimension)], dimension, spacing));
-    for (int round = 0; round < kRounds; ++round) {
-      OwnerSearch search(matter, samples);
-      std::vector<int> owner;
-      owner.reserve(pieces.size());
-      for (const int p : pieces) owner.push_back(search.owner(matter.pieces[at(p)]));
-      move_to_middles(matter, pieces, owner, samples);
-    }
+  const auto in_sheets = [](const MatterPiece& p) { return p.volume > 0 && p.dimension == 2; };
+  for (const PieceList& pieces :
+       {PieceList::of_thin(matter, select_pieces(matter, in_sheets)), PieceList::of_solids(matter)}) {
+    if (pieces.size() == 0) continue;
+    const std::vector<Dart> darts = random_darts(pieces, random);
+    const int dimension = pieces.solid() ? 3 : 2;
+    const double count = wanted(matter.measure[at(dimension)], dimension, spacing);
+    std::vector<SamplePlace> samples = throw_about(matter, pieces, darts, spacing, count, pool);
+    relax(matter, pieces, samples, pool);
     all.insert(all.end(), samples.begin(), samples.end());
   }
   return all;

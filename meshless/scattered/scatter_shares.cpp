@@ -1,4 +1,5 @@
 #include "core/base/errors.hpp"
+#include "meshless/scattered/block_search.hpp"
 #include "meshless/scattered/scatter_parts.hpp"
 
 #include <algorithm>
@@ -8,32 +9,25 @@
 namespace fascia {
 
 OwnerSearch::OwnerSearch(const Matter& matter, std::span<const SamplePlace> samples) : samples_(samples) {
-  const std::array<double, 4> measure = measures(matter);
   std::array<int, 4> count{};
   for (const SamplePlace& s : samples) ++count[at(s.dimension)];
-  const auto spacing = [&](int d) { return std::pow(measure[at(d)] / count[at(d)], 1.0 / d); };
+  const auto spacing = [&](int d) { return std::pow(matter.measure[at(d)] / count[at(d)], 1.0 / d); };
   for (int d = 1; d < 3; ++d) {
     OneDimension& one = dimension_[at(d)];
-    if (count[at(d)] == 0 || !(measure[at(d)] > 0)) continue;
+    if (count[at(d)] == 0 || !(matter.measure[at(d)] > 0)) continue;
     one.spacing = spacing(d);
     one.grid = PointGrid(one.spacing);
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].dimension == 3) {
-      solid_sample_.push_back(static_cast<int>(i));
-      solid_place_.push_back(samples[i].x);
-      continue;
-    }
+    if (samples[i].dimension == 3) continue;
     OneDimension& one = dimension_[at(samples[i].dimension)];
     if (!(one.spacing > 0)) continue;
     one.grid.insert(samples[i].x);
     one.sample.push_back(static_cast<int>(i));
   }
-  if (count[3] > 0 && measure[3] > 0) solid_.emplace(solid_place_, spacing(3));
 }
 
-int OwnerSearch::owner(const MatterPiece& piece, const Vec3d& x) {
-  if (piece.dimension == 3) return solid_ ? solid_sample_[at(solid_->nearest(x))] : -1;
+int OwnerSearch::owner(const MatterPiece& piece, const Vec3d& x) const {
   const OneDimension& one = dimension_[at(piece.dimension)];
   if (one.sample.empty()) return -1;
   const double reach = 2 * one.spacing;
@@ -41,6 +35,17 @@ int OwnerSearch::owner(const MatterPiece& piece, const Vec3d& x) {
   const bool near = found >= 0 && norm(samples_[at(one.sample[at(found)])].x - x) <= reach;
   if (!near) found = one.grid.nearest(x, INFINITY, [](int) { return true; });
   return one.sample[at(found)];
+}
+
+double spacing_in_solids(const Matter& matter, std::size_t count) {
+  return std::cbrt(matter.measure[3] / static_cast<double>(count));
+}
+
+std::vector<Vec3d> positions_of(std::span<const SamplePlace> samples) {
+  std::vector<Vec3d> x;
+  x.reserve(samples.size());
+  for (const SamplePlace& s : samples) x.push_back(s.x);
+  return x;
 }
 
 namespace {
@@ -51,7 +56,7 @@ void give(Share& share, const Vec3d& x, double volume) {
 }
 
 /// Divides a line's piece between the owners of its ends, at the plane halfway between them.
-void divide(const MatterPiece& piece, OwnerSearch& search, std::span<const SamplePlace> samples,
+void divide(const MatterPiece& piece, const OwnerSearch& search, std::span<const SamplePlace> samples,
             std::vector<Share>& shares) {
   const Vec3d half = piece.axes.column(0) * (0.5 * piece.measure);
   const Vec3d from = piece.x - half, to = piece.x + half;
@@ -65,21 +70,34 @@ void divide(const MatterPiece& piece, OwnerSearch& search, std::span<const Sampl
   give(shares[at(j)], to - half * (1 - u), piece.volume * (1 - u));
 }
 
+[[noreturn]] void refuse_without_samples(int dimension) {
+  static constexpr std::array<const char*, 4> kNames{"", "line", "sheet", "solid"};
+  throw InputError("no point lies in the " + std::string(kNames[at(dimension)]) +
+                   " part of the domain; it needs at least one");
+}
+
 }  // namespace
 
-std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePlace> samples) {
-  OwnerSearch search(matter, samples);
+std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePlace> samples, ThreadPool& pool) {
   std::vector<Share> shares(samples.size());
-  for (std::size_t p = 0; p < matter.pieces.size(); ++p) {
-    const MatterPiece& piece = matter.pieces[p];
+  const VoxelPieces& voxels = matter.voxels;
+  if (voxels.size() > 0) {
+    std::vector<int> in_solid;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (samples[i].dimension == 3) in_solid.push_back(static_cast<int>(i));
+    if (in_solid.empty()) refuse_without_samples(3);
+    std::vector<Vec3d> places;
+    for (const int i : in_solid) places.push_back(samples[at(i)].x);
+    const BlockSearch search(voxels.x, spacing_in_solids(matter, in_solid.size()));
+    const std::vector<int> owner = search.nearest(places, pool);
+    for (std::size_t p = 0; p < voxels.size(); ++p)
+      give(shares[at(in_solid[at(owner[p])])], voxels.x[p], voxels.volume[p]);
+  }
+  const OwnerSearch search(matter, samples);
+  for (const MatterPiece& piece : matter.pieces) {
     if (!(piece.volume > 0)) continue;
     const int i = search.owner(piece);
-    if (i < 0) {
-      static constexpr std::array<const char*, 4> kNames{"", "line", "sheet", "solid"};
-      throw InputError("no point lies in the " + std::string(kNames[at(piece.dimension)]) +
-                       " part of the domain; it needs at least one");
-    }
-    shares[at(i)].pieces.push_back(static_cast<int>(p));
+    if (i < 0) refuse_without_samples(piece.dimension);
     if (piece.dimension == 1)
       divide(piece, search, samples, shares);
     else

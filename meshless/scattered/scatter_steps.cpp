@@ -3,34 +3,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace fascia {
 
 SamplePlace place_of(const MatterPiece& p) { return {p.x, p.feature, p.dimension, p.axes, p.extent}; }
 
-std::array<double, 4> measures(const Matter& matter) {
-  std::array<double, 4> sum{};
-  for (const MatterPiece& p : matter.pieces)
-    if (p.volume > 0) sum[at(p.dimension)] += p.measure;
-  return sum;
-}
-
 bool inside(const Matter& matter, const Vec3d& x) {
   return std::any_of(matter.solids.begin(), matter.solids.end(), [&](const auto& contains) { return contains(x); });
 }
 
-std::vector<Dart> random_darts(const Matter& matter, std::vector<int> pieces, std::mt19937& random) {
-  for (std::size_t n = pieces.size(); n > 1; --n) {
-    const auto chosen = static_cast<std::size_t>((static_cast<std::uint64_t>(random()) * n) >> 32U);
-    std::swap(pieces[n - 1], pieces[chosen]);
+std::vector<Dart> random_darts(const PieceList& pieces, std::mt19937& random) {
+  std::vector<int> order(pieces.size());
+  std::iota(order.begin(), order.end(), 0);
+  constexpr std::size_t kAhead = 32;  // what is far apart in memory is fetched while other darts are made
+  std::array<std::size_t, kAhead> chosen{};
+  for (std::size_t n = order.size(), count = 0; n > 1; n -= count) {
+    count = std::min(kAhead, n - 1);
+    for (std::size_t k = 0; k < count; ++k) {
+      chosen[k] = static_cast<std::size_t>((static_cast<std::uint64_t>(random()) * (n - k)) >> 32U);
+      __builtin_prefetch(&order[chosen[k]]);
+    }
+    for (std::size_t k = 0; k < count; ++k) std::swap(order[n - 1 - k], order[chosen[k]]);
   }
   std::vector<Dart> darts;
-  darts.reserve(pieces.size());
-  for (const int p : pieces) {
-    const MatterPiece& piece = matter.pieces[at(p)];
-    Dart dart{piece.x, p};
-    if (piece.feature == 3) {
-      const double width = std::cbrt(piece.measure);
+  darts.reserve(order.size());
+  double measure = 0, width = 0;  // of the last voxel: most are alike
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    if (n + kAhead < order.size()) __builtin_prefetch(&pieces.x(at(order[n + kAhead])));
+    const int p = order[n];
+    Dart dart{pieces.x(at(p)), p};
+    if (pieces.solid()) {
+      if (pieces.measure(at(p)) != measure) width = std::cbrt(measure = pieces.measure(at(p)));
       for (int a = 0; a < 3; ++a) dart.x[a] += width * (static_cast<double>(random()) * 0x1p-32 - 0.5);
     }
     darts.push_back(dart);
@@ -76,7 +80,7 @@ namespace {
 struct Gathered {
   Vec3d sum{};
   double measure = 0;
-  int nearest = -1;  ///< piece next to the middle
+  std::size_t nearest = 0;  ///< piece next to the middle
   double squared = INFINITY;
   bool flat = true;  ///< its pieces have one normal
   Vec3d normal{};
@@ -85,10 +89,10 @@ struct Gathered {
 };
 
 /// Whether the middle of pieces is itself a point of their matter.
-bool is_place(const Matter& matter, const Gathered& g) {
-  const MatterPiece& nearest = matter.pieces[at(g.nearest)];
-  if (nearest.feature == 3) return inside(matter, g.middle());
+bool is_place(const Matter& matter, const PieceList& pieces, const Gathered& g) {
+  if (pieces.solid()) return inside(matter, g.middle());
   // Inside of a flat part of a sheet.
+  const MatterPiece& nearest = pieces.thin(g.nearest);
   const double off = std::abs(dot(g.middle() - nearest.x, g.normal));
   return nearest.dimension == 2 && g.flat && g.squared <= matter.piece_size * matter.piece_size &&
          off <= 1e-10 * matter.piece_size;
@@ -96,32 +100,36 @@ bool is_place(const Matter& matter, const Gathered& g) {
 
 }  // namespace
 
-void move_to_middles(const Matter& matter, std::span<const int> pieces, std::span<const int> owner,
+void move_to_middles(const Matter& matter, const PieceList& pieces, std::span<const int> owner,
                      std::vector<SamplePlace>& samples) {
   std::vector<Gathered> gathered(samples.size());
   for (std::size_t n = 0; n < pieces.size(); ++n) {
     if (owner[n] < 0) continue;
-    const MatterPiece& p = matter.pieces[at(pieces[n])];
     Gathered& g = gathered[at(owner[n])];
-    const Vec3d normal = p.axes.column(2);
-    if (!(g.measure > 0)) g.normal = normal;
-    g.flat = g.flat && dot(normal, g.normal) > 1 - 1e-12;
-    g.sum += p.x * p.measure;
-    g.measure += p.measure;
+    if (!pieces.solid()) {
+      const Vec3d normal = pieces.thin(n).axes.column(2);
+      if (!(g.measure > 0)) g.normal = normal;
+      g.flat = g.flat && dot(normal, g.normal) > 1 - 1e-12;
+    }
+    g.sum += pieces.x(n) * pieces.measure(n);
+    g.measure += pieces.measure(n);
   }
+  std::vector<Vec3d> middle;
+  middle.reserve(samples.size());
+  for (const Gathered& g : gathered) middle.push_back(g.middle());
   for (std::size_t n = 0; n < pieces.size(); ++n) {
     if (owner[n] < 0) continue;
     Gathered& g = gathered[at(owner[n])];
-    const double squared = squared_norm(matter.pieces[at(pieces[n])].x - g.middle());
+    const double squared = squared_norm(pieces.x(n) - middle[at(owner[n])]);
     if (squared >= g.squared * (1 - kTie)) continue;
     g.squared = squared;
-    g.nearest = pieces[n];
+    g.nearest = n;
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Gathered& g = gathered[i];
-    if (g.nearest < 0) continue;
-    samples[i] = place_of(matter.pieces[at(g.nearest)]);
-    if (is_place(matter, g)) samples[i].x = g.middle();
+    if (g.squared == INFINITY) continue;
+    samples[i] = pieces.place(g.nearest);
+    if (is_place(matter, pieces, g)) samples[i].x = g.middle();
   }
 }
 

@@ -56,14 +56,24 @@ inline LinePart polyline(std::vector<Vec3d> points, double radius) {
   return line;
 }
 
+inline ThreadPool& one_thread() {
+  static ThreadPool pool(1);
+  return pool;
+}
+
+inline void add_solid(Matter& matter, const SolidDomain& domain, double piece_size) {
+  fascia::add_solid(matter, domain, piece_size, one_thread());
+}
+
 inline double volume_sum(const Matter& matter) {
   double sum = 0;
   for (const MatterPiece& p : matter.pieces) sum += p.volume;
+  for (const double v : matter.voxels.volume) sum += v;
   return sum;
 }
 
 inline int count_feature(const Matter& matter, int feature) {
-  int count = 0;
+  int count = feature == 3 ? static_cast<int>(matter.voxels.size()) : 0;
   for (const MatterPiece& p : matter.pieces) count += p.feature == feature ? 1 : 0;
   return count;
 }

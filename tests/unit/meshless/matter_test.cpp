@@ -19,7 +19,7 @@ TEST(Matter, FillsABoxWithEqualVoxels) {
   EXPECT_NEAR(volume_sum(m), 1, 1e-13);
   EXPECT_EQ(m.volume, 1);
   Vec3d moment{};
-  for (const MatterPiece& p : m.pieces) moment += p.x * p.volume;
+  for (std::size_t p = 0; p < m.voxels.size(); ++p) moment += m.voxels.x[p] * m.voxels.volume[p];
   EXPECT_LT(norm(moment - Vec3d{{0, 0.5, 0.25}}), 1e-13);
 }
 
@@ -48,12 +48,11 @@ TEST(Matter, CutsVoxelsAtACurvedSurface) {
   add_solid(m, domain, 0.1);
   EXPECT_NEAR(volume_sum(m) / domain.volume, 1, 1e-12);
   Vec3d moment{}, second{};
-  for (const MatterPiece& p : m.pieces) {
-    if (p.feature == 3) {
-      EXPECT_TRUE(domain.contains(p.x));
-    }
-    moment += p.x * p.volume;
-    for (int a = 0; a < 3; ++a) second[a] += p.x[a] * p.x[a] * p.volume;
+  for (std::size_t p = 0; p < m.voxels.size(); ++p) {
+    const Vec3d x = m.voxels.x[p];
+    EXPECT_TRUE(domain.contains(x));
+    moment += x * m.voxels.volume[p];
+    for (int a = 0; a < 3; ++a) second[a] += x[a] * x[a] * m.voxels.volume[p];
   }
   EXPECT_LT(norm(moment), 2e-3 * m.volume);
   for (int a = 0; a < 3; ++a) EXPECT_NEAR(second[a] / (m.volume * radii[a] * radii[a] / 5), 1, 0.01);

@@ -85,6 +85,7 @@ TEST(FrameSearch, FindsTheSameInEveryUnit) {
 
 /// Points at random, on a lattice (equals), and few that lie far apart; places between them and outside.
 TEST(BlockSearch, FindsTheNearestOfAll) {
+  ThreadPool pool(2);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 7);
   std::vector<Vec3d> scattered(300);
@@ -95,17 +96,32 @@ TEST(BlockSearch, FindsTheNearestOfAll) {
       for (Vec3d& x : points) x = x * unit;
       PointGrid grid(unit);
       for (const Vec3d& x : points) grid.insert(x);
-      BlockSearch search(points, unit);
+      std::vector<Vec3d> places;
       for (int k = 0; k < 500; ++k) {
         Vec3d x{{uniform(random), uniform(random), uniform(random)}};
         if (k % 3 == 0) x = {{std::round(2 * x[0]) / 2, std::round(2 * x[1]) / 2, std::round(2 * x[2]) / 2}};
-        const int found = search.nearest(x * unit);
-        EXPECT_EQ(found, grid.nearest(x * unit, INFINITY, [](int) { return true; }));
+        places.push_back(x * unit);
+      }
+      const BlockSearch search(places, unit);
+      const std::vector<int> nearest = search.nearest(points, pool);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        EXPECT_EQ(nearest[k], grid.nearest(places[k], INFINITY, [](int) { return true; }));
         for (const Vec3d& p : points)
-          EXPECT_LE(squared_norm(points[at(found)] - x * unit), squared_norm(p - x * unit) * (1 + 2 * kTie));
+          EXPECT_LE(squared_norm(points[at(nearest[k])] - places[k]), squared_norm(p - places[k]) * (1 + 2 * kTie));
       }
     }
-  EXPECT_EQ(BlockSearch({}, 1).nearest({}), -1);
+}
+
+/// Of no points, no places, places all at one point, and of places so far apart that blocks must be larger.
+TEST(BlockSearch, TakesAnyPlaces) {
+  ThreadPool pool(1);
+  const std::vector<Vec3d> points{{{1, 0, 0}}, {{5, 0, 0}}};
+  EXPECT_TRUE(BlockSearch({}, 1).nearest(points, pool).empty());
+  const std::vector<Vec3d> same(5, Vec3d{{4, 0, 0}});
+  EXPECT_EQ(BlockSearch(same, 1).nearest({}, pool), std::vector<int>(5, -1));
+  EXPECT_EQ(BlockSearch(same, 1).nearest(points, pool), std::vector<int>(5, 1));
+  const std::vector<Vec3d> far{{{0, 0, 0}}, {{1e6, 1e6, 1e6}}, {{-1e9, 0, 3}}};
+  EXPECT_EQ(BlockSearch(far, 1).nearest(points, pool), (std::vector<int>{0, 1, 0}));
 }
 
 TEST(FrameSearch, OfNothingFindsNothing) {
