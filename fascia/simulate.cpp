@@ -2,15 +2,10 @@
 
 #include "assembly/build/build_simulation.hpp"
 #include "assembly/specification/check.hpp"
-#include "core/base/clock.hpp"
 #include "core/base/index.hpp"
 #include "fascia/choose_backend.hpp"
 #include "fascia/run/run_simulation.hpp"
-#include "fascia/run/stopped.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <utility>
 
 namespace fascia {
@@ -30,33 +25,14 @@ class RunStates final : public RunListener {
       : simulation_(simulation), look_(look), stop_(stop) {}
 
   bool stops() override { return stops_ || stop_.stop_requested(); }
-  void iterating(const IterationInfo&) override {
-    if (stop_.stop_requested()) throw Stopped();
-  }
-  void stepped(const StepInfo& step) override {
-    reached_.steps = step.step;
-    reached_.time = step.time;
-    reached_.residual = std::max(reached_.residual, step.newton.last.relative);
-    reached_.newton_iterations += step.newton.iterations;
-    reached_.linear_iterations += step.newton.linear_iterations;
-  }
   void show(double time, const ProbedState& at, const ProbeValues& values) override {
     if (look_ && !look_(RunState(time, simulation_, at, values))) stops_ = true;
-  }
-
-  /// What a run that stops within a step has reached.
-  RunReport interrupted() const {
-    RunReport run = reached_;
-    run.status = RunStatus::interrupted;
-    run.message = fmt::format("interrupted at {:.6g}", run.time);
-    return run;
   }
 
  private:
   const Simulation& simulation_;
   const std::function<bool(const RunState&)>& look_;
   const std::stop_token& stop_;
-  RunReport reached_;
   bool stops_ = false;
 };
 
@@ -101,16 +77,7 @@ RunOutcome simulate(Scene scene, const std::function<bool(const RunState&)>& loo
     if (const std::string lost = not_as_asked(s, backend); !lost.empty()) s.warnings.add("backend", lost);
     ThreadPool pool(s.scene.solver.threads);
     RunStates states(s, look, stop);
-    const Clock::time_point start = Clock::now();
-    try {
-      return outcome_of(s, run_simulation(s, backend, pool, states));
-    } catch (const Stopped&) {
-      RunEnd end;
-      end.report = states.interrupted();
-      end.backend = backend;
-      end.solve_seconds = seconds_since(start);
-      return outcome_of(s, std::move(end));
-    }
+    return outcome_of(s, run_simulation(s, backend, pool, states));
   } catch (const std::exception& e) {
     if (is_of_device(e)) throw BackendError(e.what());
     throw;

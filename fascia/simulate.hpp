@@ -67,7 +67,7 @@ struct RunOutcome {
 ///              second where both are left out) and the last, of modes each shape. Where it returns false the run is
 ///              interrupted, unless that was the last state. What it throws leaves simulate().
 /// @param stop  asked before each iteration of Newton's method, and after each step and shape: a run that is told to
-///              stop is interrupted, at the last step that it finished
+///              stop is interrupted, at the last step that it finished, and shows that state
 /// @throws SceneError    what is wrong with the scene: the place is the key of the field
 /// @throws FileError, InputError  meshes; more than memory or a GPU can number
 /// @throws BackendError  a GPU that was asked for and is not there, has too little memory, or does not compute the

@@ -14,7 +14,6 @@
 #include "core/run/model_stepper.hpp"
 #include "fascia/choose_backend.hpp"
 #include "fascia/run/state_views.hpp"
-#include "fascia/run/stopped.hpp"
 #include "gpu/run/run.hpp"
 
 #include <fmt/format.h>
@@ -89,9 +88,7 @@ struct Stepper::Parts {
     next_dials = simulation.dial_values;
     const Solver& solver = simulation.scene.solver;
     SolverSettings settings = settings_of(solver);
-    settings.iterating = [this](const IterationInfo&) {
-      if (stop.stop_requested()) throw Stopped();
-    };
+    settings.stops = [this] { return stop.stop_requested(); };
     const SteppingSettings stepping{solver.kind == SolverKind::statics, scheme_of(solver.kind), solver.load_steps};
     backend = solver.backend == "cuda" ? choose_backend(simulation) : Backend::cpu;
     if (const std::string lost = not_as_asked(simulation, backend); !lost.empty())
@@ -147,21 +144,25 @@ struct Stepper::Parts {
     has_forces = parts.forces;
     return reached;
   }
-  const ReachedForces& acting() { return acting(views.has_forces()); }
+  /// The same with forces, which are read after each step from now on: a step that fails takes with it what led there.
+  const ReachedForces& forces() {
+    forces_are_asked = true;
+    return acting(true);
+  }
 
   /// Drivers and dials have arrived, or stay where they were. What is read from here on stands still.
   void end_step(bool converged) {
     (converged ? from : to) = converged ? to : from;
     (converged ? simulation.dial_values : next_dials) = converged ? next_dials : simulation.dial_values;
     place_motions(from);
+    stop = {};
     if (converged) read = false;  // else the state, and what acted there, stays
   }
 
   /// Fills what was asked for with the present state.
   void refresh() {
-    if (!views.any() && !state_is_seen) return;
-    if (views.has_forces()) acting();
-    views.fill(state(), reached);
+    if (forces_are_asked) acting(true);
+    if (views.any() || state_is_seen) views.fill(state(), reached);
   }
 
   void require_driver(int driver) const {
@@ -186,6 +187,7 @@ struct Stepper::Parts {
   std::vector<double> next_dials;
   std::stop_token stop;  ///< of the step that runs
   StateViews views{simulation};
+  bool forces_are_asked = false;
   bool state_is_seen = false;  ///< displacements or velocities were asked for
   ReachedForces reached;
   bool read = false;        ///< it is that of the present state
@@ -206,19 +208,17 @@ StepReport Stepper::step(double dt, const std::stop_token& stop) {
   Parts& p = *parts_;
   p.place_motions(p.to);
   const Clock::time_point start = Clock::now();
-  StepReport report;
   RunReport run;
   p.stop = stop;
   try {
     run = translated([&] { return p.steps->step(p.factors(time(), dt), dt); });
-    report.converged = run.status == RunStatus::converged;
-  } catch (const Stopped& e) {
-    report.stopped = true;
-    run.message = e.what();
   } catch (...) {
     p.end_step(false);
     throw;
   }
+  StepReport report;
+  report.converged = run.status == RunStatus::converged;
+  report.stopped = run.status == RunStatus::interrupted;
   report.at_limit = run.steps_at_limit > 0;
   report.stable = !run.stability.is_unstable();
   report.message = run.message;
@@ -268,7 +268,7 @@ Wrench Stepper::driver_force(int driver, const std::optional<Vec3d>& about) {
     throw InputError(fmt::format("the point for the moment of the driver \"{}\" is not finite", of.name));
   const Pose& pose = p.from[at(driver)];
   const Wrench w =
-      force_of_motion(p.simulation, p.state(), p.acting(true), of.motion, about.value_or(pose.center + pose.u));
+      force_of_motion(p.simulation, p.state(), p.forces(), of.motion, about.value_or(pose.center + pose.u));
   if (!is_finite(w.force) || !is_finite(w.moment))
     throw StateError(fmt::format("the force of the driver \"{}\" is not finite", of.name));
   return w;
@@ -278,7 +278,7 @@ int Stepper::dial(std::string_view name) const {
   const std::vector<Dial>& dials = parts_->simulation.dials;
   const auto found = std::find_if(dials.begin(), dials.end(), [&](const Dial& d) { return d.name == name; });
   if (found == dials.end())
-    throw InputError(fmt::format("no load, fluid or gravity names a dial \"{}\"; set Schedule::dial", name));
+    throw InputError(fmt::format("no load, motion, fluid or gravity that acts names a dial \"{}\"", name));
   return static_cast<int>(found - dials.begin());
 }
 
@@ -288,6 +288,17 @@ void Stepper::set_dial(int dial, double value) {
   if (!std::isfinite(value))
     throw InputError(
         fmt::format("the value of the dial \"{}\" is {}; must be finite", p.simulation.dials[at(dial)].name, value));
+  const Dial& of = p.simulation.dials[at(dial)];
+  for (const FluidOfBody& fluid : p.simulation.fluids) {
+    const SurfaceLoad& load = p.simulation.model.surfaces[at(fluid.surface)];
+    const double volume = load.rest_volume + value * (load.volume - load.rest_volume);
+    const bool names = std::find(of.schedules.begin(), of.schedules.end(), load.schedule) != of.schedules.end();
+    if (names && load.bulk_modulus > 0 && volume <= 0)
+      throw InputError(
+          fmt::format("the value {} of the dial \"{}\" leaves the fluid in the body \"{}\" a volume of "
+                      "{:.6g} m3; must be above 0",
+                      value, of.name, p.simulation.bodies[at(fluid.body)].name, volume));
+  }
   p.next_dials[at(dial)] = value;
 }
 
@@ -322,7 +333,7 @@ Rows Stepper::velocities() {
 }
 Rows Stepper::positions() { return parts_->views.positions(parts_->state()); }
 Rows Stepper::rotations() { return parts_->views.rotations(parts_->state()); }
-Rows Stepper::forces() { return parts_->views.forces(parts_->acting(true)); }
+Rows Stepper::forces() { return parts_->views.forces(parts_->forces()); }
 
 std::span<const std::array<int, 3>> Stepper::surface_triangles(int body) const {
   parts_->require_body(body);
@@ -341,7 +352,7 @@ int Stepper::inverted_points(int body) {
 std::vector<double> Stepper::probe(std::string_view name) {
   Parts& p = *parts_;
   const std::size_t index = probe_index(p.simulation, name);
-  const ReachedForces& acting = p.acting();
+  const ReachedForces& acting = needed_parts(p.simulation).forces ? p.forces() : p.acting(false);
   return probe_value(p.simulation, index, {&p.state(), &acting, 0, 0});
 }
 

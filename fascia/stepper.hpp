@@ -67,8 +67,9 @@ class Stepper {
   Stepper& operator=(Stepper&&) noexcept;
 
   /// Advances by dt [s], which may differ from step to step; in statics the load factor by dt: all loads grow until it
-  /// is 1, and stay. A scheme that knows the step before starts anew after a step that failed.
-  /// @param stop  asked before each iteration of Newton's method: a step that is told to stop is one that failed
+  /// is 1, and stay. What follows a step that failed is as though it had not been tried.
+  /// @param stop  asked before each iteration of Newton's method: a step that is told to stop is one that failed; one
+  ///              that needs no further iteration ends as usual
   /// @throws InputError    a step that is not above 0, or lost beside the time
   /// @throws BackendError  a device that is lost, or has no memory left; this and what reads the state
   StepReport step(double dt, const std::stop_token& stop = {});
@@ -86,16 +87,18 @@ class Stepper {
   /// Where a driver is now; what it was told last shows after the step.
   RigidMotion motion(int driver) const;
   /// Force and moment that a driver exerts on what it moves, with weight and inertia, in the axes in which it moves it;
-  /// the hand that holds it feels the opposite. Like forces(), they are those that led to the present state.
+  /// the hand that holds it feels the opposite. Like forces(), they are those that led to the present state; where
+  /// neither was asked for before a step that failed, those of that state at rest.
   /// @param about  of the moment [m]; left out: where the driver's center is now
   /// @throws StateError  they are not finite
   Wrench driver_force(int driver, const std::optional<Vec3d>& about = {});
 
-  /// The number of the dial that loads, fluids or gravity name (Schedule::dial). @throws InputError  none does
+  /// The number of the dial that loads, motions, fluids or gravity name (Schedule::dial).
+  /// @throws InputError  none that acts does
   int dial(std::string_view name) const;
   /// Says by what the next step multiplies the factors of the schedules that name the dial, at its end; on the way
-  /// there it changes evenly, from 1 at the start. The value stays until it is told otherwise; after a step that failed
-  /// it is what it was before, and is to be told anew.
+  /// there it changes evenly from its present value, which is 1 before the first step. It stays until it is told
+  /// otherwise; after a step that failed it is what it was before, and is to be told anew.
   void set_dial(int dial, double value);
   /// The value of a dial now; what it was told last shows after the step.
   double dial_value(int dial) const;

@@ -45,6 +45,10 @@ int add_driver(Simulation& s, const Constraint& c) {
 }
 
 int add_motion(Simulation& s, const Constraint& c) {
+  if (!c.motion && !c.schedule.dial.empty())
+    throw SceneError({{c.place, fmt::format("names the dial \"{}\" without a motion that it could multiply; remove it, "
+                                            "or give the motion",
+                                            c.schedule.dial)}});
   if (!c.driver.empty()) return add_driver(s, c);
   if (!c.motion) return -1;
   PrescribedMotion m;

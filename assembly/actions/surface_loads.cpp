@@ -104,6 +104,9 @@ void add_fluid(Simulation& s, int body, const Fluid& fluid) {
   load.pressure = fluid.pressure.value_or(0);
   load.bulk_modulus = fluid.bulk_modulus.value_or(0);
   load.volume = fluid.volume.value_or(load.rest_volume);
+  if (fluid.bulk_modulus && !fluid.volume && !fluid.schedule.dial.empty())
+    s.warnings.add("no-effect", s.scene.place_of(fluid.place.key + ".dial"),
+                   "multiplies by how much the volume differs from that at rest, and there is no volume");
   if (fluid.density > 0 && s.gravity_load >= 0) {
     load.weight = s.scene.world.gravity * fluid.density;
     load.weight_schedule = s.model.loads[at(s.gravity_load)].schedule;

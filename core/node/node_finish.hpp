@@ -27,21 +27,27 @@ FASCIA_HD inline EndRates rates_at_end(const StepConstants& step, const StepNode
 
 /// Replaces velocity and acceleration of what a constraint prescribes by differences of its motion: those that the
 /// scheme would keep ring for ever after a boundary that starts at once.
-/// @param x     motion of the node in the step, last its translation in the step before, of the same length
+/// @param x     motion of the node in the step, last that in the step before, of the same length
 /// @param D     at the end
 FASCIA_HD inline void follow_boundary(const StepConstants& step, FrameKind kind, const FrameConstraint& c,
-                                      const PoseMotion& x, const Vec3d& last, const Mat3d& D, EndRates& rates) {
+                                      const PoseMotion& x, const PoseMotion& last, const Mat3d& D, EndRates& rates) {
   const double dt = step.step;
-  const Vec3d v = (x.u * 1.5 - last * 0.5) * (1 / dt), a = (x.u - last) * (1 / (dt * dt));
+  const PoseMotion v = (x * 1.5 - last * 0.5) * (1 / dt), a = (x - last) * (1 / (dt * dt));
   for (int k = 0; k < c.translations; ++k) {
     const Vec3d axis = c.translation_axes.row(k);
-    rates.v.u += axis * dot(axis, v - rates.v.u);
-    rates.a.u += axis * dot(axis, a - rates.a.u);
+    rates.v.u += axis * dot(axis, v.u - rates.v.u);
+    rates.a.u += axis * dot(axis, a.u - rates.a.u);
+  }
+  if (kind == FrameKind::affine && c.whole) {
+    rates.v.Q = v.Q;
+    rates.a.Q = a.Q;
   }
   if (kind != FrameKind::rigid || c.rotations < 3) return;
-  const Mat3d Q = Mat3d::identity() + D, W = skew(spin_of(x.Q * (1 / dt), Q));
+  const Mat3d Q = Mat3d::identity() + D;
+  const Vec3d spin = spin_of(x.Q * (1 / dt), Q), spin_before = spin_of(last.Q * (1 / dt), Q - x.Q);  // means
+  const Mat3d W = skew(spin * 1.5 - spin_before * 0.5);
   rates.v.Q = W * Q;
-  rates.a.Q = W * W * Q;
+  rates.a.Q = (skew((spin - spin_before) * (1 / dt)) + W * W) * Q;
 }
 
 /// Motion in a whole midpoint step and velocity at its end.

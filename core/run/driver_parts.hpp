@@ -55,6 +55,14 @@ inline bool has_tangent_of_end(const NewtonReport& newton, const Model& model) {
   return newton.iterations > 0 && (newton.last_tangent <= near || model.is_linear());
 }
 
+/// Ends a run within a step, where it was asked to. @return  whether it was
+inline bool ends_within(RunReport& run, const NewtonReport& newton) {
+  if (newton.status != NewtonStatus::stopped) return false;
+  run.status = RunStatus::interrupted;
+  run.message = "stopped before its end, as it was asked to";
+  return true;
+}
+
 inline RunStatus failure_status(const NewtonReport& newton) {
   return newton.status == NewtonStatus::not_finite ? RunStatus::diverged : RunStatus::not_converged;
 }

@@ -69,6 +69,7 @@ std::string failure_sentence(const NewtonReport& r, const SolverSettings& settin
   std::ostringstream out;
   switch (r.status) {
     case NewtonStatus::converged:
+    case NewtonStatus::stopped:
       return "";
     case NewtonStatus::limit:
       out << "Newton stopped after " << r.iterations << " iterations";

@@ -41,6 +41,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     Newton newton(system, settings, {run.steps + 1, target});
     const NewtonReport report = newton.solve();
     count(run, report);
+    if (ends_within(run, report)) return run;
     if (!acceptable(report, settings)) {
       increment = 0.5 * (target - reached);
       unsolved = report.status == NewtonStatus::unsolved ? unsolved + 1 : 0;

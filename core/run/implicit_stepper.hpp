@@ -2,7 +2,9 @@
 
 #include "core/run/driver_parts.hpp"
 
+#include <optional>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 namespace fascia {
@@ -29,13 +31,13 @@ class ImplicitStepper {
     std::swap(earlier_, before_);
     before_ = state;
     failures_ = 0;
+    kept_.reset();
     const int solves = run.indefinite_solves;
     NewtonReport report = advanced(state, factors, end, dt, run);
     note_indefinite(run, solves, end);
     if (!acceptable(report, settings_)) {
-      fail(report, end, run);
-      state = before_;
-      begin_afresh();
+      if (!ends_within(run, report)) fail(report, end, run);
+      go_back(state);
       return report;
     }
     accept(run, report, settings_, end);
@@ -65,10 +67,23 @@ class ImplicitStepper {
     try {
       return advance(state, factors, end, dt, drivers::kMostHalvings, run);
     } catch (...) {
-      state = before_;
-      begin_afresh();
+      go_back(state);
       throw;
     }
+  }
+
+  static StepMemory on_host(const Memory& memory) {
+    if constexpr (std::is_same_v<Memory, StepMemory>)
+      return memory;
+    else
+      return memory.downloaded();
+  }
+
+  /// Forgets the step: what follows is as though it had not been tried.
+  void go_back(Pose& state) {
+    state = before_;
+    if (kept_) memory_ = Memory(std::move(*kept_));
+    std::swap(earlier_, before_);
   }
 
   NewtonReport advance(Pose& state, const FactorFunction& factors, double end, double dt, int depth, RunReport& run) {
@@ -89,10 +104,11 @@ class ImplicitStepper {
       count(run, report);
       if (acceptable(report, settings_)) {
         if (solved_at < end) system_.set_factors(factors(end));
+        if (depth < kMostHalvings && !kept_) kept_ = on_host(memory_);  // the whole step may fail yet
         system_.finish_step(end, memory_, state);
         return report;
       }
-      if (depth == 0 || ++failures_ > kMostHalvings) return report;
+      if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings) return report;
     }
     report = advance(state, factors, end - 0.5 * dt, 0.5 * dt, depth - 1, run);
     if (!acceptable(report, settings_)) return report;
@@ -113,6 +129,7 @@ class ImplicitStepper {
   const SolverSettings& settings_;
   TimeScheme scheme_;
   Memory memory_;
+  std::optional<StepMemory> kept_;  ///< as it was before a step of which a part was taken
   Pose before_, earlier_;           ///< at the starts of the last two steps
   double last_step_ = 0;            ///< [s]; 0: none
   bool as_long_as_before_ = false;  ///< both were of one length

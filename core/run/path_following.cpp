@@ -1,6 +1,7 @@
 #include "core/run/path_following.hpp"
 
 #include "core/base/clock.hpp"
+#include "core/run/driver_parts.hpp"
 #include "core/run/path_measure.hpp"
 
 #include <limits>
@@ -59,6 +60,7 @@ class PathFollower {
     Newton newton(system_, settings_, {1, 0});
     const NewtonReport report = newton.solve();
     run_.newton_iterations += report.iterations;
+    if (drivers::ends_within(run_, report)) return false;
     if (report.status != NewtonStatus::converged) {
       keep_failure(run_, system_);
       return give_up(report, "there is no equilibrium to start from");
@@ -174,6 +176,8 @@ class PathFollower {
       if (!report.last.finite()) break;
       report.status = NewtonStatus::limit;
       if (!kept && report.iterations >= limit) break;
+      report.status = NewtonStatus::stopped;
+      if (settings_.stops && settings_.stops()) break;
       if (settings_.iterating)
         settings_.iterating(
             {run_.steps + 1, lambda_, report.iterations + 1, report.last.relative, settings_.tolerance});
@@ -204,6 +208,10 @@ class PathFollower {
     const double smallest = std::min(first_, left) * (run_.steps == 0 ? kSmallest * kSmallest : kSmallest);
     for (length = std::min(length, left); length >= smallest; length *= 0.5) {
       NewtonReport report = attempt(length);
+      if (drivers::ends_within(run_, report)) {
+        begin();
+        return report;
+      }
       if (report.status != NewtonStatus::converged) {
         failed = report;
         calm_ = 3;

@@ -39,6 +39,7 @@ class SystemStepper final : public ModelStepper {
     system_->restart_motions();
     looked_ = false;
     const double start = pose().time;
+    const std::vector<double> pressures = system_->reached_pressures();
     RunReport run;
     try {
       if (stepping_.statics) {
@@ -48,11 +49,11 @@ class SystemStepper final : public ModelStepper {
         implicit_->step(pose(), factors, start + dt, dt, run);
       }
     } catch (...) {
-      give_up(factors(start));
+      give_up(factors(start), pressures);
       throw;
     }
     reached_ = run.status == RunStatus::converged;
-    if (!reached_) give_up(factors(start));
+    if (!reached_) give_up(factors(start), pressures);
     fetched_ = kOnHost;
     return run;
   }
@@ -133,11 +134,10 @@ class SystemStepper final : public ModelStepper {
       return pose_;
   }
 
-  /// Forgets a step that failed.
-  void give_up(const std::vector<double>& factors) {
+  /// Forgets a step that failed. @param pressures  of fluids, before it
+  void give_up(const std::vector<double>& factors, const std::vector<double>& pressures) {
     if (stepping_.statics) pose() = before_;
-    implicit_->begin_afresh();
-    system_->begin_afresh(factors, {});
+    system_->begin_afresh(factors, pressures);
     reached_ = false;
   }
 

@@ -23,7 +23,8 @@ struct DirectionReport {
   double cg_seconds = 0;       ///< in conjugate gradients
 };
 
-enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linear_failure };
+/// stopped: as SolverSettings::stops asked for.
+enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linear_failure, stopped };
 
 /// Why a solve counts as converged: its residual is below the tolerance; or it is what rounding leaves; or it is a
 /// small share of the loads and falls no further, and the last correction was small. The correction of a system that
@@ -74,6 +75,7 @@ class Newton {
     mark();
     while (system_.has_prescribed_increment() || !settled()) {
       if (report_.iterations >= settings_.max_iterations) return give_up(NewtonStatus::limit);
+      if (settings_.stops && settings_.stops()) return finish(NewtonStatus::stopped);
       const bool moving = system_.has_prescribed_increment();
       const DirectionReport d = direction();
       if (!d.usable) return give_up(NewtonStatus::linear_failure);

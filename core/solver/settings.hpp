@@ -31,6 +31,7 @@ struct SolverSettings : LinearSettings {
   Tangent tangent = Tangent::full;
   Precision precision = Precision::full;
   std::function<void(const IterationInfo&)> iterating;  ///< is told of each Newton iteration; may be empty
+  std::function<bool()> stops;                          ///< asked before each: true ends the solve; may be empty
   int threads = 0;                                      ///< of the processor, for what it does beside a GPU; 0: all
   std::vector<int> devices;  ///< GPUs that share the points of the linear solves; empty: one computes all
 };

@@ -108,7 +108,7 @@ struct FinishStep {
     if (s.step.h > 0) rates = rates_at_end(s.step, n, D);
     const FrameConstraint* held = s.model.held(i);
     if (s.step.h > 0 && held != nullptr && s.step.scheme == TimeScheme::newmark)
-      follow_boundary(s.step, n.kind, *held, x, end.before != nullptr ? end.before[i].u : x.u, D, rates);
+      follow_boundary(s.step, n.kind, *held, x, end.before != nullptr ? end.before[i] : x, D, rates);
     end.v[i] = rates.v.u;
     if (s.turning) {
       end.D[i] = D;
@@ -166,7 +166,7 @@ struct FinishHeld {
     }
     if (kind == FrameKind::rigid) D = orthonormalized_increment(D);
     if (k >= 0) {
-      const Vec3d last = end.before != nullptr ? end.before[i].u : end.motion[i].u;
+      const PoseMotion last = end.before != nullptr ? end.before[i] : end.motion[i];
       EndRates rates{{end.v[i], s.turning ? end.Q_dot[i] : Mat3d{}}, {}};
       follow_boundary(s.step, kind, m.constraints[k], end.motion[i], last, D, rates);
       end.v[i] = rates.v.u;

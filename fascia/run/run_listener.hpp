@@ -13,7 +13,8 @@ namespace fascia {
 class RunListener {
  public:
   virtual ~RunListener() = default;
-  /// Says that the run is to end. It is asked after each step and after each state that was shown, sometimes twice.
+  /// Says that the run is to end. It is asked before each iteration of Newton's method, whose step is then left out,
+  /// after each step and after each state that was shown, sometimes twice.
   virtual bool stops() { return false; }
   /// All is set up, and steps follow; not of modes.
   virtual void begins() {}

@@ -16,7 +16,6 @@ class StateViews {
   explicit StateViews(const Simulation& s);
 
   bool any() const;
-  bool has_forces() const { return forces_.wanted; }
 
   Rows positions(const State& state);
   Rows rotations(const State& state);

@@ -1,4 +1,5 @@
 // Dials: factors of loads and of gravity that a program sets from step to step. Stop tokens: steps that end early.
+#include "app/reader/parse.hpp"
 #include "core/base/errors.hpp"
 #include "fascia/simulate.hpp"
 #include "fascia/stepper.hpp"
@@ -35,7 +36,7 @@ double apart(const std::vector<double>& a, const std::vector<double>& b) {
   double largest = 0, scale = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
   for (const double v : b) scale = std::max(scale, std::abs(v));
-  return largest / scale;
+  return scale > 0 ? largest / scale : largest;
 }
 
 /// A dial that follows a table from step to step is that table, for all schemes and both ways of stepping: between the
@@ -113,20 +114,84 @@ TEST(Dials, RefuseWhatIsNotThere) {
     EXPECT_THROW(stepper.set_dial(0, value), InputError);
 }
 
-/// A step that is told to stop leaves every bit as it was, and what follows is as if it had not been tried.
+/// A dial scales a motion that the scene schedules; zero and below turn it round.
+TEST(Dials, MultiplyMotions) {
+  Scene scene = test::driven_block(SolverKind::statics);
+  Constraint& foot = scene.constraints[0];
+  foot.driver.clear();
+  foot.motion = Motion{{{0.01, 0, 0}}, {{0, 0, 1}}, 0, {}};
+  foot.schedule.dial = "table";
+  scene.probes[0].at = {Vec3d{{0.02, 0.02, 0}}};
+  Stepper stepper(scene);
+  ASSERT_TRUE(stepper.step(1).converged);
+  EXPECT_NEAR(stepper.probe("top")[0], 0.03, 1e-15);
+  for (const double value : {0.0, -2.0, 0.5}) {
+    stepper.set_dial(stepper.dial("table"), value);
+    ASSERT_TRUE(stepper.step(1).converged);
+    EXPECT_NEAR(stepper.probe("top")[0], 0.02 + 0.01 * value, 1e-15);
+  }
+}
+
+/// A dial where nothing acts that it could multiply.
+TEST(Dials, SayWhereTheyDoNothing) {
+  Scene held = pushed(SolverKind::statics);
+  held.constraints[0].schedule.dial = "foot";
+  EXPECT_THROW(Stepper{held}, SceneError);
+  Scene weightless = pushed(SolverKind::statics);
+  weightless.world.gravity = {};
+  weightless.world.schedule.dial = "g";
+  EXPECT_THROW(Stepper(weightless).dial("g"), InputError);
+}
+
+/// The fluid of a bag cannot be turned down to no volume; one without a volume of its own has nothing to turn.
+TEST(Dials, KeepTheVolumesOfFluids) {
+  const auto bag = [](const std::string& volume) {
+    return app::parse_scene_text(R"(
+[bodies.bag]
+model = "tetrahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 1, 1], cells = [3, 3, 3] } }
+density = 1000
+material = { young = "10 kPa", poisson = 0.3 }
+fluid = { bulk_modulus = "10 kPa", dial = "fill")" +
+                                     volume + R"( }
+[[constraints]]
+body = "bag"
+where = { box = { min = [-1, -1, -0.1], max = [2, 2, 0.1] } }
+fix = "all"
+)",
+                                 "bag.toml", {});
+  };
+  Scene scene = bag(", volume = 1.1");
+  ASSERT_TRUE(scene.bodies[0].fluid);
+  Stepper stepper(scene);
+  const int fill = stepper.dial("fill");
+  EXPECT_NO_THROW(stepper.set_dial(fill, -9));
+  try {
+    stepper.set_dial(fill, -11);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("the fluid in the body \"bag\" a volume of -0.1 m3"), std::string::npos)
+        << e.what();
+  }
+  ASSERT_FALSE(Stepper(bag("")).warnings().empty());
+}
+
+/// A step that is told to stop leaves every bit as it was, and what follows is as if it had not been tried: but for the
+/// last digits, since factors and preconditioners are made anew.
 TEST(StopTokens, LeaveTheStateAsItWas) {
   test::take_host_as_device();
   for (const char* backend : {"cpu", "cuda"})
-    for (const SolverKind kind : {SolverKind::statics, SolverKind::bdf2, SolverKind::newmark}) {
+    for (const SolverKind kind : {SolverKind::statics, SolverKind::bdf2, SolverKind::newmark, SolverKind::midpoint}) {
       Scene scene = pushed(kind);
       scene.solver.backend = backend;
+      scene.solver.load_steps = 3;
+      scene.solver.newton_tolerance = 1e-11;
       Stepper stepper(scene), other(scene);
       const auto advance = [](Stepper& s) {
         s.set_motion(0, {{{0.001 + s.time() * 0.01, 0, 0}}, {}, {}});
         EXPECT_TRUE(s.step(0.05).converged);
       };
       advance(stepper), advance(other);
-      const Snapshot both = stepper.snapshot(), of_other = other.snapshot();
       const std::vector<double> u = copied(stepper.displacements()), v = copied(stepper.velocities());
       std::stop_source stop;
       stop.request_stop();
@@ -138,9 +203,9 @@ TEST(StopTokens, LeaveTheStateAsItWas) {
       EXPECT_EQ(stepper.time(), 0.05);
       EXPECT_TRUE(same_bits(copied(stepper.displacements()), u) && same_bits(copied(stepper.velocities()), v));
       EXPECT_EQ(stepper.motion(0).translation[0], 0.001);
-      stepper.restore(both);
       advance(stepper), advance(other);
-      EXPECT_TRUE(same_bits(copied(stepper.displacements()), copied(other.displacements()))) << backend;
+      EXPECT_LE(apart(copied(stepper.displacements()), copied(other.displacements())), 1e-9) << backend;
+      EXPECT_LE(apart(copied(stepper.velocities()), copied(other.velocities())), 1e-7) << backend;
     }
 }
 
@@ -155,6 +220,27 @@ TEST(StopTokens, InterruptRuns) {
     EXPECT_FALSE(run.done);
     EXPECT_EQ(run.steps, 0);
     EXPECT_EQ(run.message, "interrupted at 0");
+  }
+}
+
+/// Explicit runs stop after a step; the state that was reached is shown, whatever the output asks for.
+TEST(StopTokens, ShowTheLastState) {
+  for (const SolverKind kind : {SolverKind::newmark, SolverKind::central_differences}) {
+    Scene scene = pushed(kind);
+    scene.constraints[0].driver.clear();
+    scene.solver.steps = 1000000;
+    scene.solver.time_step = 1e-5;
+    scene.output.every = 5;
+    std::stop_source stop;
+    std::jthread other([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      stop.request_stop();
+    });
+    double last = -1;
+    const RunOutcome run = simulate(
+        scene, [&](const RunState& state) { return last = state.time(), true; }, stop.get_token());
+    EXPECT_EQ(run.status, RunStatus::interrupted);
+    EXPECT_EQ(run.time, last) << static_cast<int>(kind);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stop_token>
 
 namespace fascia::driver_force_test {
 
@@ -55,6 +56,107 @@ TEST(DriverForce, AHandAcceleratesTheMass) {
   stepper.set_motion(0, {{{0.001, 0, 0.002}}, {}, {}});
   ASSERT_TRUE(stepper.step(0.01).converged);
   expect_near(stepper.driver_force(0).force, {{0.5 * 0.001 / 1e-4, 0, 0.5 * (0.002 / 1e-4 + 9.81)}}, 1e-11, "force");
+}
+
+/// A block whose frames all follow a hand.
+Scene held_block(SolverKind kind, bool affine) {
+  Scene scene = test::driven_block(kind);
+  scene.bodies[0].affine = affine;
+  scene.bodies[0].materials[0].material.mass_damping = 0;
+  scene.bodies[0].materials[0].material.stiffness_damping = 0;
+  scene.constraints[0].where = {};
+  scene.probes.clear();
+  return scene;
+}
+
+/// Turned about its center of mass by θ = 10 t², a body takes the moment I α from its hand, of all schemes, once the
+/// scheme has started: a rigid body, rigid frames and affine ones.
+TEST(DriverForce, AHandTurnsTheMass) {
+  const double alpha = 20, dt = 0.01;
+  for (const SolverKind kind :
+       {SolverKind::implicit_euler, SolverKind::bdf2, SolverKind::newmark, SolverKind::midpoint})
+    for (const char* body : {"rigid", "frames", "affine"}) {
+      const bool box = body == std::string("rigid");
+      Scene scene = box ? held_box(kind) : held_block(kind, body == std::string("affine"));
+      scene.world.gravity = {};
+      const double mass = box ? 0.5 : 0.128, width = box ? 0.1 : 0.04, inertia = mass * width * width / 6;
+      const Vec3d center = box ? Vec3d{{0.05, 0.05, 0.025}} : Vec3d{{0.02, 0.02, 0.04}};
+      Stepper stepper(scene);
+      for (int step = 1; step <= 8; ++step) {
+        const double t = dt * step;
+        stepper.set_motion(0, {{}, {{0, 0, 0.5 * alpha * t * t}}, center});
+        ASSERT_TRUE(stepper.step(dt).converged);
+        if (step < 4) continue;
+        const Wrench there = stepper.driver_force(0);
+        EXPECT_NEAR(there.moment[2], inertia * alpha, 0.01 * inertia * alpha)
+            << body << ' ' << static_cast<int>(kind) << ' ' << step;
+      }
+    }
+}
+
+/// Impulse and momentum of implicit Euler steps, exact for any motion of a soft block: F + m g = (p − p₋) / dt.
+TEST(DriverForce, ChangesTheMomentum) {
+  for (const bool elements : {false, true}) {
+    Scene scene =
+        elements ? test::driven_tetrahedra(SolverKind::implicit_euler) : test::driven_block(SolverKind::implicit_euler);
+    scene.bodies[0].materials[0].material.mass_damping = 0;
+    scene.solver.newton_tolerance = 1e-11;
+    Probe momentum;
+    momentum.name = "momentum";
+    momentum.quantity = Quantity::momentum;
+    scene.probes.push_back(momentum);
+    Stepper stepper(scene);
+    std::vector<double> before = stepper.probe("momentum");
+    const double dt = 0.01, mass = 1000 * 0.04 * 0.04 * 0.08;
+    for (int step = 1; step <= 5; ++step) {
+      stepper.set_motion(0, {{{0.002 * step, 0.001 * step * step, 0}}, {{0.05 * step, 0, 0.1}}, {{0.02, 0, 0}}});
+      ASSERT_TRUE(stepper.step(dt).converged);
+      const std::vector<double> now = stepper.probe("momentum");
+      const Wrench there = stepper.driver_force(0);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(there.force[k] + mass * scene.world.gravity[k], (now[at(k)] - before[at(k)]) / dt,
+                    1e-8 * norm(there.force))
+            << elements << ' ' << step;
+      before = now;
+    }
+  }
+}
+
+/// A step that fails takes nothing with it of what led to the state before, once forces were asked for.
+TEST(DriverForce, StaysAfterAStepThatFailed) {
+  for (const SolverKind kind : {SolverKind::implicit_euler, SolverKind::newmark, SolverKind::midpoint}) {
+    Stepper stepper(test::driven_block(kind)), other(test::driven_block(kind));
+    stepper.driver_force(0);
+    std::stop_source stop;
+    stop.request_stop();
+    for (Stepper* s : {&stepper, &other})
+      for (int step = 1; step <= 3; ++step) {
+        s->set_motion(0, {{{0.001 * step * step, 0, 0}}, {}, {}});
+        ASSERT_TRUE(s->step(0.01).converged);
+      }
+    stepper.set_motion(0, {{{0.02, 0, 0}}, {}, {}});
+    EXPECT_TRUE(stepper.step(0.01, stop.get_token()).stopped);
+    const Wrench a = stepper.driver_force(0), b = other.driver_force(0);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(a.force[k], b.force[k]) << static_cast<int>(kind);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(a.moment[k], b.moment[k]) << static_cast<int>(kind);
+  }
+}
+
+/// Two hands on one block: each has its share, and both together carry the weight.
+TEST(DriverForce, OfTwoDriversAddsUp) {
+  Scene scene = test::driven_block(SolverKind::statics);
+  Constraint top = scene.constraints[0];
+  top.where = in_box({{-1, -1, 0.079}}, {{1, 1, 1}});
+  top.driver = "top";
+  scene.constraints.push_back(top);
+  Stepper stepper(scene);
+  stepper.set_motion(stepper.driver("top"), {{{0, 0, 0.004}}, {}, {}});
+  ASSERT_TRUE(stepper.step(1).converged);
+  const Wrench below = stepper.driver_force(stepper.driver("foot")),
+               above = stepper.driver_force(stepper.driver("top"));
+  EXPECT_GT(above.force[2], 1);
+  EXPECT_LT(below.force[2], 0);
+  EXPECT_NEAR(above.force[2] + below.force[2], 9.81 * 1000 * 0.04 * 0.04 * 0.08, 1e-7);
 }
 
 Scene clamped(const char* kind) {
