@@ -25,6 +25,7 @@ class RunStates final : public RunListener {
       : simulation_(simulation), look_(look), stop_(stop) {}
 
   bool stops() override { return stops_ || stop_.stop_requested(); }
+  bool leaves_step() override { return stop_.stop_requested(); }
   void show(double time, const ProbedState& at, const ProbeValues& values) override {
     if (look_ && !look_(RunState(time, simulation_, at, values))) stops_ = true;
   }

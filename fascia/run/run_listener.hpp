@@ -13,9 +13,10 @@ namespace fascia {
 class RunListener {
  public:
   virtual ~RunListener() = default;
-  /// Says that the run is to end. It is asked before each iteration of Newton's method, whose step is then left out,
-  /// after each step and after each state that was shown, sometimes twice.
+  /// Says that the run is to end. It is asked after each step and after each state that was shown, sometimes twice.
   virtual bool stops() { return false; }
+  /// Says that it is to end now, without the step under way. It is asked before each iteration of Newton's method.
+  virtual bool leaves_step() { return false; }
   /// All is set up, and steps follow; not of modes.
   virtual void begins() {}
   /// Before each iteration of Newton's method.

@@ -43,7 +43,7 @@ class Steps {
     end_.backend = backend;
     end_.state = s.initial;
     settings_.iterating = [this](const IterationInfo& iteration) { listener_.iterating(iteration); };
-    settings_.stops = [this] { return listener_.stops(); };
+    settings_.stops = [this] { return listener_.leaves_step(); };
     if (backend == Backend::cpu) system();
     end_.setup_seconds = seconds_since(start);
   }
