@@ -87,6 +87,7 @@ std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePl
       if (samples[i].dimension == 3) in_solid.push_back(static_cast<int>(i));
     if (in_solid.empty()) refuse_without_samples(3);
     std::vector<Vec3d> places;
+    places.reserve(in_solid.size());
     for (const int i : in_solid) places.push_back(samples[at(i)].x);
     const BlockSearch search(voxels.x, spacing_in_solids(matter, in_solid.size()));
     const std::vector<int> owner = search.nearest(places, pool);
