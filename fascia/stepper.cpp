@@ -144,7 +144,7 @@ struct Stepper::Parts {
     has_forces = parts.forces;
     return reached;
   }
-  /// The same with forces, which are read after each step from now on: a step that fails takes with it what led there.
+  /// Reads forces too, now and after each step from now on: a step that fails takes with it what led there.
   const ReachedForces& forces() {
     forces_are_asked = true;
     return acting(true);
@@ -165,6 +165,20 @@ struct Stepper::Parts {
     if (views.any() || state_is_seen) views.fill(state(), reached);
   }
 
+  /// Refuses a step at whose end the fluid of a body would have no volume without pressure.
+  void require_volumes(double dt) const {
+    const double end = steps->time() + dt;
+    const std::vector<double> at_end = factors(steps->time(), dt)(end);
+    for (const FluidOfBody& fluid : simulation.fluids) {
+      const SurfaceLoad& load = simulation.model.surfaces[at(fluid.surface)];
+      const double volume = load.rest_volume + at_end[at(load.schedule)] * (load.volume - load.rest_volume);
+      if (load.bulk_modulus > 0 && volume <= 0)
+        throw InputError(
+            fmt::format("the fluid in the body \"{}\" is given a volume of {:.6g} m3 at {:.6g}; must be "
+                        "above 0: set its dial nearer to 0",
+                        simulation.bodies[at(fluid.body)].name, volume, end));
+    }
+  }
   void require_driver(int driver) const {
     if (driver < 0 || at(driver) >= to.size())
       throw InputError(fmt::format("there is no driver number {}; the scene has {}", driver, to.size()));
@@ -206,6 +220,7 @@ StepReport Stepper::step(double dt, const std::stop_token& stop) {
   if (time() + dt == time())
     throw InputError(fmt::format("a step of {} s is lost beside the time, {} s; take a longer one", dt, time()));
   Parts& p = *parts_;
+  if (!p.simulation.fluids.empty()) p.require_volumes(dt);
   p.place_motions(p.to);
   const Clock::time_point start = Clock::now();
   RunReport run;
@@ -288,17 +303,6 @@ void Stepper::set_dial(int dial, double value) {
   if (!std::isfinite(value))
     throw InputError(
         fmt::format("the value of the dial \"{}\" is {}; must be finite", p.simulation.dials[at(dial)].name, value));
-  const Dial& of = p.simulation.dials[at(dial)];
-  for (const FluidOfBody& fluid : p.simulation.fluids) {
-    const SurfaceLoad& load = p.simulation.model.surfaces[at(fluid.surface)];
-    const double volume = load.rest_volume + value * (load.volume - load.rest_volume);
-    const bool names = std::find(of.schedules.begin(), of.schedules.end(), load.schedule) != of.schedules.end();
-    if (names && load.bulk_modulus > 0 && volume <= 0)
-      throw InputError(
-          fmt::format("the value {} of the dial \"{}\" leaves the fluid in the body \"{}\" a volume of "
-                      "{:.6g} m3; must be above 0",
-                      value, of.name, p.simulation.bodies[at(fluid.body)].name, volume));
-  }
   p.next_dials[at(dial)] = value;
 }
 

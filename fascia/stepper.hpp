@@ -67,10 +67,11 @@ class Stepper {
   Stepper& operator=(Stepper&&) noexcept;
 
   /// Advances by dt [s], which may differ from step to step; in statics the load factor by dt: all loads grow until it
-  /// is 1, and stay. What follows a step that failed is as though it had not been tried.
+  /// is 1, and stay. What follows a step that failed is as though it had not been tried; but forces
+  /// of supports of scattered frames start anew in midpoint steps, and so do schemes after a call that throws.
   /// @param stop  asked before each iteration of Newton's method: a step that is told to stop is one that failed; one
   ///              that needs no further iteration ends as usual
-  /// @throws InputError    a step that is not above 0, or lost beside the time
+  /// @throws InputError    a step that is not above 0, or lost beside the time; a fluid that a dial leaves no volume
   /// @throws BackendError  a device that is lost, or has no memory left; this and what reads the state
   StepReport step(double dt, const std::stop_token& stop = {});
   double time() const;  ///< [s]; in statics the load factor

@@ -57,6 +57,13 @@ class VoxelGrid {
       i[at(a)] = static_cast<int>(std::clamp((x[a] - min_[a]) / cell_[a] + kTie, 0.0, count_[at(a)] - 0.5));
     return number(i[0], i[1], i[2]);
   }
+  /// Calls act(j, k) for each row of voxels, on all threads.
+  template <class Act>
+  void for_each_row(ThreadPool& pool, const Act& act) const {
+    pool.for_ranges(count_[1] * count_[2], 16, [&](int begin, int end) {
+      for (int row = begin; row < end; ++row) act(row % count_[1], row / count_[1]);
+    });
+  }
   template <class Act>
   void for_each(Act&& act) const {
     for (int k = 0; k < count_[2]; ++k)
@@ -126,10 +133,9 @@ VoxelPart voxel_part(const VoxelGrid& grid, int i, int j, int k, const std::func
 void add_voxels(VoxelPieces& voxels, const VoxelGrid& grid, const SolidDomain& domain,
                 std::span<const MatterPiece> surface, ThreadPool& pool) {
   std::vector<char> inside(grid.size());
-  pool.for_chunks(grid.count()[2], [&](int k) {
-    for (int j = 0; j < grid.count()[1]; ++j)
-      for (int i = 0; i < grid.count()[0]; ++i)
-        inside[grid.number(i, j, k)] = domain.contains(grid.place(i, j, k)) ? 1 : 0;
+  grid.for_each_row(pool, [&](int j, int k) {
+    for (int i = 0; i < grid.count()[0]; ++i)
+      inside[grid.number(i, j, k)] = domain.contains(grid.place(i, j, k)) ? 1 : 0;
   });
   const std::vector<char> cut = cut_voxels(grid, inside, surface);
   std::vector<std::array<int, 3>> taken;
@@ -198,9 +204,8 @@ void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, Thr
   } else {
     voxels.x.resize(first + grid.size());
     voxels.volume.resize(first + grid.size(), kParts);
-    pool.for_chunks(grid.count()[2], [&](int k) {
-      for (int j = 0; j < grid.count()[1]; ++j)
-        for (int i = 0; i < grid.count()[0]; ++i) voxels.x[first + grid.number(i, j, k)] = grid.place(i, j, k);
+    grid.for_each_row(pool, [&](int j, int k) {
+      for (int i = 0; i < grid.count()[0]; ++i) voxels.x[first + grid.number(i, j, k)] = grid.place(i, j, k);
     });
   }
 

@@ -34,7 +34,7 @@ class ImplicitStepper {
     kept_.reset();
     const int solves = run.indefinite_solves;
     NewtonReport report = advanced(state, factors, end, dt, run);
-    note_indefinite(run, solves, end);
+    if (report.status != NewtonStatus::stopped) note_indefinite(run, solves, end);
     if (!acceptable(report, settings_)) {
       if (!ends_within(run, report)) fail(report, end, run);
       go_back(state);
@@ -62,12 +62,14 @@ class ImplicitStepper {
   }
 
  private:
-  /// Leaves the state as it was where a step throws, too.
+  /// Leaves the state as it was where a step throws, too; the scheme starts anew then, for it may have been amid what
+  /// it keeps.
   NewtonReport advanced(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
     try {
       return advance(state, factors, end, dt, drivers::kMostHalvings, run);
     } catch (...) {
       go_back(state);
+      begin_afresh();
       throw;
     }
   }

@@ -208,10 +208,7 @@ class PathFollower {
     const double smallest = std::min(first_, left) * (run_.steps == 0 ? kSmallest * kSmallest : kSmallest);
     for (length = std::min(length, left); length >= smallest; length *= 0.5) {
       NewtonReport report = attempt(length);
-      if (drivers::ends_within(run_, report)) {
-        begin();
-        return report;
-      }
+      if (stopped(report)) return report;
       if (report.status != NewtonStatus::converged) {
         failed = report;
         calm_ = 3;
@@ -240,6 +237,7 @@ class PathFollower {
       const bool short_of_it = lambda_ < 1;
       if (s < 1 - 1e-3) report = attempt(s * p);
       if (report.status == NewtonStatus::converged) report = attempt_end();
+      if (stopped(report)) return report;
       if (report.status == NewtonStatus::converged && std::abs(moved() - s * p) < 0.5 * p) {
         lambda_ = 1;
         end = directions();
@@ -258,6 +256,13 @@ class PathFollower {
                                           : "the path could not be followed further; try more load_steps"));
     failed.status = NewtonStatus::limit;
     return failed;
+  }
+
+  /// Returns to the last step where the run was asked to stop; whether it was.
+  bool stopped(const NewtonReport& report) {
+    if (!drivers::ends_within(run_, report)) return false;
+    begin();
+    return true;
   }
 
   bool ends_by_displacement() const { return displacement() && path_.controlled->to.has_value(); }

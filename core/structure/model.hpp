@@ -99,10 +99,12 @@ struct PrescribedMotion {
 
   /// Q − I of what turns with the motion.
   FASCIA_HD Mat3d turn(double factor) const {
-    return compose_increments(rotation_increment(axis * (angle * factor)), D_start);
+    const Mat3d R = rotation_increment(axis * (angle * factor));
+    return driven ? compose_increments(R, D_start) : R;
   }
   FASCIA_HD Vec3d displacement(const Vec3d& X, double factor) const {
-    return turn(factor) * (X - center) + translation * factor + u_start;
+    const Vec3d u = turn(factor) * (X - center) + translation * factor;
+    return driven ? u + u_start : u;
   }
 };
 

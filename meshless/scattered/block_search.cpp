@@ -6,8 +6,10 @@
 #include "meshless/scattered/point_grid.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 
 namespace fascia {
 
@@ -58,7 +60,7 @@ Vec3d BlockSearch::Cells::middle(std::size_t number) const {
 }
 
 BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing)
-    : blocks_({}, {}, 1, 1), cells_({}, {}, 1, 1), begin_(2, 0) {
+    : count_(places.size()), blocks_({}, {}, 1, 1), cells_({}, {}, 1, 1), begin_(2, 0) {
   if (places.empty()) return;
   const Bounds bounds = bounds_of(places);
   const double most = std::max(1e6, 2.0 * static_cast<double>(places.size()));
@@ -159,19 +161,23 @@ void BlockSearch::search(std::size_t first, std::size_t last, const Candidates& 
 }
 
 std::vector<int> BlockSearch::nearest(std::span<const Vec3d> points, ThreadPool& pool) const {
-  const auto places =
-      static_cast<std::size_t>(std::count_if(place_.begin(), place_.end(), [](int p) { return p >= 0; }));
-  std::vector<int> nearest(places, -1);
+  std::vector<int> nearest(count_, -1);
   if (points.empty()) return nearest;
   const Sorted by_cell = sorted(points);
+  std::atomic<bool> out_of_memory = false;  // threads must not throw
   pool.for_ranges(static_cast<int>(blocks_.size()), kGrain, [&](int begin, int end) {
-    Candidates among;
-    for (std::size_t b = at(begin); b < at(end); ++b) {
-      if (begin_[b] == begin_[b + 1]) continue;
-      list(blocks_.middle(b), by_cell, among);
-      search(begin_[b], begin_[b + 1], among, nearest);
+    try {
+      Candidates among;
+      for (std::size_t b = at(begin); b < at(end); ++b) {
+        if (begin_[b] == begin_[b + 1]) continue;
+        list(blocks_.middle(b), by_cell, among);
+        search(begin_[b], begin_[b + 1], among, nearest);
+      }
+    } catch (const std::bad_alloc&) {
+      out_of_memory = true;
     }
   });
+  if (out_of_memory) throw std::bad_alloc();
   return nearest;
 }
 

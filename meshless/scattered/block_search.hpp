@@ -34,7 +34,7 @@ class BlockSearch {
 
     /// @param width  wanted; it grows until there are at most so many cells
     Cells(const Vec3d& min, const Vec3d& max, double width, double most);
-    /// Of places outside the outermost cell in their direction.
+    /// The cell that holds a place; the outermost one in the direction of a place outside.
     Cell of(const Vec3d& x) const;
     std::size_t number(const Cell& c) const;
     std::size_t size() const;
@@ -56,6 +56,7 @@ class BlockSearch {
   void list(const Vec3d& middle, const Sorted& points, Candidates& out) const;
   void search(std::size_t first, std::size_t last, const Candidates& among, std::vector<int>& nearest) const;
 
+  std::size_t count_;               ///< of places
   Cells blocks_, cells_;            ///< of places, of points
   std::vector<std::size_t> begin_;  ///< of each block in the arrays of places, multiples of kLanes
   std::array<AlignedVector<double>, 3> x_;

@@ -54,7 +54,7 @@ class PieceList {
   std::size_t size() const { return solid_ ? matter_->voxels.size() : index_.size(); }
   const Vec3d& x(std::size_t n) const { return solid_ ? matter_->voxels.x[n] : thin(n).x; }
   double measure(std::size_t n) const { return solid_ ? matter_->voxels.volume[n] : thin(n).measure; }
-  /// Of sheets, lines and boundaries.
+  /// A piece of a sheet, a line or a boundary.
   const MatterPiece& thin(std::size_t n) const { return matter_->pieces[at(index_[n])]; }
   SamplePlace place(std::size_t n) const { return solid_ ? voxel_place(x(n)) : place_of(thin(n)); }
 
