@@ -99,12 +99,10 @@ struct PrescribedMotion {
 
   /// Q − I of what turns with the motion.
   FASCIA_HD Mat3d turn(double factor) const {
-    const Mat3d R = rotation_increment(axis * (angle * factor));
-    return driven ? compose_increments(R, D_start) : R;
+    return compose_increments(rotation_increment(axis * (angle * factor)), D_start);
   }
   FASCIA_HD Vec3d displacement(const Vec3d& X, double factor) const {
-    const Vec3d u = turn(factor) * (X - center) + translation * factor;
-    return driven ? u + u_start : u;
+    return turn(factor) * (X - center) + translation * factor + u_start;
   }
 };
 
