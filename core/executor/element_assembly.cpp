@@ -119,6 +119,7 @@ template <Law L, int N>
 
 void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
   const int pairs = pair_count(block_.nodes);
+  pattern_ = matrix.pattern();
   if (matrix.value_count() > std::numeric_limits<std::uint32_t>::max())
     throw InputError("the matrix has more than 4e9 entries; use fewer elements");
   pair_slot_.resize(at(block_.batch_count()) * at(pairs) * kElementLanes);
@@ -145,7 +146,7 @@ void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
 }
 
 void ElementExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Entries /*entries*/) {
-  if (pair_slot_.empty()) find_pair_slots(matrix);
+  if (pattern_ != matrix.pattern()) find_pair_slots(matrix);
   if (block_.averaged) average(state);
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     for (std::size_t c = 0; c + 1 < block_.color_begin.size(); ++c) {

@@ -84,6 +84,7 @@ class ElementExecutor {
   std::vector<int> lane_part_;         ///< (batches × 8): part of each element; empty where each patch lies in one
   std::vector<double> lane_rounding_;  ///< likewise: squares of rounding [N²]
   double elastic_ = 0, viscous_ = 0;
+  std::uint64_t pattern_ = 0;              ///< of the matrix in which these are:
   std::vector<std::uint32_t> pair_slot_;   ///< (batches × pairs × 8): place of a block's values
   std::vector<std::uint8_t> pair_stride_;  ///< likewise: length of its rows; empty where all nodes are vertices
 

@@ -131,6 +131,11 @@ void CpuExecutor::forces(const State& state, const StrainHistory& history, std::
   sum_terms(state, history, false, gradient);
 }
 
+void CpuExecutor::store_slot_sums(const State& state, const StrainHistory& history, std::vector<double>& out) {
+  ++evaluations_so_far;
+  std::get<Several<PointExecutor>>(blocks_).front().store_slot_sums(state_of(state, history, 0), out);
+}
+
 InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& history, std::span<double> gradient) {
   note_motion(state, part_motion_);
   space_.for_each(set_.part_count(), loops::AtLeast{start_motion_.data(), part_motion_.data()});

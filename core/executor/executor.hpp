@@ -104,6 +104,9 @@ class CpuExecutor {
   /// @param out    (lanes × 6)
   void store_stress(const State& state, std::span<const double> given, std::span<double> out);
 
+  /// Stores what each slot of the groups of points has of their forces at a state, for sum_of_groups().
+  void store_slot_sums(const State& state, const StrainHistory& history, std::vector<double>& out);
+
   /// Energies as the last call of gradient() found them.
   BlockEnergies energies() const;
   /// Groups of points, with their tethers. Products and tangents with extrapolated stresses overwrite their sums.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/executor/block_executor.hpp"
-#include "core/math/batch.hpp"
+#include "core/math/lane_array.hpp"
 #include "core/physics/element_law.hpp"
 
 #include <type_traits>
@@ -93,6 +93,14 @@ inline Mat3d stored_matrix(const double* rows) {
   return m;
 }
 
+/// Nine batches by rows.
+inline Mat3<Lanes> matrix_of(const Lanes* rows) {
+  Mat3<Lanes> m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = rows[3 * i + j];
+  return m;
+}
+
 inline Mat3<Lanes> broadcast(const Mat3d& a) {
   Mat3<Lanes> m;
   for (int i = 0; i < 3; ++i)
@@ -115,22 +123,30 @@ inline void add_slot(const double* shape, int batch, const Vec3<Lanes>& u, const
   }
 }
 
+/// force += P g of one slot, its component i.
+inline void add_slot_force(const double* shape, int batch, const LaneMatrix& P, int i, Lanes& force) {
+  for (int k = 0; k < 3; ++k) force += P(i, k) * row(shape, 1 + k, batch);
+}
+/// moment += P Bᵀ + w Y of one slot, its component (i, j).
+template <bool Blend>
+inline void add_slot_moment(const double* shape, int batch, const LaneMatrix& P, const LaneMatrix& Y, int i, int j,
+                            Lanes& moment) {
+  for (int k = 0; k < 3; ++k) moment += P(i, k) * row(shape, 4 + 3 * j + k, batch);
+  if constexpr (Blend) moment += row(shape, 0, batch) * Y(i, j);
+}
+
 /// Σ over lanes of v P g (3) and v (P Bᵀ + w Y) (9) of one slot; P and Y already carry v.
 template <bool Blend>
-inline void slot_sums(const double* shape, const Mat3<Lanes> (&P)[kBatches], const Mat3<Lanes> (&Y)[kBatches],
+inline void slot_sums(const double* shape, const LaneMatrix (&P)[kBatches], const LaneMatrix (&Y)[kBatches],
                       double* out) {
   for (int i = 0; i < 3; ++i) {
     Lanes force;
-    for (int b = 0; b < kBatches; ++b)
-      for (int k = 0; k < 3; ++k) force += P[b](i, k) * row(shape, 1 + k, b);
+    for (int b = 0; b < kBatches; ++b) add_slot_force(shape, b, P[b], i, force);
     out[i] = lane_sum(force);
     for (int j = 0; j < 3; ++j) {
-      Lanes sum;
-      for (int b = 0; b < kBatches; ++b) {
-        for (int k = 0; k < 3; ++k) sum += P[b](i, k) * row(shape, 4 + 3 * j + k, b);
-        if constexpr (Blend) sum += row(shape, 0, b) * Y[b](i, j);
-      }
-      out[3 + 3 * i + j] = lane_sum(sum);
+      Lanes moment;
+      for (int b = 0; b < kBatches; ++b) add_slot_moment<Blend>(shape, b, P[b], Y[b], i, j, moment);
+      out[3 + 3 * i + j] = lane_sum(moment);
     }
   }
 }

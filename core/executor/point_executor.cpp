@@ -1,6 +1,6 @@
 #include "core/executor/point_executor.hpp"
 
-#include "core/executor/group_kernels.hpp"
+#include "core/executor/point_kernels.hpp"
 
 #include <algorithm>
 
@@ -10,7 +10,8 @@ using namespace kernels;
 
 namespace {
 
-constexpr int kGrain = 32;
+/// Colours that have fewer keep most threads waiting; nodes share work better, and prepare frames more often.
+constexpr std::size_t kGroupsOfColor = 8;
 
 Lanes squared(const Mat3<Lanes>& m) { return contract(m, m); }
 
@@ -19,7 +20,9 @@ Lanes squared(const Mat3<Lanes>& m) { return contract(m, m); }
 PointExecutor::PointExecutor(const PointSet& set, ThreadPool& pool)
     : set_(set),
       pool_(pool),
-      slot_sums_(at(set.slot_count()) * 12),
+      frames_(set, pool),
+      has_tethers_(std::any_of(set.rule.begin(), set.rule.end(),
+                               [](const GroupRule& group) { return group.rule.law == Law::tether; })),
       group_elastic_(at(set.group_count())),
       group_stabilization_(at(set.group_count())),
       group_viscous_(at(set.group_count())),
@@ -27,12 +30,12 @@ PointExecutor::PointExecutor(const PointSet& set, ThreadPool& pool)
       group_tether_(at(set.group_count())),
       part_tether_(at(set.part_count())),
       targets_(set.axes.size() / 3) {
-  for (int group = 0; group < set.group_count(); ++group) {
-    if (set.rule[at(group)].rule.law != Law::tether) continue;
-    slot_is_tether_.resize(at(set.slot_count()));
-    std::fill(slot_is_tether_.begin() + set.slot_begin[at(group)],
-              slot_is_tether_.begin() + set.slot_begin[at(group + 1)], 1);
-  }
+  const Coloring& colors = frames_.shared_colors();
+  if (colors.item.empty() || colors.item.size() >= kGroupsOfColor * (colors.begin.size() - 1)) return;
+  group_of_slot_.resize(at(set.slot_count()));
+  for (int group = 0; group < set.group_count(); ++group)
+    std::fill(group_of_slot_.begin() + set.slot_begin[at(group)],
+              group_of_slot_.begin() + set.slot_begin[at(group + 1)], group);
 }
 
 /// Where points remember stresses, what never fades is elastic, and the rest of the step's potential viscous.
@@ -47,38 +50,34 @@ void PointExecutor::split_energy(const BlockState& state, int group, int batch, 
 }
 
 template <PointKind Kind>
-void PointExecutor::forces_of_group(const BlockState& state, int group, bool energies,
-                                    std::span<const double> part_motion) {
+GroupStress PointExecutor::stress_on_group(const BlockState& state, int group, Rows rows, bool energies,
+                                           std::span<const double> part_motion) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
-  const auto nodes = set_.nodes(group);
-  const int first_slot = set_.slot_begin[at(group)];
-  Mat3<Lanes> P[kBatches], Y[kBatches];
+  GroupStress out;
   const Lanes motion(energies ? part_motion[at(set_.part_of_group(group))] : 0.0);
   double elastic = 0, stabilizing = 0, viscous = 0, rounding = 0, tether = 0;
   for (int b = 0; b < kBatches; ++b) {
-    PointMotion<Lanes> x;
-    for (std::size_t s = 0; s < nodes.size(); ++s)
-      add_slot<kBlend>(set_.shape_of_slot(first_slot + static_cast<int>(s)), b, broadcast(state.u[at(nodes[s])]),
-                       broadcast(turn_of(state, nodes[s])), x);
+    const PointMotion<Lanes> x = frames_.motion<kBlend>(group, b, rows);
     const auto m = material<Kind>(set_, group, b, state, targets_);
     const Mat3<Lanes> E_old = old_strain(state, group, b);
     PointStress<Lanes> stress = point_stress<Kind.stabilization>(x, m, E_old);
     if (!state.given.empty()) stress.P += first_piola(x.H, given_stress(state, group, b));
-    P[b] = stress.P * m.volume;
-    Y[b] = stress.Y * m.volume;
+    const Mat3<Lanes> P = stress.P * m.volume;
+    out.P[b].set(P);
+    if constexpr (kBlend) out.Y[b].set(stress.Y * m.volume);
     if (!energies) continue;
     PointEnergy<Lanes> energy = point_energy<Kind.stabilization>(x, m, E_old);
     if (!state.given.empty()) split_energy<Kind>(state, group, b, x, energy);
     elastic += lane_sum(energy.elastic);
     stabilizing += lane_sum(energy.stabilization);
     viscous += lane_sum(energy.viscous);
-    if (is_tether(m)) tether += lane_sum(squared(P[b]));
+    if (is_tether(m)) tether += lane_sum(squared(P));
     // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
     const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
     const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0)) * (Lanes(1.0) + m.viscosity);
     const Lanes strain = is_tether(m) ? Lanes{} : squared(x.H);  // a tether's H is a displacement
-    rounding += lane_sum((g * g) * (squared(P[b]) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
-                                                        (Lanes(1.0) + strain)));
+    rounding += lane_sum((g * g) * (squared(P) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
+                                                     (Lanes(1.0) + strain)));
   }
   if (energies) {
     group_elastic_[at(group)] = elastic;
@@ -87,16 +86,16 @@ void PointExecutor::forces_of_group(const BlockState& state, int group, bool ene
     group_rounding_[at(group)] = rounding;
     group_tether_[at(group)] = tether;
   }
-  for (std::size_t s = 0; s < nodes.size(); ++s) {
-    const int slot = first_slot + static_cast<int>(s);
-    slot_sums<kBlend>(set_.shape_of_slot(slot), P, Y, slot_sums_.data() + at(slot) * 12);
-  }
+  return out;
 }
 
 void PointExecutor::compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion) {
-  pool_.for_ranges(set_.group_count(), kGrain, [&](int begin, int end) {
-    for (int group = begin; group < end; ++group)
-      with_kind(rule_of(group), [&]<PointKind Kind>() { forces_of_group<Kind>(state, group, energies, part_motion); });
+  if (empty()) return;
+  frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, true, [&](int group, const auto& rows) {
+    with_kind(rule_of(group), [&]<PointKind Kind>() {
+      frames_.put<Kind.stabilization != Stabilization::none>(
+          group, stress_on_group<Kind>(state, group, rows[0], energies, part_motion));
+    });
   });
   if (!energies) return;
   std::fill(part_tether_.begin(), part_tether_.end(), 0.0);
@@ -116,40 +115,26 @@ void PointExecutor::add_rounding(std::span<double> squares_of_parts) const {
     squares_of_parts[at(set_.part_of_group(group))] += group_rounding_[at(group)];
 }
 
-namespace {
-
-/// Sums a node's slots in ascending order: force (3) and Σ v (P Bᵀ + w Y) (9).
-template <class Take>
-void gather(const PointSet& set, std::span<const double> slot_sums, int node, const Take& take, NodeSum& sum) {
-  for (int k = set.node_slot_begin[at(node)]; k < set.node_slot_begin[at(node + 1)]; ++k) {
-    if (!take(set.node_slot[at(k)])) continue;
-    const double* s = slot_sums.data() + at(set.node_slot[at(k)]) * 12;
-    for (int i = 0; i < 3; ++i) {
-      sum.force[i] += s[i];
-      for (int j = 0; j < 3; ++j) sum.N(i, j) += s[3 + 3 * i + j];
-    }
-  }
-}
-
-}  // namespace
-
-void PointExecutor::add_sums(int node, NodeSum& sum) const {
-  gather(
-      set_, slot_sums_, node, [](int) { return true; }, sum);
-}
-
-NodeSum PointExecutor::tether_sum(int node) const {
-  NodeSum sum;
-  gather(
-      set_, slot_sums_, node, [&](int slot) { return slot_is_tether_[at(slot)] != 0; }, sum);
-  return sum;
+void PointExecutor::store_slot_sums(const BlockState& state, std::vector<double>& out) {
+  out.resize(at(set_.slot_count()) * 12);
+  if (empty()) return;
+  frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, false, [&](int group, const auto& rows) {
+    with_kind(rule_of(group), [&]<PointKind Kind>() {
+      const GroupStress stress = stress_on_group<Kind>(state, group, rows[0], false, {});
+      for (int slot = set_.slot_begin[at(group)]; slot < set_.slot_begin[at(group + 1)]; ++slot)
+        slot_sums<Kind.stabilization != Stabilization::none>(set_.shape_of_slot(slot), stress.P, stress.Y,
+                                                             out.data() + at(slot) * 12);
+    });
+  });
 }
 
 NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, int first, int count, int node) {
   const int begin = set.slot_begin[at(first)], end = set.slot_begin[at(first + count)];
   NodeSum sum;
-  gather(
-      set, slot_sums, node, [&](int slot) { return slot >= begin && slot < end; }, sum);
+  for (int k = set.node_slot_begin[at(node)]; k < set.node_slot_begin[at(node + 1)]; ++k) {
+    const int slot = set.node_slot[at(k)];
+    if (slot >= begin && slot < end) add_numbers(slot_sums.data() + at(slot) * 12, sum);
+  }
   return sum;
 }
 
@@ -175,24 +160,10 @@ Vec3d tether_force(const PointSet& set, std::span<const double> targets, const T
   return force * set.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
 }
 
-namespace {
-
-/// Motion of a group's batch, without blended rotations.
-PointMotion<Lanes> motion_of(const PointSet& set, const BlockState& state, int group, int b) {
-  const auto nodes = set.nodes(group);
-  PointMotion<Lanes> x;
-  for (std::size_t s = 0; s < nodes.size(); ++s)
-    add_slot<false>(set.shape_of_slot(set.slot_begin[at(group)] + static_cast<int>(s)), b,
-                    broadcast(state.u[at(nodes[s])]), broadcast(turn_of(state, nodes[s])), x);
-  return x;
-}
-
-}  // namespace
-
 template <PointKind Kind>
-void PointExecutor::stress_of_group(const BlockState& state, int group, std::span<double> S) const {
+void PointExecutor::stress_of_group(const BlockState& state, int group, Rows rows, std::span<double> S) const {
   for (int b = 0; b < kBatches; ++b) {
-    const PointMotion<Lanes> x = motion_of(set_, state, group, b);
+    const PointMotion<Lanes> x = frames_.motion<false>(group, b, rows);
     const auto m = material<Kind>(set_, group, b, state, targets_);
     Mat3<Lanes> stress;
     if (!is_tether(m)) stress = tangent_stress<Stabilization::none>(x, m, {}).S + given_stress(state, group, b);
@@ -201,17 +172,18 @@ void PointExecutor::stress_of_group(const BlockState& state, int group, std::spa
 }
 
 void PointExecutor::store_stress(const BlockState& state, std::span<double> S) {
-  pool_.for_ranges(set_.group_count(), kGrain, [&](int begin, int end) {
-    for (int group = begin; group < end; ++group)
-      with_kind(rule_of(group), [&]<PointKind Kind>() { stress_of_group<Kind>(state, group, S); });
+  if (empty()) return;
+  frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, false, [&](int group, const auto& rows) {
+    with_kind(rule_of(group), [&]<PointKind Kind>() { stress_of_group<Kind>(state, group, rows[0], S); });
   });
 }
 
 void PointExecutor::store_strain(const BlockState& state, std::span<double> E) {
-  pool_.for_ranges(set_.group_count(), kGrain, [&](int begin, int end) {
-    for (int group = begin; group < end; ++group)
-      for (int b = 0; b < kBatches; ++b)
-        store_symmetric(E.data() + at(group) * 6 * kGroupSize, 0, b, green_strain(motion_of(set_, state, group, b).H));
+  if (empty()) return;
+  frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, false, [&](int group, const auto& rows) {
+    for (int b = 0; b < kBatches; ++b)
+      store_symmetric(E.data() + at(group) * 6 * kGroupSize, 0, b,
+                      green_strain(frames_.motion<false>(group, b, rows[0]).H));
   });
 }
 

@@ -3,6 +3,7 @@
 #include "core/base/index.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/executor/block_executor.hpp"
+#include "core/executor/point_frames.hpp"
 
 #include <span>
 #include <vector>
@@ -17,11 +18,11 @@ Vec3d tether_force(const PointSet& set, std::span<const double> targets, const T
 NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, int first, int count, int node);
 
 /// Computes the groups of points of a set at a state, as CpuExecutor asks for it: one pass over groups, whose sums by
-/// slot the nodes gather.
+/// frame the nodes gather.
 class PointExecutor {
  public:
   static constexpr bool kSeesMotions = true, kSeesTranslations = false, kSeesStateAgain = false;
-  static constexpr int kRows = 27;  ///< kept of a group: H (9), Dbar (9), S (6), drilling (3)
+  static constexpr int kRows = 27;  ///< kept of a group: H (9), Dbar (9), S (6), drilling (3), each for eight points
 
   PointExecutor(const PointSet& set, ThreadPool& pool);
 
@@ -38,7 +39,7 @@ class PointExecutor {
   void linearize(const BlockState& now, const BlockState* start, const BlockDirection* step, std::span<double> kept);
   void compute_product(const BlockState& state, const BlockDirection& direction);
   void assemble(const BlockState& state, BlockMatrix& matrix, Entries entries);
-  void add_sums(int node, NodeSum& sum) const;
+  void add_sums(int node, NodeSum& sum) const { frames_.add_sums(node, false, sum); }
   InternalEnergy energy() const;
   void add_rounding(std::span<double> squares_of_parts) const;
   static double largest_spin(const BlockDirection&) { return 0; }
@@ -46,12 +47,16 @@ class PointExecutor {
   /// Elastic and stabilisation energy of each group at the last forces with energies [J].
   std::span<const double> group_elastic() const { return group_elastic_; }
   std::span<const double> group_stabilization() const { return group_stabilization_; }
-  /// Sums of slots as the last forces, or a product, left them; for sum_of_groups().
-  std::span<const double> sums_of_slots() const { return slot_sums_; }
+  /// Stores what each slot of each group has of the forces at a state, for sum_of_groups().
+  void store_slot_sums(const BlockState& state, std::vector<double>& out);
 
-  bool has_tethers() const { return !slot_is_tether_.empty(); }
+  bool has_tethers() const { return has_tethers_; }
   /// Tethers alone gave this to a node.
-  NodeSum tether_sum(int node) const;
+  NodeSum tether_sum(int node) const {
+    NodeSum sum;
+    frames_.add_sums(node, true, sum);
+    return sum;
+  }
   /// Σ |force|² of a connected part's tethers at the last forces with energies [N²].
   double squared_tether_force(int part) const { return part_tether_[at(part)]; }
   Vec3d tether_force(const Tether& tether, const State& state) const {
@@ -62,29 +67,49 @@ class PointExecutor {
   }
 
  private:
+  using Rows = PointFrames::Rows;
   template <PointKind Kind>
-  void forces_of_group(const BlockState& state, int group, bool energies, std::span<const double> part_motion);
+  GroupStress stress_on_group(const BlockState& state, int group, Rows rows, bool energies,
+                              std::span<const double> part_motion);
   template <PointKind Kind>
   void split_energy(const BlockState& state, int group, int batch, const PointMotion<Lanes>& x,
                     PointEnergy<Lanes>& energy) const;
   template <PointKind Kind>
-  void stress_of_group(const BlockState& state, int group, std::span<double> S) const;
+  void stress_of_group(const BlockState& state, int group, Rows rows, std::span<double> S) const;
   template <PointKind Kind>
-  void linearize_group(const BlockState& now, const BlockState* start, const BlockDirection* step, int group,
-                       std::span<double> kept);
+  void linearize_group(const BlockState& now, int group, Rows rows, std::span<double> kept) const;
   template <PointKind Kind>
-  void product_of_group(const BlockState& state, int group, const BlockDirection& direction);
+  void extrapolate_group(const BlockState& now, int group, const std::array<Rows, 3>& rows, std::span<double> kept);
+  template <PointKind Kind>
+  void product_of_group(const BlockState& state, int group, Rows rows);
+  struct GroupOfFrames;
+  template <PointKind Kind>
+  void assemble_slot(const BlockState& state, int group, int slot, const GroupOfFrames& frames, Entries entries,
+                     BlockMatrix& matrix) const;
+  void assemble_node(const BlockState& state, int node, Entries entries, BlockMatrix& matrix) const;
   template <PointKind Kind>
   void assemble_group(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
+  template <PointKind Kind>
+  void assemble_one(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
+  template <PointKind Kind, FrameKind Frame>
+  void assemble_lanes(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
+  void find_pairs(const BlockMatrix& matrix);
+  /// Both move a point of their group.
+  bool together(int slot, int other) const { return (set_.slot_lanes[at(slot)] & set_.slot_lanes[at(other)]) != 0; }
   const PointRule& rule_of(int group) const { return set_.rule[at(group)].rule; }
 
   const PointSet& set_;
   ThreadPool& pool_;
-  AlignedVector<double> slot_sums_;  ///< (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
+  PointFrames frames_;
+  AlignedVector<double> now_, start_;  ///< rows of nodes at states
+  bool has_tethers_;
+  std::uint64_t pattern_ = 0;            ///< of the matrix in which these are:
+  std::vector<int> pairs_;               ///< blocks of pairs of frames of each group, or of each lane of a group
+  std::vector<std::size_t> pair_begin_;  ///< (slots); of lanes by the group's first slot
+  std::vector<int> group_of_slot_;       ///< empty where groups are assembled by colours
   std::vector<double> group_elastic_, group_stabilization_, group_viscous_, group_rounding_, group_tether_;
   std::vector<double> part_tether_;
   AlignedVector<double> targets_;
-  std::vector<char> slot_is_tether_;  ///< empty where there are none
 };
 
 }  // namespace fascia

@@ -320,6 +320,7 @@ void ShellExecutor::assemble_batch(const BlockState& state, int batch, BlockMatr
 }
 
 void ShellExecutor::find_pair_slots(const BlockMatrix& matrix) {
+  pattern_ = matrix.pattern();
   if (matrix.value_count() > std::numeric_limits<std::uint32_t>::max())
     throw InputError("the matrix has more than 4e9 entries; use fewer triangles");
   pair_slot_.resize(at(block_.batch_count() * kPairs) * kElementLanes);
@@ -336,7 +337,7 @@ void ShellExecutor::find_pair_slots(const BlockMatrix& matrix) {
 }
 
 void ShellExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Entries /*entries*/) {
-  if (pair_slot_.empty()) find_pair_slots(matrix);
+  if (pattern_ != matrix.pattern()) find_pair_slots(matrix);
   for (std::size_t c = 0; c + 1 < block_.color_begin.size(); ++c) {
     const int first = block_.color_begin[c];
     pool_.for_ranges(block_.color_begin[c + 1] - first, 4, [&](int begin, int end) {

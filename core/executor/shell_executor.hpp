@@ -51,6 +51,7 @@ class ShellExecutor {
   std::vector<double> slot_sums_;  ///< (batches × 8 × 18): force and torque of each corner
   std::vector<Sums> sums_;         ///< (batches)
   double elastic_ = 0, viscous_ = 0;
+  std::uint64_t pattern_ = 0;             ///< of the matrix in which these are:
   std::vector<std::uint32_t> pair_slot_;  ///< (batches × 6 × 8): place of a block's values
 };
 

@@ -38,8 +38,8 @@ void add_product(const SurfaceTangent& tangent, const DofLayout& dofs, const std
                  std::span<const double> x, std::span<double> y, TangentPart part = TangentPart::symmetric);
 void add_product(const RankOne& update, std::span<const double> x, std::span<double> y);
 
-/// Adds the blocks of pairs of nodes that the pattern has (nodes of a face that share no group or element do not),
-/// those that assembly fills.
+/// Adds the blocks of pairs of nodes that assembly fills. A pattern made without the surface lacks some where nodes of
+/// a face share no point or element; these are left out.
 void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, BlockMatrix& matrix);
 
 }  // namespace fascia

@@ -1,5 +1,6 @@
 #include "core/linear/block_matrix.hpp"
 
+#include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
 #include "core/structure/blocks.hpp"
 
@@ -38,10 +39,47 @@ struct ElementsAround {
   }
 };
 
+/// Nodes that move each face, and the faces that each node moves.
+struct FacesAround {
+  std::vector<int> begin{0}, node;        ///< (faces + 1)
+  std::vector<int> around_begin, around;  ///< (nodes of the model + 1)
+
+  FacesAround(std::span<const SurfaceLoad> surfaces, int model_nodes) {
+    for (const SurfaceLoad& load : surfaces) {
+      for (int f = 0; f < load.face_count(); ++f) {
+        for (const int vertex : load.face(f))
+          for (const SurfaceShare& share : load.shares_of(vertex)) node.push_back(share.node);
+        std::sort(node.begin() + begin.back(), node.end());
+        node.erase(std::unique(node.begin() + begin.back(), node.end()), node.end());
+        begin.push_back(static_cast<int>(node.size()));
+      }
+    }
+    const auto for_each = [&](const auto& act) {
+      for (std::size_t f = 0; f + 1 < begin.size(); ++f)
+        for (int k = begin[f]; k < begin[f + 1]; ++k) act(node[at(k)], static_cast<int>(f));
+    };
+    list_by_node(model_nodes, for_each, around_begin, around);
+  }
+
+  template <class Act>
+  void for_each_neighbour(int of, const Act& act) const {
+    for (int k = around_begin[at(of)]; k < around_begin[at(of + 1)]; ++k)
+      for (int n = begin[at(around[at(k)])]; n < begin[at(around[at(k)] + 1)]; ++n) act(node[at(n)]);
+  }
+};
+
+/// A number that other places do not have (FNV-1a).
+std::uint64_t pattern_of(const std::vector<int>& row_begin, const std::vector<int>& column) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const std::vector<int>* list : {&row_begin, &column})
+    for (const int i : *list) hash = (hash ^ static_cast<std::uint32_t>(i)) * 0x100000001b3;
+  return hash;
+}
+
 }  // namespace
 
-BlockMatrix::BlockMatrix(const PointSet& set) : dofs_(set.dofs) {
-  find_pattern(set);
+BlockMatrix::BlockMatrix(const PointSet& set, std::span<const SurfaceLoad> surfaces) : dofs_(set.dofs) {
+  find_pattern(set, surfaces);
   if (!set.dependents.empty()) add_blocks_of_hosts(set);
   uniform_ = rows() > 0 && dofs_.size(0) <= 6 && set.dependents.empty() ? dofs_.size(0) : 0;
   for (int node = 0; node < rows(); ++node)
@@ -54,6 +92,7 @@ BlockMatrix::BlockMatrix(const PointSet& set) : dofs_(set.dofs) {
     }
   }
   value_begin_.push_back(next);
+  pattern_ = pattern_of(row_begin_, column_);
   values_.assign(next + 2, 0.0);  // two more: rows of three are read four at a time, rows of six eight
   if (uniform_ > 0)
     size_chunks();
@@ -72,7 +111,7 @@ void BlockMatrix::find_mirrors() {
     }
 }
 
-void BlockMatrix::find_pattern(const PointSet& set) {
+void BlockMatrix::find_pattern(const PointSet& set, std::span<const SurfaceLoad> surfaces) {
   std::vector<int> group_of_slot(at(set.slot_count()));
   for (int group = 0; group < set.group_count(); ++group)
     std::fill(group_of_slot.begin() + set.slot_begin[at(group)], group_of_slot.begin() + set.slot_begin[at(group + 1)],
@@ -81,6 +120,7 @@ void BlockMatrix::find_pattern(const PointSet& set) {
   for_each_block(set, [&]<class Block>(const Block& block) {
     if constexpr (!std::is_same_v<Block, PointGroups>) around.emplace_back(block, set.node_count());
   });
+  const FacesAround faces(surfaces, set.node_count());
   std::vector<int> last_seen(at(set.node_count()), -1), near;  // near: those of a block about the row
   for (int row = 0; row < set.node_count(); ++row) {
     const std::size_t begin = column_.size();
@@ -90,8 +130,12 @@ void BlockMatrix::find_pattern(const PointSet& set) {
       column_.push_back(column);
     };
     add(row);
-    for (int k = set.node_slot_begin[at(row)]; k < set.node_slot_begin[at(row + 1)]; ++k)
-      for (const int column : set.nodes(group_of_slot[at(set.node_slot[at(k)])])) add(column);
+    for (int k = set.node_slot_begin[at(row)]; k < set.node_slot_begin[at(row + 1)]; ++k) {
+      const int slot = set.node_slot[at(k)], group = group_of_slot[at(slot)];
+      for (int other = set.slot_begin[at(group)]; other < set.slot_begin[at(group + 1)]; ++other)
+        if ((set.slot_lanes[at(slot)] & set.slot_lanes[at(other)]) != 0) add(set.slot_node[at(other)]);
+    }
+    faces.for_each_neighbour(row, add);
     for (std::size_t b = 0; b < around.size(); ++b) {
       near.clear();
       around[b].for_each_neighbour(row, [&](int column) {

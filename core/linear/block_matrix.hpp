@@ -3,20 +3,23 @@
 #include "core/base/aligned.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/structure/point_set.hpp"
+#include "core/structure/surface_load.hpp"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace fascia {
 
-/// Symmetric matrix of blocks, one for each pair of nodes that share a group or an element, as large as the nodes have
+/// Symmetric matrix of blocks, one for each pair of nodes that share a point or an element, as large as the nodes have
 /// degrees of freedom and stored by rows, columns ascending. The pattern is fixed. Where all nodes are vertices, or all
 /// rigid frames, only the blocks on and above the diagonal are stored: half as much to read in a product. Where nodes
 /// depend on others, all are stored, and the hosts have the blocks that their dependent nodes bring them.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
-  explicit BlockMatrix(const PointSet& set);
+  /// @param surfaces  loads whose faces tie the nodes that move them, whether these share a point or not
+  explicit BlockMatrix(const PointSet& set, std::span<const SurfaceLoad> surfaces = {});
 
   int rows() const { return static_cast<int>(row_begin_.size()) - 1; }
   std::size_t block_count() const { return column_.size(); }
@@ -25,6 +28,8 @@ class BlockMatrix {
   int row_begin(int row) const { return row_begin_[static_cast<std::size_t>(row)]; }
   double* block(int index) { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
   const double* block(int index) const { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
+  /// Equal for matrices with blocks at equal places; who keeps places in one asks for it.
+  std::uint64_t pattern() const { return pattern_; }
   int find(int row, int column) const;  ///< index of a block that is in the pattern
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
 
@@ -41,7 +46,7 @@ class BlockMatrix {
   const double* values() const { return values_.data(); }
 
  private:
-  void find_pattern(const PointSet& set);
+  void find_pattern(const PointSet& set, std::span<const SurfaceLoad> surfaces);
   void add_blocks_of_hosts(const PointSet& set);
   void multiply_row(int row, std::span<const double> x, std::span<double> y) const;
   template <int N>
@@ -53,7 +58,8 @@ class BlockMatrix {
 
   DofLayout dofs_;
   std::vector<int> row_begin_{0}, column_, diagonal_;
-  std::vector<int> mirror_;               ///< of each block below the diagonal, the one above it
+  std::vector<int> mirror_;  ///< of each block below the diagonal, the one above it
+  std::uint64_t pattern_ = 0;
   int uniform_ = 0;                       ///< every block is 3 × 3, or 6 × 6; 0: neither
   std::vector<std::size_t> value_begin_;  ///< of each block, and of all
   AlignedVector<double> values_;

@@ -10,68 +10,125 @@ namespace fascia {
 
 namespace {
 
-/// Numbers of a node in the vectors here: a register's, of which the last ones stay zero or are not read.
+using Four = BatchRegister<4>::Type;
+
+inline Four load(const double* p) {
+  Four r;
+  std::memcpy(&r, p, sizeof r);
+  return r;
+}
+inline void add(const Four& value, double* to) {
+  const Four sum = load(to) + value;
+  std::memcpy(to, &sum, sizeof sum);
+}
+
+/// Numbers of a node in the vectors here, whole registers: x₀ x₁ x₂ 0, or x₀ … x₅ x₀ x₁. In a sum the last ones are not
+/// read.
 template <int N>
 constexpr int kWide = N == 3 ? 4 : 8;
 
 template <int N>
-using Wide = typename BatchRegister<kWide<N>>::Type;
-
-template <int N>
-inline Wide<N> load(const double* p) {
-  Wide<N> r;
-  std::memcpy(&r, p, sizeof r);
-  return r;
-}
-
-template <int N>
-inline void copy_node(const double* from, double* to) {
+inline void widen(const double* from, double* to) {
   for (int i = 0; i < N; ++i) to[i] = from[i];
+  if constexpr (N == 6) {
+    to[6] = from[0];
+    to[7] = from[1];
+  }
 }
 
-/// Rows of a chunk: enough that its overhang is small beside its blocks.
+/// What blocks of a row do: sum += A x_j, and y_j += Aᵀ x_i. The diagonal one has the first alone.
 template <int N>
-constexpr int kChunkRows = N == 3 ? 8192 : 2048;
+struct UpperRow;
 
-/// What blocks of a row do: sum += A x_j, and y_j += Aᵀ x_i. Rows of a block are read a register at a time; what
-/// exceeds the row, the beginning of the next, meets zeros of x, or lands in numbers of y that nothing reads.
-template <int N>
-struct UpperRowSums {
-  static constexpr int kParities = N == 3 ? 2 : 1;  ///< of even and odd blocks: one addition need not wait for another
-  Wide<N> sum[kParities][N] = {};
-  Wide<N> x[N];
+/// Rows of a block are read a register at a time; what exceeds the row, the beginning of the next, meets the zero of x,
+/// or lands in the number of y that nothing reads.
+template <>
+struct UpperRow<3> {
+  Four sum[2][3] = {};  ///< of even and odd blocks: one addition need not wait for another
+  Four x[3];
 
-  explicit UpperRowSums(const double* xi) {
-    for (int i = 0; i < N; ++i) x[i] = Wide<N>{} + xi[i];
+  explicit UpperRow(const double* xi) {
+    for (int i = 0; i < 3; ++i) x[i] = Four{} + xi[i];
   }
   template <int Parity>
-  void add(const double* b, const double* xj) {
-    const Wide<N> v = load<N>(xj);
-    for (int i = 0; i < N; ++i) sum[Parity % kParities][i] += load<N>(b + N * i) * v;
+  void take_diagonal(const double* b, const double* xj) {
+    const Four v = load(xj);
+    for (int i = 0; i < 3; ++i) sum[Parity][i] += load(b + 3 * i) * v;
   }
-  void add_transposed(const double* b, double* yj) const {
-    Wide<N> y = load<N>(yj) + load<N>(b) * x[0];
-    for (int i = 1; i + 1 < N; i += 2) y += load<N>(b + N * i) * x[i] + load<N>(b + N * (i + 1)) * x[i + 1];
-    if constexpr (N % 2 == 0) y += load<N>(b + N * (N - 1)) * x[N - 1];
-    std::memcpy(yj, &y, sizeof y);
+  template <int Parity>
+  void take(const double* b, const double* xj, double* yj) {
+    take_diagonal<Parity>(b, xj);
+    add(load(b) * x[0] + load(b + 3) * x[1] + load(b + 6) * x[2], yj);
   }
-  double total(int i) const {
-    Wide<N> all = sum[0][i];
-    if constexpr (kParities == 2) all += sum[1][i];
-    double s = all[0];
-    for (int k = 1; k < N; ++k) s += all[k];
-    return s;
+  void add_to(double* y) const {
+    for (int i = 0; i < 3; ++i) {
+      const Four all = sum[0][i] + sum[1][i];
+      y[i] += all[0] + all[1] + all[2];
+    }
+  }
+};
+
+/// The 36 entries are nine registers, each of which is read once. By columns they meet x₀ … x₃, x₄ x₅ x₀ x₁ and
+/// x₂ … x₅ of x_j in turn, by rows nine registers of x_i.
+template <>
+struct UpperRow<6> {
+  Four sum[9] = {};
+  Four x[9];
+
+  explicit UpperRow(const double* xi) {
+    for (int c = 0; c < 9; ++c)
+      for (int k = 0; k < 4; ++k) x[c][k] = xi[(4 * c + k) / 6];
+  }
+  template <int>
+  void take_diagonal(const double* b, const double* xj) {
+    const Four v[3] = {load(xj), load(xj + 4), load(xj + 2)};
+    for (int c = 0; c < 9; ++c) sum[c] += load(b + 4 * c) * v[c % 3];
+  }
+  template <int>
+  void take(const double* b, const double* xj, double* yj) {
+    const Four v[3] = {load(xj), load(xj + 4), load(xj + 2)};
+    Four t[3] = {};  // of columns 0 … 3, 4 5 0 1 and 2 … 5
+    for (int c = 0; c < 9; ++c) {
+      const Four entries = load(b + 4 * c);
+      sum[c] += entries * v[c % 3];
+      t[c % 3] += entries * x[c];
+    }
+    add(t[0] + __builtin_shufflevector(t[1], t[2], 2, 3, 4, 5), yj);
+    const Four last = __builtin_shufflevector(t[1], t[2], 0, 1, 6, 7);
+    add(last + __builtin_shufflevector(last, last, 2, 3, 2, 3), yj + 4);
+  }
+  void add_to(double* y) const {
+    for (int r = 0; r < 6; r += 2) {  // of three registers, two rows
+      const Four *a = sum + 3 * (r / 2), *b = a + 1, *c = a + 2;
+      y[r] += ((*a)[0] + (*a)[1]) + ((*a)[2] + (*a)[3]) + ((*b)[0] + (*b)[1]);
+      y[r + 1] += ((*b)[2] + (*b)[3]) + ((*c)[0] + (*c)[1]) + ((*c)[2] + (*c)[3]);
+    }
   }
 };
 
 }  // namespace
 
+namespace {
+
+/// Values of a chunk [bytes]: enough that a thread is worth waking for it, and that its overhang is small beside it.
+constexpr std::size_t kChunkBytes = 1 << 20;
+constexpr int kMostChunks = 64;
+
+}  // namespace
+
+/// Chunks have equally many values, but for whole rows.
 void BlockMatrix::size_chunks() {
   const int wide = uniform_ == 3 ? kWide<3> : kWide<6>;
-  const int chunks = std::max(1, rows() / (uniform_ == 3 ? kChunkRows<3> : kChunkRows<6>));
+  const auto chunks =
+      static_cast<int>(std::clamp<std::size_t>(value_count() * sizeof(double) / kChunkBytes, 1, kMostChunks));
   overhang_begin_.push_back(0);
-  for (int c = 0; c <= chunks; ++c)
-    chunk_begin_.push_back(static_cast<int>(static_cast<std::int64_t>(rows()) * c / chunks));
+  chunk_begin_.push_back(0);
+  for (int c = 1; c <= chunks; ++c) {
+    const std::size_t end = value_count() / at(chunks) * at(c);
+    int row = chunk_begin_.back();
+    while (row < rows() && (c == chunks || value_begin_[at(row_begin(row))] < end)) ++row;
+    chunk_begin_.push_back(row);
+  }
   if (chunks > 1) overhang_slot_.resize(column_.size());
   for (int c = 0; c < chunks; ++c) {
     const int begin = row_begin(chunk_begin_[at(c)]), end = chunk_begin_[at(c + 1)], last = row_begin(end);
@@ -106,21 +163,18 @@ void BlockMatrix::multiply_chunk(int chunk) const {
     const int first = diagonal(row), last = row_begin(row + 1);
     const int* column = column_.data();
     const double* b = block(first);
-    UpperRowSums<N> sums(x + W * row);
-    sums.template add<0>(b, x + W * row);
+    UpperRow<N> of(x + W * row);
+    of.template take_diagonal<0>(b, x + W * row);
     b += B;
     int k = first + 1;
     for (; k + 1 < last && column[k + 1] < end; k += 2, b += 2 * B) {
-      sums.template add<1>(b, x + W * column[k]);
-      sums.template add<0>(b + B, x + W * column[k + 1]);
-      sums.add_transposed(b, y + W * column[k]);
-      sums.add_transposed(b + B, y + W * column[k + 1]);
+      of.template take<1>(b, x + W * column[k], y + W * column[k]);
+      of.template take<0>(b + B, x + W * column[k + 1], y + W * column[k + 1]);
     }
-    for (; k < last; ++k, b += B) {
-      sums.template add<1>(b, x + W * column[k]);
-      sums.add_transposed(b, column[k] < end ? y + W * column[k] : beyond + W * overhang_slot_[at(k)]);
-    }
-    for (int i = 0; i < N; ++i) y[W * row + i] += sums.total(i);
+    for (; k < last; ++k, b += B)
+      of.template take<1>(b, x + W * column[k],
+                          column[k] < end ? y + W * column[k] : beyond + W * overhang_slot_[at(k)]);
+    of.add_to(y + W * row);
   }
 }
 
@@ -128,11 +182,14 @@ template <int N>
 void BlockMatrix::multiply_upper(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
   constexpr int W = kWide<N>;
   const int chunks = static_cast<int>(chunk_begin_.size()) - 1;
-  for (int row = 0; row < rows(); ++row) copy_node<N>(x.data() + N * row, wide_x_.data() + W * row);
+  pool.for_chunks(chunks, [&](int chunk) {
+    for (int row = chunk_begin_[at(chunk)]; row < chunk_begin_[at(chunk + 1)]; ++row)
+      widen<N>(x.data() + N * row, wide_x_.data() + W * row);
+  });
   pool.for_chunks(chunks, [&](int chunk) { multiply_chunk<N>(chunk); });
   pool.for_chunks(chunks, [&](int chunk) {
     const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
-    for (int row = begin; row < end; ++row) copy_node<N>(wide_y_.data() + W * row, y.data() + N * row);
+    for (int row = begin; row < end; ++row) std::copy_n(wide_y_.data() + W * row, N, y.data() + N * row);
     for (int earlier = 0; earlier < chunk; ++earlier) {
       const auto stop = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier + 1)]);
       auto row = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier)]);

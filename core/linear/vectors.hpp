@@ -16,6 +16,8 @@ class CpuVectors {
 
   Vector zeros(std::size_t n) const { return Vector(n, 0.0); }
   double dot(std::span<const double> a, std::span<const double> b) const;
+  /// to = from; returns from · from
+  double copy(std::span<const double> from, std::span<double> to) const;
   /// x += s p, r −= s q
   void advance(double s, std::span<const double> p, std::span<const double> q, std::span<double> x,
                std::span<double> r) const;
@@ -26,6 +28,9 @@ class CpuVectors {
   void xpay(std::span<const double> x, double s, std::span<double> y) const;
 
  private:
+  template <class SumOf>
+  double sum_of_chunks(std::size_t size, const SumOf& sum_of) const;
+
   ThreadPool* pool_;
 };
 

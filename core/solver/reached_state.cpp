@@ -75,9 +75,7 @@ void MechanicalSystem::read(const ReachedParts& parts, const State& state, Reach
   }
   if (parts.energies) out.energies = executor_.energies();
   if (!parts.slots) return;
-  executor_.forces(state_, history_, work_);  // products may have overwritten them
-  const std::span<const double> slots = executor_.points().sums_of_slots();
-  out.slot_sums.assign(slots.begin(), slots.end());
+  executor_.store_slot_sums(state_, history_, out.slot_sums);
 }
 
 void MechanicalSystem::stand_in(const StepInProgress& step) {

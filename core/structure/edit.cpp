@@ -78,6 +78,10 @@ void check(const Edit& edit, const Model& model) {
     if (added.nodes.empty() || added.nodes.size() > at(kMaxSlots) || added.points.empty() || !(added.length > 0))
       throw InputError("an edit adds points without nodes, with more than " + std::to_string(kMaxSlots) +
                        ", or without a length");
+    std::vector<int> sorted = added.nodes;
+    std::sort(sorted.begin(), sorted.end());
+    if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+      throw InputError("an edit adds points that name node " + std::to_string(*twice) + " twice; name it once");
     for (const int node : added.nodes)
       if (node < 0 || node >= nodes)
         throw InputError("an edit adds points to node " + std::to_string(node) + "; the model has " +

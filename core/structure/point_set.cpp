@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -20,8 +22,28 @@ PointSetBuilder::PointSetBuilder(PointSet&& set)
 
 void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
                                  const PointRule& rule) {
+  if (std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) != nodes.end())
+    return add_in_order(nodes, points, length, rule);
   for (std::size_t first = 0; first < points.size(); first += kGroupSize)
     add_group(nodes, points.subspan(first, std::min<std::size_t>(kGroupSize, points.size() - first)), length, rule);
+}
+
+void PointSetBuilder::add_in_order(std::span<const int> nodes, std::span<const PointSample> points, double length,
+                                   const PointRule& rule) {
+  std::vector<std::size_t> order(nodes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nodes[a] < nodes[b]; });
+  std::vector<int> sorted;
+  sorted.reserve(nodes.size());
+  for (const std::size_t k : order) {
+    if (!sorted.empty() && sorted.back() == nodes[k])
+      throw InputError("points name node " + std::to_string(nodes[k]) + " twice; each of their nodes once");
+    sorted.push_back(nodes[k]);
+  }
+  std::vector<PointSample> moved(points.begin(), points.end());
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (std::size_t k = 0; k < order.size(); ++k) moved[p].influences[k] = points[p].influences[order[k]];
+  add_points(sorted, moved, length, rule);
 }
 
 void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const PointSample> points, double length,
@@ -127,6 +149,18 @@ void transpose_incidence(PointSet& set) {
   list_by_node(set.node_count(), for_each_slot, set.node_slot_begin, set.node_slot);
 }
 
+void find_lanes_of_slots(PointSet& set) {
+  constexpr unsigned kAll = (1U << kGroupSize) - 1;
+  set.slot_lanes.resize(at(set.slot_count()));
+  for (int slot = 0; slot < set.slot_count(); ++slot) {
+    const double* row = set.shape_of_slot(slot);
+    unsigned lanes = 0;
+    for (int r = 0; r < 13 && lanes != kAll; ++r, row += kGroupSize)
+      for (int lane = 0; lane < kGroupSize; ++lane) lanes |= row[lane] != 0 ? 1U << static_cast<unsigned>(lane) : 0U;
+    set.slot_lanes[at(slot)] = static_cast<std::uint8_t>(lanes);
+  }
+}
+
 /// In the order in which CpuExecutor has the blocks.
 void lay_out_memory(PointSet& set) {
   if (!set.viscosity.empty()) {
@@ -186,6 +220,7 @@ PointSet PointSetBuilder::finish(std::vector<FrameKind> frames) && {
   check_user_blocks(set_);
   lay_out_memory(set_);
   transpose_incidence(set_);
+  find_lanes_of_slots(set_);
   sort_dependents(set_);
   find_parts(set_, group_length_, joints_);
   Coloring colors = color_items(set_.group_count(), set_.node_count(), [&](int group) { return set_.nodes(group); });

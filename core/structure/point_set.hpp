@@ -12,6 +12,7 @@
 #include "core/structure/stress_memory.hpp"
 #include "core/structure/user_block.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -64,11 +65,12 @@ struct PointSet {
   int point_count = 0;
   bool damped = false;  ///< any stiffness damping
 
-  AlignedVector<double> shape;     ///< (slots × 13 × 8): w, g (3), B (9, by rows)
-  AlignedVector<double> material;  ///< (groups × 6 × 8): volume, λ, μ, γ, β, gradient norm
-  std::vector<GroupRule> rule;     ///< (groups)
-  AlignedVector<double> axes;      ///< (groups that need them × 9 × 8): PointSample::axes by rows
-  AlignedVector<double> own;       ///< (rows × 8): constants that a group's law has of its own
+  AlignedVector<double> shape;           ///< (slots × 13 × 8): w, g (3), B (9, by rows)
+  std::vector<std::uint8_t> slot_lanes;  ///< (slots) bit of each lane whose point the frame moves; found by finish()
+  AlignedVector<double> material;        ///< (groups × 6 × 8): volume, λ, μ, γ, β, gradient norm
+  std::vector<GroupRule> rule;           ///< (groups)
+  AlignedVector<double> axes;            ///< (groups that need them × 9 × 8): PointSample::axes by rows
+  AlignedVector<double> own;             ///< (rows × 8): constants that a group's law has of its own
   /// (groups × 8) what fades of the stress of each lane, and PointSample::source; empty where nothing does
   std::vector<std::shared_ptr<const Viscosity>> viscosity;
   std::vector<int> source;
@@ -130,6 +132,7 @@ class PointSetBuilder {
   /// Adds points that share `nodes` and their rule; they are cut into groups of eight. Each point's F at rest must be
   /// I (Σ w = 1, Σ X gᵀ + B = I), which is checked by the caller's weights.
   /// @param length  spacing of the frames: converts torques to forces where residuals and rounding are judged [m]
+  /// @throws InputError  a node that is named twice
   void add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
                   const PointRule& rule = {});
 
@@ -158,6 +161,8 @@ class PointSetBuilder {
   PointSet finish(std::vector<FrameKind> frames) &&;
 
  private:
+  void add_in_order(std::span<const int> nodes, std::span<const PointSample> points, double length,
+                    const PointRule& rule);
   void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
   void add_rule(std::span<const PointSample> points, double length, PointRule rule);
   void add_own_constants(std::span<const PointSample> points, GroupRule& group);

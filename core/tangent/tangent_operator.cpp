@@ -40,7 +40,7 @@ void TangentOperator::assemble(const Linearization& lin, BlockMatrix& out, Entri
 }
 
 BlockMatrix& TangentOperator::pattern() {
-  if (!matrix_) matrix_.emplace(model_.points);
+  if (!matrix_) matrix_.emplace(model_.points, model_.surfaces);
   return *matrix_;
 }
 
@@ -51,7 +51,7 @@ const BlockMatrix& TangentOperator::matrix() {
 }
 
 const BlockMatrix& TangentOperator::material_part(Entries entries) {
-  if (!material_) material_.emplace(model_.points);
+  if (!material_) material_.emplace(model_.points, model_.surfaces);
   assemble((*tamer_)(TamerTangent::material), *material_, entries);
   return *material_;
 }

@@ -1,6 +1,7 @@
 #include "meshless/scattered/scatter.hpp"
 
 #include "core/base/errors.hpp"
+#include "core/geometry/space_order.hpp"
 #include "meshless/scattered/scatter_parts.hpp"
 
 #include <cmath>
@@ -32,11 +33,27 @@ double boundless_spacing(const Matter& matter, int count) {
 
 }  // namespace
 
+namespace {
+
+/// Puts neighbours near each other, as products with the matrix and searches like them.
+std::vector<SamplePlace> in_order(const std::vector<SamplePlace>& places) {
+  std::vector<Vec3d> x;
+  x.reserve(places.size());
+  for (const SamplePlace& p : places) x.push_back(p.x);
+  std::vector<SamplePlace> sorted;
+  sorted.reserve(places.size());
+  constexpr double kCells = 1000.618;  // features lie at halves and thirds
+  for (const std::size_t i : order_in_space(x, kCells)) sorted.push_back(places[i]);
+  return sorted;
+}
+
+}  // namespace
+
 std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features,
                                       ThreadPool& pool, std::span<const Vec3d> occupied) {
   check_spacing(matter, spacing);
-  return with_features ? FrameSampler(matter, seed, occupied, pool).places(spacing, true)
-                       : point_places(matter, spacing, seed, pool);
+  return in_order(with_features ? FrameSampler(matter, seed, occupied, pool).places(spacing, true)
+                                : point_places(matter, spacing, seed, pool));
 }
 
 double spacing_for_count(const Matter& matter, int count, int seed, bool with_features, ThreadPool& pool,

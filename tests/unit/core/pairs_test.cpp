@@ -3,6 +3,7 @@
 #include "core/base/errors.hpp"
 #include "core/run/drivers.hpp"
 #include "core/run/explicit_dynamics.hpp"
+#include "tests/support/dependent_models.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -241,6 +242,34 @@ TEST(Pairs, SlowAThrownBlockInImplicitAndExplicitSteps) {
     if (is_explicit) EXPECT_NEAR(v[2] / before, slowed, 0.03);
     slowed = v[2] / before;
     for (const int node : press.above) EXPECT_GT(press.model.rest_position[at(node)][2] + state.u[at(node)][2], 0.8);
+  }
+}
+
+/// Elements and shells keep where their blocks are in the matrix; with other pairs, these are elsewhere.
+TEST(Pairs, LeaveElementsTheirPlacesInTheMatrix) {
+  CoupledModel m;
+  m.add_tetrahedra({}, {{1, 1, 1}}, {2, 2, 2});
+  const auto [first_of_shell, end] = m.add_shell({{0, 0, 1.1}});
+  const auto pairs = std::make_shared<Barrier>(m.model.rest_position, 0.5, 4000.0);
+  m.points.add_user_block(pairs);
+  m.finish();
+  const Model& model = m.model;
+  std::vector<int> below, above;
+  for (int i = 0; i < end; ++i) (i < first_of_shell ? below : above).push_back(i);
+  ThreadPool pool(2);
+  CpuExecutor executor(model.points, pool);
+  std::vector<double> gradient(at(model.dof_count())), x = random_direction(model), y = gradient, free = gradient;
+  const State state = random_state(model, 1e-3, 1e-2);
+  for (const double within : {0.0, 0.4, 0.2}) {
+    pairs->find(state, below, above, within);
+    executor.gradient(state, {}, gradient);
+    Linearization tangent;
+    executor.linearize(state, {}, Tangent::full, tangent);
+    executor.multiply(tangent, x, free);
+    BlockMatrix matrix(model.points);
+    executor.assemble(tangent, matrix);
+    matrix.multiply(pool, x, y);
+    for (std::size_t i = 0; i < y.size(); ++i) ASSERT_NEAR(y[i], free[i], 1e-10 * norm(free)) << within << " m, " << i;
   }
 }
 

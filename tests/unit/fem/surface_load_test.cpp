@@ -132,11 +132,10 @@ TEST_P(SurfaceLoadTest, ProductIsTheDerivativeOfTheForcesAndSymmetric) {
   EXPECT_LT(error, 1e-8);
 }
 
-/// Where the pattern has all pairs of a face's nodes.
 TEST_P(SurfaceLoadTest, AssembledEqualsTheProductWithoutTheRankOneTerm) {
   Linearization lin = linearization();
   lin.low_rank.clear();
-  BlockMatrix matrix(built_.model.points);
+  BlockMatrix matrix(built_.model.points, built_.model.surfaces);
   executor_.assemble(lin, matrix);
   const std::vector<double> d = random_direction(built_.model);
   std::vector<double> assembled(d.size()), free(d.size());
@@ -171,9 +170,11 @@ std::vector<Case> cases() {
            [] {
              return frames(false, {2, 1, 1});
            }},
-          {"affine_frames", [] {
+          {"affine_frames",
+           [] {
              return frames(true, {2, 1, 1});
-           }}};
+           }},
+          {"scattered_frames", scattered}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Surfaces, SurfaceLoadTest, testing::ValuesIn(cases()),

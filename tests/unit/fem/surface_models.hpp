@@ -35,4 +35,23 @@ inline Loaded frames(bool affine, const std::array<int, 3>& cells) {
   return built;
 }
 
+/// Frames of which each point of the body follows four, as do the vertices of its surface.
+inline Loaded scattered() {
+  CloudSpec spec;
+  static_cast<BodyMatter&>(spec) = block_spec({});
+  ScatterSpec scatter;
+  scatter.parts.solid = block_spec({}).domain;
+  scatter.parts.solid->surface = box_surface({}, {{1, 1, 1}}, 3, 3, 3);
+  scatter.frames = SpacedChoice{0.3, 1};
+  scatter.weights = ScatteredKind::shepard;
+  scatter.neighbours = 4;
+  std::vector<std::string> messages;
+  scatter_cloud(scatter, spec, messages);
+  Loaded built;
+  PointSetBuilder points;
+  built.body = std::make_shared<CloudBody>(spec, built.model, points);
+  built.model.points = std::move(points).finish(built.model.frame_kind);
+  return built;
+}
+
 }  // namespace fascia::test

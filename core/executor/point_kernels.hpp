@@ -1,0 +1,173 @@
+#pragma once
+
+#include "core/executor/group_kernels.hpp"
+#include "core/executor/point_frames.hpp"
+#include "core/math/lane_rows.hpp"
+
+#include <algorithm>
+
+/// Loops of PointFrames.
+namespace fascia {
+
+/// P and Y of a group's points, with their volumes.
+struct GroupStress {
+  LaneMatrix P[kGroupSize / kBatchWidth], Y[kGroupSize / kBatchWidth];  ///< Y only where rotations blend
+};
+
+namespace kernels {
+
+inline constexpr int kKeptRows = 27;  ///< as PointExecutor::kRows
+
+/// (u + D r) gᵀ to H, and w D to Dbar, of a frame that carries its surroundings; H lacks Dbar.
+inline void add_carried(const double* shape, int batch, const Lanes (&d)[12], PointMotion<Lanes>& x) {
+  const Lanes w = row(shape, 0, batch);
+  Lanes g[3], r[3];
+  for (int k = 0; k < 3; ++k) {
+    g[k] = row(shape, 1 + k, batch);
+    r[k] = row(shape, 4 + k, batch);
+  }
+  for (int i = 0; i < 3; ++i) {
+    Lanes u = d[i];
+    for (int k = 0; k < 3; ++k) u += d[3 + 3 * i + k] * r[k];
+    for (int k = 0; k < 3; ++k) {
+      x.H(i, k) += u * g[k];
+      x.Dbar(i, k) += w * d[3 + 3 * i + k];
+    }
+  }
+}
+
+/// f = P g and f rᵀ + w (P + Y) of such a frame.
+template <bool Blend>
+inline void carried_sums(const double* shape, int batch, const LaneMatrix& P, const LaneMatrix& Y, LaneArray<12>& out) {
+  const Lanes w = row(shape, 0, batch);
+  Lanes g[3], r[3];
+  for (int k = 0; k < 3; ++k) {
+    g[k] = row(shape, 1 + k, batch);
+    r[k] = row(shape, 4 + k, batch);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Lanes f = P(i, 0) * g[0] + P(i, 1) * g[1] + P(i, 2) * g[2];
+    out.set(i, f);
+    for (int j = 0; j < 3; ++j) out.set(3 + 3 * i + j, f * r[j] + w * (Blend ? P(i, j) + Y(i, j) : P(i, j)));
+  }
+}
+
+/// Rows that are kept of a group at a state, (27 × 8): H, Dbar, S, drilling.
+inline const double* kept_rows(const BlockState& state, int group) {
+  return state.kept.data() + at(group) * kKeptRows * kGroupSize;
+}
+
+/// Blended rotations only where something asks for them.
+template <Stabilization Tie>
+inline PointMotion<Lanes> kept_motion(const BlockState& state, int group, int b) {
+  PointMotion<Lanes> x;
+  x.H = matrix(kept_rows(state, group), 0, b);
+  if constexpr (Tie != Stabilization::none) x.Dbar = matrix(kept_rows(state, group), 9, b);
+  return x;
+}
+
+template <Stabilization Tie>
+inline TangentStress<Lanes> kept_stress(const BlockState& state, int group, int b) {
+  const double* rows = kept_rows(state, group);
+  TangentStress<Lanes> stress{symmetric_matrix(rows, 18, b), {}};
+  if constexpr (Tie == Stabilization::drilling)
+    stress.drilling = {{row(rows, 24, b), row(rows, 25, b), row(rows, 26, b)}};
+  return stress;
+}
+
+inline void keep(const PointMotion<Lanes>& x, const TangentStress<Lanes>& stress, double* rows, int b) {
+  store_matrix(rows, 0, b, x.H);
+  store_matrix(rows, 9, b, x.Dbar);
+  store_symmetric(rows, 18, b, stress.S);
+  for (int k = 0; k < 3; ++k) store(rows, 24 + k, b, stress.drilling[k]);
+}
+
+}  // namespace kernels
+
+template <std::size_t N, class Act>
+void PointFrames::for_each_group(const std::array<Rows, N>& motions, bool sums, const Act& act) {
+  const int shared = static_cast<int>(shared_.size()), ranges = (shared + kGrain - 1) / kGrain;
+  pool_.for_chunks(ranges + lanes_.patch_count(), [&](int chunk) {
+    if (chunk < ranges) {
+      for (int i = chunk * kGrain; i < std::min(shared, (chunk + 1) * kGrain); ++i) act(shared_[at(i)], motions);
+      return;
+    }
+    const int patch = chunk - ranges;
+    const std::span<const int> nodes = lanes_.nodes(patch);
+    alignas(64) double near[N][LaneFrames::kPatchNodes * kNumbers];
+    std::array<Rows, N> rows;
+    for (std::size_t m = 0; m < N; ++m) {
+      rows[m] = near[m];
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        std::copy_n(motions[m] + at(nodes[k]) * kNumbers, kNumbers, near[m] + k * kNumbers);
+    }
+    if (sums) std::fill_n(sums_of(patch_place_[at(patch)]), nodes.size() * kNumbers, 0.0);
+    for (const int group : lanes_.groups(patch)) act(group, rows);
+  });
+}
+
+template <bool Blend>
+PointMotion<Lanes> PointFrames::motion(int group, int batch, Rows rows) const {
+  using namespace kernels;
+  PointMotion<Lanes> x;
+  const int count = lanes_.count(group);
+  if (count == 0) {
+    const std::span<const int> nodes = set_.nodes(group);
+    const double* shape = set_.shape_of_slot(set_.slot_begin[at(group)]);
+    for (const int node : nodes) {
+      const double* d = rows + at(node) * kNumbers;
+      add_slot<Blend>(shape, batch, broadcast(d), broadcast(stored_matrix(d + 3)), x);
+      shape += 13 * kGroupSize;
+    }
+    return x;
+  }
+  const double* shape = lanes_.shape(group);
+  const int stride = lanes_.shape_rows(group) * kGroupSize;
+  const std::uint16_t* local = lanes_.local(group) + batch * kBatchWidth;
+  const bool carries = lanes_.carries(group);
+  for (int k = 0; k < count; ++k, shape += stride, local += kGroupSize) {
+    Lanes d[kNumbers];
+    gather_rows([&](int lane) { return rows + local[lane] * kNumbers; }, d);
+    if (carries)
+      add_carried(shape, batch, d, x);
+    else
+      add_slot<Blend>(shape, batch, {{d[0], d[1], d[2]}}, matrix_of(d + 3), x);
+  }
+  if (carries) x.H += x.Dbar;
+  return x;
+}
+
+template <bool Blend>
+void PointFrames::put(int group, const GroupStress& stress) {
+  using namespace kernels;
+  double* sums = sums_of(group_place_[at(group)]);
+  const int count = lanes_.count(group);
+  if (count == 0) {
+    const int first = set_.slot_begin[at(group)], frames = set_.slot_begin[at(group + 1)] - first;
+    for (int s = 0; s < frames; ++s)
+      slot_sums<Blend>(set_.shape_of_slot(first + s), stress.P, stress.Y, sums + s * kNumbers);
+    return;
+  }
+  const double* shape = lanes_.shape(group);
+  const int stride = lanes_.shape_rows(group) * kGroupSize;
+  const std::uint16_t* local = lanes_.local(group);
+  const bool carries = lanes_.carries(group);
+  for (int k = 0; k < count; ++k, shape += stride)
+    for (int b = 0; b < kBatches; ++b, local += kBatchWidth) {
+      LaneArray<kNumbers> out;
+      if (carries) carried_sums<Blend>(shape, b, stress.P[b], stress.Y[b], out);
+      for (int i = 0; i < 3 && !carries; ++i) {
+        Lanes force;
+        add_slot_force(shape, b, stress.P[b], i, force);
+        out.set(i, force);
+        for (int j = 0; j < 3; ++j) {
+          Lanes moment;
+          add_slot_moment<Blend>(shape, b, stress.P[b], stress.Y[b], i, j, moment);
+          out.set(3 + 3 * i + j, moment);
+        }
+      }
+      add_to_rows<kNumbers>(out, [&](int lane) { return sums + local[lane] * kNumbers; });
+    }
+}
+
+}  // namespace fascia
