@@ -119,9 +119,9 @@ template <Law L, int N>
 
 void ElementExecutor::find_pair_slots(const BlockMatrix& matrix) {
   const int pairs = pair_count(block_.nodes);
-  pattern_ = matrix.pattern();
   if (matrix.value_count() > std::numeric_limits<std::uint32_t>::max())
     throw InputError("the matrix has more than 4e9 entries; use fewer elements");
+  pattern_ = matrix.pattern();
   pair_slot_.resize(at(block_.batch_count()) * at(pairs) * kElementLanes);
   const auto turns = [&](int node) { return matrix.dofs().kind(node) != FrameKind::vertex; };
   if (std::any_of(block_.patch_node.begin(), block_.patch_node.end(), turns)) pair_stride_.resize(pair_slot_.size());

@@ -128,13 +128,10 @@ void LaneFrames::add_group(const PointSet& set, int group, std::span<const int> 
       local[k * kGroupSize + lane] = last;
       double* row = shape + k * g.rows * kGroupSize + lane;
       const double* from = set.shape_of_slot(slot) + lane;
-      for (int r = 0; r < (g.rows == kRows ? kRows : 4); ++r) row[r * kGroupSize] = from[r * kGroupSize];
-      if (g.rows == kRows) {
-        ++k;
-        continue;
-      }
+      for (int r = 0; r < 4; ++r) row[r * kGroupSize] = from[r * kGroupSize];
       const Vec3d about = place_in_frame(from);
-      for (int i = 0; i < 3; ++i) row[(4 + i) * kGroupSize] = about[i];
+      for (int r = 4; r < g.rows; ++r)
+        row[r * kGroupSize] = g.rows == kCarriedRows ? about[r - 4] : from[r * kGroupSize];
       ++k;
     }
     for (; k < g.count; ++k) local[k * kGroupSize + lane] = last;

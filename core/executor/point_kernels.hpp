@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/executor/group_kernels.hpp"
-#include "core/executor/point_frames.hpp"
+#include "core/executor/point_executor.hpp"
 #include "core/math/lane_rows.hpp"
 
 #include <algorithm>
@@ -16,45 +16,43 @@ struct GroupStress {
 
 namespace kernels {
 
-inline constexpr int kKeptRows = 27;  ///< as PointExecutor::kRows
+/// The shape of a frame that carries its surroundings (LaneFrames::carries()).
+struct CarriedShape {
+  Lanes w, g[3], r[3];
 
-/// (u + D r) gᵀ to H, and w D to Dbar, of a frame that carries its surroundings; H lacks Dbar.
-inline void add_carried(const double* shape, int batch, const Lanes (&d)[12], PointMotion<Lanes>& x) {
-  const Lanes w = row(shape, 0, batch);
-  Lanes g[3], r[3];
-  for (int k = 0; k < 3; ++k) {
-    g[k] = row(shape, 1 + k, batch);
-    r[k] = row(shape, 4 + k, batch);
+  CarriedShape(const double* shape, int batch) : w(row(shape, 0, batch)) {
+    for (int k = 0; k < 3; ++k) {
+      g[k] = row(shape, 1 + k, batch);
+      r[k] = row(shape, 4 + k, batch);
+    }
   }
+};
+
+/// Adds (u + D r) gᵀ to H, which lacks Dbar, and w D to Dbar.
+inline void add_carried(const CarriedShape& f, const Lanes (&d)[12], PointMotion<Lanes>& x) {
   for (int i = 0; i < 3; ++i) {
     Lanes u = d[i];
-    for (int k = 0; k < 3; ++k) u += d[3 + 3 * i + k] * r[k];
+    for (int k = 0; k < 3; ++k) u += d[3 + 3 * i + k] * f.r[k];
     for (int k = 0; k < 3; ++k) {
-      x.H(i, k) += u * g[k];
-      x.Dbar(i, k) += w * d[3 + 3 * i + k];
+      x.H(i, k) += u * f.g[k];
+      x.Dbar(i, k) += f.w * d[3 + 3 * i + k];
     }
   }
 }
 
-/// f = P g and f rᵀ + w (P + Y) of such a frame.
+/// Sets P g and P g rᵀ + w (P + Y).
 template <bool Blend>
-inline void carried_sums(const double* shape, int batch, const LaneMatrix& P, const LaneMatrix& Y, LaneArray<12>& out) {
-  const Lanes w = row(shape, 0, batch);
-  Lanes g[3], r[3];
-  for (int k = 0; k < 3; ++k) {
-    g[k] = row(shape, 1 + k, batch);
-    r[k] = row(shape, 4 + k, batch);
-  }
+inline void carried_sums(const CarriedShape& f, const LaneMatrix& P, const LaneMatrix& Y, LaneArray<12>& out) {
   for (int i = 0; i < 3; ++i) {
-    const Lanes f = P(i, 0) * g[0] + P(i, 1) * g[1] + P(i, 2) * g[2];
-    out.set(i, f);
-    for (int j = 0; j < 3; ++j) out.set(3 + 3 * i + j, f * r[j] + w * (Blend ? P(i, j) + Y(i, j) : P(i, j)));
+    const Lanes force = P(i, 0) * f.g[0] + P(i, 1) * f.g[1] + P(i, 2) * f.g[2];
+    out.set(i, force);
+    for (int j = 0; j < 3; ++j) out.set(3 + 3 * i + j, force * f.r[j] + f.w * (Blend ? P(i, j) + Y(i, j) : P(i, j)));
   }
 }
 
 /// Rows that are kept of a group at a state, (27 × 8): H, Dbar, S, drilling.
 inline const double* kept_rows(const BlockState& state, int group) {
-  return state.kept.data() + at(group) * kKeptRows * kGroupSize;
+  return state.kept.data() + at(group) * PointExecutor::kRows * kGroupSize;
 }
 
 /// Blended rotations only where something asks for them.
@@ -129,7 +127,7 @@ PointMotion<Lanes> PointFrames::motion(int group, int batch, Rows rows) const {
     Lanes d[kNumbers];
     gather_rows([&](int lane) { return rows + local[lane] * kNumbers; }, d);
     if (carries)
-      add_carried(shape, batch, d, x);
+      add_carried(CarriedShape(shape, batch), d, x);
     else
       add_slot<Blend>(shape, batch, {{d[0], d[1], d[2]}}, matrix_of(d + 3), x);
   }
@@ -155,7 +153,7 @@ void PointFrames::put(int group, const GroupStress& stress) {
   for (int k = 0; k < count; ++k, shape += stride)
     for (int b = 0; b < kBatches; ++b, local += kBatchWidth) {
       LaneArray<kNumbers> out;
-      if (carries) carried_sums<Blend>(shape, b, stress.P[b], stress.Y[b], out);
+      if (carries) carried_sums<Blend>(CarriedShape(shape, b), stress.P[b], stress.Y[b], out);
       for (int i = 0; i < 3 && !carries; ++i) {
         Lanes force;
         add_slot_force(shape, b, stress.P[b], i, force);

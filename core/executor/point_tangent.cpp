@@ -17,7 +17,7 @@ void PointExecutor::linearize_group(const BlockState& now, int group, Rows rows,
     TangentStress<Lanes> stress;
     if (!is_tether(m)) stress = tangent_stress<Kind.stabilization>(x, m, old_strain(now, group, b));
     if (!now.given.empty()) stress.S += given_stress(now, group, b);
-    keep(x, stress, kept.data() + at(group) * kKeptRows * kGroupSize, b);
+    keep(x, stress, kept.data() + at(group) * kRows * kGroupSize, b);
   }
 }
 
@@ -35,7 +35,7 @@ void PointExecutor::extrapolate_group(const BlockState& now, int group, const st
       stress = extrapolated_stress<Kind.stabilization>(frames_.motion<true>(group, b, rows[1]),
                                                        frames_.motion<true>(group, b, rows[2]), m, E_old);
     if (!now.given.empty()) stress.S += given_stress(now, group, b);
-    keep(x, stress, kept.data() + at(group) * kKeptRows * kGroupSize, b);
+    keep(x, stress, kept.data() + at(group) * kRows * kGroupSize, b);
     const PointStress<Lanes> p =
         is_tether(m) ? point_stress<Kind.stabilization>(x, m, E_old) : point_stress<Kind.stabilization>(x, m, stress);
     sums.P[b].set(p.P * m.volume);

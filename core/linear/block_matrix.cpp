@@ -93,7 +93,7 @@ BlockMatrix::BlockMatrix(const PointSet& set, std::span<const SurfaceLoad> surfa
   }
   value_begin_.push_back(next);
   pattern_ = pattern_of(row_begin_, column_);
-  values_.assign(next + 2, 0.0);  // two more: rows of three are read four at a time, rows of six eight
+  values_.assign(next + 1, 0.0);  // one more: rows of three are read four at a time
   if (uniform_ > 0)
     size_chunks();
   else

@@ -171,6 +171,25 @@ TEST_P(LaneFramesOf, EqualGroupsOfOnePoint) {
   }
 }
 
+/// The blocks of the diagonal alone, as preconditioners of the material part ask for them.
+TEST_P(LaneFramesOf, FillTheDiagonalAlike) {
+  const PointSet& set = built_.model.points;
+  ThreadPool pool(2);
+  CpuExecutor executor(set, pool);
+  std::vector<double> gradient(at(set.dofs.total()));
+  executor.gradient(state_, {}, gradient);
+  Linearization lin;
+  executor.linearize(state_, {}, Tangent::material, lin);
+  BlockMatrix all(set), diagonal(set);
+  executor.assemble(lin, all);
+  executor.assemble(lin, diagonal, Entries::diagonal);
+  for (int node = 0; node < set.node_count(); ++node) {
+    const int n = set.dofs.size(node) * set.dofs.size(node);
+    const double *a = all.block(all.diagonal(node)), *b = diagonal.block(diagonal.diagonal(node));
+    EXPECT_EQ(std::vector(a, a + n), std::vector(b, b + n)) << node;
+  }
+}
+
 TEST_P(LaneFramesOf, DoNotDependOnThreads) {
   const Found one = find(built_.model.points, 1, true);
   for (const int threads : {2, 3, 7}) {
