@@ -71,6 +71,20 @@ std::vector<std::pair<std::string, std::string>> pairs_of(const std::string& lis
 
 }  // namespace
 
+std::vector<std::string> files_of_program() {
+  std::vector<std::string> files;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t begin = line.find('/');
+    if (begin == std::string::npos) continue;
+    const std::string path = line.substr(begin);
+    const std::string name = std::filesystem::path(path).filename().string();
+    const bool own = name.starts_with("fascia") || name.starts_with("libfascia");
+    if (own && std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
+  }
+  return files;
+}
+
 Machine this_machine() {
   Machine m;
   m.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));

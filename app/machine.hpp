@@ -21,4 +21,7 @@ struct Machine {
 /// This machine, now.
 Machine this_machine();
 
+/// The program, its libraries and modules, as this process has mapped them.
+std::vector<std::string> files_of_program();
+
 }  // namespace fascia::app

@@ -4,7 +4,6 @@
 #include "app/explain/explain.hpp"
 #include "app/extremes/extremes.hpp"
 #include "app/list.hpp"
-#include "app/need/tune.hpp"
 #include "app/rerun.hpp"
 #include "app/results/provenance.hpp"
 #include "app/run/messages.hpp"
@@ -12,6 +11,7 @@
 #include "app/run/run_scene.hpp"
 #include "app/study/study.hpp"
 #include "app/tools.hpp"
+#include "app/tune/tune.hpp"
 #include "app/verify/verify.hpp"
 #include "app/version.hpp"
 #include "assembly/specification/errors.hpp"
@@ -252,6 +252,8 @@ int dispatch(int argc, char** argv) {
   run->add_flag("--quiet", options.quiet, "no progress and no summary");
   run->add_flag("--json", options.json, "print summary.json, and nothing else, on standard output");
   run->add_flag("-v,--verbose", options.verbose, "a line for each step");
+  run->add_flag("--new-trials", options.new_trials,
+                "of a scene with [need]: make its trials anew, though earlier searches kept them");
   CLI::App* check = app.add_subcommand("check", "read and validate a scene, and say what would be simulated");
   add_scene_options(*check, options);
   if (argc > 1 && argv[1][0] != '-' &&

@@ -4,11 +4,11 @@
 #include "app/explain/explain.hpp"
 #include "app/extremes/extremes.hpp"
 #include "app/need/need.hpp"
-#include "app/need/tune.hpp"
 #include "app/rerun.hpp"
 #include "app/study/study.hpp"
 #include "app/tools.hpp"
 #include "app/tools_tag.hpp"
+#include "app/tune/tune.hpp"
 #include "app/verify/verify.hpp"
 
 namespace fascia::app {

@@ -1,9 +1,10 @@
 #include "app/need/chosen.hpp"
 
-#include "app/reader/overrides.hpp"
+#include "app/reader/scene_tree.hpp"
 #include "app/scene/diagnostics.hpp"
-#include "app/scene/document.hpp"
 #include "app/scene/toml_text.hpp"
+#include "io/files.hpp"
+#include "io/result_directory.hpp"
 
 #include <fmt/format.h>
 
@@ -45,30 +46,12 @@ void write(const Table& members, const std::string& path, int depth, std::string
   }
 }
 
-/// Paths of files, relative to another folder than the scene's.
-void move_files(Value& table, const fs::path& from, const fs::path& to) {
-  Value* file = table.find("file");
-  if (!file || !file->as_string()) return;
-  std::error_code none;
-  const fs::path path = fs::weakly_canonical(from / *file->as_string(), none);
-  const fs::path moved = fs::relative(path, fs::weakly_canonical(to, none), none);
-  file->data = (moved.empty() ? path : moved).string();
-}
-
 }  // namespace
 
 std::string chosen_scene(const Scene& scene, const std::vector<std::string>& overrides,
                          const std::vector<std::string>& comments, const fs::path& folder) {
-  Value document = parse_toml(scene.text);
-  Diagnostics diagnostics(scene.path.string());
-  for (const std::string& change : scene.overrides) apply_override(document, change, diagnostics);
-  for (const std::string& change : overrides) apply_override(document, change, diagnostics);
-  diagnostics.throw_if_any();
-  if (Value* bodies = document.find("bodies"))
-    for (Member& body : *bodies->as_table())
-      for (const char* part : {"domain", "frames", "points"})
-        if (Value* table = body.value.find(part); table && table->as_table())
-          move_files(*table, scene.path.parent_path(), folder);
+  Value document = scene_tree(scene, overrides);
+  move_files(document, scene.path.parent_path(), folder);
   if (Value* output = document.find("output")) {
     std::erase_if(*output->as_table(), [](const Member& m) { return m.key == "directory"; });
     if (output->as_table()->empty())
@@ -78,6 +61,22 @@ std::string chosen_scene(const Scene& scene, const std::vector<std::string>& ove
   for (const std::string& line : comments) text += "# " + one_line(line) + "\n";
   write(*document.as_table(), "", 0, text);
   return text;
+}
+
+void write_chosen_scene(const Scene& scene, const std::vector<std::string>& overrides,
+                        const std::vector<std::string>& comments) {
+  const fs::path directory = scene.output.directory;
+  io::replace_file(directory / io::kChosenScene, chosen_scene(scene, overrides, comments, directory));
+}
+
+RunOptions options_of_choice(const RunOptions& options, const Scene& scene, const std::vector<std::string>& overrides) {
+  RunOptions run = options;
+  run.overrides = scene.overrides;
+  run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
+  run.text = scene.text;
+  run.backend.reset(), run.threads.reset(), run.gpus.reset();  // they are among the scene's overrides
+  run.estimate = false, run.no_estimate = true;
+  return run;
 }
 
 }  // namespace fascia::app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/run/run_scene.hpp"
 #include "assembly/specification/scene.hpp"
 
 #include <filesystem>
@@ -14,5 +15,12 @@ namespace fascia::app {
 /// @param comments   lines for its head
 std::string chosen_scene(const Scene& scene, const std::vector<std::string>& overrides,
                          const std::vector<std::string>& comments, const std::filesystem::path& folder);
+
+/// Writes that scene beside its results.
+void write_chosen_scene(const Scene& scene, const std::vector<std::string>& overrides,
+                        const std::vector<std::string>& comments);
+
+/// What runs or checks a scene as it was chosen. Its errors are told by what made the choice.
+RunOptions options_of_choice(const RunOptions& options, const Scene& scene, const std::vector<std::string>& overrides);
 
 }  // namespace fascia::app

@@ -1,7 +1,9 @@
 #include "app/need/need.hpp"
 
 #include "app/estimate/resolution.hpp"
+#include "app/need/by_study.hpp"
 #include "app/need/chosen.hpp"
+#include "app/need/kept_trials.hpp"
 #include "app/need/report.hpp"
 #include "app/need/said_cells.hpp"
 #include "app/need/search.hpp"
@@ -18,8 +20,6 @@
 #include "assembly/specification/readable.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
-#include "io/files.hpp"
-#include "io/result_directory.hpp"
 
 #include <fmt/format.h>
 
@@ -27,8 +27,6 @@
 
 namespace fascia::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// What of a scene is wrong shows with any choice: it is told before others are tried. @return the largest size [m]
 double check_first(const Trials& trials, const NeedChoice& first) {
@@ -78,7 +76,9 @@ std::optional<int> choose(const RunOptions& options, const Scene& scene, double 
   const auto tell = [&](const std::string& line) {
     if (!silent) fmt::print("{}\n", line), std::fflush(stdout);
   };
-  Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), tell, [&] { return stop.requested(); });
+  const KeptTrials kept(scene, options.new_trials);
+  Trials trials(scene, open_parts(scene), wanted_of(scene), folder.path(), &kept, tell,
+                [&] { return stop.requested(); });
   const NeedChoice first = first_choice(trials);
   check_scale(scene, trials, first, check_first(trials, first));
   SearchLimits limits = limits_of(scene, part);
@@ -114,6 +114,7 @@ std::optional<int> choose(const RunOptions& options, const Scene& scene, double 
 }  // namespace
 
 int run_need(const RunOptions& options, const Scene& scene) {
+  if (scene.need && scene.need->study) return run_by_study(options, scene);
   // The run times its steps anew. Where they are longer than those of its trial again, trials must be faster.
   constexpr int runs = 6, searches = 3;
   constexpr double faster = 0.6;
@@ -122,36 +123,25 @@ int run_need(const RunOptions& options, const Scene& scene) {
   double part = 1;
   for (int search = 0; search < searches && (search == 0 || report.steps_took_longer()); ++search, part *= faster) {
     if (const std::optional<int> failed = choose(options, scene, part, report, overrides)) return *failed;
-    RunOptions run = options;
-    run.overrides = scene.overrides;
-    run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
-    run.text = scene.text;
-    run.backend.reset(), run.threads.reset(), run.gpus.reset();  // they are among the scene's overrides
-    run.estimate = false, run.no_estimate = true;                // it is the trials'
+    RunOptions run = options_of_choice(options, scene, overrides);
     run.complete = [&](nlohmann::ordered_json& summary) { report.write(summary); };
     if (!options.quiet && !options.json)
       for (const std::string& line : report.sentences()) fmt::print("{}\n", line);
     for (int time = 0; time < runs && (time == 0 || report.steps_were_interrupted()); ++time)
       if (const int status = run_scene(run); status != kDone) return status;
   }
-  const fs::path directory = scene.output.directory;
-  io::replace_file(directory / io::kChosenScene, chosen_scene(scene, overrides, report.sentences(), directory));
+  write_chosen_scene(scene, overrides, report.sentences());
   if (report.met()) return kDone;
   say("{}: {}\n", scene.path.string(), report.not_met());
   return kNotConverged;
 }
 
 int check_need(const RunOptions& options, const Scene& scene) {
-  Trials trials(scene, open_parts(scene), wanted_of(scene), {}, {}, [] { return false; });
+  if (scene.need && scene.need->study) return check_by_study(options, scene);
+  Trials trials(scene, open_parts(scene), wanted_of(scene), {}, nullptr, {}, [] { return false; });
   const NeedChoice first = first_choice(trials);
   fmt::print("need: chosen by trials of {}; the first: {}\n", families_text(trials.open()), trials.text(first));
-  RunOptions check = options;
-  check.overrides = scene.overrides;
-  const std::vector<std::string> chosen = trials.overrides(first);
-  check.overrides.insert(check.overrides.end(), chosen.begin(), chosen.end());
-  check.text = scene.text;
-  check.backend.reset(), check.threads.reset(), check.gpus.reset();
-  return check_scene(check);
+  return check_scene(options_of_choice(options, scene, trials.overrides(first)));
 }
 
 }  // namespace fascia::app

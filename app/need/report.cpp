@@ -16,8 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
-
 std::string unit_of(const Scene& scene, const Wanted& wanted) {
   for (const Probe& p : scene.probes)
     if (wanted.body.empty() && p.name == wanted.probe) return probe_unit(p.quantity);
@@ -51,16 +49,19 @@ std::string finer(const Trials& trials, const NeedChoice& choice, const Scene& s
   return scene.need && scene.need->step ? fmt::format("{}: steps of up to {}", text, time_text(next->step)) : "";
 }
 
-Json needed(const StatedNeed& need) {
+}  // namespace
+
+std::string percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
+
+Json json_of(const StatedNeed& need) {
   Json j = Json::object();
   if (need.error) j["error"] = *need.error;
   if (need.probe) j["probe"] = *need.probe;
   if (need.step) j["step"] = *need.step;
   if (need.memory) j["memory"] = *need.memory;
+  if (need.study) j["study"] = need.study->string();
   return j;
 }
-
-}  // namespace
 
 std::string families_text(const OpenScene& open) {
   std::vector<std::string> parts;
@@ -119,26 +120,28 @@ void NeedReport::add(Trials& trials, const Found& found, const SaidCells& said, 
   if (is_dynamic(scene_.solver.kind)) how_.emplace_back("time: by a trial of half the step");
   how_.emplace_back("solver: by a coarse trial with tight tolerances");
   trials_ = Json::array();
-  std::size_t good = 0;
+  std::size_t good = 0, kept = 0;
   const bool has_error = trials.wanted().front().allowed.has_value();
   for (const Trial& t : trials.all()) {
     Json j{{"choice", trials.text(t.choice)}, {"status", t.status}, {"seconds", t.seconds}, {"unknowns", t.dofs}};
     if (!t.choice.more.empty()) j["twin"] = t.choice.more;
+    if (t.kept) j["kept"] = true;
     if (is_dynamic(scene_.solver.kind)) j["step_p99"] = t.step;
     if (const auto ratio = has_error && t.choice.steps == judged.choice.steps && t.choice.more == judged.choice.more
                                ? accuracy.ratio(t)
                                : std::nullopt)
       j["error_over_allowed"] = *ratio;
     good += t.good() ? 1 : 0;
+    kept += t.kept ? 1 : 0;
     trials_.push_back(std::move(j));
   }
   sentences_ = {
       fmt::format("chosen: {}: {:.0f} unknowns, {}", trials.text(found.choice), own.dofs, time_text(own.seconds)),
-      fmt::format("why: {} of {} trials in {}",
+      fmt::format("why: {} of {} trials in {}{}",
                   !found.met  ? "the nearest to the need"
                   : has_error ? "the cheapest that meets the need"
                               : "the finest that meets the need",
-                  good, time_text(seconds)),
+                  good, time_text(seconds), kept > 0 ? fmt::format(", of which {} were kept from before", kept) : ""),
       reached_};
   if (!has_error && found.met) sentences_[1] += finer(trials, own.choice, scene_);
   sentences_.insert(sentences_.end(), found.simpler.begin(), found.simpler.end());
@@ -161,9 +164,9 @@ void NeedReport::write(Json& summary) {
     if (p99 > *scene_.need->step)
       step_ = fmt::format("99 of 100 steps of the run take up to {}, more than those of its trial", time_text(p99));
   }
-  Json need = scene_.need ? needed(*scene_.need) : Json::object();
+  Json need = scene_.need ? json_of(*scene_.need) : Json::object();
   for (const Body& body : scene_.bodies)
-    if (body.need) need["bodies"][body.name] = needed(*body.need);
+    if (body.need) need["bodies"][body.name] = json_of(*body.need);
   need["met"] = met();
   if (!met()) need["why_not"] = why_not_.empty() ? step_ : why_not_;
   need["seconds"] = seconds_;

@@ -38,6 +38,12 @@ class NeedReport {
   bool interrupted_ = false;  ///< the longest steps are far above the others
 };
 
+/// 0.016 as "1.6 %".
+std::string percent(double part);
+
+/// As summary.json tells it, without whether it was met.
+nlohmann::ordered_json json_of(const StatedNeed& need);
+
 /// "linear or quadratic hexahedra": the kinds that are tried.
 std::string families_text(const OpenScene& open);
 

@@ -289,16 +289,19 @@ std::optional<Prediction> predicted_cost(const Trials& trials, const Accuracy& a
   }
   const double more = (fixed + (nearest->dofs - fixed) * size(r) / own) / nearest->dofs;
   constexpr double apart = 1.5;  // unknowns, for an exponent
-  const auto exponent = [&](double a, double b, double otherwise) {
-    if (!other || std::min(a, b) < kClearTime) return otherwise;
+  const auto exponent = [&](double a, double b) -> std::optional<double> {
+    if (!other || std::min(a, b) < kClearTime) return std::nullopt;
     const double ratio = nearest->dofs / other->dofs;
-    if (std::max(ratio, 1 / ratio) < apart) return otherwise;
+    if (std::max(ratio, 1 / ratio) < apart) return std::nullopt;
     return std::clamp(std::log(a / b) / std::log(ratio), 1.0, 2.3);
   };
+  // By the trials, else by what is known of the machine, else as it usually is.
+  const std::optional<double> seen = other ? exponent(nearest->seconds, other->seconds) : std::nullopt;
   const double usual = dimension == 3 ? 1.5 : dimension == 2 ? 1.2 : 1;
-  const double time = other ? exponent(nearest->seconds, other->seconds, usual) : usual;
+  const double growth =
+      seen ? std::pow(more, *seen) : trials.tuned_growth(*nearest, more).value_or(std::pow(more, usual));
   constexpr double factor_memory = 1.33;  // of a solid's factor over its unknowns
-  return Prediction{nearest->seconds * std::pow(more, time), nearest->step * std::pow(more, time),
+  return Prediction{nearest->seconds * growth, nearest->step * growth,
                     kProgramMemory + std::max(0.0, nearest->memory - kProgramMemory) * std::pow(more, factor_memory)};
 }
 

@@ -1,13 +1,17 @@
 #include "app/need/trials.hpp"
 
+#include "app/need/kept_trials.hpp"
 #include "app/reader/parse.hpp"
 #include "app/scene/diagnostics.hpp"
 #include "app/scene/toml_text.hpp"
+#include "app/study/machine_load.hpp"
+#include "app/tune/kept_costs.hpp"
 #include "assembly/specification/readable.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <system_error>
 
@@ -104,14 +108,18 @@ std::optional<double> relative_distance(const Series& a, const Series& b) {
   return far && scale > 0 ? std::optional(*far / scale) : std::nullopt;
 }
 
-Trials::Trials(const Scene& scene, OpenScene open, std::vector<Wanted> wanted, fs::path folder,
+Trials::Trials(const Scene& scene, OpenScene open, std::vector<Wanted> wanted, fs::path folder, const KeptTrials* kept,
                std::function<void(const std::string&)> tell, std::function<bool()> stop)
     : scene_(scene),
       open_(std::move(open)),
       wanted_(std::move(wanted)),
       folder_(std::move(folder)),
+      kept_(kept),
       tell_(std::move(tell)),
-      stop_(std::move(stop)) {}
+      stop_(std::move(stop)) {
+  std::string ignored;  // `fascia check` tells it
+  costs_ = kept_costs(ignored);
+}
 
 std::vector<std::string> Trials::overrides(const NeedChoice& choice) const {
   std::vector<std::string> all;
@@ -134,6 +142,31 @@ Scene Trials::scene_of(const NeedChoice& choice) const {
   const std::vector<std::string> chosen = overrides(choice);
   changes.insert(changes.end(), chosen.begin(), chosen.end());
   return parse_scene_text(scene_.text, scene_.path, changes);
+}
+
+const std::vector<Trials::CostedBody>& Trials::costed(const NeedChoice& choice) const {
+  const auto [known, is_new] = costed_.try_emplace(choice.resolution.family);
+  if (!is_new || !costs_) return known->second;
+  for (const Body& body : scene_of(choice).bodies) {
+    if (is_carrier(body)) continue;
+    const auto found = costs_->kinds.find(cost_kind(body));
+    if (found == costs_->kinds.end()) return known->second = {};
+    known->second.push_back({found->second, is_shell(body) ? 2 : 3});
+  }
+  return known->second;
+}
+
+std::optional<double> Trials::tuned_growth(const Trial& trial, double more) const {
+  double most = 0;  // of the bodies: which of them has the unknowns is not known
+  for (const CostedBody& body : costed(trial.choice)) {
+    const bool factorised = factorises(scene_.solver, more * trial.dofs);
+    const auto time = [&](double times) {
+      return body.cost.point * times * trial.points +
+             linear_solve_time(body.cost, times * trial.dofs, factorised, body.dimension);
+    };
+    most = std::max(most, time(more) / time(1));
+  }
+  return most > 0 && std::isfinite(most) ? std::optional(most) : std::nullopt;
 }
 
 double Trials::over_allowed(const std::vector<double>& errors) const {
@@ -175,29 +208,45 @@ const Trial* Trials::find(const NeedChoice& choice) const {
 
 const Trial& Trials::run(const NeedChoice& choice) {
   if (const Trial* before = find(choice)) return *before;
-  Trial trial;
-  trial.choice = choice;
-  ChildRun child{scene_.path, scene_.overrides, folder_ / std::to_string(trials_.size()), {}, {}};
-  const auto append = [&](const std::vector<std::string>& changes) {
-    child.overrides.insert(child.overrides.end(), changes.begin(), changes.end());
-  };
-  append(overrides(choice));
-  append(lean(scene_));
+  const std::vector<std::string> changes = changes_of_trial(choice);
+  std::optional<Trial> trial = kept_ ? kept_->find(changes, wanted_) : std::nullopt;
+  if (!trial) {
+    trial = made(changes, choice);
+    if (kept_) kept_->keep(changes, wanted_, *trial);
+  }
+  trial->choice = choice;
+  trials_.push_back(std::move(*trial));
+  return trials_.back();
+}
+
+std::vector<std::string> Trials::changes_of_trial(const NeedChoice& choice) const {
+  std::vector<std::string> changes = overrides(choice);
+  const std::vector<std::string> more = lean(scene_);
+  changes.insert(changes.end(), more.begin(), more.end());
   for (const Wanted& w : wanted_)
     if (!w.body.empty())
-      child.overrides.push_back(
-          fmt::format("probes.{}={{body=\"{}\", quantity=\"max_displacement\"}}", w.probe, w.body));
+      changes.push_back(fmt::format("probes.{}={{body=\"{}\", quantity=\"max_displacement\"}}", w.probe, w.body));
+  return changes;
+}
+
+Trial Trials::made(const std::vector<std::string>& changes, const NeedChoice& choice) {
+  Trial trial;
+  ChildRun child{scene_.path, scene_.overrides, folder_ / std::to_string(trials_.size()), {}, {}};
+  child.overrides.insert(child.overrides.end(), changes.begin(), changes.end());
+  const MachineLoad load;
   ChildResult result = run_child(child, stop_);
   // Other work of the machine lengthens single steps: where most are fast enough, the time is taken again
   // (of what may be chosen; twins only tell errors).
-  double spent = 0;
+  double spent = 0, own = result.processor_seconds;
   for (int again = 0; again < kTimedAgain && choice.more.empty() && spent < kMostAgain && result.exit_status == 0 &&
                       !stop_() && interrupted_steps(scene_, result.summary, kStepSpread);
        ++again) {
     ChildResult other = run_child(child, stop_);
     spent += other.seconds;
+    own += other.processor_seconds;
     if (other.exit_status == 0 && step_p99(other) < step_p99(result)) result = std::move(other);
   }
+  trial.others = load.others(own);
   trial.status = result.status();
   trial.message = result.message;
   if (result.summary.is_object() && result.exit_status == 0) {
@@ -207,8 +256,10 @@ const Trial& Trials::run(const NeedChoice& choice) {
     trial.memory = result.summary.at("peak_memory_bytes").get<double>();
     trial.dofs = result.summary.at("dofs").get<double>();
     trial.steps = result.summary.at("steps").get<double>();
-    for (const auto& [name, body] : result.summary.at("bodies").items())
+    for (const auto& [name, body] : result.summary.at("bodies").items()) {
       if (body.contains("mass")) trial.body_mass[name] = body.at("mass").get<double>();
+      trial.points += body.value("points", 0.0);
+    }
     trial.newton = result.summary.at("newton_iterations").get<double>();
     try {
       const ProbeTable table(child.output);
@@ -220,8 +271,7 @@ const Trial& Trials::run(const NeedChoice& choice) {
   }
   std::error_code ignored;
   fs::remove_all(child.output, ignored);
-  trials_.push_back(std::move(trial));
-  return trials_.back();
+  return trial;
 }
 
 }  // namespace fascia::app

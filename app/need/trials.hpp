@@ -3,6 +3,7 @@
 #include "app/estimate/series.hpp"
 #include "app/need/open_scene.hpp"
 #include "app/study/child_run.hpp"
+#include "app/tune/cost_model.hpp"
 
 #include <deque>
 #include <filesystem>
@@ -41,20 +42,25 @@ struct Trial {
   double seconds = 0;           ///< set-up and solve, of one run [s]
   double step = 0;              ///< 99th percentile of its steps [s]
   double memory = 0;            ///< [bytes]
-  double dofs = 0, steps = 0, newton = 0;
+  double dofs = 0, points = 0, steps = 0, newton = 0;
+  double others = 0;                        ///< of the machine's time that others took meanwhile [0, 1]
+  bool kept = false;                        ///< an earlier search made it
   std::map<std::string, double> body_mass;  ///< [kg]
   std::vector<Series> values;               ///< by Wanted; empty where it gave nothing
 
   bool good() const { return !values.empty(); }
 };
 
+class KeptTrials;
+
 /// Runs choices, each once, in processes of their own.
 class Trials {
  public:
   /// @param scene   with its need, as it was read
   /// @param folder  for the results of trials, which are removed one by one
+  /// @param kept    trials that were made before; null: none
   Trials(const Scene& scene, OpenScene open, std::vector<Wanted> wanted, std::filesystem::path folder,
-         std::function<void(const std::string&)> tell, std::function<bool()> stop);
+         const KeptTrials* kept, std::function<void(const std::string&)> tell, std::function<bool()> stop);
 
   const Trial& run(const NeedChoice& choice);
   const Trial* find(const NeedChoice& choice) const;
@@ -74,6 +80,9 @@ class Trials {
 
   /// What makes a scene without a need of a choice, behind the scene's own overrides.
   std::vector<std::string> overrides(const NeedChoice& choice) const;
+  /// What an iteration of Newton's method costs with more unknowns, over what it costs in a trial, by the costs that
+  /// `fascia tune` kept for this machine; none where there are none of its bodies' kinds.
+  std::optional<double> tuned_growth(const Trial& trial, double more) const;
   /// The scene that a choice makes.
   Scene scene_of(const NeedChoice& choice) const;
   /// The largest of errors of the quantities over those allowed.
@@ -82,13 +91,27 @@ class Trials {
   std::string text(const NeedChoice& choice) const;
 
  private:
+  struct CostedBody {
+    KindCost cost;
+    int dimension = 3;
+  };
+  /// The bodies of a choice's family; none where the cost of one is not known.
+  const std::vector<CostedBody>& costed(const NeedChoice& choice) const;
+  /// Changes of the scene, behind its own, of the run that a choice is tried by.
+  std::vector<std::string> changes_of_trial(const NeedChoice& choice) const;
+  /// Runs it in a process of its own.
+  Trial made(const std::vector<std::string>& changes, const NeedChoice& choice);
+
   const Scene& scene_;
   OpenScene open_;
   std::vector<Wanted> wanted_;
   std::filesystem::path folder_;
+  const KeptTrials* kept_;
   std::function<void(const std::string&)> tell_;
   std::function<bool()> stop_;
-  std::deque<Trial> trials_;  ///< references to them stay
+  std::deque<Trial> trials_;                               ///< references to them stay
+  std::optional<CostModel> costs_;                         ///< that are kept for this machine
+  mutable std::map<int, std::vector<CostedBody>> costed_;  ///< by family
 };
 
 /// Steps are timed anew by the run itself: it may be this much slower.

@@ -7,8 +7,9 @@
 namespace fascia::app {
 namespace {
 
-/// The keys of a need. @param probes  of the scene
-std::optional<StatedNeed> read_one(const TableReader& table, const std::vector<Probe>& probes) {
+/// The keys of a need. @param probes  of the scene  @param folder  that paths begin in
+std::optional<StatedNeed> read_one(const TableReader& table, const std::vector<Probe>& probes,
+                                   const std::filesystem::path& folder) {
   if (!table.exists()) return std::nullopt;
   StatedNeed need;
   need.place = table.place();
@@ -16,6 +17,7 @@ std::optional<StatedNeed> read_one(const TableReader& table, const std::vector<P
   need.probe = table.text("probe");
   need.step = table.number("step");
   need.memory = table.number("memory");
+  if (const auto study = table.text("study")) need.study = folder / *study;
   if (!need.probe) return need;
   std::vector<std::string> known;
   known.reserve(probes.size());
@@ -74,13 +76,16 @@ bool states_need(const TableReader& scene) {
 }
 
 void read_need(const TableReader& table, Scene& scene) {
-  scene.need = read_one(table.table("need"), scene.probes);
+  const std::filesystem::path folder = scene.path.parent_path();
+  scene.need = read_one(table.table("need"), scene.probes, folder);
   for (const TableReader& body : table.tables("bodies")) {
     const auto found =
         std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) { return b.name == body.name(); });
     const TableReader need = body.table("need");
     if (found == scene.bodies.end() || !need.exists()) continue;
-    found->need = read_one(need, scene.probes);
+    found->need = read_one(need, scene.probes, folder);
+    if (scene.need && scene.need->study)
+      need.error("cannot stand beside need.study, which has measures of its own; remove one of them");
     if (is_carrier(*found))
       need.error(
           fmt::format("has nothing to choose, as model = \"{}\" has no field of its own; remove it, or name its "
@@ -94,7 +99,8 @@ void read_need(const TableReader& table, Scene& scene) {
   const TableReader need = top ? table.table("need") : bodies.table(with_need->name).table("need");
   check_kind(table, need, scene);
   const bool readable = scene.bodies.size() == table.tables("bodies").size();  // else what is open is not known
-  if (readable && table.diagnostics().empty() && !leaves_open(table, scene))
+  const bool by_study = scene.need && scene.need->study;                       // it may have varied anything
+  if (readable && !by_study && table.diagnostics().empty() && !leaves_open(table, scene))
     need.error(
         "leaves nothing to choose, as the scene says frames, cells, orders and steps itself; remove some of "
         "them, or remove the need and ask for output.estimate");

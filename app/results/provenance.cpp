@@ -1,6 +1,8 @@
 #include "app/results/provenance.hpp"
 
 #include "app/machine.hpp"
+#include "app/reader/scene_tree.hpp"
+#include "app/scene/toml_text.hpp"
 #include "app/version.hpp"
 #include "io/digest.hpp"
 
@@ -79,6 +81,12 @@ std::vector<std::filesystem::path> input_files(const Scene& scene) {
     if (const auto* points = std::get_if<SampleFile>(&b.points)) add(points->path);
   }
   return files;
+}
+
+std::string simulation_digest(const Scene& scene) {
+  std::string text = toml_text(plain_tree(scene, {}, {"output", "probes", "silence"})) + "\n";
+  for (const std::filesystem::path& file : input_files(scene)) text += io::sha256_of(file) + "\n";
+  return io::sha256(text).substr(0, 16);
 }
 
 nlohmann::ordered_json provenance_of(const Simulation& s) {

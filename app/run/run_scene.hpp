@@ -22,6 +22,7 @@ struct RunOptions {
   std::function<void(nlohmann::ordered_json&)> complete;  ///< adds to the summary of a run before it is written
   bool estimate = false;     ///< errors are estimated, whether the scene asks for it or not
   bool no_estimate = false;  ///< nor where the scene asks for it
+  bool new_trials = false;   ///< of a scene with a need: trials that were kept are not taken
 };
 
 /// The program returns these; of a run that a signal ended it returns 128 + the signal.

@@ -63,6 +63,7 @@ PlannedRun plan_run(const Study& study, std::vector<std::size_t> at) {
       scene = parse_scene_file(study.base, run.overrides);
     }
     run.key = key_of(scene);
+    run.simulation = simulation_digest(scene);
     run.directory = "runs/" + run.key;
   } catch (const SceneError& e) {
     run.refused = e.diagnostics().front().text();

@@ -13,6 +13,7 @@ struct PlannedRun {
   std::vector<std::string> overrides;  ///< of the base scene
   std::string refused;                 ///< why it is no valid scene; empty where it is one
   std::string key;                     ///< stands for everything that its result depends on
+  std::string simulation;              ///< simulation_digest() of its scene
   std::string directory;               ///< of its results, within the study's
 };
 

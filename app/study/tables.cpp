@@ -46,6 +46,7 @@ Json run_json(const StudyResult& result, const StudyRun& run) {
   for (std::size_t a = 0; a < run.plan.at.size(); ++a)
     j["axes"][result.study.axes[a].name] = result.study.axes[a].values[run.plan.at[a]].label;
   j["overrides"] = run.plan.overrides;
+  if (!run.plan.simulation.empty()) j["simulation"] = run.plan.simulation;
   j["status"] = status_of(run);
   j["reason"] = reason_of(run);
   if (!run.record) return j;

@@ -11,24 +11,6 @@
 #include <fstream>
 
 namespace fascia::app {
-namespace {
-
-/// The program, its library and its module for GPUs, as this process has mapped them.
-std::vector<std::string> files_of_program() {
-  std::vector<std::string> files;
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);) {
-    const std::size_t begin = line.find('/');
-    if (begin == std::string::npos) continue;
-    const std::string path = line.substr(begin);
-    const std::string name = std::filesystem::path(path).filename().string();
-    const bool own = name.starts_with("fascia") || name.starts_with("libfascia");
-    if (own && std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
-  }
-  return files;
-}
-
-}  // namespace
 
 Certificate this_certificate() {
   Certificate certificate;

@@ -25,6 +25,8 @@ struct StatedNeed {
   std::optional<std::string> probe{};  ///< its name; none: displacements
   std::optional<double> step{};        ///< the 99th percentile of the time that a step takes [s]
   std::optional<double> memory{};      ///< [bytes]
+  /// Directory of a study of this scene, among whose runs the choice is made; none: by trials.
+  std::optional<std::filesystem::path> study{};
 };
 
 struct Material : LawConstants {

@@ -12,7 +12,25 @@ std::string open_beam(const std::string& need) {
   return with(kCantilever, "frames   = { grid = [3, 2, 2] }\n", "") + need;
 }
 
-class NeedRuns : public SceneRuns {};
+/// Trials are kept in the test's own folder.
+class NeedRuns : public SceneRuns {
+ protected:
+  ProgramResult fascia(const std::vector<std::string>& args, const std::string& cache = "") const {
+    ProgramOptions options;
+    options.environment = {"XDG_CACHE_HOME=" + (cache.empty() ? (folder_ / "cache").string() : cache)};
+    return SceneRuns::fascia(args, options);
+  }
+  /// Trials of a run's search, and how many of them earlier ones had made.
+  std::pair<std::size_t, std::size_t> trials(const std::string& output) const {
+    std::size_t all = 0, kept = 0;
+    const nlohmann::json j = summary(output);
+    for (const nlohmann::json& trial : j.at("need").at("trials")) {
+      ++all;
+      kept += trial.value("kept", false) ? 1U : 0U;
+    }
+    return {all, kept};
+  }
+};
 
 TEST_F(NeedRuns, ChooseFramesThatAreGoodEnough) {
   write("scenes/beam.toml", open_beam("[need]\nerror = \"5 %\"\nprobe = \"tip\"\n"));
@@ -38,6 +56,118 @@ TEST_F(NeedRuns, ChooseFramesThatAreGoodEnough) {
   EXPECT_EQ(summary("again").at("probes"), j.at("probes"));
   EXPECT_FALSE(summary("again").contains("need"));
   EXPECT_EQ(fascia({"rerun", "out"}).status, 0);
+}
+
+TEST_F(NeedRuns, KeepTheirTrialsForTheNext) {
+  const std::string scene = with(open_beam("[need]\nerror = \"5 %\"\nprobe = \"tip\"\n"), "density  = 1000",
+                                 "density  = 1000\nframes = { kind = \"affine\" }");
+  const auto run = [&](const std::string& text, const std::string& output, const std::vector<std::string>& more = {},
+                       const std::string& cache = "") {
+    write("beam.toml", text);
+    std::vector<std::string> args{"run", "beam.toml", "--output", output};
+    args.insert(args.end(), more.begin(), more.end());
+    const ProgramResult result = fascia(args, cache);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  };
+  run(scene, "first");
+  EXPECT_EQ(trials("first").second, 0u);
+  const std::string out = run("# another comment\n" + scene, "second");
+  EXPECT_EQ(trials("second").second, trials("first").first);
+  EXPECT_EQ(trials("second").first, trials("first").first);
+  EXPECT_EQ(summary("second").at("probes"), summary("first").at("probes"));
+  EXPECT_EQ(summary("second").at("estimated_error"), summary("first").at("estimated_error"));
+  EXPECT_NE(out.find(" were kept from before"), std::string::npos) << out;
+  // Another need asks for some more of them at most; another scene, and who wishes so, makes all anew.
+  run(with(scene, "5 %", "6 %"), "need");
+  EXPECT_GT(trials("need").second, 1u);
+  run(with(scene, "density  = 1000", "density  = 1001"), "denser");
+  EXPECT_EQ(trials("denser").second, 0u);
+  run(scene, "anew", {"--new-trials"});
+  EXPECT_EQ(trials("anew").second, 0u);
+  run(scene, "nowhere", {}, "/dev/null/none");
+  EXPECT_EQ(trials("nowhere").second, 0u);
+  // A damaged one is made again.
+  for (const auto& entry : fs::directory_iterator(folder_ / "cache/fascia/trials"))
+    std::ofstream(entry.path()) << "{\"status\": \"converged\", ";
+  run(scene, "damaged");
+  EXPECT_EQ(trials("damaged").second, 0u);
+}
+
+/// A study of the small cantilever over its frames and linear solvers, made by "fascia study".
+constexpr const char* kStudy = R"(base = "beam.toml"
+repeat = 1
+warm_up = 0
+[[axes]]
+key = "bodies.beam.frames.grid"
+values = [[3, 2, 2], [5, 2, 2], [9, 3, 3]]
+[[axes]]
+key = "solver.linear.kind"
+values = ["cholesky", "cg"]
+[[measures]]
+probe = "tip"
+reference = "finest"
+)";
+
+TEST_F(NeedRuns, ChooseAmongTheRunsOfAStudy) {
+  write("beam.toml", kCantilever);
+  write("study.toml", kStudy);
+  ASSERT_EQ(fascia({"study", "study.toml", "--output", "study", "--quiet"}).status, 0);
+  const nlohmann::json study = nlohmann::json::parse(read_text(folder_ / "study/study.json"));
+  const auto needs = [&](const std::string& need) { return open_beam("[need]\nstudy = \"study\"\n" + need); };
+  write("need.toml", needs("error = 0.9\nprobe = \"tip\"\n"));
+  const ProgramResult result = fascia({"run", "need.toml", "--output", "chosen"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json j = summary("chosen"), &need = j.at("need");
+  EXPECT_EQ(need.at("runs").at("of_the_study"), 6);
+  EXPECT_EQ(need.at("runs").at("of_this_scene"), 6);
+  // The cheapest of all, with the same numbers as in the study.
+  double least = INFINITY;
+  nlohmann::json cheapest;
+  for (const nlohmann::json& run : study.at("runs")) {
+    const nlohmann::json& record = run.at("record");
+    const double seconds =
+        record.at("setup").at("median").get<double>() + record.at("solve").at("median").get<double>();
+    if (seconds < least) cheapest = run, least = seconds;
+  }
+  EXPECT_EQ(need.at("run").at("seconds"), least);
+  EXPECT_EQ(j.at("probes").at("tip"), cheapest.at("record").at("probes").at("tip"));
+  EXPECT_NE(result.out.find("why: the cheapest that meets the need of 6 runs of study"), std::string::npos)
+      << result.out;
+  ASSERT_EQ(fascia({"run", "chosen/chosen.toml", "--output", "again"}).status, 0);
+  EXPECT_EQ(summary("again").at("probes"), j.at("probes"));
+  EXPECT_EQ(fascia({"rerun", "chosen"}).status, 0);
+  // Keys that the scene says stay.
+  write("cg.toml", with(needs("error = 0.9\n"), "kind = \"static\"", "kind = \"static\"\nlinear = { kind = \"cg\" }"));
+  ASSERT_EQ(fascia({"run", "cg.toml", "--output", "cg"}).status, 0);
+  EXPECT_EQ(summary("cg").at("need").at("runs").at("of_this_scene"), 3);
+  EXPECT_EQ(summary("cg").at("need").at("runs").at("changing_it"), 3);
+  // Beyond what the study holds.
+  write("much.toml", needs("error = 1e-9\n"));
+  const ProgramResult much = fascia({"run", "much.toml", "--output", "much"});
+  EXPECT_EQ(much.status, 3) << much.err;
+  EXPECT_NE(much.err.find("much.toml: the need is not met: the nearest of its runs, "), std::string::npos) << much.err;
+  EXPECT_FALSE(summary("much").at("need").at("met").get<bool>());
+  const ProgramResult check = fascia({"check", "need.toml"});
+  EXPECT_EQ(check.status, 0) << check.err;
+  EXPECT_NE(check.out.find("chosen: "), std::string::npos) << check.out;
+
+  // Studies that are none, or of something else.
+  expect_refused(needs("error = 0.9\nprobe = \"weight\"\n"),
+                 {"need.study: ", "no errors of probe \"weight\", but measures \"tip\""});
+  expect_refused(with(needs("error = 0.9\n"), "density  = 1000", "density  = 1200"),
+                 {"none of the 6 runs of ", "its `bodies.beam.density` is 1000 where this scene has 1200"});
+  expect_refused(with(needs("error = 0.9\n"), "density  = 1000", "density  = 1000\nframes = { grid = [4, 2, 2] }"),
+                 {"the scene says `bodies.beam.frames.grid` = [4, 2, 2], which no run has; leave it out"});
+  expect_refused(with(needs("error = 0.9\n"), "study = \"study\"", "study = \"nowhere\""),
+                 {"nowhere/study.json is no file; name the directory that fascia study wrote"});
+  write("half/study.json", "{ \"fascia_study\": 1, \"interrupted\": true }\n");
+  expect_refused(with(needs("error = 0.9\n"), "study = \"study\"", "study = \"half\""),
+                 {"holds no runs; call fascia study again"});
+  // What ran is known, whatever became of its file; a study of another scene it is no more.
+  write("beam.toml", with(kCantilever, "poisson = 0.3", "poisson = 0.31"));
+  write("need.toml", needs("error = 0.9\n"));
+  EXPECT_EQ(fascia({"check", "need.toml"}).status, 0);
 }
 
 TEST_F(NeedRuns, KeepTheBestWhereANeedCannotBeMet) {

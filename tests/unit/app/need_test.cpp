@@ -1,6 +1,9 @@
 #include "app/need/accuracy.hpp"
 #include "app/need/chosen.hpp"
 #include "app/need/open_scene.hpp"
+#include "app/need/stored_study.hpp"
+#include "app/reader/scene_tree.hpp"
+#include "app/results/provenance.hpp"
 #include "tests/unit/app/scene_text.hpp"
 
 #include <gtest/gtest.h>
@@ -129,6 +132,64 @@ TEST(ChosenScene, ReadsBackWithTheChoice) {
   EXPECT_EQ(std::get<GridFrames>(read.bodies[0].frames).count, (std::vector{5, 2, 2}));
   EXPECT_EQ(read.probes[0].name, "mass");
   EXPECT_FALSE(read.says("output.directory"));
+}
+
+std::string digest_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return simulation_digest(parse(text, overrides));
+}
+
+TEST(SimulationDigest, IsOfWhatIsSimulated) {
+  const std::string scene(test::beam), digest = digest_of(scene);
+  EXPECT_EQ(digest.size(), 16u);
+  EXPECT_EQ(digest_of("# a comment\ntitle = \"beam\"\n" + scene), digest);
+  EXPECT_EQ(digest_of(scene + "[probes.mass]\nquantity = \"mass\"\n[output]\ndirectory = \"there\"\n" + need), digest);
+  EXPECT_EQ(digest_of(beam_with("young = \"40 kPa\"\npoisson = 0.3", "poisson = 0.3\nyoung = \"40 kPa\"")), digest);
+  EXPECT_EQ(digest_of(beam_with("mass = \"5 kg\"", "mass = \"4 kg\""), {"bodies.beam.mass=\"5 kg\""}), digest);
+  EXPECT_NE(digest_of(scene, {"materials.soft.poisson=0.31"}), digest);
+  EXPECT_NE(digest_of(scene, {"solver.newton.tolerance=1e-3"}), digest);
+}
+
+TEST(TreeDifference, IsTheFirstKeyThatDiffers) {
+  const Value a = parse_toml("x = 1\nt = { p = 2.0, q = \"5 kg\" }"),
+              same = parse_toml("x = 1.0\nt = { p = 2, q = \"5 kg\" }"),
+              other = parse_toml("x = 1\nt = { p = 2, q = \"4 kg\" }"),
+              more = parse_toml("x = 1\ny = 3\nt = { p = 2.0, q = \"5 kg\" }");
+  EXPECT_FALSE(tree_difference(a, same, true));
+  EXPECT_EQ(tree_difference(a, other, true)->key, "t.q");
+  EXPECT_EQ(tree_difference(a, other, true)->second, "\"4 kg\"");
+  EXPECT_FALSE(tree_difference(a, more, false));
+  EXPECT_EQ(tree_difference(a, more, true)->key, "y");
+  EXPECT_EQ(tree_difference(more, a, false)->second, "");
+}
+
+/// Three runs, the dearer the better.
+StoredStudy three_runs() {
+  StoredStudy study;
+  study.runs = {{"coarse", {}, 0.05, 1, 1e-3, 1e8, 100},
+                {"middle", {}, 0.02, 2, 3e-3, 2e8, 200},
+                {"fine", {}, 0.01, 4, 2e-3, 4e8, 400}};
+  return study;
+}
+
+TEST(StudiedChoice, IsTheCheapestThatMeetsTheNeed) {
+  const auto first = [](const StatedNeed& need) { return choose_of_study(three_runs(), need).runs.front(); };
+  EXPECT_EQ(first({.error = 0.03}), 1u);
+  EXPECT_EQ(first({.error = 0.03, .step = 2.5e-3}), 2u);
+  EXPECT_EQ(first({.step = 5e-3}), 2u);  // the most accurate
+  EXPECT_EQ(first({.step = 2e-3}), 0u);
+  EXPECT_EQ(first({.error = 0.06, .memory = 1.5e8}), 0u);
+  // Those that would be tried after it have shorter steps.
+  EXPECT_EQ(choose_of_study(three_runs(), {.error = 0.03, .step = 5e-3}).runs, (std::vector<std::size_t>{1, 2}));
+}
+
+TEST(StudiedChoice, IsTheNearestWhereNoneMeetsTheNeed) {
+  const StudiedChoice error = choose_of_study(three_runs(), {.error = 0.001});
+  EXPECT_EQ(error.runs, std::vector<std::size_t>{2});
+  EXPECT_EQ(error.why_not, "the nearest of its runs, fine, has 10 times the error that is allowed");
+  const StudiedChoice step = choose_of_study(three_runs(), {.error = 0.03, .step = 1e-3});
+  EXPECT_EQ(step.runs, std::vector<std::size_t>{0});  // 1.7 times the error, against 2.3 times the step
+  const StudiedChoice memory = choose_of_study(three_runs(), {.step = 1e-2, .memory = 5e7});
+  EXPECT_EQ(memory.why_not, "the nearest of its runs, coarse, took 0.1 GB of memory");
 }
 
 }  // namespace

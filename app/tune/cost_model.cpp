@@ -1,4 +1,4 @@
-#include "app/need/cost_model.hpp"
+#include "app/tune/cost_model.hpp"
 
 #include "core/base/thread_pool.hpp"
 
@@ -9,7 +9,7 @@ namespace fascia::app {
 namespace {
 
 constexpr double kUsualIterations = 5, kStepIterations = 2;
-/// Up to here stiffness is factorised where the scene does not say how (core/tangent/tangent_solver.cpp).
+/// As core/tangent/tangent_solver.cpp.
 constexpr double kFactorised = 15000;
 /// The least part of an iteration that the linear solver can have: timing spreads more.
 constexpr double kLeastSolve = 0.1;
@@ -102,12 +102,6 @@ std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::s
   return cost;
 }
 
-std::string kind_of(const Body& body) {
-  if (is_shell(body)) return "shell";
-  if (body.model == BodyModel::meshless) return body.affine ? "affine" : "frames";
-  return std::string(body.model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra") + (body.order == 2 ? "-2" : "");
-}
-
 /// Keys of a kind's costs with what they hold.
 std::vector<std::pair<const char*, double KindCost::*>> members() {
   return {{"point", &KindCost::point},
@@ -123,6 +117,22 @@ std::vector<std::pair<const char*, double KindCost::*>> members() {
 }
 
 }  // namespace
+
+std::string cost_kind(const Body& body) {
+  if (is_shell(body)) return "shell";
+  if (body.model == BodyModel::meshless) return body.affine ? "affine" : "frames";
+  return std::string(body.model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra") + (body.order == 2 ? "-2" : "");
+}
+
+bool factorises(const Solver& solver, double unknowns) {
+  return solver.linear == LinearMethod::cholesky ||
+         (solver.linear == LinearMethod::automatic && unknowns <= kFactorised);
+}
+
+double linear_solve_time(const KindCost& cost, double unknowns, bool factorised, int dimension) {
+  if (factorised) return cost.factor * std::pow(unknowns, cost.exponent);
+  return cost.product * unknowns * cost.spread * std::pow(unknowns, 1.0 / dimension);
+}
 
 nlohmann::ordered_json CostModel::json() const {
   nlohmann::ordered_json j = nlohmann::ordered_json::object();
@@ -163,7 +173,7 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const Body& body = s.scene.bodies[b];
     if (is_carrier(body)) continue;
-    const auto cost = costs.kinds.find(kind_of(body));
+    const auto cost = costs.kinds.find(cost_kind(body));
     if (cost == costs.kinds.end()) return std::nullopt;
     const auto count = static_cast<double>(s.bodies[b].body->points().size());
     points += cost->second.point * count;
@@ -181,12 +191,10 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   const bool dynamics = is_dynamic(solver.kind);
   forecast.iterations = dynamics ? solver.steps * (linear ? 1 : kStepIterations)
                                  : std::max(1, solver.load_steps) * (linear ? 1 : kUsualIterations);
-  const bool factorised =
-      solver.linear == LinearMethod::cholesky || (solver.linear == LinearMethod::automatic && unknowns <= kFactorised);
+  const bool factorised = factorises(solver, unknowns);
   const bool shell = std::all_of(s.scene.bodies.begin(), s.scene.bodies.end(),
                                  [](const Body& b) { return is_carrier(b) || is_shell(b); });
-  const double solve = factorised ? main->factor * std::pow(unknowns, main->exponent)
-                                  : main->product * unknowns * main->spread * std::pow(unknowns, 1.0 / (shell ? 2 : 3));
+  const double solve = linear_solve_time(*main, unknowns, factorised, shell ? 2 : 3);
   const double speed = many ? (factorised ? main->faster_factor : main->faster_cg) : 1;
   forecast.seconds = setup + forecast.iterations * (points + solve) * (dynamics ? main->step : 1) / speed;
   return forecast;

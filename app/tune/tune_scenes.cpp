@@ -1,4 +1,4 @@
-#include "app/need/tune_scenes.hpp"
+#include "app/tune/tune_scenes.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/need/kept_costs.hpp"
+#include "app/tune/kept_costs.hpp"
 
 #include "app/machine.hpp"
 #include "assembly/specification/readable.hpp"
@@ -17,10 +17,15 @@ Json machine_key(const Machine& machine) {
   return {{"processor", machine.cpu}, {"threads", machine.threads}, {"version", machine.fascia}};
 }
 
-fs::path tune_file() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "fascia/tune.json";
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/fascia/tune.json";
+fs::path cache_folder() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "fascia";
+  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/fascia";
   return {};
+}
+
+fs::path tune_file() {
+  const fs::path folder = cache_folder();
+  return folder.empty() ? folder : folder / "tune.json";
 }
 
 std::optional<CostModel> kept_costs(std::string& told) {

@@ -47,6 +47,15 @@ struct CostModel {
 /// Fits every kind that has runs of two sizes by both linear solvers.
 CostModel fitted_costs(const std::vector<CostSample>& samples);
 
+/// The kind of costs that a body has: "hexahedra-2".
+std::string cost_kind(const Body& body);
+
+/// Up to so many unknowns stiffness is factorised where the scene does not say how.
+bool factorises(const Solver& solver, double unknowns);
+
+/// Time of an iteration's linear solve on one thread [s]. @param dimension  of the body
+double linear_solve_time(const KindCost& cost, double unknowns, bool factorised, int dimension);
+
 /// Time of a scene's run [s], without what it writes: 5 Newton iterations for a static solve (1 where all is linear),
 /// 2 for an implicit step. None where a body's kind was not timed.
 struct TimeForecast {
