@@ -5,6 +5,7 @@
 #include "meshless/cloud_parts.hpp"
 #include "meshless/cloud_shared.hpp"
 #include "meshless/gauss.hpp"
+#include "meshless/kept_samples.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -146,8 +147,8 @@ void check_curvature(const std::vector<CloudPoint>& points, std::vector<std::str
 
 /// Points with their shares of the matter; sampled ones move along the tangents to the middle of their share, where
 /// linear fields are integrated exactly.
-std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing,
-                                  ThreadPool& pool) {
+std::vector<CloudPoint> made_points(const MatterParts& parts, const SampleChoice& choice, double spacing,
+                                    ThreadPool& pool) {
   Samples s = blaming(Blame::points, [&] { return samples_of(parts, choice, false, spacing, 2, pool); });
   const auto* listed = std::get_if<ListedChoice>(&choice);
   std::vector<Share> shares = voronoi_shares(s.matter, s.places, pool);
@@ -169,6 +170,32 @@ std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& 
     points.push_back({{to_world(parts, p.x), parts.rotation * p.axes, p.dimension}, shares[i].volume, p.extent});
   }
   return points;
+}
+
+/// The same, or those that a store has.
+std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing,
+                                  const SampleStore* store, ThreadPool& pool) {
+  if (!store) return made_points(parts, choice, spacing, pool);
+  SampleDescription description("points", parts, choice);
+  description.add(spacing);
+  return kept_or_made<CloudPoint>(store, description,
+                                  [&] {
+                                    return KeptSamples<CloudPoint>{spacing, made_points(parts, choice, spacing, pool)};
+                                  })
+      .samples;
+}
+
+/// Frames of a body, or those that a store has.
+KeptSamples<SamplePlace> frame_places(const MatterParts& parts, const SampleChoice& choice,
+                                      const std::vector<Vec3d>& occupied, const SampleStore* store, ThreadPool& pool) {
+  const auto make = [&] {
+    Samples made = blaming(Blame::frames, [&] { return samples_of(parts, choice, true, 0, 1, pool, occupied); });
+    return KeptSamples<SamplePlace>{made.spacing, std::move(made.places)};
+  };
+  if (!store) return make();
+  SampleDescription description("frames", parts, choice);
+  description.add_all(std::span(occupied));
+  return kept_or_made<SamplePlace>(store, description, make);
 }
 
 std::vector<double> spacing_around(const std::vector<CloudFrame>& frames, std::size_t own) {
@@ -213,16 +240,15 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   if (listed && !occupied.empty())
     left = unoccupied(std::get<ListedChoice>(choice.frames), occupied, kCoincident * size, messages);
   const SampleChoice& own = std::holds_alternative<ListedChoice>(left) ? left : choice.frames;
-  const Samples frames =
-      blaming(Blame::frames, [&] { return samples_of(choice.parts, own, true, 0, 1, pool, occupied); });
+  const KeptSamples<SamplePlace> frames = frame_places(choice.parts, own, occupied, choice.store, pool);
   CloudFrames set;
-  set.frames = frames_of(choice, std::get_if<ListedChoice>(&own), frames.places);
+  set.frames = frames_of(choice, std::get_if<ListedChoice>(&own), frames.samples);
   set.own = set.frames.size();
   check_frames(choice, set.frames, size);
   std::vector<double> spacing = own_spacing(choice, set.frames);
   spec.spacing = std::max(mean(spacing), 1e-9 * size);
   spec.points = points_of(choice.parts, choice.points,
-                          kPointSpacing * (listed || set.own == 0 ? spec.spacing : frames.spacing), pool);
+                          kPointSpacing * (listed || set.own == 0 ? spec.spacing : frames.spacing), choice.store, pool);
   if (spec.points.empty()) throw InputError("no integration point lies in the domain; use more points", Blame::points);
   finish_cloud(choice.parts, spec);
   if (std::holds_alternative<ListedChoice>(choice.points)) check_inside(spec, size);
@@ -293,7 +319,8 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   for (const int n : grid.count) cells *= n - 1;
   if (!std::holds_alternative<std::monostate>(choice.points)) {
     ThreadPool pool(choice.threads);
-    spec.points = points_of(parts, choice.points, rough_spacing(parts, static_cast<int>(4 * cells)), pool);
+    spec.points =
+        points_of(parts, choice.points, rough_spacing(parts, static_cast<int>(4 * cells)), choice.store, pool);
     balance_cells(parts, grid, spec.points);
   } else {
     spec.points = gauss_cells(choice, axes);

@@ -12,6 +12,8 @@
 /// From a domain and what the user says of frames and points to a cloud body's description.
 namespace fascia {
 
+class SampleStore;
+
 /// What a body fills, before its rigid placement X = rotation x + translation.
 struct MatterParts {
   std::optional<SolidDomain> solid;
@@ -45,9 +47,10 @@ struct ScatterSpec {
   SampleChoice points;  ///< none: 0.4 of the frames' spacing
   ScatteredKind weights = ScatteredKind::mls;
   std::optional<int> neighbours;
-  std::optional<double> support;      ///< [m]
-  std::vector<SharedFrame> shared{};  ///< of other bodies, in the placed body's axes; own frames stand around them
-  int threads = 1;                    ///< that sample; 0: as many as there are processors
+  std::optional<double> support;       ///< [m]
+  std::vector<SharedFrame> shared{};   ///< of other bodies, in the placed body's axes; own frames stand around them
+  int threads = 1;                     ///< that sample; 0: as many as there are processors
+  const SampleStore* store = nullptr;  ///< of samples that were made before; null: none
 };
 
 /// Fills all of a spec that follows from the domain and the choice of frames, points and weights.
@@ -62,6 +65,7 @@ struct ThinGridSpec {
   std::function<double(const Vec3d&)> extent;  ///< thickness or radius by rest position [m]
   std::vector<SharedFrame> shared;             ///< of other bodies, placed: each where the grid has a frame
   int threads = 1;                             ///< as of ScatterSpec
+  const SampleStore* store = nullptr;          ///< likewise
 };
 
 /// @throws InputError  a shared frame where the grid has none

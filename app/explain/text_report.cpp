@@ -158,9 +158,11 @@ std::string text_of(const Explanation& e) {
                     e.base.repeats, is_serial(e.base) ? ", by processor time" : "") +
         part_table(e);
   if (const std::string failed = failures(e); !failed.empty() && !e.quick) text += "\nwhat could not be run\n" + failed;
-  text += fmt::format(
-      "\nsuggestions that change no probe by more than {}{}\n", error_text(e.limit),
-      e.quick ? ", by estimates" : fmt::format("; times: {} in turns with the scene as it is", runs_text(e.turns)));
+  text +=
+      fmt::format("\nsuggestions that change no probe by more than {}{}\n", error_text(e.limit),
+                  e.quick ? ", by estimates"
+                          : fmt::format("; times: {} in turns with the scene as it is, twice as many where they spread",
+                                        runs_text(e.turns)));
   for (const Suggestion& s : e.suggestions) text += suggestion_text(s);
   if (e.suggestions.empty()) text += "  none\n";
   if (e.together) text += suggestion_text(*e.together);

@@ -14,6 +14,13 @@ namespace {
 /// A change that takes this many times as long as the scene as it is, and these seconds at least, tells no more.
 constexpr double kTooLong = 5, kLeastLimit = 5;
 
+/// Gains that remain vague are measured so many times as often. The extremes of n pairs hold the median of all but once
+/// in 2^(n - 1): of three pairs once in 4, of six once in 32.
+constexpr int kMoreTurns = 2;
+
+/// Pairs spread over more than half of what they gain.
+bool is_vague(const Ratio& r) { return r.median < 1 && 2 * (r.high - r.low) > 1 - r.median; }
+
 /// The two times that are compared; of runs on one thread they are those of the processor's clock.
 std::pair<double, double> times_of(const RunRecord& changed, const RunRecord& before) {
   if (is_serial(changed) && is_serial(before)) return {changed.processor.median, before.processor.median};
@@ -91,7 +98,7 @@ Timed Turns::several(const std::vector<std::string>& changes, int turns) {
   Timed result;
   std::vector<double> time_before, time, solve, processor, setup_before, setup;
   double memory = 0, others = 0;
-  for (int i = 0; i < turns; ++i) {
+  for (int i = 0; i < turns || (i < kMoreTurns * turns && is_vague(ratio_of_pairs(time, time_before))); ++i) {
     if (!run_as_it_is()) return {};
     result.record = run_changed(changes);
     if (!result.record || !result.record->converged()) return result;
@@ -113,7 +120,7 @@ Timed Turns::several(const std::vector<std::string>& changes, int turns) {
   result.record->setup = spread_of(std::move(setup));
   result.record->memory = memory;
   result.record->others = others;
-  result.record->repeats = turns;
+  result.record->repeats = static_cast<int>(time.size());
   return result;
 }
 

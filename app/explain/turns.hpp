@@ -29,7 +29,8 @@ class Turns {
   /// One run with a change, behind one of the scene as it is that at most one other change shares. Its ratio has no
   /// spread of its own. @throws std::runtime_error  the scene as it is no longer converges
   Timed once(const std::vector<std::string>& changes);
-  /// Takes as many runs of each, in turns. A change that fails is run once. @throws std::runtime_error  as once()
+  /// Takes as many runs of each, in turns, and twice as many where their ratios spread over more than half of the gain.
+  /// A change that fails is run once. @throws std::runtime_error  as once()
   Timed several(const std::vector<std::string>& changes, int turns);
 
   /// Runs of the scene as it is, and their times [s]; `time`: what ratios of solves are of.

@@ -34,16 +34,6 @@ void drop_old(const fs::path& folder) {
   for (std::size_t i = 0; i < files.size() - kMostKept / 2; ++i) fs::remove(files[i].second, none);
 }
 
-/// The program as it is installed: another build may come to other numbers.
-std::string program_text() {
-  std::string text;
-  std::error_code none;
-  for (const std::string& file : files_of_program())
-    text += fmt::format("{} {} {}\n", file, fs::file_size(file, none),
-                        fs::last_write_time(file, none).time_since_epoch().count());
-  return text;
-}
-
 Json json_of(const Trial& t, const std::vector<Wanted>& wanted) {
   Json j{{"status", t.status}, {"seconds", t.seconds}, {"step", t.step},     {"memory", t.memory}, {"dofs", t.dofs},
          {"points", t.points}, {"steps", t.steps},     {"newton", t.newton}, {"others", t.others}};
@@ -81,7 +71,7 @@ KeptTrials::KeptTrials(const Scene& scene, bool anew) : scene_(scene), folder_(c
   if (folder_.empty()) return;
   folder_ /= "trials";
   drop_old(folder_);
-  origin_ = machine_key(this_machine()).dump() + "\n" + program_text();
+  origin_ = machine_key(this_machine()).dump() + "\n" + stamp_of_program("");
   for (const fs::path& file : input_files(scene)) origin_ += io::sha256_of(file) + "\n";
 }
 

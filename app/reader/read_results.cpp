@@ -177,6 +177,10 @@ Output read_output(const TableReader& scene, const std::string& scene_name, std:
   output.every_steps = table.integer("every_steps").value_or(0);
   output.fields = read_fields(table, shells);
   output.estimate = read_estimate(table);
+  if (const Value* cache = table.value("cache")) {
+    if (const bool* kept = std::get_if<bool>(&cache->data)) output.keeps_samples = *kept;
+    if (const std::string* folder = cache->as_string()) output.cache = *folder;
+  }
   if (table.value("picture")) output.picture = read_picture(table.table("picture"), shells, kind);
   return output;
 }

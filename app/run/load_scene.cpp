@@ -4,6 +4,7 @@
 #include "app/reader/parse.hpp"
 #include "app/results/tell_warnings.hpp"
 #include "app/run/memory.hpp"
+#include "app/run/sample_cache.hpp"
 #include "assembly/build/build_simulation.hpp"
 #include "fascia/choose_backend.hpp"
 #include "fascia/run/run_simulation.hpp"
@@ -29,7 +30,8 @@ Simulation load_scene(const RunOptions& options) { return load_scene(read_scene(
 
 Simulation build_within_memory(Scene scene) {
   check_memory(scene);
-  return build_simulation(std::move(scene));
+  const SampleCache cache(scene.output);
+  return build_simulation(std::move(scene), &cache);
 }
 
 Simulation load_scene(Scene scene) {

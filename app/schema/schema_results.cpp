@@ -100,6 +100,11 @@ Key output_schema() {
                  "resolutions; `true`: by a finer mesh where it is small, else by coarser ones. See the manual's "
                  "chapter on probes.")
                  .defaults("false"),
+             key("cache", one_of({boolean(), text("a path")}),
+                 "Whether scattered frames and points are kept, and taken from there when the same geometry is sampled "
+                 "again: the next run starts at once, with the same numbers. A path names the directory, relative to "
+                 "that which the program runs in.")
+                 .defaults("true: in the user's cache, `~/.cache/fascia/samples`"),
              key("picture", picture_schema(), "A PNG of the end state; of modes, of each side by side.")
                  .defaults("none")},
             {{{"every", "every_steps"}, false}}),

@@ -59,6 +59,7 @@ std::vector<std::string> arguments_of(const ChildRun& run) {
     words.emplace_back("--set");
     words.push_back(change);
   }
+  words.insert(words.end(), {"--set", "output.cache=false"});  // set-up is timed: samples are made each time
   if (run.threads) words.insert(words.end(), {"--threads", std::to_string(*run.threads)});
   if (run.backend) words.insert(words.end(), {"--backend", *run.backend});
   return words;

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <fstream>
 
 namespace fascia::app {
@@ -15,12 +14,6 @@ using Json = nlohmann::ordered_json;
 
 Json machine_key(const Machine& machine) {
   return {{"processor", machine.cpu}, {"threads", machine.threads}, {"version", machine.fascia}};
-}
-
-fs::path cache_folder() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "fascia";
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/fascia";
-  return {};
 }
 
 fs::path tune_file() {

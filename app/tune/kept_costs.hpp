@@ -15,10 +15,7 @@ struct Machine;
 /// Costs hold for this alone: the processor, as many threads, this version.
 nlohmann::ordered_json machine_key(const Machine& machine);
 
-/// $XDG_CACHE_HOME/fascia, or ~/.cache/fascia; empty where there is neither.
-std::filesystem::path cache_folder();
-
-/// tune.json in that folder; empty where there is none.
+/// tune.json in the user's cache; empty where there is none.
 std::filesystem::path tune_file();
 
 /// The costs that were kept for this machine and version; none where there is nothing. @param told  why a file that is

@@ -133,6 +133,7 @@ void describe_thin_grid(const Body& body, const MatterParts& parts, const BodyBu
   ThinGridSpec thin;
   thin.shared = build.shared;
   thin.threads = build.threads;
+  thin.store = build.store;
   thin.parts = parts;
   thin.grid.count = std::get<GridFrames>(body.frames).count;
   const double scale = body.transform.scale;
@@ -220,7 +221,8 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build) {
                           body.neighbours,
                           body.support,
                           build.shared,
-                          build.threads};
+                          build.threads,
+                          build.store};
       scatter_cloud(scatter, spec, build.messages);
     }
     double volume = 0;

@@ -21,7 +21,8 @@ struct BodyBuild {
   std::vector<Interface> interfaces;
   std::string gap;  ///< what it fills between two bodies, in words
   std::vector<std::string> messages;
-  int threads = 1;  ///< that sample matter; 0: as many as there are processors
+  int threads = 1;                     ///< that sample matter; 0: as many as there are processors
+  const SampleStore* store = nullptr;  ///< of samples; null: none
 };
 
 /// Adds a body's frames to the model and its points to the builder. The body refers to the scene's.

@@ -109,9 +109,9 @@ std::string lost_digits(const ModelBody& body, std::span<const Vec3d> nodes) {
       farthest, apart, std::max(0, static_cast<int>(std::floor(std::log10(body.size() / apart)))), body.size());
 }
 
-SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points) {
+SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& points, const SampleStore* store) {
   try {
-    BodyBuild build{s.model, points, {}, {}, {}, {}, {}, s.scene.solver.threads};
+    BodyBuild build{s.model, points, {}, {}, {}, {}, {}, s.scene.solver.threads, store};
     gather_neighbours(s, body, build);
     SimulatedBody b;
     b.name = body.name;
@@ -152,7 +152,7 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
 
 }  // namespace
 
-Simulation build_simulation(Scene scene) {
+Simulation build_simulation(Scene scene, const SampleStore* store) {
   Simulation s;
   s.scene = std::move(scene);
   s.warnings = Warnings(s.scene.silenced);
@@ -160,7 +160,7 @@ Simulation build_simulation(Scene scene) {
   s.bodies.resize(s.scene.bodies.size());
   for (const std::size_t index : build_order(s.scene)) {
     const int group = points.group_count(), block = points.block_count(), shell = points.shell_count();
-    s.bodies[index] = built_body(s, s.scene.bodies[index], points);
+    s.bodies[index] = built_body(s, s.scene.bodies[index], points, store);
     ModelBody& body = *s.bodies[index].body;
     body.first_group = group;
     body.group_count = points.group_count() - group;

@@ -65,6 +65,8 @@ struct Output {
   std::vector<std::string> fields{};
   std::optional<Picture> picture{};
   std::optional<EstimateBy> estimate{};  ///< none: errors are not estimated
+  bool keeps_samples = true;             ///< of matter, for the next run
+  std::filesystem::path cache{};         ///< where; empty: the user's cache
 };
 
 }  // namespace fascia

@@ -143,6 +143,40 @@ TEST_F(Results, NewResultReplacesTheOldOneAsAWhole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "two scenes and the result, nothing left behind";
 }
 
+TEST_F(Results, SamplesAreKeptForTheNextRun) {
+  write("cloud.toml",
+        with(kCantilever, "frames   = { grid = [3, 2, 2] }", "frames = { count = 60 }\npoints = { count = 2000 }"));
+  const auto run = [&](const std::string& output, const std::string& home, const std::string& cache = "") {
+    ProgramOptions options;
+    options.environment = {"XDG_CACHE_HOME=" + (folder_ / home).string()};
+    std::vector<std::string> args{"run", "cloud.toml", "--output", output, "--quiet"};
+    if (!cache.empty()) args.insert(args.end(), {"--set", "output.cache=" + cache});
+    const ProgramResult result = fascia(args, options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(folder_ / output / "probes.csv");
+  };
+  const auto files = [&](const std::string& folder) {
+    std::vector<std::filesystem::path> found;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / folder, none)) found.push_back(entry.path());
+    return found;
+  };
+  const std::string probes = run("plain", "none", "false");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
+  EXPECT_EQ(run("first", "home"), probes);
+  const std::vector<std::filesystem::path> kept = files("home/fascia/samples");
+  ASSERT_FALSE(kept.empty());
+  EXPECT_EQ(run("second", "home"), probes);
+  EXPECT_EQ(files("home/fascia/samples").size(), kept.size());
+  run("elsewhere", "none", "samples");
+  EXPECT_EQ(files("samples").size(), kept.size());
+  // Those that are damaged are made again, and where nothing can be written the run goes on.
+  for (const std::filesystem::path& file : kept) std::ofstream(file, std::ios::binary | std::ios::in) << "damage";
+  EXPECT_EQ(run("damaged", "home"), probes);
+  write("file", "");
+  EXPECT_EQ(run("nowhere", "file"), probes);
+}
+
 TEST_F(Results, OldResultOutlivesAWrongScene) {
   make_result();
   const auto before = snapshot();
