@@ -28,8 +28,8 @@ constexpr long kRounds = 4'000'000;
 constexpr double kTrialBytes = 1.0 * (1 << 27);
 /// Largest working set: so many times the last cache, within these limits [bytes].
 constexpr double kTimesCache = 4, kSmallestLimit = 1.0 * (1 << 26), kLargestLimit = 1.0 * (1 << 30);
-/// Working sets begin and end with a whole line of each thread.
-constexpr std::size_t kLine = 64;
+/// Halves of a thread's share are whole multiples of so many numbers, so that all loops take all of them.
+constexpr std::size_t kMultiple = 64;
 
 /// Keeps a result that nobody reads.
 volatile double sink = 0;
@@ -43,11 +43,15 @@ std::string line_of(const fs::path& file) {
   return line;
 }
 
+/// Some streams side by side: one alone does not keep the memory busy.
 double sum_of(const double* begin, std::size_t count) {
-  constexpr std::size_t kAtOnce = 8, kStep = kAtOnce * kBatchWidth;
-  std::array<Lanes, kAtOnce> sums;
-  for (std::size_t i = 0; i + kStep <= count; i += kStep)
-    for (std::size_t k = 0; k < kAtOnce; ++k) sums[k] += Lanes::load(begin + i + k * kBatchWidth);
+  constexpr std::size_t kStreams = 4, kAtOnce = 2, kStep = kAtOnce * kBatchWidth;
+  const std::size_t length = count / kStreams;
+  std::array<Lanes, kStreams * kAtOnce> sums;
+  for (std::size_t i = 0; i + kStep <= length; i += kStep)
+    for (std::size_t s = 0; s < kStreams; ++s)
+      for (std::size_t k = 0; k < kAtOnce; ++k)
+        sums[kAtOnce * s + k] += Lanes::load(begin + s * length + i + k * kBatchWidth);
   double sum = 0;
   for (const Lanes& s : sums) sum += lane_sum(s);
   return sum;
@@ -121,7 +125,7 @@ double MachineLimits::measure_flops() {
 /// Halves of a thread's share are copied one onto the other.
 MemoryRates MachineLimits::measure(std::size_t doubles) {
   const std::size_t of_thread = doubles / static_cast<std::size_t>(threads());
-  const std::size_t half = std::max<std::size_t>(of_thread / 2 / kLine, 1) * kLine, share = 2 * half;
+  const std::size_t half = std::max<std::size_t>(of_thread / 2 / kMultiple, 1) * kMultiple, share = 2 * half;
   const double bytes = static_cast<double>(share * sizeof(double));
   const int passes = std::max(1, static_cast<int>(kTrialBytes / bytes));
   const auto release = [](double* p) { AlignedAllocator<double>().deallocate(p, 0); };
@@ -146,7 +150,7 @@ MemoryRates MachineLimits::measure(std::size_t doubles) {
 }
 
 const MemoryRates& MachineLimits::memory(double bytes) {
-  const double least = static_cast<double>(2 * kLine * sizeof(double)) * threads();
+  const double least = static_cast<double>(2 * kMultiple * sizeof(double)) * threads();
   const double size = std::exp2(std::round(2 * std::log2(std::clamp(bytes, least, largest_))) / 2);
   const double key = std::min(size, largest_);
   const auto known = rates_.find(key);

@@ -21,17 +21,16 @@ struct Traffic {
 };
 
 /// Multiplications and additions of the formulas of St Venant-Kirchhoff points without ties, entries of a symmetric
-/// matrix once. Like bytes they are lower bounds: nothing counts that is the same for all points of a group or frame,
-/// nor what turns lanes. Other laws and shells are not counted.
+/// matrix once. Like bytes they are lower bounds: nothing counts that is alike for all points of a frame, nor what
+/// moves numbers between lanes. Other laws and shells are not counted.
 ///
-/// | | motion, of an influence | stress, of a point | sums, of an influence |
-/// |---|---|---|---|
-/// | forces | u gᵀ + D B 72; of a frame that carries (u + D r) gᵀ + w D 54 | E 45, S 12, P 54, v P 9 | P g 15, P Bᵀ 45,
-/// 12 to add; of a frame that carries P g rᵀ + w P 27 in the place of 45 |
-/// | linearisation | the same with w D 18 where it has none | E 45, S 12 | |
-/// | product | those of forces | dE 57, dS 12, dS + H dS + dH S 108, v dP 9 | those of forces |
-/// | forces of elements | u gᵀ 18 | those of points | P g and to add it 18 |
-/// | product of elements | both motions 36 | E and S 57, dE 51, dS 12, F dS + dF S 99, v dP 9 | 18 |
+/// Forces of points: for an influence u gᵀ + D B 72, P g 15, P Bᵀ 45 and 12 to add them; where the frame carries its
+/// surroundings (u + D r) gᵀ + w D 54 and P g rᵀ + w P 27 in the place of 72 and 45. For a point E 45, S 12, P 54,
+/// v P 9. Linearisation: the same motion, with w D 18, and E and S. Product: the same motion and sums for an influence;
+/// for a point dE 57, dS 12, dS + H dS + dH S 108, v dP 9.
+///
+/// Forces of elements: for a node of a point u gᵀ 18, P g and to add it 18; for a point as above. Product: for a node
+/// two motions 36 and 18; for a point E and S 57, dE 51, dS 12, F dS + dF S 99, v dP 9.
 struct Operations {
   double forces = 0, linearization = 0, product = 0;
 };
@@ -65,7 +64,8 @@ class TrafficCount {
   void count_groups();
   void count_elements();
   void count_shells();
-  /// @param influences  of points on frames; @param carried  of those, on frames that carry (LaneFrames::carries())
+  /// @param influences  pairs of a point and a frame that moves it
+  /// @param carried     the frames carry their surroundings (LaneFrames::carries())
   void add_operations_of_points(const PointRule& rule, double points, double influences, bool carried);
   void add_operations(const ElementBlock& block);
   std::optional<double> counted(double operations) const;
