@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
 
 namespace fascia::app {
 namespace {
@@ -98,6 +99,18 @@ std::vector<TableRow> scaling_rows(const std::vector<KernelRow>& rows) {
   return table;
 }
 
+/// Says where threads did not find a processor each: their rate of arithmetic tells.
+std::string disturbance(const Teams& teams) {
+  constexpr double kUndisturbed = 0.75;
+  const MachineLimits &one = teams.front()->limits, &all = teams.back()->limits;
+  const double gain = all.flops() / one.flops(), more = static_cast<double>(all.threads()) / one.threads();
+  if (gain >= kUndisturbed * more) return "";
+  return fmt::format(
+      "{} threads multiply {:.2f} times as fast as {}: other programs took processors, or these share "
+      "units; speed-ups are of what was left.\n",
+      all.threads(), gain, one.threads());
+}
+
 /// Rates of the machine: those of caches by working set, threads beside one another.
 std::string limits_table(const Teams& teams) {
   std::map<double, std::vector<std::string>> by_size;
@@ -123,8 +136,8 @@ std::string limits_table(const Teams& teams) {
       line.push_back(there ? digits(rates->second.update / 1e9) : "");
     }
   }
-  return fmt::format("{}Largest: main memory. Multiplications and additions, GFLOP/s: {} thread{}.\n",
-                     aligned(table, 0), flops, teams.size() == 1 && teams[0]->limits.threads() == 1 ? "" : "s");
+  return fmt::format("{}Largest: main memory. Multiplications and additions, GFLOP/s: {} thread{}.\n{}",
+                     aligned(table, 0), flops, teams.back()->limits.threads() == 1 ? "" : "s", disturbance(teams));
 }
 
 std::string table_of(const KernelResult& result, const std::vector<TableRow>& rows, const Teams& teams,
