@@ -32,7 +32,7 @@ constexpr double kTimesCache = 4, kSmallestLimit = 1.0 * (1 << 26), kLargestLimi
 constexpr std::size_t kMultiple = 64;
 
 /// Keeps a result that nobody reads.
-volatile double sink = 0;
+thread_local volatile double sink = 0;
 /// A factor that the compiler does not know.
 volatile double unknown = 1e-6;
 

@@ -19,8 +19,10 @@ constexpr std::array kWeakBodies{KernelBody::grid, KernelBody::tetrahedra};
 
 /// 1, 2, 4 … and all.
 std::vector<int> numbers_of_threads(int all) {
+  constexpr std::size_t kDoublings = 31;
   std::vector<int> numbers;
-  for (int threads = 1; threads < all; threads *= 2) numbers.push_back(threads);  // NOLINT: a few
+  numbers.reserve(kDoublings + 1);
+  for (int threads = 1; threads < all; threads *= 2) numbers.push_back(threads);
   numbers.push_back(all);
   return numbers;
 }
@@ -32,6 +34,7 @@ std::vector<KernelRow> time_steps(const KernelRow& like, const Simulation& simul
   StepPlan plan{1, 3, 100, 0.5};
   if (repeat > 0) plan.fewest = plan.most = repeat;
   std::vector<KernelRow> rows;
+  rows.reserve(2 * teams.size());
   std::optional<double> residual;
   for (const std::unique_ptr<Team>& team : teams) {
     const StepTimes times = processor(team->pool.size()).run(simulation, plan);
@@ -50,7 +53,7 @@ std::vector<KernelRow> time_steps(const KernelRow& like, const Simulation& simul
       row.time = times_of(std::move(seconds));
       row.error = std::abs(times.residual - *residual) / *residual;
       row.bits_equal = times.residual == *residual;
-      rows.push_back(std::move(row));  // NOLINT: a few
+      rows.push_back(std::move(row));
     };
     add("60 CG iterations", times.cg_ms);
     add("whole step", times.step_ms);
