@@ -23,9 +23,12 @@ namespace fs = std::filesystem;
 
 /// Independent chains of multiply and add: two units of latency four are busy with eight.
 constexpr int kChains = 12;
-constexpr long kRounds = 4'000'000;
-/// Bytes that a thread reads in a trial: some milliseconds.
-constexpr double kTrialBytes = 1.0 * (1 << 27);
+constexpr long kRounds = 1'000'000;
+/// Bytes that a thread reads in a trial: a millisecond, so that some trials are not interrupted by other programs.
+constexpr double kTrialBytes = 1.0 * (1 << 25);
+/// Trials beyond the fewest that are asked for: within so many seconds for each of these, up to so many times.
+constexpr double kTrialSeconds = 0.008;
+constexpr int kMoreTrials = 8;
 /// Largest working set: so many times the last cache, within these limits [bytes].
 constexpr double kTimesCache = 4, kSmallestLimit = 1.0 * (1 << 26), kLargestLimit = 1.0 * (1 << 30);
 /// Halves of a thread's share are whole multiples of so many numbers, so that all loops take all of them.
@@ -109,7 +112,9 @@ MachineLimits::MachineLimits(ThreadPool& pool, int trials) : pool_(pool), trials
 template <class Work>
 double MachineLimits::best_seconds(const Work& work) {
   double best = std::numeric_limits<double>::infinity();
-  for (int trial = 0; trial < trials_; ++trial) {
+  const Clock::time_point begin = Clock::now();
+  for (int trial = 0; trial < trials_ * kMoreTrials; ++trial) {
+    if (trial >= trials_ && seconds_since(begin) > kTrialSeconds * trials_) break;
     const Clock::time_point start = Clock::now();
     pool_.for_chunks(threads(), work);
     best = std::min(best, seconds_since(start));

@@ -27,7 +27,7 @@ double last_level_cache();
 /// is lost to waking threads. Rates are the best of some trials.
 class MachineLimits {
  public:
-  /// @param trials  of each rate
+  /// @param trials  of each rate, at least
   explicit MachineLimits(ThreadPool& pool, int trials = 7);
 
   int threads() const { return pool_.size(); }
