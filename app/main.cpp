@@ -75,7 +75,9 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options) {
   bench->add_option("--max-points", options.max_points, "leave out larger cases")->check(number_from(0, true, false));
   bench->add_option("--settings", options.settings, "paper: as published; default: the program's own choice; both")
       ->check(CLI::IsMember({"paper", "default", "both"}));
-  bench->add_option("--repeat", options.repeat, "steps that are timed; otherwise those of a second, 3 to 100")
+  bench
+      ->add_option("--repeat", options.repeat,
+                   "steps, or calls of kernels, that are timed; otherwise as many as a second, or a tenth, has")
       ->check(number_from(1, false, true));
   bench->add_option("--backend", options.backend, "cpu or cuda; otherwise all that there are")
       ->check(CLI::IsMember({"cpu", "cuda"}));

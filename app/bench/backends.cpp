@@ -75,12 +75,12 @@ StepTimes run_on_gpu(const Simulation& s, const StepPlan& plan, const std::vecto
   return std::move(watch).times(report);
 }
 
-BenchBackend cpu(int threads) {
+}  // namespace
+
+BenchBackend processor(int threads) {
   return {"cpu", threads,
           [threads](const Simulation& s, const StepPlan& plan) { return run_on_cpu(s, plan, threads); }};
 }
-
-}  // namespace
 
 std::string BenchBackend::label() const {
   if (gpus > 1) return fmt::format("{}, {} GPUs", name, gpus);
@@ -89,8 +89,8 @@ std::string BenchBackend::label() const {
 
 std::vector<BenchBackend> available_backends(int threads, const std::vector<int>& gpus) {
   const int all = threads > 0 ? threads : ThreadPool(0).size();
-  std::vector<BenchBackend> backends{cpu(1)};
-  if (all > 1) backends.push_back(cpu(all));
+  std::vector<BenchBackend> backends{processor(1)};
+  if (all > 1) backends.push_back(processor(all));
   std::string reason;
   const bool has_gpu = gpu::find_device(reason);
   for (const int count : gpus) {

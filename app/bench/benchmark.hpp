@@ -22,11 +22,23 @@ struct BenchmarkCase {
   std::optional<double> published_cpu, published_gpu;  ///< a time step in the publication [ms]
 };
 
+/// A result in the forms in which the command hands it out.
+struct BenchReport {
+  std::string table, csv, json;
+  std::vector<BenchmarkCase> cases;  ///< their scenes are written beside
+};
+
+struct Benchmark;
+using Teller = std::function<void(const std::string&)>;  ///< is told what is being done
+
 struct Benchmark {
   std::string name, title;
   std::string notes;     ///< sentences below the table
   int default_size = 0;  ///< larger cases are timed only where they are asked for
   std::vector<BenchmarkCase> cases;
+  int smallest_default = 0;  ///< smaller ones likewise
+  /// Runs it, where it times something else than whole steps.
+  std::function<BenchReport(const Benchmark&, const BenchOptions&, const Teller&)> run{};
 };
 
 /// All of them, in the order of the list that `fascia bench` prints.
@@ -36,9 +48,8 @@ std::vector<Benchmark> all_benchmarks();
 Benchmark table2();    ///< tables.cpp
 Benchmark table3();    ///< tables.cpp
 Benchmark elements();  ///< elements.cpp
-/// Two walls of n × n cells with tissue between them: table 2's coupling at n = 7; elements.cpp.
-/// @param frames, points  about so many of the tissue's own
-std::string coupled_scene(int cells, int frames, int points);
+Benchmark kernels();   ///< kernels.cpp
+Benchmark scaling();   ///< scaling.cpp
 
 /// Which steps are timed: at least `fewest`, then on until `seconds` have passed or `most` are done.
 struct StepPlan {
@@ -94,6 +105,9 @@ struct BenchmarkResult {
   std::vector<SkippedCase> skipped;
 };
 
+/// The processor with so many threads.
+BenchBackend processor(int threads);
+
 /// Those that the options choose. @throws BackendError  where there are none
 std::vector<BenchBackend> chosen_backends(const BenchOptions& options);
 
@@ -102,10 +116,12 @@ std::vector<BenchBackend> chosen_backends(const BenchOptions& options);
 std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchOptions& options,
                                         std::vector<SkippedCase>& skipped);
 
+/// The case's model, or none and the reason where it does not fit or the program refuses it.
+std::optional<Simulation> built(const BenchmarkCase& c, std::string& reason);
+
 /// Times the cases on the backends. A case that does not fit into memory is skipped, and the result says so.
 /// @param say  is told what is being done
 BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& options,
-                               const std::vector<BenchBackend>& backends,
-                               const std::function<void(const std::string&)>& say);
+                               const std::vector<BenchBackend>& backends, const Teller& say);
 
 }  // namespace fascia::app

@@ -32,9 +32,9 @@ const Benchmark& find(const std::vector<Benchmark>& benchmarks, const std::strin
 }
 
 /// Says on standard error what is being timed: on a terminal in one line that is overwritten.
-class Teller {
+class Progress {
  public:
-  explicit Teller(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+  explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
   void operator()(const std::string& what) const {
     if (quiet_) return;
     if (terminal_)
@@ -62,24 +62,29 @@ void check_replaceable(const std::filesystem::path& folder, const std::string& n
                       ": exists and is no result of this benchmark; remove it or choose another directory");
 }
 
-void write_files(const BenchOptions& options, const Benchmark& benchmark, const BenchmarkResult& result,
-                 const Machine& machine) {
-  const std::filesystem::path folder = *options.output;
+void write_files(const std::filesystem::path& folder, const Benchmark& benchmark, const BenchReport& report) {
   for (const BenchmarkCase& c : benchmark.cases) {
     std::error_code absent;
     std::filesystem::remove(folder / "scenes" / (c.name + ".toml"), absent);  // of an older result
   }
-  io::write_file(folder / (result.name + ".txt"), result_table(result, machine));
-  io::write_file(folder / (result.name + ".csv"), result_csv(result));
-  io::write_file(folder / (result.name + ".json"), result_json(result, machine).dump(2) + "\n");
+  io::write_file(folder / (benchmark.name + ".txt"), report.table);
+  io::write_file(folder / (benchmark.name + ".csv"), report.csv);
+  io::write_file(folder / (benchmark.name + ".json"), report.json);
+  for (const BenchmarkCase& c : report.cases) io::write_file(folder / "scenes" / (c.name + ".toml"), c.scene);
+}
+
+/// Whole steps.
+BenchReport time_steps(const Benchmark& benchmark, const BenchOptions& options, const Teller& say) {
+  const BenchmarkResult result = time_benchmark(benchmark, options, chosen_backends(options), say);
+  const Machine machine = this_machine();
   std::vector<SkippedCase> skipped;
-  for (const BenchmarkCase& c : chosen_cases(benchmark, options, skipped))
-    io::write_file(folder / "scenes" / (c.name + ".toml"), c.scene);
+  return {result_table(result, machine), result_csv(result), result_json(result, machine).dump(2) + "\n",
+          chosen_cases(benchmark, options, skipped)};
 }
 
 }  // namespace
 
-std::vector<Benchmark> all_benchmarks() { return {table2(), table3(), elements()}; }
+std::vector<Benchmark> all_benchmarks() { return {table2(), table3(), elements(), kernels(), scaling()}; }
 
 int run_bench(const BenchOptions& options) {
   const std::vector<Benchmark> benchmarks = all_benchmarks();
@@ -96,16 +101,13 @@ int run_bench(const BenchOptions& options) {
     check_replaceable(*options.output, benchmark.name);
     io::make_directories(*options.output);
   }
-  const Teller say(options.quiet || options.json);
-  const BenchmarkResult result =
-      time_benchmark(benchmark, options, chosen_backends(options), [&](const std::string& what) { say(what); });
+  const Progress say(options.quiet || options.json);
+  const Teller tell = [&](const std::string& what) { say(what); };
+  const BenchReport report =
+      benchmark.run ? benchmark.run(benchmark, options, tell) : time_steps(benchmark, options, tell);
   say.finish();
-  const Machine machine = this_machine();
-  if (options.output) write_files(options, benchmark, result, machine);
-  if (options.json)
-    fmt::print("{}\n", result_json(result, machine).dump(2));
-  else
-    fmt::print("{}", result_table(result, machine));
+  if (options.output) write_files(*options.output, benchmark, report);
+  fmt::print("{}", options.json ? report.json : report.table);
   if (options.output && !options.json) fmt::print("results and scenes in {}\n", options.output->string());
   return kDone;
 }

@@ -22,7 +22,7 @@ struct BenchOptions {
 };
 
 /// Names of all benchmarks, in the order of the list that `fascia bench` prints.
-inline constexpr std::array kBenchmarkNames{"table2", "table3", "gpu"};
+inline constexpr std::array kBenchmarkNames{"table2", "table3", "gpu", "kernels", "scaling"};
 
 /// The command. Returns the exit status.
 /// @throws InputError  an unknown benchmark or size; FileError

@@ -1,4 +1,5 @@
 #include "app/bench/benchmark.hpp"
+#include "app/bench/scenes.hpp"
 
 #include <fmt/format.h>
 
@@ -14,16 +15,16 @@ newton = { max_iterations = 1, on_limit = "continue" }
 linear = { kind = "cg", max_iterations = 60, tolerance = 1e-15 }   # always 60
 )";
 
-/// A clamped block, five tetrahedra a cell.
-std::string tetrahedra_scene(int x, int y, int z) {
-  return fmt::format(R"(title = "{} tetrahedra"
+/// A clamped block. @param model, cells  as the scene has them
+std::string block_scene(const std::string& title, const char* model, const std::string& cells) {
+  return fmt::format(R"(title = "{}"
 
 [world]
 gravity = [0, 0, -9.81]
 
 [bodies.block]
-model = "tetrahedra"
-domain = {{ box = {{ min = [0, 0, 0], max = ["10 cm", "10 cm", "20 cm"], cells = [{}, {}, {}], split = 5 }} }}
+model = "{}"
+domain = {{ box = {{ min = [0, 0, 0], max = ["10 cm", "10 cm", "20 cm"], {} }} }}
 density = 1000
 material = {{ young = "50 kPa", poisson = 0.4 }}
 
@@ -32,10 +33,20 @@ body = "block"
 where = {{ box = {{ min = [-1, -1, -1], max = [1, 1, 1e-6] }} }}
 fix = "all"
 {})",
-                     5 * x * y * z, x, y, z, kSolver);
+                     title, model, cells, kSolver);
 }
 
-/// A plate that sags between two clamped edges.
+}  // namespace
+
+std::string tetrahedra_scene(int x, int y, int z) {
+  return block_scene(fmt::format("{} tetrahedra", 5 * x * y * z), "tetrahedra",
+                     fmt::format("cells = [{}, {}, {}], split = 5", x, y, z));
+}
+
+std::string hexahedra_scene(int x, int y, int z) {
+  return block_scene(fmt::format("{} hexahedra", x * y * z), "hexahedra", fmt::format("cells = [{}, {}, {}]", x, y, z));
+}
+
 std::string shell_scene(int u, int v) {
   return fmt::format(R"(title = "{} shell triangles"
 
@@ -56,8 +67,6 @@ fix = "all"
 {})",
                      2 * u * v, u, v, kSolver);
 }
-
-}  // namespace
 
 std::string coupled_scene(int cells, int frames, int points) {
   const std::string wall = R"(model = "shell"

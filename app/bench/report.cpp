@@ -1,17 +1,18 @@
 #include "app/bench/report.hpp"
 
+#include "app/bench/report_parts.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 namespace fascia::app {
 namespace {
 
-using Row = std::vector<std::string>;
+using Row = TableRow;
 
 /// A time with three digits or all of its whole milliseconds.
 std::string milliseconds(double ms) { return ms >= 100 ? fmt::format("{:.0f}", ms) : fmt::format("{:#.3g}", ms); }
@@ -36,21 +37,6 @@ std::vector<std::vector<Measurement>> cases_of(const BenchmarkResult& result) {
     cases.back().push_back(m);
   }
   return cases;
-}
-
-/// Columns to the width of their widest entry: text to the left, numbers to the right.
-std::string aligned(const std::vector<Row>& rows, std::size_t left) {
-  std::vector<std::size_t> width(rows.front().size());
-  for (const Row& r : rows)
-    for (std::size_t c = 0; c < r.size(); ++c) width[c] = std::max(width[c], r[c].size());
-  std::string text;
-  for (const Row& r : rows) {
-    std::string line;
-    for (std::size_t c = 0; c < r.size(); ++c)
-      line += c < left ? fmt::format("{:<{}}  ", r[c], width[c]) : fmt::format("{:>{}}  ", r[c], width[c]);
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
 }
 
 /// Both lines above the numbers: what a column belongs to, and what it is.
@@ -96,25 +82,6 @@ Row table_row(const std::vector<Measurement>& of_case, bool published, const std
   return row;
 }
 
-std::string machine_lines(const Machine& m) {
-  std::string text = fmt::format("{}, {} threads, {:.3g} GB; {}\n", m.cpu, m.threads, m.memory / 1e9, m.system);
-  for (const std::string& gpu : m.gpu) text += fmt::format("{}, driver {}\n", gpu, m.driver);
-  text += fmt::format("fascia {} ({}), {}, {}", m.fascia, m.backends, m.compiler, m.build);
-  for (const auto& [name, version] : m.libraries) text += fmt::format(", {} {}", name, version);
-  return text + fmt::format("; {}\n", m.date);
-}
-
-std::string field(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
-
-/// JSON has no NaN, which a run that went astray may leave.
-nlohmann::ordered_json number(double v) {
-  return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json number(const std::optional<double>& v) {
-  return v ? number(*v) : nlohmann::ordered_json(nullptr);
-}
-
 }  // namespace
 
 std::string result_table(const BenchmarkResult& result, const Machine& machine) {
@@ -132,10 +99,7 @@ std::string result_table(const BenchmarkResult& result, const Machine& machine) 
   constexpr std::size_t kTextColumns = 2;
   std::string text = fmt::format("{}\n\n{}\n{}\n", result.title, aligned(rows, kTextColumns), result.notes);
   for (const std::string& t : troubles) text += t;
-  std::map<std::string, std::string> skipped;
-  for (const SkippedCase& s : result.skipped) skipped[s.reason] += " " + s.name;
-  for (const auto& [reason, names] : skipped) text += fmt::format("not timed, {}:{}\n", reason, names);
-  return text + machine_lines(machine);
+  return text + skipped_lines(result.skipped) + machine_lines(machine);
 }
 
 std::string result_csv(const BenchmarkResult& result) {
@@ -151,19 +115,7 @@ std::string result_csv(const BenchmarkResult& result) {
 }
 
 nlohmann::ordered_json result_json(const BenchmarkResult& result, const Machine& machine) {
-  nlohmann::ordered_json j;
-  j["benchmark"] = result.name;
-  j["title"] = result.title;
-  j["notes"] = result.notes;
-  j["date"] = machine.date;
-  j["machine"] = {{"system", machine.system},       {"cpu", machine.cpu}, {"threads", machine.threads},
-                  {"memory_bytes", machine.memory}, {"gpu", machine.gpu}, {"driver", machine.driver}};
-  j["build"] = {{"fascia", machine.fascia},
-                {"backends", machine.backends},
-                {"compiler", machine.compiler},
-                {"type", machine.build}};
-  j["build"]["libraries"] = nlohmann::ordered_json::object();
-  for (const auto& [name, version] : machine.libraries) j["build"]["libraries"][name] = version;
+  nlohmann::ordered_json j = json_head(result.name, result.title, result.notes, machine);
   j["rows"] = nlohmann::ordered_json::array();
   for (const Measurement& m : result.rows)
     j["rows"].push_back({{"case", m.name},
@@ -186,8 +138,7 @@ nlohmann::ordered_json result_json(const BenchmarkResult& result, const Machine&
                          {"trouble", m.trouble},
                          {"paper_cpu_ms", number(m.published_cpu)},
                          {"paper_gpu_ms", number(m.published_gpu)}});
-  j["skipped"] = nlohmann::ordered_json::array();
-  for (const SkippedCase& s : result.skipped) j["skipped"].push_back({{"case", s.name}, {"reason", s.reason}});
+  j["skipped"] = json_of(result.skipped);
   return j;
 }
 

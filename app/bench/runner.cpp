@@ -70,7 +70,8 @@ Measurement measured(Measurement m, const BenchBackend& backend, const StepTimes
   return m;
 }
 
-/// The case's model, or none where it does not fit or the program refuses it.
+}  // namespace
+
 std::optional<Simulation> built(const BenchmarkCase& c, std::string& reason) {
   Scene scene = parse_scene_text(c.scene, c.name + ".toml", {});
   const double need = estimated_memory(scene), have = free_memory().bytes;
@@ -87,8 +88,6 @@ std::optional<Simulation> built(const BenchmarkCase& c, std::string& reason) {
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchOptions& options,
                                         std::vector<SkippedCase>& skipped) {
@@ -112,6 +111,7 @@ std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchO
   for (const BenchmarkCase& c : benchmark.cases) {
     if (options.settings != "both" && options.settings != c.setting) continue;
     if (!options.sizes.empty() && !asked_for(c)) continue;
+    if (options.sizes.empty() && !options.max_points && c.size < benchmark.smallest_default) continue;
     if (c.size > limit)
       skipped.push_back({c.name, fmt::format("larger than {:.6g} (--max-points)", limit)});
     else
@@ -121,8 +121,7 @@ std::vector<BenchmarkCase> chosen_cases(const Benchmark& benchmark, const BenchO
 }
 
 BenchmarkResult time_benchmark(const Benchmark& benchmark, const BenchOptions& options,
-                               const std::vector<BenchBackend>& backends,
-                               const std::function<void(const std::string&)>& say) {
+                               const std::vector<BenchBackend>& backends, const Teller& say) {
   BenchmarkResult result{benchmark.name, benchmark.title, benchmark.notes, {}, {}};
   StepPlan plan;
   if (options.repeat > 0) plan.fewest = plan.most = options.repeat;

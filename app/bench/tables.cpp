@@ -1,4 +1,5 @@
 #include "app/bench/benchmark.hpp"
+#include "app/bench/scenes.hpp"
 
 #include <fmt/format.h>
 
@@ -6,37 +7,6 @@
 
 namespace fascia::app {
 namespace {
-
-/// A free beam of soft tissue, pulled at both ends by a hundredth of its stiffness, so that it never comes near to an
-/// instability; one Newton iteration of 60 CG iterations a step. Placeholders: title, frames, points, weights,
-/// preconditioner.
-constexpr const char* kBeam = R"(title = "{}"
-
-[bodies.beam]
-model = "meshless"
-domain = {{ box = {{ min = [0, 0, 0], max = ["40 cm", "10 cm", "10 cm"] }} }}
-density = 1000
-material = {{ young = "40 kPa", poisson = 0.3 }}
-frames = {{ {} }}
-{}weights = {{ {} }}
-
-[[loads]]
-body = "beam"
-where = {{ box = {{ min = [-1, -1, -1], max = [0.001, 1, 1] }} }}
-traction = ["-400 Pa", 0, 0]
-
-[[loads]]
-body = "beam"
-where = {{ box = {{ min = [0.399, -1, -1], max = [1, 1, 1] }} }}
-traction = ["400 Pa", 0, 0]
-
-[solver]
-kind = "implicit-euler"
-time_step = "10 ms"
-steps = 100
-newton = {{ max_iterations = 1, on_limit = "continue" }}
-linear = {{ kind = "cg", preconditioner = "{}", max_iterations = 60, tolerance = 1e-15 }}   # always 60
-)";
 
 constexpr std::array kSettings{"paper", "default"};
 
@@ -66,29 +36,22 @@ std::string sampling(const std::array<Samples, N>& known, int count) {
   return fmt::format("count = {}", count);
 }
 
-std::string preconditioner(const std::string& setting) { return setting == "paper" ? "none" : "auto"; }
-
-/// Scattered frames and points with inverse squared distances, as the publication samples its tissues.
+/// Frames and points scattered as the publication samples its tissues.
 BenchmarkCase scattered(const std::string& name, int points, int frames, int neighbours, const std::string& setting) {
-  const std::string title = fmt::format("{} points, {} frames, {} neighbours", points, frames, neighbours);
-  const std::string weights = fmt::format("kind = \"shepard\", neighbours = {}{}", neighbours,
-                                          setting == "paper" ? ", blend = \"full\", drilling = 0" : "");
-  BenchmarkCase c{fmt::format("{}_{}", name, setting), "beam", setting, points, "", {}, {}};
-  c.scene =
-      fmt::format(kBeam, title, sampling(kFrames, frames),
-                  fmt::format("points = {{ {} }}\n", sampling(kPoints, points)), weights, preconditioner(setting));
-  return c;
+  return {fmt::format("{}_{}", name, setting),
+          "beam",
+          setting,
+          points,
+          scattered_beam(fmt::format("{} points, {} frames, {} neighbours", points, frames, neighbours),
+                         sampling(kFrames, frames), sampling(kPoints, points), neighbours, setting),
+          {},
+          {}};
 }
 
-/// Grid frames with linear weights: four neighbours too, at sizes that sampling would take long for.
+/// Grids, at sizes that sampling would take long for.
 BenchmarkCase gridded(const std::string& name, const std::array<int, 3>& cells, const std::string& setting) {
   const int points = 24 * cells[0] * cells[1] * cells[2];
-  BenchmarkCase c{fmt::format("{}_{}", name, setting), "grid beam", setting, points, "", {}, {}};
-  c.scene = fmt::format(kBeam, fmt::format("{} points, 4 neighbours, grid", points),
-                        fmt::format("grid = [{}, {}, {}]", cells[0] + 1, cells[1] + 1, cells[2] + 1), "",
-                        setting == "paper" ? "kind = \"linear\", blend = \"full\", drilling = 0" : "kind = \"linear\"",
-                        preconditioner(setting));
-  return c;
+  return {fmt::format("{}_{}", name, setting), "grid beam", setting, points, grid_beam(cells, setting), {}, {}};
 }
 
 }  // namespace
