@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <climits>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -85,26 +84,6 @@ std::vector<std::string> files_of_program() {
     if (own && std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
   }
   return files;
-}
-
-std::string stamp_of_program(std::string_view prefix) {
-  std::error_code none;
-  const auto stamp_of = [&](const std::filesystem::path& file) {
-    return fmt::format("{} {} {}\n", file.string(), std::filesystem::file_size(file, none),
-                       std::filesystem::last_write_time(file, none).time_since_epoch().count());
-  };
-  std::string stamp;
-  for (const std::string& file : files_of_program())
-    if (std::filesystem::path(file).filename().string().starts_with(prefix)) stamp += stamp_of(file);
-  // A program that has the library in itself.
-  return stamp.empty() ? stamp_of(std::filesystem::read_symlink("/proc/self/exe", none)) : stamp;
-}
-
-std::filesystem::path cache_folder() {
-  const auto set = [](const char* name) { return std::getenv(name) && *std::getenv(name); };
-  if (set("XDG_CACHE_HOME")) return std::filesystem::path(std::getenv("XDG_CACHE_HOME")) / "fascia";
-  if (set("HOME")) return std::filesystem::path(std::getenv("HOME")) / ".cache/fascia";
-  return {};
 }
 
 Machine this_machine() {

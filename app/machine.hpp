@@ -1,8 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,11 +23,5 @@ Machine this_machine();
 
 /// The program, its libraries and modules, as this process has mapped them.
 std::vector<std::string> files_of_program();
-
-/// Path, size and time of those whose names begin so: another build is another program.
-std::string stamp_of_program(std::string_view prefix);
-
-/// $XDG_CACHE_HOME/fascia, or ~/.cache/fascia; empty where there is neither.
-std::filesystem::path cache_folder();
 
 }  // namespace fascia::app

@@ -98,8 +98,11 @@ Timed Turns::several(const std::vector<std::string>& changes, int turns) {
   Timed result;
   std::vector<double> time_before, time, solve, processor, setup_before, setup;
   double memory = 0, others = 0;
-  for (int i = 0; i < turns || (i < kMoreTurns * turns && is_vague(ratio_of_pairs(time, time_before))); ++i) {
-    if (!run_as_it_is()) return {};
+  for (int i = 0, all = turns; i < all; ++i) {
+    if (!run_as_it_is()) {
+      if (i < turns) return {};
+      break;
+    }
     result.record = run_changed(changes);
     if (!result.record || !result.record->converged()) return result;
     const RunRecord& record = *result.record;
@@ -112,6 +115,7 @@ Timed Turns::several(const std::vector<std::string>& changes, int turns) {
     setup_before.push_back(before_.setup.median);
     memory = std::max(memory, record.memory);
     others = std::max(others, record.others);
+    if (i + 1 == turns && is_vague(ratio_of_pairs(time, time_before))) all = kMoreTurns * turns;
   }
   result.solve = ratio_of_pairs(time, time_before);
   result.setup = ratio_of_pairs(setup, setup_before);

@@ -51,7 +51,10 @@ Json need_json(const StoredStudy& study, const StatedNeed& need, const StudiedRu
   j["met"] = why_not.empty();
   if (!why_not.empty()) j["why_not"] = why_not;
   j["run"] = {{"label", run.label}, {"error", run.error}, {"seconds", run.seconds}};
-  j["runs"] = {{"of_the_study", study.all}, {"of_this_scene", study.runs.size()}, {"changing_it", study.changing}};
+  j["runs"] = {{"of_the_study", study.all},
+               {"of_this_scene", study.runs.size()},
+               {"changing_it", study.changing},
+               {"of_another", study.others}};
   return j;
 }
 
@@ -66,9 +69,11 @@ int run_by_study(const RunOptions& options, const Scene& scene) {
     const StudiedRun& studied = study.runs[choice.runs[r]];
     const std::vector<std::string> overrides = overrides_of(studied);
     std::vector<std::string> sentences = sentences_of(study, need, choice, choice.runs[r]);
+    if (r > 0) sentences[1] += fmt::format("; of the one before, {}", why_not);
     if (!options.quiet && !options.json)
       for (const std::string& line : sentences) fmt::print("{}\n", line), std::fflush(stdout);
     RunOptions run = options_of_choice(options, scene, overrides);
+    run.estimate = options.estimate, run.no_estimate = options.no_estimate;
     run.complete = [&](Json& summary) {
       why_not = choice.why_not;
       if (need.step) {

@@ -76,6 +76,7 @@ RunOptions options_of_choice(const RunOptions& options, const Scene& scene, cons
   run.text = scene.text;
   run.backend.reset(), run.threads.reset(), run.gpus.reset();  // they are among the scene's overrides
   run.estimate = false, run.no_estimate = true;
+  run.new_trials = false;
   return run;
 }
 

@@ -21,6 +21,9 @@ class KeptTrials {
   /// the quantities, or where steps are needed and other work lengthened them.
   std::optional<Trial> find(const std::vector<std::string>& changes, const std::vector<Wanted>& wanted) const;
 
+  /// The summary of a run is of the scene as it was read, and of files as they were then.
+  bool is_of_scene(const nlohmann::ordered_json& summary) const;
+
   /// Keeps a trial that gave a result, as far as files can be written.
   void keep(const std::vector<std::string>& changes, const std::vector<Wanted>& wanted, const Trial& trial) const;
 
@@ -30,7 +33,8 @@ class KeptTrials {
   const Scene& scene_;
   std::filesystem::path folder_;  ///< empty: there is no cache
   bool anew_;
-  std::string origin_;  ///< machine, program and files that all trials share
+  std::vector<std::string> digests_;  ///< of the files that the scene reads
+  std::string origin_;                ///< machine, program and files that all trials share
 };
 
 }  // namespace fascia::app

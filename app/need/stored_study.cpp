@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <stdexcept>
 
 namespace fascia::app {
 namespace {
@@ -48,6 +50,7 @@ class Reader {
     const Json& machine = json_.at("machine");
     const Machine here = this_machine();
     study_.same_machine = machine.at("cpu") == here.cpu && machine.at("threads") == here.threads;
+    read_base();
     for (const Json& run : json_.at("runs")) add(run);
     if (study_.runs.empty()) fail(why_none());
     std::stable_sort(study_.runs.begin(), study_.runs.end(),
@@ -70,7 +73,7 @@ class Reader {
     Json json;
     try {
       json = Json::parse(io::read_file(file_), nullptr, false);
-    } catch (const FileError& e) {
+    } catch (const std::runtime_error& e) {
       fail(e.what());
     }
     if (!json.is_object() || !json.contains("runs") || !json.contains("measures"))
@@ -117,7 +120,9 @@ class Reader {
     ++study_.all;
     if (run.at("status") != "converged") return;
     StudiedRun candidate;
-    candidate.overrides = possible_changes(scene_, run.at("overrides").get<std::vector<std::string>>());
+    candidate.overrides = of_base_;
+    for (const Json& change : run.at("overrides")) candidate.overrides.push_back(change);
+    candidate.overrides = possible_changes(scene_, candidate.overrides);
     // Pictures and the like are the scene's own.
     std::erase_if(candidate.overrides, [](const std::string& change) { return change.starts_with("output."); });
     try {
@@ -132,11 +137,17 @@ class Reader {
       changes.insert(changes.end(), candidate.overrides.begin(), candidate.overrides.end());
       const Scene own = parse_scene_text(scene_.text, scene_.path, changes);
       if (simulation_digest(own) != run.at("simulation").get<std::string>()) {
-        if (!other_) other_ = difference_from_base(candidate.overrides, changed);
+        ++study_.others;
+        if (!other_) other_ = difference_from_base(run.at("overrides"), changed);
         return;
       }
     } catch (const SceneError& e) {
-      if (!other_) other_ = e.diagnostics().front().text();
+      ++study_.others;
+      if (!refused_) refused_ = e.diagnostics().front().text();
+      return;
+    } catch (const FileError& e) {
+      ++study_.others;
+      if (!refused_) refused_ = e.what();
       return;
     }
     const std::optional<double> error = error_of(run);
@@ -152,26 +163,47 @@ class Reader {
     study_.runs.push_back(std::move(candidate));
   }
 
+  /// Keys that the study varied and this scene leaves out stand in its base where a run does not change them.
+  void read_base() {
+    base_ = json_.at("base_file").get<std::string>();
+    try {
+      const Value tree = scene_tree(parse_scene_file(base_, {}), {});
+      std::set<std::string> varied;
+      for (const Json& run : json_.at("runs"))
+        for (const Json& change : run.at("overrides")) {
+          const std::string text = change;
+          varied.insert(text.substr(0, text.find('=')));
+        }
+      for (const std::string& key : varied)
+        if (const Value* value = value_at(tree, key); value && !value_at(said_, key) && !key.starts_with("output"))
+          of_base_.push_back(key + "=" + toml_text(*value));
+    } catch (const SceneError&) {
+      of_base_.clear();  // then runs that need them are of another scene
+    } catch (const FileError&) {
+      of_base_.clear();
+    }
+  }
+
   /// Where the study's scene is another than this one, in words.
   std::string difference_from_base(const std::vector<std::string>& overrides, const Value& changed) const {
-    const std::string base = json_.at("base");
     try {
-      const Scene other = parse_scene_file(base, overrides);
+      const Scene other = parse_scene_file(base_, overrides);
       if (const auto d = tree_difference(plain_tree(other, {}, kBeside), changed, true))
         return fmt::format("its `{}` is {} where this scene has {}", d->key, d->first.empty() ? "not said" : d->first,
                            d->second.empty() ? "none" : d->second);
     } catch (const SceneError&) {
-      return base + " is no valid scene any more";
+      return base_ + " is no valid scene any more";
     } catch (const FileError&) {
-      return base + " cannot be read any more";
+      return base_ + " cannot be read any more";
     }
-    return base + ", or a mesh that it reads, was changed since; make the study again";
+    return base_ + ", or a mesh that it reads, was changed since; make the study again";
   }
 
   std::string why_none() const {
     const std::string text =
         fmt::format("none of the {} runs of {} serves this scene", study_.all, need_.study->string());
     if (other_) return text + ": " + *other_;
+    if (refused_ && !lost_) return text + ": " + *refused_;
     if (lost_)
       return fmt::format("{}: the scene says `{}` = {}, which no run has; leave it out, as the study varies it", text,
                          lost_->key, lost_->first);
@@ -186,7 +218,10 @@ class Reader {
   std::map<std::string, double> uncertainty_;  ///< of the references, by measure that counts
   StoredStudy study_;
   std::optional<TreeDifference> lost_;
-  std::optional<std::string> other_;  ///< why a run is of another scene
+  std::string base_;                    ///< file of the study's scene
+  std::vector<std::string> of_base_;    ///< what is taken from there, "key=value"
+  std::optional<std::string> other_;    ///< where a run is of another scene
+  std::optional<std::string> refused_;  ///< why a run makes no valid scene of this one
 };
 
 }  // namespace

@@ -25,6 +25,7 @@ struct StoredStudy {
   std::vector<StudiedRun> runs;  ///< of this scene, converged and with an error; from cheap to dear
   std::size_t all = 0;           ///< that the study made
   std::size_t changing = 0;      ///< that change a key which the scene says
+  std::size_t others = 0;        ///< that are of another scene in all else
   std::string measures;          ///< that count, in quotes: `"tip" and "end"`
   std::string source;            ///< of their references, in words
   bool same_machine = true;      ///< as this one: times hold

@@ -7,6 +7,7 @@
 #include "app/study/machine_load.hpp"
 #include "app/tune/kept_costs.hpp"
 #include "assembly/specification/readable.hpp"
+#include "core/base/errors.hpp"
 
 #include <fmt/format.h>
 
@@ -60,11 +61,15 @@ double step_p99(const ChildResult& result) { return result.summary.at("seconds")
 
 }  // namespace
 
+bool interrupted_steps(const Scene& scene, double p99, double median, double spread) {
+  return scene.need && scene.need->step && spread * p99 > *scene.need->step && 1.5 * median < *scene.need->step;
+}
+
 bool interrupted_steps(const Scene& scene, const nlohmann::ordered_json& summary, double spread) {
   if (!scene.need || !scene.need->step || !summary.is_object()) return false;
   const auto& seconds = summary.at("seconds");
-  return spread * seconds.at("step_p99").get<double>() > *scene.need->step &&
-         1.5 * seconds.at("step_median").get<double>() < *scene.need->step;
+  return interrupted_steps(scene, seconds.at("step_p99").get<double>(), seconds.at("step_median").get<double>(),
+                           spread);
 }
 
 std::vector<Wanted> wanted_of(const Scene& scene) {
@@ -159,10 +164,10 @@ const std::vector<Trials::CostedBody>& Trials::costed(const NeedChoice& choice) 
 std::optional<double> Trials::tuned_growth(const Trial& trial, double more) const {
   double most = 0;  // of the bodies: which of them has the unknowns is not known
   for (const CostedBody& body : costed(trial.choice)) {
-    const bool factorised = factorises(scene_.solver, more * trial.dofs);
     const auto time = [&](double times) {
-      return body.cost.point * times * trial.points +
-             linear_solve_time(body.cost, times * trial.dofs, factorised, body.dimension);
+      return body.cost.point * times * trial.points + linear_solve_time(body.cost, times * trial.dofs,
+                                                                        factorises(scene_.solver, times * trial.dofs),
+                                                                        body.dimension);
     };
     most = std::max(most, time(more) / time(1));
   }
@@ -252,7 +257,12 @@ Trial Trials::made(const std::vector<std::string>& changes, const NeedChoice& ch
   if (result.summary.is_object() && result.exit_status == 0) {
     const auto& seconds = result.summary.at("seconds");
     trial.seconds = seconds.at("setup").get<double>() + seconds.at("solve").get<double>();
+    if (kept_ && !kept_->is_of_scene(result.summary))
+      throw InputError(
+          fmt::format("{}: it, or a file that it reads, was changed while its need was looked for; run it again",
+                      scene_.path.string()));
     trial.step = step_p99(result);
+    trial.step_median = seconds.at("step_median").get<double>();
     trial.memory = result.summary.at("peak_memory_bytes").get<double>();
     trial.dofs = result.summary.at("dofs").get<double>();
     trial.steps = result.summary.at("steps").get<double>();

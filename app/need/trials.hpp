@@ -41,6 +41,7 @@ struct Trial {
   std::string status, message;  ///< of its summary; why it gave nothing
   double seconds = 0;           ///< set-up and solve, of one run [s]
   double step = 0;              ///< 99th percentile of its steps [s]
+  double step_median = 0;       ///< [s]
   double memory = 0;            ///< [bytes]
   double dofs = 0, points = 0, steps = 0, newton = 0;
   double others = 0;                        ///< of the machine's time that others took meanwhile [0, 1]
@@ -119,6 +120,7 @@ inline constexpr double kStepSpread = 1.15;
 
 /// The longest steps of a run, times `spread`, are above what the scene needs, and the others well below: the machine
 /// did something else meanwhile, and another run may not meet it.
+bool interrupted_steps(const Scene& scene, double p99, double median, double spread);
 bool interrupted_steps(const Scene& scene, const nlohmann::ordered_json& summary, double spread);
 
 /// Values of a quantity that are rounding alone. @param size  of the largest body [m]

@@ -179,7 +179,10 @@ Output read_output(const TableReader& scene, const std::string& scene_name, std:
   output.estimate = read_estimate(table);
   if (const Value* cache = table.value("cache")) {
     if (const bool* kept = std::get_if<bool>(&cache->data)) output.keeps_samples = *kept;
-    if (const std::string* folder = cache->as_string()) output.cache = *folder;
+    if (const std::string* folder = cache->as_string()) {
+      output.cache = *folder;
+      if (folder->empty()) table.error("cache", "is empty; must be the path of a directory, true or false");
+    }
   }
   if (table.value("picture")) output.picture = read_picture(table.table("picture"), shells, kind);
   return output;

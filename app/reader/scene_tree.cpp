@@ -16,12 +16,14 @@ void remove_keys(Value& table, const std::vector<std::string>& keys) {
     std::erase_if(*members, [&](const Member& m) { return std::find(keys.begin(), keys.end(), m.key) != keys.end(); });
 }
 
-void sort_keys(Value& value) {
+/// Keys in their order, and whole numbers as others are.
+void make_plain(Value& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value.data)) value.data = static_cast<double>(*whole);
   if (Table* members = value.as_table()) {
     std::sort(members->begin(), members->end(), [](const Member& a, const Member& b) { return a.key < b.key; });
-    for (Member& m : *members) sort_keys(m.value);
+    for (Member& m : *members) make_plain(m.value);
   } else if (Array* items = value.as_array()) {
-    for (Value& item : *items) sort_keys(item);
+    for (Value& item : *items) make_plain(item);
   }
 }
 
@@ -34,22 +36,11 @@ void move_file(Value& table, const fs::path& from, const fs::path& to) {
   file->data = (moved.empty() ? path : moved).string();
 }
 
-std::optional<double> number_of(const Value& value) {
-  if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return static_cast<double>(*whole);
-  if (const auto* number = std::get_if<double>(&value.data)) return *number;
-  return std::nullopt;
-}
-
-bool equal(const Value& a, const Value& b) {
-  if (const auto x = number_of(a), y = number_of(b); x && y) return *x == *y;
-  return toml_text(a) == toml_text(b);
-}
-
 std::optional<TreeDifference> difference(const Value& first, const Value& second, bool additions,
                                          const std::string& path) {
   const Table *a = first.as_table(), *b = second.as_table();
   if (!a || !b) {
-    if (equal(first, second)) return std::nullopt;
+    if (toml_text(first) == toml_text(second)) return std::nullopt;
     return TreeDifference{path, toml_text(first), toml_text(second)};
   }
   const auto below = [&](const Member& m) { return path.empty() ? toml_key(m.key) : path + "." + toml_key(m.key); };
@@ -72,6 +63,16 @@ Value scene_tree(const Scene& scene, const std::vector<std::string>& changes) {
   for (const std::string& change : changes) apply_override(tree, change, diagnostics);
   diagnostics.throw_if_any();
   return tree;
+}
+
+const Value* value_at(const Value& tree, std::string_view path) {
+  const Value* value = &tree;
+  while (value && !path.empty()) {
+    const std::size_t dot = path.find('.');
+    value = value->find(path.substr(0, dot));
+    path = dot == std::string_view::npos ? "" : path.substr(dot + 1);
+  }
+  return value;
 }
 
 std::vector<std::string> possible_changes(const Scene& scene, const std::vector<std::string>& changes) {
@@ -101,7 +102,7 @@ Value plain_tree(const Scene& scene, const std::vector<std::string>& changes, co
   if (Value* output = tree.find("output")) remove_keys(*output, {"directory"});
   if (Value* bodies = tree.find("bodies"); bodies && bodies->as_table())
     for (Member& body : *bodies->as_table()) remove_keys(body.value, {"need"});
-  sort_keys(tree);
+  make_plain(tree);
   return tree;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Scenes as trees of their keys, to be written, kept and compared.
@@ -15,15 +16,18 @@ namespace fascia::app {
 /// @throws SceneError  a change that cannot be made
 Value scene_tree(const Scene& scene, const std::vector<std::string>& changes);
 
+/// The value of a path of bare keys, "bodies.beam.order"; null where there is none.
+const Value* value_at(const Value& tree, std::string_view path);
+
 /// Those changes of a scene that can be made one behind the other: removals of keys that are not there are left out.
 std::vector<std::string> possible_changes(const Scene& scene, const std::vector<std::string>& changes);
 
 /// Paths of files that bodies name begin in another folder.
 void move_files(Value& tree, const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// The same tree for every text that makes the same simulation: keys are sorted, paths of files are whole, and what
-/// changes no result is missing (title, needs, where the output goes). @param without  keys of the scene that are left
-/// out too
+/// The same tree for every text that makes the same simulation: keys are sorted, numbers are alike whether they have a
+/// point or not, paths of files are whole, and what changes no result is missing (title, needs, where the output goes).
+/// @param without  keys of the scene that are left out too
 Value plain_tree(const Scene& scene, const std::vector<std::string>& changes,
                  const std::vector<std::string>& without = {});
 
@@ -32,7 +36,7 @@ struct TreeDifference {
   std::string key, first, second;
 };
 
-/// The first one. @param additions  whether what the second alone has counts
+/// The first one, of plain trees. @param additions  whether what the second alone has counts
 std::optional<TreeDifference> tree_difference(const Value& first, const Value& second, bool additions);
 
 }  // namespace fascia::app

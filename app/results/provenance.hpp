@@ -29,7 +29,7 @@ nlohmann::ordered_json provenance_of(const Simulation& simulation);
 std::vector<std::filesystem::path> input_files(const Scene& scene);
 
 /// Stands for what a scene simulates, in 16 hexadecimal digits: its keys but for title, needs, probes and output, and
-/// the contents of its files. @throws FileError  one of them cannot be read
+/// the paths and contents of its files. @throws FileError  one of them cannot be read
 std::string simulation_digest(const Scene& scene);
 
 }  // namespace fascia::app

@@ -31,7 +31,8 @@ Simulation load_scene(const RunOptions& options) { return load_scene(read_scene(
 Simulation build_within_memory(Scene scene) {
   check_memory(scene);
   const SampleCache cache(scene.output);
-  return build_simulation(std::move(scene), &cache);
+  const bool kept = scene.output.keeps_samples;
+  return build_simulation(std::move(scene), kept ? &cache : nullptr);
 }
 
 Simulation load_scene(Scene scene) {

@@ -161,6 +161,8 @@ int run_scene(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   Scene scene = read_scene(options);
   if (scene.states_need()) return tools().run_need(options, scene);
+  if (options.new_trials)
+    throw InputError(scene.path.string() + ": states no need, so that it has no trials; leave --new-trials out");
   Interruption stop;
   Simulation s = load_scene(std::move(scene));
   const Backend backend = choose_backend(s);

@@ -1,13 +1,11 @@
 #include "app/run/sample_cache.hpp"
 
-#include "app/machine.hpp"
-#include "core/base/errors.hpp"
+#include "app/cache.hpp"
 #include "io/digest.hpp"
 #include "io/files.hpp"
 
-#include <algorithm>
+#include <stdexcept>
 #include <system_error>
-#include <vector>
 
 namespace fascia::app {
 namespace {
@@ -19,37 +17,14 @@ constexpr const char* kKind = ".samples";
 /// Sampling that takes less is not kept [s].
 constexpr double kShort = 0.02;
 
-/// The oldest files go, until half of what may be there is left.
-void drop_old(const fs::path& folder) {
-  struct Kept {
-    fs::file_time_type time;
-    std::uintmax_t size = 0;
-    fs::path path;
-  };
-  std::error_code none;
-  std::vector<Kept> files;
-  std::uintmax_t all = 0;
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    if (entry.path().extension() != kKind) continue;
-    files.push_back({entry.last_write_time(none), entry.file_size(none), entry.path()});
-    all += files.back().size;
-  }
-  if (all <= kMostBytes) return;
-  std::sort(files.begin(), files.end(), [](const Kept& a, const Kept& b) { return a.time < b.time; });
-  for (const Kept& file : files) {
-    if (all <= kMostBytes / 2) return;
-    fs::remove(file.path, none);
-    all -= file.size;
-  }
-}
-
 }  // namespace
 
 SampleCache::SampleCache(const Output& output) {
   if (!output.keeps_samples) return;
   const fs::path own = cache_folder();
+  origin_ = stamp_of_program("libfascia");
+  if (origin_.empty()) return;
   folder_ = !output.cache.empty() ? output.cache : own.empty() ? own : own / "samples";
-  if (!folder_.empty()) origin_ = stamp_of_program("libfascia");
 }
 
 fs::path SampleCache::file_of(std::string_view description) const {
@@ -68,18 +43,16 @@ std::optional<std::string> SampleCache::find(std::string_view description) const
     return std::nullopt;
   fs::last_write_time(file, fs::file_time_type::clock::now(), none);  // the oldest is that which was not used longest
   return all.substr(digest);
-} catch (const FileError&) {
-  return std::nullopt;
+} catch (const std::runtime_error&) {
+  return std::nullopt;  // empty, or gone meanwhile
 }
 
 bool SampleCache::wants(double seconds) const { return !folder_.empty() && seconds > kShort; }
 
 void SampleCache::keep(std::string_view description, std::string_view bytes) const try {
-  io::make_directories(folder_);
-  drop_old(folder_);
-  io::replace_file(file_of(description), io::sha256(bytes) + std::string(bytes));
-} catch (const FileError&) {
-  return;
+  keep_in_cache(file_of(description), io::sha256(bytes) + std::string(bytes), kMostBytes);
+} catch (const std::runtime_error&) {
+  return;  // the next run makes them again
 }
 
 }  // namespace fascia::app

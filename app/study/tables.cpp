@@ -153,6 +153,8 @@ Json json_of(const StudyResult& result) {
   j["fascia_study"] = 1;
   j["title"] = result.study.title;
   j["base"] = result.study.base.string();
+  std::error_code none;
+  j["base_file"] = std::filesystem::absolute(result.study.base, none).string();
   j["interrupted"] = result.interrupted;
   j["machine"] = machine_json();
   j["cost"] = cost_name(result.cost);

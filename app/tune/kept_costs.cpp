@@ -1,5 +1,6 @@
 #include "app/tune/kept_costs.hpp"
 
+#include "app/cache.hpp"
 #include "app/machine.hpp"
 #include "assembly/specification/readable.hpp"
 

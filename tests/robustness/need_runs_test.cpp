@@ -87,20 +87,22 @@ TEST_F(NeedRuns, KeepTheirTrialsForTheNext) {
   EXPECT_EQ(trials("anew").second, 0u);
   run(scene, "nowhere", {}, "/dev/null/none");
   EXPECT_EQ(trials("nowhere").second, 0u);
-  // A damaged one is made again.
-  for (const auto& entry : fs::directory_iterator(folder_ / "cache/fascia/trials"))
-    std::ofstream(entry.path()) << "{\"status\": \"converged\", ";
+  // Damaged and empty ones are made again.
+  bool empty = false;
+  for (const auto& entry : fs::directory_iterator(folder_ / "cache/fascia/trials")) {
+    std::ofstream(entry.path()) << (empty ? "" : "{\"status\": \"converged\", ");
+    empty = !empty;
+  }
   run(scene, "damaged");
   EXPECT_EQ(trials("damaged").second, 0u);
 }
 
-/// A study of the small cantilever over its frames and linear solvers, made by "fascia study".
+/// A study of the small cantilever over its resolution and linear solvers, made by "fascia study".
 constexpr const char* kStudy = R"(base = "beam.toml"
 repeat = 1
 warm_up = 0
 [[axes]]
-key = "bodies.beam.frames.grid"
-values = [[3, 2, 2], [5, 2, 2], [9, 3, 3]]
+refine = [1, 2, 3]
 [[axes]]
 key = "solver.linear.kind"
 values = ["cholesky", "cg"]
@@ -142,6 +144,9 @@ TEST_F(NeedRuns, ChooseAmongTheRunsOfAStudy) {
   ASSERT_EQ(fascia({"run", "cg.toml", "--output", "cg"}).status, 0);
   EXPECT_EQ(summary("cg").at("need").at("runs").at("of_this_scene"), 3);
   EXPECT_EQ(summary("cg").at("need").at("runs").at("changing_it"), 3);
+  // Numbers are the same whether they have a point or not.
+  write("point.toml", with(needs("error = 0.9\n"), "density  = 1000", "density  = 1000.0"));
+  EXPECT_EQ(fascia({"check", "point.toml"}).status, 0);
   // Beyond what the study holds.
   write("much.toml", needs("error = 1e-9\n"));
   const ProgramResult much = fascia({"run", "much.toml", "--output", "much"});
@@ -156,11 +161,13 @@ TEST_F(NeedRuns, ChooseAmongTheRunsOfAStudy) {
   expect_refused(needs("error = 0.9\nprobe = \"weight\"\n"),
                  {"need.study: ", "no errors of probe \"weight\", but measures \"tip\""});
   expect_refused(with(needs("error = 0.9\n"), "density  = 1000", "density  = 1200"),
-                 {"none of the 6 runs of ", "its `bodies.beam.density` is 1000 where this scene has 1200"});
+                 {"none of the 6 runs of ", "its `bodies.beam.density` is 1000.0 where this scene has 1200.0"});
   expect_refused(with(needs("error = 0.9\n"), "density  = 1000", "density  = 1000\nframes = { grid = [4, 2, 2] }"),
-                 {"the scene says `bodies.beam.frames.grid` = [4, 2, 2], which no run has; leave it out"});
+                 {"its `bodies.beam.frames.grid` is [3.0, 2.0, 2.0] where this scene has [4.0, 2.0, 2.0]"});
   expect_refused(with(needs("error = 0.9\n"), "study = \"study\"", "study = \"nowhere\""),
                  {"nowhere/study.json is no file; name the directory that fascia study wrote"});
+  write("void/study.json", "");
+  expect_refused(with(needs("error = 0.9\n"), "study = \"study\"", "study = \"void\""), {"need.study: ", "empty"});
   write("half/study.json", "{ \"fascia_study\": 1, \"interrupted\": true }\n");
   expect_refused(with(needs("error = 0.9\n"), "study = \"study\"", "study = \"half\""),
                  {"holds no runs; call fascia study again"});

@@ -1,6 +1,8 @@
 #include "tests/robustness/scene_runs.hpp"
 #include "tests/support/paths.hpp"
 
+#include <chrono>
+#include <fstream>
 #include <regex>
 #include <set>
 
@@ -166,13 +168,22 @@ TEST_F(Results, SamplesAreKeptForTheNextRun) {
   EXPECT_EQ(run("first", "home"), probes);
   const std::vector<std::filesystem::path> kept = files("home/fascia/samples");
   ASSERT_FALSE(kept.empty());
+  // Those that are taken are marked as used.
+  const auto long_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+  for (const std::filesystem::path& file : kept) std::filesystem::last_write_time(file, long_ago);
   EXPECT_EQ(run("second", "home"), probes);
-  EXPECT_EQ(files("home/fascia/samples").size(), kept.size());
+  for (const std::filesystem::path& file : kept) EXPECT_GT(std::filesystem::last_write_time(file), long_ago);
   run("elsewhere", "none", "samples");
-  EXPECT_EQ(files("samples").size(), kept.size());
-  // Those that are damaged are made again, and where nothing can be written the run goes on.
-  for (const std::filesystem::path& file : kept) std::ofstream(file, std::ios::binary | std::ios::in) << "damage";
+  EXPECT_FALSE(files("samples").empty());
+  // Those that are damaged or empty are made again, and where nothing can be written the run goes on.
+  for (const std::filesystem::path& file : kept) {
+    std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+    stream.seekp(-20, std::ios::end);
+    stream << "damage";
+  }
   EXPECT_EQ(run("damaged", "home"), probes);
+  std::ofstream(kept.front(), std::ios::binary) << "";
+  EXPECT_EQ(run("empty", "home"), probes);
   write("file", "");
   EXPECT_EQ(run("nowhere", "file"), probes);
 }

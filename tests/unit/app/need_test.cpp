@@ -4,6 +4,7 @@
 #include "app/need/stored_study.hpp"
 #include "app/reader/scene_tree.hpp"
 #include "app/results/provenance.hpp"
+#include "app/scene/toml_text.hpp"
 #include "tests/unit/app/scene_text.hpp"
 
 #include <gtest/gtest.h>
@@ -149,17 +150,24 @@ TEST(SimulationDigest, IsOfWhatIsSimulated) {
   EXPECT_NE(digest_of(scene, {"solver.newton.tolerance=1e-3"}), digest);
 }
 
+Value plain(const std::string& text, const std::vector<std::string>& changes = {}) {
+  return plain_tree(parse(text), changes);
+}
+
 TEST(TreeDifference, IsTheFirstKeyThatDiffers) {
-  const Value a = parse_toml("x = 1\nt = { p = 2.0, q = \"5 kg\" }"),
-              same = parse_toml("x = 1.0\nt = { p = 2, q = \"5 kg\" }"),
-              other = parse_toml("x = 1\nt = { p = 2, q = \"4 kg\" }"),
-              more = parse_toml("x = 1\ny = 3\nt = { p = 2.0, q = \"5 kg\" }");
-  EXPECT_FALSE(tree_difference(a, same, true));
-  EXPECT_EQ(tree_difference(a, other, true)->key, "t.q");
+  const std::string scene(test::beam);
+  const Value a = plain(scene), other = plain(scene, {"bodies.beam.mass=\"4 kg\""}),
+              more = plain(scene, {"solver.newton.tolerance=1e-3"});
+  EXPECT_FALSE(tree_difference(a, plain(scene, {"bodies.beam.frames.grid=[5.0, 2, 2]"}), true));
+  EXPECT_EQ(tree_difference(a, other, true)->key, "bodies.beam.mass");
   EXPECT_EQ(tree_difference(a, other, true)->second, "\"4 kg\"");
   EXPECT_FALSE(tree_difference(a, more, false));
-  EXPECT_EQ(tree_difference(a, more, true)->key, "y");
+  EXPECT_EQ(tree_difference(a, more, true)->key, "solver");
   EXPECT_EQ(tree_difference(more, a, false)->second, "");
+  EXPECT_EQ(possible_changes(parse(scene), {"bodies.beam.points=", "solver.kind=\"static\"", "solver.kind="}),
+            (std::vector<std::string>{"solver.kind=\"static\"", "solver.kind="}));
+  EXPECT_EQ(toml_text(*value_at(a, "bodies.beam.frames.grid")), "[5.0, 2.0, 2.0]");
+  EXPECT_EQ(value_at(a, "bodies.beam.order"), nullptr);
 }
 
 /// Three runs, the dearer the better.

@@ -1,5 +1,6 @@
 // Samples that a store kept take the place of those that would be made, and no others.
 #include "meshless/kept_samples.hpp"
+#include "core/math/rotation.hpp"
 #include "tests/unit/meshless/shared_models.hpp"
 
 #include <gtest/gtest.h>
@@ -76,6 +77,8 @@ TEST(KeptSamples, AreOfTheirOwnGeometryAlone) {
   EXPECT_EQ(taken_of([](ScatterSpec& s) { s.frames = CountedChoice{41, 1}; }), 0);
   EXPECT_EQ(taken_of([](ScatterSpec& s) { s.points = SpacedChoice{0.11, 1}; }), 1);  // the frames are as they were
   EXPECT_EQ(taken_of([](ScatterSpec& s) { s.parts.translation = {{1, 0, 0}}; }), 0);
+  EXPECT_EQ(taken_of([](ScatterSpec& s) { s.parts.rotation = rotation_about({{0, 0, 1}}, 0.3); }), 0);
+  EXPECT_EQ(taken_of([](ScatterSpec& s) { s.shared = {{0, {{1, 1, 1}}, {}, true}}; }), 0);  // keeps a frame off
   EXPECT_EQ(taken_of([](ScatterSpec& s) { s.parts.solid->surface.points[3][1] += 1e-9; }), 0);
   EXPECT_EQ(
       taken_of([](ScatterSpec& s) { s.parts.solid->contains = [](const Vec3d& x) { return x[0] + x[1] < 1.5; }; }), 0);
