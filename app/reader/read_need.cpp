@@ -17,7 +17,7 @@ std::optional<StatedNeed> read_one(const TableReader& table, const std::vector<P
   need.probe = table.text("probe");
   need.step = table.number("step");
   need.memory = table.number("memory");
-  if (const auto study = table.text("study")) need.study = folder / *study;
+  if (const auto study = table.text("study")) need.study = (folder / *study).lexically_normal();
   if (!need.probe) return need;
   std::vector<std::string> known;
   known.reserve(probes.size());
