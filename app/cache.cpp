@@ -41,7 +41,7 @@ void drop_old(const fs::path& folder, std::uintmax_t most) {
   }
 }
 
-/// What only other processes may have loaded: modules beside those files.
+/// Adds modules beside those files, which only other processes may have loaded.
 std::set<std::string> with_modules(const std::vector<std::string>& files) {
   std::set<std::string> all(files.begin(), files.end());
   std::error_code none;

@@ -172,7 +172,7 @@ std::vector<CloudPoint> made_points(const MatterParts& parts, const SampleChoice
   return points;
 }
 
-/// The same, or those that a store has.
+/// Takes points from a store, or makes them.
 std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& choice, double spacing,
                                   const SampleStore* store, ThreadPool& pool) {
   if (!store) return made_points(parts, choice, spacing, pool);
@@ -185,7 +185,7 @@ std::vector<CloudPoint> points_of(const MatterParts& parts, const SampleChoice& 
       .samples;
 }
 
-/// Frames of a body, or those that a store has.
+/// Takes the places of a body's frames from a store, or makes them.
 KeptSamples<SamplePlace> frame_places(const MatterParts& parts, const SampleChoice& choice,
                                       const std::vector<Vec3d>& occupied, const SampleStore* store, ThreadPool& pool) {
   const auto make = [&] {

@@ -10,9 +10,9 @@ namespace fascia {
 class SampleStore {
  public:
   virtual ~SampleStore() = default;
-  /// What was kept of a description; none where nothing was.
+  /// Finds what was kept of a description; none where nothing was.
   virtual std::optional<std::string> find(std::string_view description) const = 0;
-  /// Whether what took so long to make is worth being kept. @param seconds  of making it
+  /// Says whether something is worth being kept. @param seconds  that it took to make
   virtual bool wants(double seconds) const = 0;
   virtual void keep(std::string_view description, std::string_view bytes) const = 0;
 };

@@ -23,7 +23,7 @@ namespace {
 /// Calls that are timed, unless the options say how many: those of some time [s], within these numbers.
 constexpr double kSeconds = 0.1;
 constexpr int kFewest = 5, kMost = 1000;
-/// What CG multiplies vectors with; small, so that repeated updates stay finite.
+/// CG multiplies vectors with this number, which is small, so that repeated updates stay finite.
 constexpr double kStep = 1e-3;
 
 CallTimes time_calls(const std::function<void()>& call, int repeat) {
@@ -88,7 +88,7 @@ State bent(const Simulation& s) {
   return state;
 }
 
-/// What is timed, and how it is judged after a first call.
+/// A piece of work that is timed, and how a first call of it is judged.
 struct Kernel {
   const char *name, *item;
   double items;

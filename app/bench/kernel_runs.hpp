@@ -63,7 +63,7 @@ Teams make_teams(const std::vector<int>& threads, int repeat, const Teller& say)
 std::vector<KernelRow> time_kernels(const BenchmarkCase& c, const Simulation& simulation, SomeTeams teams, int repeat,
                                     const Teller& say);
 
-/// What such a benchmark found.
+/// Rows that such a benchmark found.
 struct KernelResult {
   std::string name, title, notes;
   std::vector<KernelRow> rows;

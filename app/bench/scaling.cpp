@@ -89,7 +89,7 @@ class Scaling {
   /// One model on all numbers of threads.
   void strong(const BenchmarkCase& c) { add(times(c, teams_), "strong"); }
 
-  /// As many points a thread, each number of threads with a model of its own. Returns these.
+  /// Each number of threads gets a model of its own, with as many points a thread. Returns these models.
   std::vector<BenchmarkCase> weak(KernelBody body, int points) {
     std::vector<BenchmarkCase> cases;
     std::vector<KernelRow> rows;

@@ -13,7 +13,7 @@ namespace fascia::app {
 std::string scattered_beam(const std::string& title, const std::string& frames, const std::string& points,
                            int neighbours, const std::string& setting);
 
-/// The same beam with frames on a grid and linear weights: four neighbours, 24 points a cell.
+/// Table 3's beam has its frames on a grid here, with linear weights: four neighbours, 24 points a cell.
 std::string grid_beam(const std::array<int, 3>& cells, const std::string& setting);
 
 /// A clamped block of 10 × 10 × 20 cm, five tetrahedra a cell; or a hexahedron, of eight points.

@@ -8,8 +8,8 @@
 
 namespace fascia::app {
 
-/// What a kernel cannot do without. Each array that it reads or writes counts once, as the data structures hold it,
-/// however often the kernel comes back to it; sums that wait between two passes count nothing, since another kernel
+/// Counts what a kernel cannot do without. Each array that it reads or writes counts once, as the data structures hold
+/// it, however often the kernel comes back to it; sums that wait between two passes count nothing, since another kernel
 /// could do without them. The counts are lower bounds, so that a rate made of them is one too.
 struct Traffic {
   double read = 0, written = 0;  ///< [bytes]

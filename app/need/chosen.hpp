@@ -20,7 +20,7 @@ std::string chosen_scene(const Scene& scene, const std::vector<std::string>& ove
 void write_chosen_scene(const Scene& scene, const std::vector<std::string>& overrides,
                         const std::vector<std::string>& comments);
 
-/// What runs or checks a scene as it was chosen. Its errors are told by what made the choice.
+/// Options run or check a scene as it was chosen, without an estimate: who made the choice tells its errors.
 RunOptions options_of_choice(const RunOptions& options, const Scene& scene, const std::vector<std::string>& overrides);
 
 }  // namespace fascia::app

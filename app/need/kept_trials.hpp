@@ -17,8 +17,8 @@ class KeptTrials {
   /// @throws FileError  a file that the scene names cannot be read
   KeptTrials(const Scene& scene, bool anew);
 
-  /// What the scene with these changes came to, without its choice. None where it was not tried, did not give all of
-  /// the quantities, or where steps are needed and other work lengthened them.
+  /// Finds what the scene with these changes came to, without its choice. None where it was not tried, did not give all
+  /// of the quantities, or where steps are needed and other work lengthened them.
   std::optional<Trial> find(const std::vector<std::string>& changes, const std::vector<Wanted>& wanted) const;
 
   /// The summary of a run is of the scene as it was read, and of files as they were then.

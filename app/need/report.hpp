@@ -41,7 +41,7 @@ class NeedReport {
 /// 0.016 as "1.6 %".
 std::string percent(double part);
 
-/// As summary.json tells it, without whether it was met.
+/// Keys of a need for summary.json, which adds whether it was met.
 nlohmann::ordered_json json_of(const StatedNeed& need);
 
 /// "linear or quadratic hexahedra": the kinds that are tried.

@@ -25,10 +25,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// What no run of a study differs in from a scene that it may serve.
+/// Keys may differ between a scene and a run that serves it, as they change no result.
 const std::vector<std::string> kBeside{"output", "probes", "silence"};
 
-/// What a scene fixes by saying it. Its bodies have to say some model: that alone is no choice.
+/// A scene fixes what it says, but for the model of a body: every body has to say one, so that it is no choice.
 Value said_by(const Scene& scene) {
   Value tree = plain_tree(scene, {}, kBeside);
   if (Value* bodies = tree.find("bodies"); bodies && bodies->as_table())

@@ -20,7 +20,7 @@ struct StudiedRun {
   double dofs = 0;
 };
 
-/// What a study knows of a scene.
+/// Runs of a study that are of a scene, and what is known of the others.
 struct StoredStudy {
   std::vector<StudiedRun> runs;  ///< of this scene, converged and with an error; from cheap to dear
   std::size_t all = 0;           ///< that the study made

@@ -81,8 +81,8 @@ class Trials {
 
   /// What makes a scene without a need of a choice, behind the scene's own overrides.
   std::vector<std::string> overrides(const NeedChoice& choice) const;
-  /// What an iteration of Newton's method costs with more unknowns, over what it costs in a trial, by the costs that
-  /// `fascia tune` kept for this machine; none where there are none of its bodies' kinds.
+  /// An iteration of Newton's method costs so many times as much with `more` times the unknowns of a trial, by the
+  /// costs that `fascia tune` kept for this machine; none where there are none of its bodies' kinds.
   std::optional<double> tuned_growth(const Trial& trial, double more) const;
   /// The scene that a choice makes.
   Scene scene_of(const NeedChoice& choice) const;

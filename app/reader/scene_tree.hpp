@@ -25,7 +25,7 @@ std::vector<std::string> possible_changes(const Scene& scene, const std::vector<
 /// Paths of files that bodies name begin in another folder.
 void move_files(Value& tree, const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// The same tree for every text that makes the same simulation: keys are sorted, numbers are alike whether they have a
+/// Makes one tree of all texts that make the same simulation: keys are sorted, numbers are alike whether they have a
 /// point or not, paths of files are whole, and what changes no result is missing (title, needs, where the output goes).
 /// @param without  keys of the scene that are left out too
 Value plain_tree(const Scene& scene, const std::vector<std::string>& changes,

@@ -9,7 +9,7 @@ namespace fascia::app {
 namespace {
 
 constexpr double kUsualIterations = 5, kStepIterations = 2;
-/// As core/tangent/tangent_solver.cpp.
+/// Above so many unknowns conjugate gradients solve, as core/tangent/tangent_solver.cpp decides.
 constexpr double kFactorised = 15000;
 /// The least part of an iteration that the linear solver can have: timing spreads more.
 constexpr double kLeastSolve = 0.1;

@@ -74,7 +74,7 @@ TEST_F(Bench, TimesThePapersSmallBeamsAndWritesItsScenes) {
   EXPECT_EQ(summary("again")["bodies"]["beam"]["points"], 400);
 }
 
-/// Of another way to the same numbers, and of other numbers of threads.
+/// Another way gives the same numbers, and other numbers of threads the same bits.
 void expect_right(const nlohmann::json& row) {
   EXPECT_LT(row["error"], 1e-10) << row;
   EXPECT_TRUE(row["bits_equal"].is_null() || row["bits_equal"] == true) << row;

@@ -171,7 +171,7 @@ TEST_F(NeedRuns, ChooseAmongTheRunsOfAStudy) {
   write("half/study.json", "{ \"fascia_study\": 1, \"interrupted\": true }\n");
   expect_refused(with(needs("error = 0.9\n"), "study = \"study\"", "study = \"half\""),
                  {"holds no runs; call fascia study again"});
-  // What ran is known, whatever became of its file; a study of another scene it is no more.
+  // The study knows what it ran, whatever became of the file; a study of another scene it is no more.
   write("beam.toml", with(kCantilever, "poisson = 0.3", "poisson = 0.31"));
   write("need.toml", needs("error = 0.9\n"));
   EXPECT_EQ(fascia({"check", "need.toml"}).status, 0);

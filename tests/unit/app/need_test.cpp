@@ -1,15 +1,21 @@
+#include "app/machine.hpp"
 #include "app/need/accuracy.hpp"
 #include "app/need/chosen.hpp"
 #include "app/need/open_scene.hpp"
 #include "app/need/stored_study.hpp"
+#include "app/need/trials.hpp"
 #include "app/reader/scene_tree.hpp"
 #include "app/results/provenance.hpp"
 #include "app/scene/toml_text.hpp"
+#include "app/tune/kept_costs.hpp"
 #include "tests/unit/app/scene_text.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 // Scenes that state what their results must be worth: what they may leave out, what that leaves open, and how errors
 // are judged.
@@ -168,6 +174,31 @@ TEST(TreeDifference, IsTheFirstKeyThatDiffers) {
             (std::vector<std::string>{"solver.kind=\"static\"", "solver.kind="}));
   EXPECT_EQ(toml_text(*value_at(a, "bodies.beam.frames.grid")), "[5.0, 2.0, 2.0]");
   EXPECT_EQ(value_at(a, "bodies.beam.order"), nullptr);
+}
+
+TEST(TunedGrowth, IsOfTheMethodThatSolvesEachSize) {
+  namespace fs = std::filesystem;
+  std::string name = (fs::temp_directory_path() / "fascia costs XXXXXX").string();
+  ASSERT_NE(mkdtemp(name.data()), nullptr);
+  setenv("XDG_CACHE_HOME", name.c_str(), 1);
+  KindCost cost;
+  cost.point = 1e-6, cost.factor = 2e-9, cost.exponent = 1.5, cost.product = 3e-9, cost.spread = 10;
+  CostModel costs;
+  costs.kinds["hexahedra"] = cost;
+  fs::create_directories(tune_file().parent_path());
+  std::ofstream(tune_file()) << nlohmann::ordered_json{{"key", machine_key(this_machine())}, {"kinds", costs.json()}};
+  const Scene scene =
+      parse(test::mesh_body("hexahedra", "box = { min = [0, 0, 0], max = [4, 1, 1] }", "order = 1\n") + need);
+  const Trials trials(scene, open_parts(scene), wanted_of(scene), {}, nullptr, {}, [] { return false; });
+  Trial trial;
+  trial.choice = {{0, 1}, 0, "", {}};
+  trial.dofs = 10000, trial.points = 20000;
+  const double own = 1e-6 * 20000 + 2e-9 * std::pow(10000, 1.5);
+  EXPECT_NEAR(*trials.tuned_growth(trial, 1.2), (1e-6 * 24000 + 2e-9 * std::pow(12000, 1.5)) / own, 1e-12);
+  // Above 15,000 unknowns conjugate gradients solve.
+  EXPECT_NEAR(*trials.tuned_growth(trial, 2), (1e-6 * 40000 + 3e-9 * 20000 * 10 * std::cbrt(20000.0)) / own, 1e-12);
+  unsetenv("XDG_CACHE_HOME");
+  fs::remove_all(name);
 }
 
 /// Three runs, the dearer the better.
