@@ -96,6 +96,9 @@ struct Stepper::Parts {
     const State& start = simulation.initial;
     steps = backend == Backend::cuda ? gpu::make_stepper(simulation.model, start, settings, stepping)
                                      : make_stepper(simulation.model, start, pool, settings, stepping);
+    if (settings.budget > 0)
+      if (const std::string no = steps->warm_up(factors(start.time, solver.time_step), solver.time_step); !no.empty())
+        simulation.warnings.add("budget", no);
   }
 
   bool statics() const { return simulation.scene.solver.kind == SolverKind::statics; }
@@ -235,6 +238,7 @@ StepReport Stepper::step(double dt, const std::stop_token& stop) {
   report.converged = run.status == RunStatus::converged;
   report.stopped = run.status == RunStatus::interrupted;
   report.at_limit = run.steps_at_limit > 0;
+  report.out_of_time = run.steps_out_of_time > 0;
   report.stable = !run.stability.is_unstable();
   report.message = run.message;
   report.newton_iterations = run.newton_iterations;

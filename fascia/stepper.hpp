@@ -26,14 +26,15 @@ struct RigidMotion {
 
 /// How a step went.
 struct StepReport {
-  bool converged = false;  ///< false: the state stayed as it was
-  bool at_limit = false;   ///< it converged only in that Solver::on_limit = proceed accepts it above the tolerance
-  bool stopped = false;    ///< it did not converge, for it was asked to stop
-  bool stable = true;      ///< false: an equilibrium of statics is unstable; true also where that could not be told
-  std::string message;     ///< why it did not converge, and what to try; by the keys of scene files
-  double time = 0;         ///< that was reached [s]; in statics the load factor
-  double seconds = 0;      ///< that the step took
-  double residual = 0;     ///< largest that was left, as a part of the forces that act [-]
+  bool converged = false;    ///< false: the state stayed as it was
+  bool at_limit = false;     ///< it converged only in that Solver::on_limit = proceed accepts it above the tolerance
+  bool out_of_time = false;  ///< Solver::budget ended before it converged, and it was taken as far as it got
+  bool stopped = false;      ///< it did not converge, for it was asked to stop
+  bool stable = true;        ///< false: an equilibrium of statics is unstable; true also where that could not be told
+  std::string message;       ///< why it did not converge, and what to try; by the keys of scene files
+  double time = 0;           ///< that was reached [s]; in statics the load factor
+  double seconds = 0;        ///< that the step took
+  double residual = 0;       ///< largest that was left, as a part of the forces that act [-]
   int newton_iterations = 0, linear_iterations = 0;
 };
 
@@ -51,7 +52,8 @@ class Snapshot {
 /// Builds what a scene describes and advances it on demand.
 ///
 /// Statics and the implicit schemes of Solver::kind can be stepped, on the processor or, with Solver::backend = "cuda",
-/// on a GPU. Solver::time_step, Solver::steps, Solver::duration and Output are not used. A call that throws InputError
+/// on a GPU. Solver::time_step, Solver::steps, Solver::duration and Output are not used; of a time step with a
+/// Solver::budget the first is, by steps that are tried and forgotten before the first. A call that throws InputError
 /// changes nothing. One stepper is used by one thread at a time; several may be used side by side.
 ///
 /// The address of a view stays the same as long as the stepper lives; its numbers are those of the last step. Nobody

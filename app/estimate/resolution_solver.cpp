@@ -50,10 +50,10 @@ SceneTwin solved_exactly(const Scene& scene) {
                   "in the place of {:g}",
                   std::min(exact, solver.newton_tolerance), solver.newton_tolerance,
                   std::min(exact, solver.linear_tolerance), solver.linear_tolerance));
-  if (solver.on_limit == OnLimit::proceed) {
-    twin.overrides.emplace_back("solver.newton.on_limit=\"stop\"");
+  if (solver.on_limit == OnLimit::proceed) twin.overrides.emplace_back("solver.newton.on_limit=\"stop\"");
+  if (solver.budget) twin.overrides.emplace_back("solver.budget=\"none\"");
+  if (solver.on_limit == OnLimit::proceed || solver.budget)
     twin.changes.emplace_back("every step is solved to the end");
-  }
   return twin;
 }
 

@@ -108,6 +108,15 @@ void read_control(const TableReader& table, const std::vector<std::string>& bodi
     table.error("tangent", fmt::format("\"material\" {}, which needs the geometric stiffness; must be \"full\"", with));
 }
 
+/// Time on the clock for a step. A need measures what models take, and not what is left of them when time ends.
+void read_budget(const TableReader& table, bool under_need, Solver& solver) {
+  const Value* budget = table.value("budget");
+  if (!budget || budget->as_string()) return;
+  solver.budget = table.number("budget");
+  if (under_need)
+    table.error("budget", "does not go with a need; leave it out: need.step chooses a model whose steps take so long");
+}
+
 /// Products of 32 bits are the GPU's, of solvers with Newton's directions.
 void read_precision(const TableReader& table, Solver& solver) {
   solver.precision = table.text("precision").value_or("double");
@@ -146,6 +155,8 @@ void check_kind(const TableReader& table, const Solver& solver) {
   if (solver.kind != SolverKind::statics)
     table.refuse({"load_steps", "control", "controlled", "max_steps", "accept", "imperfection"}, unused);
   if (solver.kind != SolverKind::modes) table.refuse({"count"}, unused);
+  if (!is_implicit_dynamics(solver.kind))
+    table.refuse({"budget"}, unused + "; a budget is for steps of implicit dynamics, which can be cut short");
   if (solver.kind == SolverKind::central_differences) table.refuse({"newton", "linear", "tangent"}, unused);
 }
 
@@ -186,6 +197,7 @@ Solver read_solver(const TableReader& scene, const std::vector<std::string>& bod
     solver.load_steps = *table.integer("load_steps");
   if (kind == SolverKind::statics) read_control(table, bodies, solver);
   solver.modes = table.integer("count").value_or(solver.modes);
+  read_budget(table, states_need(scene), solver);
   read_newton(table.table("newton"), solver);
   read_linear(table.table("linear"), solver);
   solver.imperfection = table.number("imperfection").value_or(0);

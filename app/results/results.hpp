@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/results/budget_use.hpp"
 #include "app/results/probes.hpp"
 #include "app/results/step_seconds.hpp"
 #include "app/run/recovery.hpp"
@@ -74,6 +75,7 @@ struct RunTimes {
   double setup = 0, solve = 0, output = 0;
   double processor = 0;  ///< of the solve, of all threads
   StepSeconds steps;
+  BudgetUse budget;  ///< of scenes that give one
 };
 
 /// summary.json of a run that goes on: what is known of it from the start.

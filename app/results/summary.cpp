@@ -106,7 +106,13 @@ nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const Run
                   {"solve_processor", times.processor},
                   {"step_median", times.steps.percentile(0.5)},
                   {"step_p99", times.steps.percentile(0.99)},
+                  {"step_p999", times.steps.percentile(0.999)},
                   {"step_max", times.steps.percentile(1.0)}};
+  if (const std::optional<double>& budget = s.scene.solver.budget)
+    j["budget"] = {{"seconds", *budget},
+                   {"cut_steps", times.budget.cut},
+                   {"late_steps", times.budget.late},
+                   {"residual_max", finite(times.budget.most_left)}};
   j["peak_memory_bytes"] = static_cast<std::uint64_t>(peak_memory());
   j["warnings"] = s.warnings.summary();
   j["doubts"] = run.doubts;

@@ -51,6 +51,7 @@ class ShownRun final : public RunListener {
   void iterating(const IterationInfo& iteration) override { progress_->update(iteration); }
   void stepped(const StepInfo& step) override {
     steps_.add(step.seconds);
+    if (s_.scene.solver.budget) budget_.add(step, *s_.scene.solver.budget);
     progress_->update(step);
     files_.note(step);
   }
@@ -67,6 +68,7 @@ class ShownRun final : public RunListener {
   }
 
   const StepSeconds& steps() const { return steps_; }
+  const BudgetUse& budget() const { return budget_; }
   /// Values of all probes at the end; of modes, frequencies are lists.
   std::vector<nlohmann::json> probes() const {
     if (s_.scene.solver.kind == SolverKind::modes) return modes_;
@@ -84,6 +86,7 @@ class ShownRun final : public RunListener {
   ErrorEstimate* estimate_;
   std::optional<Progress> progress_;  ///< from the first step on
   StepSeconds steps_;
+  BudgetUse budget_;
   std::vector<nlohmann::json> modes_;
 };
 
@@ -92,6 +95,7 @@ struct Outcome {
   RunEnd end;
   nlohmann::ordered_json failure;  ///< null: none
   StepSeconds steps;
+  BudgetUse budget;
   std::vector<nlohmann::json> probes;
 };
 
@@ -103,6 +107,7 @@ Outcome simulate(const Simulation& s, Backend backend, ThreadPool& pool, RunResu
   const bool may_fail = out.end.failed && s.scene.solver.kind != SolverKind::modes;
   if (may_fail) out.failure = keep_failed(s, out.end.state, !out.end.shown, out.end.report, files);
   out.steps = shown.steps();
+  out.budget = shown.budget();
   out.probes = shown.probes();
   return out;
 }
@@ -185,8 +190,8 @@ int run_scene(const RunOptions& options) {
   const RunReport& run = end.report;
   tell(out.end.warnings, options.scene);
   s.warnings.add(end.warnings);
-  const RunTimes times{end.setup_seconds + setup, end.solve_seconds, end.output_seconds, end.processor_seconds,
-                       out.steps};
+  const RunTimes times{end.setup_seconds + setup, end.solve_seconds, end.output_seconds,
+                       end.processor_seconds,     out.steps,         out.budget};
   nlohmann::ordered_json j = summary(s, end, times, pool.size(), out.probes, files.provenance());
   if (!out.failure.is_null()) j["failure"] = out.failure;
   if (options.complete) options.complete(j);

@@ -89,6 +89,10 @@ Key solver_schema() {
                "Of dynamics, where it is needed."),
            key("duration", number("s", above(0)), "Of dynamics; or `steps`."),
            key("steps", integer(between(1, many)), "Of dynamics; or `duration`. Not with `time_step = \"auto\"`."),
+           key("budget", one_of({number("s", above(0)), choice({{"none", "A step takes as long as it needs."}})}),
+               "Of implicit dynamics: time on the clock that a step may take. Where it ends, iterations do, and the "
+               "step is taken as far as it got; the summary tells what was left.")
+               .defaults("\"none\""),
            key("count", integer(between(1, 10000)), "Of `kind = \"modes\"`: how many.").defaults("10"),
            key("load_steps",
                one_of({choice({{"auto", "As few as converge; of `control` other than `\"load\"` as 10."}}),

@@ -9,6 +9,7 @@ SolverSettings settings_of(const Solver& solver) {
   s.max_iterations = solver.newton_max_iterations;
   s.tolerance = solver.newton_tolerance;
   s.proceed_on_limit = solver.on_limit == OnLimit::proceed;
+  s.budget = solver.budget.value_or(0);
   s.linear = solver.linear;
   s.preconditioner = solver.preconditioner;
   s.cg.max_iterations = solver.linear_max_iterations;

@@ -23,6 +23,10 @@ class RunCheck {
     if (s_.kind == SolverKind::modes && s_.modes < 1)
       wrong(fmt::format("asks for {} modes; must be at least 1", s_.modes));
     if (s_.kind == SolverKind::statics && s_.control != StaticControl::load) look_at_path();
+    if (s_.budget && !is_implicit_dynamics(s_.kind))
+      wrong("a budget is for steps of implicit dynamics; leave it out");
+    else if (s_.budget && (!(*s_.budget > 0) || !std::isfinite(*s_.budget)))
+      wrong(fmt::format("budget = {} s is out of range; must be above 0", *s_.budget));
     const bool newton = s_.kind != SolverKind::modes && s_.kind != SolverKind::central_differences;
     if (!newton && (s_.precision != "double" || s_.gpus > 1))
       wrong("explicit dynamics and modes take one GPU at most, in double precision");

@@ -48,6 +48,7 @@ struct Solver {
   int newton_max_iterations = 50;
   double newton_tolerance = 1e-8;
   OnLimit on_limit = OnLimit::stop;
+  std::optional<double> budget{};  ///< of implicit dynamics: time on the clock that a step may take [s]
   LinearMethod linear = LinearMethod::automatic;
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
   int linear_max_iterations = 1000;

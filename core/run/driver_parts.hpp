@@ -27,6 +27,7 @@ inline void note_indefinite(RunReport& run, int solves_before, double end) {
 
 inline bool acceptable(const NewtonReport& newton, const SolverSettings& settings) {
   if (newton.status == NewtonStatus::converged) return true;
+  if (newton.status == NewtonStatus::out_of_time) return newton.last.finite();
   const bool usable = newton.status == NewtonStatus::limit || newton.status == NewtonStatus::stalled ||
                       newton.status == NewtonStatus::unsolved;
   return settings.proceed_on_limit && usable && newton.last.finite();
@@ -36,7 +37,9 @@ inline void accept(RunReport& run, const NewtonReport& newton, const SolverSetti
   ++run.steps;
   run.time = time;
   run.residual = std::max(run.residual, newton.last.relative);
-  run.steps_at_limit += newton.status != NewtonStatus::converged;
+  const bool cut = newton.status == NewtonStatus::out_of_time;
+  run.steps_out_of_time += cut;
+  run.steps_at_limit += newton.status != NewtonStatus::converged && !cut;
   run.convergence = convergence_sentence(newton, settings);
   run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor);
 }

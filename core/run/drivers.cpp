@@ -42,6 +42,14 @@ std::string detour_sentence(double to) {
   return out.str();
 }
 
+std::string too_short_sentence(const StepBudget& budget) {
+  std::ostringstream out;
+  out.precision(2);
+  out << "the budget of a step, " << budget.seconds() << " s, holds no iteration of Newton's method, which took "
+      << budget.least() << " s at least; give solver.budget more, or fewer frames or cells (need.step chooses them)";
+  return out.str();
+}
+
 namespace {
 
 /// Rounding leaves about as much, and no step is short enough to change that.
@@ -71,6 +79,10 @@ std::string failure_sentence(const NewtonReport& r, const SolverSettings& settin
     case NewtonStatus::converged:
     case NewtonStatus::stopped:
       return "";
+    case NewtonStatus::out_of_time:
+      out << "the step's budget ended after " << r.iterations << " iterations of Newton's method";
+      describe_residual(r.last, settings, out);
+      break;
     case NewtonStatus::limit:
       out << "Newton stopped after " << r.iterations << " iterations";
       describe_residual(r.last, settings, out);

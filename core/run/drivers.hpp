@@ -42,6 +42,7 @@ struct RunReport {
   double residual = 0, residual_floor = 0;  ///< largest of the steps, relative
   double time = 0;
   int steps_at_limit = 0;                     ///< accepted above the tolerance (proceed_on_limit)
+  int steps_out_of_time = 0;                  ///< accepted above the tolerance where their budget ended
   std::string trouble;                        ///< of a followed path: its end may be unstable
   std::string convergence;                    ///< why the last step counts as converged, in words
   Stability stability;                        ///< of the end of statics under load control
@@ -70,6 +71,8 @@ std::string convergence_sentence(const NewtonReport& newton, const SolverSetting
 std::string passed_sentence(double from, double to);
 /// That Newton's method left the states that a load step passes through; told in RunReport::doubts alone.
 std::string detour_sentence(double to);
+/// That a budget holds no iteration of Newton's method.
+std::string too_short_sentence(const StepBudget& budget);
 /// Why a step did not converge.
 std::string failure_sentence(const NewtonReport& newton, const SolverSettings& settings);
 /// Stability of the equilibrium at the end of statics, which the system stands at.
@@ -113,7 +116,8 @@ struct DynamicsSettings {
   bool ends_at_duration(int step) const { return duration > 0 && step == steps; }
 };
 
-/// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256.
+/// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256; one whose
+/// budget ends is taken as far as it got. A run whose budget holds no iteration ends before its first step.
 ///
 /// The observer sees the state at the end of each step. The system's gradient belongs to the step's equations there,
 /// with inertia; after a midpoint step it is what look_back() says, at the start what look_at() does.

@@ -20,7 +20,9 @@ class ImplicitStepper {
 
   /// @param system, settings  stay with the caller
   ImplicitStepper(System& system, const SolverSettings& settings, TimeScheme scheme)
-      : system_(system), settings_(settings), scheme_(scheme) {}
+      : system_(system), settings_(settings), scheme_(scheme) {
+    if (settings.budget > 0) budget_.emplace(settings.budget);
+  }
 
   /// Advances the state by a time step, in halves where Newton's method fails or a boundary turns too far at once, down
   /// to 1/256. Where that fails too, the state stays as it was, and the run's status, message and failed state say why.
@@ -28,6 +30,7 @@ class ImplicitStepper {
   /// @param run      counts the step, and is not touched otherwise
   NewtonReport step(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
     using namespace drivers;
+    if (budget_) budget_->begin(ready_);
     std::swap(earlier_, before_);
     before_ = state;
     failures_ = 0;
@@ -45,6 +48,26 @@ class ImplicitStepper {
     as_long_as_before_ = last_step_ > 0 && StepConstants::equal(dt, last_step_);
     last_step_ = dt;
     return report;
+  }
+
+  /// Takes a step twice and forgets it, where steps have a budget: the first has the memory that it needs and the
+  /// solvers that suit it, the second shows what its parts take.
+  /// @param end, dt  of the first step to come
+  /// @return         why no step fits into the budget; empty where one does, and where there is none
+  std::string warm_up(const Pose& state, const FactorFunction& factors, double end, double dt) {
+    if (!budget_) return {};
+    const StepMemory memory = on_host(memory_);
+    const std::vector<double> pressures = system_.reached_pressures();
+    for (int twice = 0; twice < 2; ++twice) {
+      budget_->forget();
+      Pose tried = state;
+      RunReport run;
+      step(tried, factors, end, dt, run);
+      system_.forget_steps(factors(end - dt), pressures);
+      begin_afresh(Memory(memory));
+    }
+    ready_ = true;
+    return budget_->least() <= budget_->seconds() ? "" : too_short_sentence(*budget_);
   }
 
   /// Has the system look at the state that the last step reached, where that step's equations hold elsewhere.
@@ -101,13 +124,15 @@ class ImplicitStepper {
     NewtonReport report;
     if (depth == 0 || system_.prescribed_rotation() <= kRotationPerStep) {
       system_.start_from_prediction();
-      Newton newton(system_, settings_, {run.steps + 1, end});
+      Newton newton(system_, settings_, {run.steps + 1, end}, budget_ ? &*budget_ : nullptr);
       report = newton.solve();
       count(run, report);
+      const Clock::time_point solved = Clock::now();
       if (acceptable(report, settings_)) {
         if (solved_at < end) system_.set_factors(factors(end));
         if (depth < kMostHalvings && !kept_) kept_ = on_host(memory_);  // the whole step may fail yet
         system_.finish_step(end, memory_, state);
+        if (budget_) budget_->took_end(seconds_since(solved));
         return report;
       }
       if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings) return report;
@@ -130,6 +155,8 @@ class ImplicitStepper {
   System& system_;
   const SolverSettings& settings_;
   TimeScheme scheme_;
+  std::optional<StepBudget> budget_;
+  bool ready_ = false;  ///< the budget knows what the parts of a step take
   Memory memory_;
   std::optional<StepMemory> kept_;  ///< as it was before a step of which a part was taken
   Pose before_, earlier_;           ///< at the starts of the last two steps

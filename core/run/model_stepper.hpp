@@ -4,6 +4,7 @@
 #include "core/run/drivers.hpp"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace fascia {
@@ -31,6 +32,10 @@ class ModelStepper {
   /// @param factors  of schedules during this step; those of driven motions go from 0 to 1
   /// @return  of this step alone. Where it did not converge the state is what it was, and the message says why
   virtual RunReport step(const FactorFunction& factors, double dt) = 0;
+
+  /// Before the first step, where steps have a budget: see ImplicitStepper::warm_up().
+  /// @return  a sentence where the budget holds no step
+  virtual std::string warm_up(const FactorFunction& factors, double dt) = 0;
 
   virtual double time() const = 0;  ///< that was reached [s]; in statics the load factor
 

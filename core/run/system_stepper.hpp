@@ -58,6 +58,11 @@ class SystemStepper final : public ModelStepper {
     return run;
   }
 
+  std::string warm_up(const FactorFunction& factors, double dt) override {
+    system_->restart_motions();
+    return stepping_.statics ? "" : implicit_->warm_up(pose(), factors, pose().time + dt, dt);
+  }
+
   double time() const override {
     if constexpr (kOnHost)
       return state_.time;

@@ -209,7 +209,7 @@ double MechanicalSystem::load_power() const {
   return std::inner_product(load_.begin(), load_.end(), direction_.begin(), 0.0);
 }
 
-DirectionReport MechanicalSystem::direction() {
+DirectionReport MechanicalSystem::direction(int most_iterations) {
   const TakenStep* taken = has_taken_ ? &taken_ : nullptr;
   executor_.linearize(state_, history_, settings_.tangent, lin_, true, taken);
   add_node_blocks(lin_);
@@ -218,6 +218,7 @@ DirectionReport MechanicalSystem::direction() {
   filter_.to_local(rhs);
   if (has_prescribed_increment()) prescribed = prescribed_;
   Linearization fallback;
+  tangent_.limit_iterations(most_iterations);
   const TangentReport solved = tangent_.solve(
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
         const bool material = kind == TamerTangent::material;
@@ -225,6 +226,7 @@ DirectionReport MechanicalSystem::direction() {
         add_node_blocks(fallback, false);
         return fallback;
       });
+  tangent_.limit_iterations(kAsManyAsNeeded);
   DirectionReport report;
   report.usable = solved.usable;
   report.linear_iterations = solved.iterations;

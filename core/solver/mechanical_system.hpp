@@ -71,6 +71,8 @@ class MechanicalSystem {
   /// @param factors    of schedules at that state
   /// @param pressures  reached_pressures() there; empty: none
   void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
+  /// Does so but for what linear solvers have learned.
+  void forget_steps(std::span<const double> factors, const std::vector<double>& pressures);
   /// Newton's pressures of enclosed volumes at the end of the last step [Pa].
   const std::vector<double>& reached_pressures() const { return surfaces_.reached(); }
 
@@ -88,7 +90,8 @@ class MechanicalSystem {
 
   // What Newton asks for.
   Evaluation evaluate();
-  DirectionReport direction();
+  /// @param most_iterations  of conjugate gradients, where the settings allow as many
+  DirectionReport direction(int most_iterations = kAsManyAsNeeded);
   /// The part of a step along the direction that may be taken, at most the one that is wanted: user blocks may have no
   /// energy beyond (UserBlock::largest_step()).
   double largest_step(double wanted);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/solver/settings.hpp"
+#include "core/solver/step_budget.hpp"
 #include "core/solver/verdict.hpp"
 
 #include <algorithm>
@@ -23,8 +24,11 @@ struct DirectionReport {
   double cg_seconds = 0;       ///< in conjugate gradients
 };
 
-/// stopped: as SolverSettings::stops asked for.
-enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linear_failure, stopped };
+/// stopped: as SolverSettings::stops asked for; out_of_time: the step's budget holds no further iteration.
+enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linear_failure, stopped, out_of_time };
+
+/// No limit of iterations beside that of the settings.
+inline constexpr int kAsManyAsNeeded = std::numeric_limits<int>::max();
 
 /// Why a solve counts as converged: its residual is below the tolerance; or it is what rounding leaves; or it is a
 /// small share of the loads and falls no further, and the last correction was small. The correction of a system that
@@ -57,15 +61,16 @@ struct SolvedStep {
 /// iterations, because a slender structure's first step always does (its bending, linear in the rotations, stretches
 /// it). Where that leads nowhere, it returns to the best state and searches along the line.
 ///
-/// System: evaluate() → Evaluation; direction() → DirectionReport; largest_step(wanted), what of a step may be taken;
-/// apply(step); save() and restore(), one state;
+/// System: evaluate() → Evaluation; direction(n) → DirectionReport, by n iterations of conjugate gradients at most;
+/// largest_step(wanted), what of a step may be taken; apply(step); save() and restore(), one state;
 /// has_prescribed_increment(): boundary motion that the next direction still carries; conservative();
 /// compares_energies(): of two states on a way of Newton's method the one with less energy is nearer to the solution.
 template <class System>
 class Newton {
  public:
-  Newton(System& system, const SolverSettings& settings, const SolvedStep& step = {})
-      : system_(system), settings_(settings), step_(step) {}
+  /// @param budget  of the step, null: it takes as long as it needs
+  Newton(System& system, const SolverSettings& settings, const SolvedStep& step = {}, StepBudget* budget = nullptr)
+      : system_(system), settings_(settings), step_(step), budget_(budget) {}
 
   NewtonReport solve() {
     report_ = {};
@@ -76,12 +81,13 @@ class Newton {
     while (system_.has_prescribed_increment() || !settled()) {
       if (report_.iterations >= settings_.max_iterations) return give_up(NewtonStatus::limit);
       if (settings_.stops && settings_.stops()) return finish(NewtonStatus::stopped);
+      if (report_.iterations > 0 && budget_ && !budget_->holds_iteration()) return give_up(NewtonStatus::out_of_time);
       const bool moving = system_.has_prescribed_increment();
       const DirectionReport d = direction();
       if (!d.usable) return give_up(NewtonStatus::linear_failure);
       const double before = current_.residual;
       system_.apply(system_.largest_step(capped(d)));
-      current_ = system_.evaluate();
+      current_ = evaluate();
       if (moving) first_residual_ = std::max(first_residual_, current_.residual);
       if (!moving) count_standing(before);
       if (!moving && !current_.converged() && stagnates(d)) return finish_at_best(Convergence::stagnation);
@@ -137,6 +143,15 @@ class Newton {
     if (circling_ == 0 && rounding) least_ = current_.residual;
   }
 
+  Evaluation evaluate() {
+    if (!budget_) return system_.evaluate();
+    const Clock::time_point start = Clock::now();
+    const Evaluation e = system_.evaluate();
+    budget_->took_evaluation(seconds_since(start));
+    return e;
+  }
+  bool has_time() const { return !budget_ || budget_->holds_evaluation(); }
+
   /// True where the residual is a small share of the loads, the last corrections were small, and it falls no further.
   bool stagnates(const DirectionReport& d) const {
     return !d.unsolved && system_.conservative() && standing_ >= kStands && is_small(d, kSmallDecrement) &&
@@ -153,7 +168,10 @@ class Newton {
       settings_.iterating({step_.number, step_.time, report_.iterations + 1, current_.relative, settings_.tolerance});
     report_.last_tangent =
         system_.has_prescribed_increment() ? std::numeric_limits<double>::infinity() : current_.relative;
-    DirectionReport d = system_.direction();
+    if (budget_ && report_.iterations == 0) budget_->took_start(budget_->elapsed());
+    const Clock::time_point start = Clock::now();
+    DirectionReport d = system_.direction(budget_ ? budget_->cg_iterations() : kAsManyAsNeeded);
+    if (budget_) budget_->took_direction(seconds_since(start), d.cg_seconds, d.linear_iterations);
     ++report_.iterations;
     report_.linear_iterations += d.linear_iterations;
     report_.trouble = d.trouble;
@@ -187,15 +205,16 @@ class Newton {
     turned_back_ = true;
     system_.restore();
     standing_ = 0;
-    current_ = system_.evaluate();
+    current_ = evaluate();
     if (report_.iterations >= settings_.max_iterations) return NewtonStatus::limit;
+    if (budget_ && !budget_->holds_iteration()) return NewtonStatus::out_of_time;
     const DirectionReport d = direction();
     if (!d.usable) return NewtonStatus::linear_failure;
     double step = system_.largest_step(std::min(1.0, 0.25 * kRotationCap / std::max(d.largest_rotation, 1e-300)));
     const bool moving = system_.has_prescribed_increment();  // then the mark's residual is no measure
-    for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
+    for (int halving = 0; halving < kHalvings && has_time(); ++halving, step *= 0.5) {
       system_.apply(step);
-      current_ = system_.evaluate();
+      current_ = evaluate();
       if (current_.finite() &&
           (moving || current_.residual <= (1 - 0.1 * step) * marked_.residual ||
            (system_.compares_energies() && current_.energy <= marked_.energy + 1e-4 * step * std::min(d.slope, 0.0)))) {
@@ -204,16 +223,16 @@ class Newton {
       }
       system_.restore();
     }
-    current_ = system_.evaluate();
+    current_ = evaluate();
     last_decrement_ = std::abs(d.slope);
-    return NewtonStatus::stalled;
+    return has_time() ? NewtonStatus::stalled : NewtonStatus::out_of_time;
   }
 
   /// Goes back to the best state met, where that is better than the present one.
   void return_to_best() {
     if (current_.finite() && current_.residual <= marked_.residual) return;
     system_.restore();
-    current_ = system_.evaluate();
+    current_ = evaluate();
   }
 
   NewtonReport finish_at_best(Convergence convergence) {
@@ -246,6 +265,7 @@ class Newton {
   System& system_;
   const SolverSettings& settings_;
   SolvedStep step_;
+  StepBudget* budget_;
   NewtonReport report_;
   Evaluation current_, marked_;
   int detour_ = 0, standing_ = 0;

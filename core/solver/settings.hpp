@@ -28,6 +28,7 @@ struct SolverSettings : LinearSettings {
   int max_iterations = 50;        ///< Newton iterations of a load or time step
   double tolerance = 1e-8;        ///< residual relative to what acts, see judge()
   bool proceed_on_limit = false;  ///< go on with the residual reached
+  double budget = 0;              ///< of implicit dynamics: time that a step may take [s]; 0: as long as it needs
   Tangent tangent = Tangent::full;
   Precision precision = Precision::full;
   std::function<void(const IterationInfo&)> iterating;  ///< is told of each Newton iteration; may be empty

@@ -95,13 +95,17 @@ void MechanicalSystem::restart_motions() {
 }
 
 void MechanicalSystem::begin_afresh(std::span<const double> factors, const std::vector<double>& pressures) {
+  forget_steps(factors, pressures);
+  tangent_.begin_afresh();
+}
+
+void MechanicalSystem::forget_steps(std::span<const double> factors, const std::vector<double>& pressures) {
   known_.reset();
   reached_.reset();
   reached_factors_.assign(factors.begin(), factors.end());
   middles_ = {};
   static_cast<StepConstants&>(form_) = {};
   surfaces_.begin_afresh(pressures);
-  tangent_.begin_afresh();
 }
 
 void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& end) {

@@ -46,7 +46,8 @@ CgReport CgSolver::solve_by_either(const Vector& b, Vector& x, const CgOptions& 
     return cg;
   };
   if (levels_are_taken()) return by_levels();
-  const bool budget = options.max_iterations < kEnoughForBulk, chosen = settings_.linear == LinearMethod::automatic;
+  const bool budget = limited_ || options.max_iterations < kEnoughForBulk,
+             chosen = settings_.linear == LinearMethod::automatic;
   CgOptions first = options;
   if (chosen && !budget && !kept_levels_.fail())
     first.max_iterations = std::min(options.max_iterations, blocks_or_levels_.patience());
@@ -85,10 +86,13 @@ CgReport CgSolver::solve_as_asked(const Vector& b, Vector& x, const CgOptions& o
   }
 }
 
-LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, const CgOptions& options) {
+LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, const CgOptions& asked) {
   const Clock::time_point start = Clock::now();
+  CgOptions options = asked;
+  if (limited_) options.max_iterations = std::clamp(left_, 1, options.max_iterations);
   Vector found;
   const CgReport cg = solve_as_asked(Vector(b.begin(), b.end()), found, options);
+  left_ -= cg.iterations;
   std::copy(found.begin(), found.end(), x.begin());
   LinearReport report;
   report.iterations = cg.iterations;

@@ -6,6 +6,7 @@
 #include "core/tangent/linear_solver.hpp"
 #include "core/tangent/preconditioners.hpp"
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -35,8 +36,15 @@ class CgSolver final : public LinearSolver {
     return true;
   }
   LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
-  LinearReport solve(std::span<const double> b, std::span<double> x, const CgOptions& options);
+  LinearReport solve(std::span<const double> b, std::span<double> x, const CgOptions& asked);
   bool iterates() const override { return true; }
+  /// Sets a limit to the iterations of all solves to come, beside that of the settings for each: that of the time which
+  /// a step has. What a solve does not reach because of it says nothing of preconditioners.
+  void limit_iterations(int most) {
+    left_ = most;
+    limited_ = most < std::numeric_limits<int>::max();
+  }
+  bool spent() const override { return limited_ && left_ <= 0; }
   /// Makes preconditioners anew and counts iterations afresh.
   void begin_afresh();
 
@@ -63,6 +71,8 @@ class CgSolver final : public LinearSolver {
   TangentOperator& K_;
   LinearSettings settings_;
   FactorSolver& factor_;
+  bool limited_ = false;
+  int left_ = 0;                         ///< iterations, where they are limited
   long pattern_ = 0;                     ///< of K, that preconditioners were made of
   std::unique_ptr<Preconditioner> one_;  ///< that is asked for, or blocks
   bool one_is_ready_ = false;            ///< for K as it is

@@ -35,6 +35,8 @@ class LinearSolver {
 
   /// Each solve takes iterations, so that another digit has its price.
   virtual bool iterates() const = 0;
+  /// The time that a step has is used up: another solve would take it beyond its budget.
+  virtual bool spent() const { return false; }
 };
 
 }  // namespace fascia

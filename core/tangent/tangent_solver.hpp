@@ -46,6 +46,10 @@ class TangentSolver {
   TangentReport solve(const Linearization& at, std::span<const double> prescribed, std::span<const double> b,
                       std::span<double> x, const Relinearize& relinearize);
 
+  /// Sets a limit to iterations of CG in solves to come, where it is below that of the settings. Solves that end there
+  /// say nothing of the solver's choice.
+  void limit_iterations(int most) { cg_.limit_iterations(most); }
+
   /// Factorises K as it is, indefinite or not, and counts the directions in which the equilibrium is unstable. None
   /// where a pivot vanishes.
   std::optional<int> factorize_as_is(const Linearization& at);

@@ -55,6 +55,7 @@ LinearReport solve_whole(TangentOperator& K, LinearSolver& inner, bool limit_end
                          std::span<double> x, double tolerance) {
   LinearReport report;
   const auto precondition = [&](const Vector& r, Vector& z) {
+    if (inner.spent()) return false;
     const LinearReport once = inner.solve(r, z, kInnerTolerance);
     report.iterations += once.iterations;
     report.seconds += once.seconds;

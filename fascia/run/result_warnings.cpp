@@ -252,11 +252,15 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     } else {
       warnings.add("inverted", message);
     }
-  if (run.steps_at_limit > 0 && run.status == RunStatus::converged) {
-    run.status = RunStatus::not_converged;
+  if (run.status != RunStatus::converged || run.steps_at_limit + run.steps_out_of_time == 0) return;
+  run.status = RunStatus::not_converged;
+  if (run.steps_at_limit > 0)
     run.message =
         fmt::format("{} steps were accepted above the tolerance (newton.on_limit = \"continue\")", run.steps_at_limit);
-  }
+  if (run.steps_out_of_time > 0)
+    run.message +=
+        fmt::format("{}{} of {} steps ended where their budget did, with residuals of up to {:.2g} of what acts",
+                    run.message.empty() ? "" : "; ", run.steps_out_of_time, run.steps, run.residual);
 }
 
 }  // namespace fascia

@@ -57,7 +57,10 @@ struct RunEnd {
   double setup_seconds = 0, solve_seconds = 0, output_seconds = 0, processor_seconds = 0;
 
   /// It came to its end, with whatever tolerance the scene asks for.
-  bool done() const { return report.status == RunStatus::converged || (report.steps_at_limit > 0 && !failed); }
+  bool done() const {
+    const bool accepted = report.steps_at_limit > 0 || report.steps_out_of_time > 0;
+    return report.status == RunStatus::converged || (accepted && !failed);
+  }
 };
 
 }  // namespace fascia

@@ -50,6 +50,7 @@ class System {
   void start_from_prediction();
   void restart_motions();
   void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
+  void forget_steps(std::span<const double> factors, const std::vector<double>& pressures);
   std::vector<double> reached_pressures() const {
     return surfaces_.empty() ? std::vector<double>{} : surfaces_.reached();
   }
@@ -65,7 +66,8 @@ class System {
   void look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt);
 
   Evaluation evaluate();
-  DirectionReport direction();
+  /// @param most_iterations  of conjugate gradients, where the settings allow as many
+  DirectionReport direction(int most_iterations = kAsManyAsNeeded);
   static double largest_step(double wanted) { return wanted; }  // user blocks are not here
   void apply(double step);
   void save();
@@ -264,6 +266,7 @@ class System {
   double load_energy_ = 0, inertia_energy_ = 0;
   bool prescribed_left_ = false;
   long steps_ = 0;
+  int most_iterations_ = kAsManyAsNeeded;  ///< of conjugate gradients in a direction
 
   /// It solves where conjugate gradients meet an indefinite tangent, or take longer than it does.
   std::unique_ptr<HostSystem> host_;

@@ -142,7 +142,7 @@ template <class Space>
 DirectionReport System<Space>::direction_of_host() {
   MechanicalSystem& solver = host();
   solver.stand_in(step_in_progress());
-  DirectionReport report = solver.direction();
+  DirectionReport report = solver.direction();  // by a factor, which has no iterations to limit
   indefinite_ = !report.trouble.empty();
   direction_.upload(solver.last_direction());
   note_direction();

@@ -17,14 +17,14 @@ BlocksOrLevels::Costs System<Space>::costs_of_levels() const {
 }
 
 /// An automatic preconditioner goes on with levels where blocks have taken too long, no factor of the host takes over,
-/// which in dynamics would be made in every step, and the limit of iterations is not a budget that the user set: as on
-/// the processor.
+/// which in dynamics would be made in every step, and the limit of iterations is no budget, of the user or of a step's
+/// time: as on the processor.
 template <class Space>
 bool System<Space>::levels_may_pay() const {
   return !blocks_or_levels_.levels() && !kept_levels_.fail() && levels_fit_ &&
          settings_.preconditioner == PreconditionerKind::automatic && settings_.precision != Precision::single &&
          settings_.devices.size() <= 1 && ((step_.h > 0 && tiles_ == nullptr) || !host_may_solve()) &&
-         settings_.cg.max_iterations >= CgOptions{}.max_iterations;
+         settings_.cg.max_iterations >= CgOptions{}.max_iterations && most_iterations_ == kAsManyAsNeeded;
 }
 
 /// Limits a solve with blocks that levels may follow. Tiles, far faster than what levels need in their place, and

@@ -182,11 +182,12 @@ CgReport System<Space>::solve_by_blocks(const CgOptions& options) {
   });
 }
 
-/// A limit that nobody set is no reason to stop.
+/// A limit that nobody set is no reason to stop; the time that a step has is one.
 template <class Space>
 CgOptions System<Space>::solve_options() const {
   CgOptions options = settings_.cg;
   if (limit_is_guessed()) options.max_iterations *= kPatience;
+  options.max_iterations = std::min(options.max_iterations, most_iterations_);
   return options;
 }
 
@@ -194,6 +195,7 @@ CgOptions System<Space>::solve_options() const {
 template <class Space>
 SoftestDirection System<Space>::softest() {
   linearize(Tangent::full, true);
+  most_iterations_ = kAsManyAsNeeded;
   const CgOptions options = solve_options();
   const auto probe = [&](std::span<const double> b, std::span<double> x) {
     return with_scalars([&]<class T, class V>() {
@@ -231,7 +233,8 @@ void System<Space>::product_at_rest(double* p) {
 }
 
 template <class Space>
-DirectionReport System<Space>::direction() {
+DirectionReport System<Space>::direction(int most_iterations) {
+  most_iterations_ = most_iterations;
   const bool whole = unsymmetric();
   if (indefinite_ || too_slow_ || (whole && host_may_solve())) return direction_of_host();
   if (blocks_or_levels_.levels() && (kept_levels_.fail() || !levels_fit_)) blocks_or_levels_.turn_to_blocks();

@@ -184,6 +184,16 @@ void System<Space>::restart_motions() {
 
 template <class Space>
 void System<Space>::begin_afresh(std::span<const double> factors, const std::vector<double>& pressures) {
+  forget_steps(factors, pressures);
+  kept_levels_ = {};
+  blocks_or_levels_ = BlocksOrLevels(costs_of_levels());
+  too_slow_ = false;
+  if (host_) host_->system.begin_afresh(factors, {});
+}
+
+/// As MechanicalSystem's.
+template <class Space>
+void System<Space>::forget_steps(std::span<const double> factors, const std::vector<double>& pressures) {
   known_.reset();
   reached_.reset();
   reached_factors_.assign(factors.begin(), factors.end());
@@ -192,10 +202,6 @@ void System<Space>::begin_afresh(std::span<const double> factors, const std::vec
   data_.show_motions(model_.motions);
   factors_are_placed_ = false;
   if (!surfaces_.empty()) surfaces_.begin_afresh(pressures);
-  kept_levels_ = {};
-  blocks_or_levels_ = BlocksOrLevels(costs_of_levels());
-  too_slow_ = false;
-  if (host_) host_->system.begin_afresh(factors, {});
 }
 
 template <class Space>

@@ -84,8 +84,8 @@ void SolvedScene::solve(const Read& read) {
   Rows rows(s);
   const RunEnd end = run_simulation(s, backend, pool, rows);
   s.warnings.add(end.warnings);
-  const app::RunTimes times{end.setup_seconds, end.solve_seconds, end.output_seconds, end.processor_seconds,
-                            rows.seconds()};
+  const app::RunTimes times{end.setup_seconds,     end.solve_seconds, end.output_seconds,
+                            end.processor_seconds, rows.seconds(),    {}};
   summary_ = nlohmann::json(app::summary(s, end, times, pool.size(), rows.values(), {}));
   ok_ = end.done();
   columns_ = {"time"};

@@ -31,7 +31,7 @@ struct Recorder {
     residuals.push_back(e.relative);
     return e;
   }
-  DirectionReport direction() { return system.direction(); }
+  DirectionReport direction(int most) { return system.direction(most); }
   double largest_step(double wanted) { return system.largest_step(wanted); }
   void apply(double step) { system.apply(step); }
   void save() { system.save(); }

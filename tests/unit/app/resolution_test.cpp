@@ -152,6 +152,10 @@ TEST(Resolution, ToleranceAndPrecision) {
   EXPECT_EQ(twin.solver.on_limit, OnLimit::stop);
   EXPECT_GE(twin.solver.newton_max_iterations, 200);
   EXPECT_FALSE(solved_exactly(with_solver("kind = \"modes\"")).complete());
+  const std::string limited = "kind = \"newmark\"\ntime_step = 0.1\nsteps = 3\nbudget = \"5 ms\"";
+  const SceneTwin unlimited = solved_exactly(with_solver(limited));
+  EXPECT_EQ(with_solver(limited).solver.budget, 0.005);
+  EXPECT_FALSE(parse(std::string(beam) + "[solver]\n" + limited + "\n", unlimited.overrides).solver.budget);
   EXPECT_FALSE(in_double(with_solver("")).complete());
   EXPECT_EQ(in_double(with_solver("precision = \"mixed\"")).overrides, Texts{"solver.precision=\"double\""});
 }

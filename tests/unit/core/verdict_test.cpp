@@ -122,7 +122,7 @@ struct OneSpring {
     e.energy_scale = 1;
     return e;
   }
-  DirectionReport direction() {
+  DirectionReport direction(int /*most_iterations*/) {
     d = -force(x) / tangent(x);
     DirectionReport report;
     report.slope = force(x) * d;
@@ -210,7 +210,7 @@ TEST(NewtonVerdict, RoundingMayGoRoundInACircle) {
       e.energy_scale = 1e-9;
       return e;
     }
-    static DirectionReport direction() {
+    static DirectionReport direction(int /*most_iterations*/) {
       DirectionReport report;
       report.slope = -1e-10;
       return report;
