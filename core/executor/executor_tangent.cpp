@@ -1,4 +1,5 @@
 #include "core/base/index.hpp"
+#include "core/base/parallel_copy.hpp"
 #include "core/executor/executor.hpp"
 #include "core/node/node_load.hpp"
 
@@ -9,10 +10,21 @@ namespace fascia {
 
 namespace {
 
+constexpr int kNodeGrain = 256;
+
 /// I + D of each node.
-void turn(const FrameMatrices& D, std::vector<Mat3d>& Q) {
+void turn(ThreadPool& pool, const FrameMatrices& D, std::vector<Mat3d>& Q) {
   Q.resize(D.size());
-  for (std::size_t i = 0; i < Q.size(); ++i) Q[i] = Mat3d::identity() + D[i];
+  pool.for_ranges(static_cast<int>(Q.size()), kNodeGrain, [&](int begin, int end) {
+    for (int node = begin; node < end; ++node) Q[at(node)] = Mat3d::identity() + D[at(node)];
+  });
+}
+
+/// Copies an array into one that keeps its memory.
+template <class From, class To>
+void keep(ThreadPool& pool, const From& from, To& to) {
+  to.resize(from.size());
+  copy_parallel(pool, std::span(from), std::span(to));
 }
 
 }  // namespace
@@ -24,15 +36,17 @@ bool Linearization::symmetric() const {
 
 std::span<const Vec3d> CpuExecutor::translations_of(std::span<const double> d) {
   translations_.resize(see_translations_ ? at(set_.node_count()) : 0);
-  for (std::size_t node = 0; node < translations_.size(); ++node)
-    std::copy_n(d.data() + set_.dofs.begin(static_cast<int>(node)), 3, translations_[node].v);
+  pool_.for_ranges(static_cast<int>(translations_.size()), kNodeGrain, [&](int begin, int end) {
+    for (int node = begin; node < end; ++node)
+      std::copy_n(d.data() + set_.dofs.begin(node), 3, translations_[at(node)].v);
+  });
   return translations_;
 }
 
 BlockDirection CpuExecutor::direction_of(std::span<const double> d, const std::vector<Mat3d>& Q) {
   motions_.resize(see_motions_ ? at(set_.node_count()) * 12 : 0);
   if (see_motions_)
-    pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
+    pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
       for (int node = begin; node < end; ++node) {
         double* motion = motions_.data() + at(node) * 12;
         const double* dn = d.data() + set_.dofs.begin(node);
@@ -57,20 +71,24 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   if (tangent == Tangent::material) taken = nullptr;
   linearize_blocks(state, history, taken, out);
   const std::vector<Mat3d>& turning = taken != nullptr && see_motions_ ? extrapolated_L_ : node_L_;
-  turn(state.D, out.Q);
-  out.node_blocks.assign(set_.dofs.block_total(), 0.0);
-  for (int node = 0; node < set_.node_count(); ++node) {
-    if (tangent == Tangent::material || set_.dofs.kind(node) != FrameKind::rigid) continue;
-    const Mat3d L = tethers_turn || tether_L_.empty() ? turning[at(node)] : turning[at(node)] - tether_L_[at(node)];
-    const Mat3d rr = sym(L) - Mat3d::diagonal(trace(L));
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) out.node_blocks[set_.dofs.block_begin(node) + at(6 * (3 + i) + 3 + j)] = rr(i, j);
-  }
+  turn(pool_, state.D, out.Q);
+  out.node_blocks.resize(set_.dofs.block_total());
+  pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
+    for (int node = begin; node < end; ++node) {
+      double* block = out.node_blocks.data() + set_.dofs.block_begin(node);
+      std::fill_n(block, set_.dofs.size(node) * set_.dofs.size(node), 0.0);
+      if (tangent == Tangent::material || set_.dofs.kind(node) != FrameKind::rigid) continue;
+      const Mat3d L = tethers_turn || tether_L_.empty() ? turning[at(node)] : turning[at(node)] - tether_L_[at(node)];
+      const Mat3d rr = sym(L) - Mat3d::diagonal(trace(L));
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) block[6 * (3 + i) + 3 + j] = rr(i, j);
+    }
+  });
   springs_.add_blocks(state, out.tangent, out.node_blocks);
-  out.u = state.u;
-  out.D.assign(state.D.values().begin(), state.D.values().end());
-  if (see_state_again_) out.E = history.E;
-  out.given.assign(history.given.begin(), history.given.end());
+  keep(pool_, state.u, out.u);
+  keep(pool_, state.D.values(), out.D);
+  if (see_state_again_) keep(pool_, history.E, out.E);
+  keep(pool_, history.given, out.given);
 }
 
 /// Blocks keep what they need; where stresses are extrapolated, what they do to turning frames is kept too.
@@ -83,7 +101,7 @@ void CpuExecutor::linearize_blocks(const State& state, const StrainHistory& hist
   out.kept.resize(out.kept_begin.back());
   BlockDirection step;
   if (taken != nullptr) {
-    turn(taken->D, out.Q);  // those of the state follow
+    turn(pool_, taken->D, out.Q);  // those of the state follow
     step = direction_of(taken->d, out.Q);
   }
   for_each_block([&](auto& block, std::size_t b) {
@@ -98,7 +116,7 @@ void CpuExecutor::linearize_blocks(const State& state, const StrainHistory& hist
   });
   if (taken == nullptr || !see_motions_) return;
   extrapolated_L_.resize(at(set_.node_count()));
-  pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
+  pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       if (set_.dofs.kind(node) != FrameKind::rigid) continue;
       const Mat3d N = sum_at(node).N;
@@ -126,7 +144,7 @@ double CpuExecutor::largest_spin(std::span<const double> direction) {
 void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, std::span<double> y) {
   const BlockDirection direction = direction_of(x, lin.Q);
   for_each_block([&](auto& block, std::size_t b) { block.compute_product(state_of(lin, b), direction); });
-  pool_.for_ranges(set_.node_count(), 256, [&](int begin, int end) {
+  pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {
       const NodeSum sum = sum_at(node);
       const FrameKind kind = set_.dofs.kind(node);
@@ -148,15 +166,17 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
 }
 
 void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out, Entries entries) {
-  matrix_out.set_zero();
+  matrix_out.set_zero(pool_);
   for_each_block([&](auto& block, std::size_t b) { block.assemble(state_of(lin, b), matrix_out, entries); });
-  for (int node = 0; node < set_.node_count(); ++node) {
-    double* diagonal = matrix_out.block(matrix_out.diagonal(node));
-    const double* own = lin.node_blocks.data() + set_.dofs.block_begin(node);
-    for (int k = 0; k < set_.dofs.size(node) * set_.dofs.size(node); ++k) diagonal[k] += own[k];
-  }
+  pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
+    for (int node = begin; node < end; ++node) {
+      double* diagonal = matrix_out.block(matrix_out.diagonal(node));
+      const double* own = lin.node_blocks.data() + set_.dofs.block_begin(node);
+      for (int k = 0; k < set_.dofs.size(node) * set_.dofs.size(node); ++k) diagonal[k] += own[k];
+    }
+  });
   for (const SurfaceTangent& surface : lin.surfaces) add_blocks(surface, lin.Q, matrix_out);
-  matrix_out.mirror_lower();
+  matrix_out.mirror_lower(pool_);
 }
 
 }  // namespace fascia

@@ -13,6 +13,8 @@ namespace fascia {
 
 namespace {
 
+constexpr int kRowGrain = 64;
+
 /// Elements around each node of a block.
 struct ElementsAround {
   int nodes;                       ///< of an element
@@ -222,19 +224,27 @@ int BlockMatrix::find(int row, int column) const {
   return static_cast<int>(std::lower_bound(begin, end, column) - column_.begin());
 }
 
-void BlockMatrix::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
+void BlockMatrix::set_zero(ThreadPool& pool) {
+  pool.for_ranges(rows(), kRowGrain, [&](int begin, int end) {
+    std::fill(values_.data() + value_begin_[at(row_begin(begin))], values_.data() + value_begin_[at(row_begin(end))],
+              0.0);
+  });
+}
 
-void BlockMatrix::mirror_lower() {
+/// Each block below the diagonal has a mirror of its own, so that rows write at different places.
+void BlockMatrix::mirror_lower(ThreadPool& pool) {
   if (uniform_ > 0) return;
-  for (int row = 0; row < rows(); ++row) {
-    for (int k = row_begin(row); k < diagonal(row); ++k) {
-      const int n = dofs_.size(row), m = dofs_.size(column_[at(k)]);
-      const double* lower = block(k);
-      double* upper = block(mirror_[at(k)]);
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < m; ++j) upper[n * j + i] = lower[m * i + j];
+  pool.for_ranges(rows(), kRowGrain, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      for (int k = row_begin(row); k < diagonal(row); ++k) {
+        const int n = dofs_.size(row), m = dofs_.size(column_[at(k)]);
+        const double* lower = block(k);
+        double* upper = block(mirror_[at(k)]);
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < m; ++j) upper[n * j + i] = lower[m * i + j];
+      }
     }
-  }
+  });
 }
 
 namespace {
@@ -270,7 +280,7 @@ void BlockMatrix::multiply_row(int row, std::span<const double> x, std::span<dou
 void BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
   if (uniform_ == 3) return multiply_upper<3>(pool, x, y);
   if (uniform_ == 6) return multiply_upper<6>(pool, x, y);
-  pool.for_ranges(rows(), 64, [&](int begin, int end) {
+  pool.for_ranges(rows(), kRowGrain, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) multiply_row(row, x, y);
   });
 }

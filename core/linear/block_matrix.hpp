@@ -33,11 +33,11 @@ class BlockMatrix {
   int find(int row, int column) const;  ///< index of a block that is in the pattern
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
 
-  void set_zero();
+  void set_zero(ThreadPool& pool);
   /// Only blocks on and above the diagonal are stored; otherwise those on and below are filled, then mirrored.
   bool fills_upper() const { return uniform_ > 0; }
   /// Copies the blocks below the diagonal, transposed, above it, where those are filled.
-  void mirror_lower();
+  void mirror_lower(ThreadPool& pool);
   /// y = K x
   void multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
 

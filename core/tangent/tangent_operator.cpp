@@ -1,6 +1,7 @@
 #include "core/tangent/tangent_operator.hpp"
 
 #include "core/base/index.hpp"
+#include "core/base/parallel_copy.hpp"
 #include "core/node/positive_inverse.hpp"
 #include "core/tangent/stability.hpp"
 
@@ -58,7 +59,7 @@ const BlockMatrix& TangentOperator::material_part(Entries entries) {
 
 void TangentOperator::apply_blocks(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
   if (!filter_.turns()) return matrix.multiply(pool(), x, y);
-  std::copy(x.begin(), x.end(), work_.begin());
+  copy_parallel(pool(), x, std::span(work_));
   filter_.to_global(work_);
   matrix.multiply(pool(), work_, y);
   filter_.to_local(y);

@@ -277,35 +277,6 @@ TEST(LaneFrames, NodesOfPointsMayBeInAnyOrder) {
   EXPECT_THROW(builder.add_points(std::vector{2, 5, 2}, std::span(&p, 1), 0.1), InputError);
 }
 
-/// Matrices of several chunks, of which each has sums for rows behind it.
-TEST(BlockMatrix, ProductsDoNotDependOnThreads) {
-  for (const bool vertices : {false, true}) {
-    BlockOptions o;
-    o.grid = vertices ? std::array{20, 20, 20} : std::array{13, 12, 12};
-    const Model model = vertices ? vertex_block(o) : block(o).model;
-    ThreadPool one(1);
-    CpuExecutor executor(model.points, one);
-    const State state = random_state(model, 1e-3, 0.1);
-    const std::vector<double> x = random_direction(model);
-    std::vector<double> g(x.size()), free(x.size()), y(x.size());
-    executor.gradient(state, {}, g);
-    Linearization lin;
-    executor.linearize(state, {}, Tangent::full, lin);
-    executor.multiply(lin, x, free);
-    BlockMatrix matrix(model.points);
-    executor.assemble(lin, matrix);
-    EXPECT_GT(matrix.value_count() * sizeof(double), std::size_t{4} << 20U);
-    matrix.multiply(one, x, y);
-    EXPECT_LT(difference(free, y), 1e-13);
-    for (const int threads : {2, 3, 7}) {
-      ThreadPool pool(threads);
-      std::vector<double> z(x.size());
-      matrix.multiply(pool, x, z);
-      EXPECT_EQ(z, y);
-    }
-  }
-}
-
 /// Frames that no point has in common have no block, though a group has both.
 TEST(LaneFrames, LeaveTheMatrixSparse) {
   Case c;

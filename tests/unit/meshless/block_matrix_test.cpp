@@ -1,0 +1,91 @@
+// Tangents and their matrices on several threads, of nodes of one kind and of several.
+#include "core/linear/block_matrix.hpp"
+#include "core/executor/executor.hpp"
+#include "tests/unit/meshless/shared_models.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fascia::block_matrix_test {
+namespace {
+
+using namespace test;
+
+enum class Nodes { vertices, rigid, several };
+
+/// Several ranges of nodes and rows, and a matrix of several chunks.
+Model model_of(Nodes nodes) {
+  BlockOptions o;
+  if (nodes != Nodes::several) {
+    o.grid = nodes == Nodes::vertices ? std::array{20, 20, 20} : std::array{13, 12, 12};
+    return nodes == Nodes::vertices ? vertex_block(o) : std::move(block(o).model);
+  }
+  SharedModel s;
+  HostOptions host;
+  host.kind = HostKind::turning;
+  host.cells = 9;
+  add_host(s, host);
+  o.affine = true;
+  add_cloud(s, unit_scatter(SpacedChoice{0.25, 1}), o);
+  s.finish();
+  return std::move(s.model);
+}
+
+class BlockMatrixOf : public testing::TestWithParam<Nodes> {
+ protected:
+  BlockMatrixOf() : model_(model_of(GetParam())), state_(random_state(model_, 1e-3, 0.1)) {}
+
+  struct Found {
+    Linearization lin;
+    std::vector<double> values, product;
+  };
+  /// The last tangent is written over another one.
+  Found found(int threads) {
+    ThreadPool pool(threads);
+    CpuExecutor executor(model_.points, pool);
+    const std::vector<double> x = random_direction(model_);
+    std::vector<double> g(x.size());
+    executor.gradient(state_, {}, g);
+    Found f;
+    BlockMatrix matrix(model_.points);
+    for (const Tangent tangent : {Tangent::full, Tangent::material, Tangent::full}) {
+      executor.linearize(state_, {}, tangent, f.lin);
+      executor.assemble(f.lin, matrix);
+    }
+    f.values.assign(matrix.values(), matrix.values() + matrix.value_count());
+    f.product.resize(x.size());
+    matrix.multiply(pool, x, f.product);
+    std::vector<double> free(x.size());
+    executor.multiply(f.lin, x, free);
+    for (std::size_t i = 0; i < free.size(); ++i) free[i] -= f.product[i];
+    EXPECT_LT(norm(free), 1e-13 * norm(f.product));
+    return f;
+  }
+
+  Model model_;
+  State state_;
+};
+
+TEST_P(BlockMatrixOf, TangentEntriesAndProductsDoNotDependOnThreads) {
+  const Found one = found(1);
+  EXPECT_GT(one.values.size() * sizeof(double), std::size_t{4} << 20U);
+  for (const int threads : {2, 3, 7}) {
+    const Found more = found(threads);
+    EXPECT_EQ(more.lin.Q, one.lin.Q);
+    EXPECT_EQ(more.lin.node_blocks, one.lin.node_blocks);
+    EXPECT_EQ(more.lin.u, one.lin.u);
+    EXPECT_EQ(more.lin.D, one.lin.D);
+    EXPECT_EQ(more.lin.kept, one.lin.kept);
+    EXPECT_EQ(more.values, one.values);
+    EXPECT_EQ(more.product, one.product);
+  }
+}
+
+std::string name_of(Nodes nodes) {
+  return nodes == Nodes::vertices ? "vertices" : nodes == Nodes::rigid ? "rigid" : "several";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BlockMatrixOf, testing::Values(Nodes::vertices, Nodes::rigid, Nodes::several),
+                         [](const auto& parameter) { return name_of(parameter.param); });
+
+}  // namespace
+}  // namespace fascia::block_matrix_test
