@@ -129,6 +129,7 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
   if (twins.stopped()) return false;
   const bool precision = simulation_.scene.solver.precision != "double";
   const bool halved = kind == SolverKind::central_differences;
+  const bool cut = summary.contains("budget") && summary["budget"]["cut_steps"].get<int>() > 0;
   const auto told = [&](EstimatedError error, const std::string& unit, bool of_components, bool solved_for = true) {
     if (residual && has_tolerance(kind)) error.solver = solved_for ? residual : 0.0;
     return json_of(error, unit, of_components);
@@ -138,7 +139,7 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
     const auto of_twin = [&](TwinRole role) { return twins.probe(role, p.name); };
     const SeriesNorm norm = p.quantity == Quantity::frequency ? SeriesNorm::largest_relative : SeriesNorm::euclidean;
     errors[p.name] = told(measured({own.series(p.name, kind), of_twin, norm, rounding_of(simulation_, p.quantity),
-                                    guard_of(simulation_.scene, p.body, is_derivative(p.quantity)), halved},
+                                    guard_of(simulation_.scene, p.body, is_derivative(p.quantity)), halved, cut},
                                    kind, precision),
                           probe_unit(p.quantity), true, p.quantity != Quantity::mass);
   }
@@ -147,7 +148,7 @@ bool Estimate::run(const std::filesystem::path& directory, Json& summary,
     errors["bodies"][fields_->body(b)] =
         told(measured({fields_->series(b, is_dynamic(kind)), of_twin, SeriesNorm::euclidean,
                        rounding_of(simulation_, Quantity::displacement),
-                       guard_of(simulation_.scene, fields_->body(b), false), halved},
+                       guard_of(simulation_.scene, fields_->body(b), false), halved, cut},
                       kind, precision),
              "m", false);
   }

@@ -33,6 +33,7 @@ struct Measured {
   double rounding = 0;        ///< differences below it are no error [unit of the quantity]
   OrderGuard order{};         ///< of the discretisation
   bool halved_finer = false;  ///< the finer twin takes half the step too, so that it is compared with that twin
+  bool cut = false;           ///< a budget ended steps: twins, which have none, are compared with the exact one
 };
 
 /// Strains and stresses, which converge by an order less.

@@ -65,6 +65,7 @@ class Planner {
  private:
   void note(std::string sentence) { plan_.notes.push_back(std::move(sentence)); }
   void add(TwinRole role, SceneTwin twin, double cost) {
+    if (scene_.solver.budget && role != TwinRole::exact) twin.overrides.emplace_back("solver.budget=\"none\"");
     plan_.twins.push_back({role, name_of(role), std::move(twin), cost});
   }
   bool explicit_steps() const { return scene_.solver.kind == SolverKind::central_differences; }

@@ -165,9 +165,11 @@ void PointExecutor::find_pairs(const BlockMatrix& matrix) {
 
 /// The unit motion of one degree of freedom of slot b after another gives dP and dY, and these the forces on slots a ≥
 /// b of the group, which go into blocks of that pair of nodes alone.
+/// All that it calls is inlined: matrices of lanes that are passed by memory take as long as what is done with them.
 template <PointKind Kind>
-void PointExecutor::assemble_slot(const BlockState& state, int group, int b, const GroupOfFrames& frames,
-                                  Entries entries, BlockMatrix& matrix_out) const {
+[[gnu::flatten]] void PointExecutor::assemble_slot(const BlockState& state, int group, int b,
+                                                   const GroupOfFrames& frames, Entries entries,
+                                                   BlockMatrix& matrix_out) const {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
@@ -227,7 +229,8 @@ void PointExecutor::assemble_node(const BlockState& state, int node, Entries ent
 
 /// Lane by lane: each has blocks of its own. All frames of the group are of one kind.
 template <PointKind Kind, FrameKind Frame>
-void PointExecutor::assemble_lanes(const BlockState& state, int group, Entries entries, BlockMatrix& matrix_out) const {
+[[gnu::flatten]] void PointExecutor::assemble_lanes(const BlockState& state, int group, Entries entries,
+                                                    BlockMatrix& matrix_out) const {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   constexpr int kDofs = dof_count(Frame);
   const LaneFrames& lanes = frames_.lanes();

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 // What errors are estimated from: orders, series over time, which runs are made.
@@ -82,6 +83,18 @@ TEST(EstimatedErrors, AreRelativeToTheLargerOfValueAndExtrapolatedValue) {
   EXPECT_NEAR(*e.total(), 0.4, 1e-6);
 }
 
+TEST(EstimatedErrors, OfARunThatWasCutAreThoseOfItsTwinAndWhatWasLeft) {
+  Measured cut = of_levels(0.6, 0.9, -0.6);
+  cut.own = Series{{1}, {{0.55}}};
+  cut.cut = true;
+  const EstimatedError e = measured(cut, SolverKind::statics, false);
+  EXPECT_NEAR(e.order, 2, 1e-6);
+  EXPECT_NEAR(*e.discretisation, 0.4, 1e-6);
+  EXPECT_NEAR(*e.solver, 0.05, 1e-6);
+  cut.twin = [](TwinRole) -> std::optional<Series> { return std::nullopt; };
+  EXPECT_FALSE(measured(cut, SolverKind::statics, false).discretisation) << "nothing to compare twins with";
+}
+
 TEST(EstimatedErrors, WithoutATwinThereIsNoNumber) {
   Measured none{Series{{1}, {{1}}}, [](TwinRole) -> std::optional<Series> { return std::nullopt; }};
   const EstimatedError e = measured(none, SolverKind::bdf2, true);
@@ -131,6 +144,8 @@ TEST(EstimatePlans, OfDynamicsHalveTheStep) {
   const std::string steps = "time_step = 0.01\nduration = 1\n";
   EXPECT_EQ(roles(plan_of("[solver]\nkind = \"bdf2\"\n" + steps)),
             (Roles{TwinRole::finer, TwinRole::shorter_step, TwinRole::exact}));
+  for (const PlannedTwin& twin : plan_of("[solver]\nkind = \"bdf2\"\nbudget = \"5 ms\"\n" + steps).twins)
+    EXPECT_EQ(std::ranges::count(twin.twin.overrides, "solver.budget=\"none\""), 1) << twin.name;
   const EstimatePlan plan = plan_of("[solver]\nkind = \"explicit\"\ntime_step = 0.001\nduration = 1\n");
   EXPECT_EQ(roles(plan), (Roles{TwinRole::finer, TwinRole::shorter_step}));
   EXPECT_EQ(plan.twins[0].twin.overrides.back(), "solver.time_step=0.0005") << "the finer mesh needs it";
