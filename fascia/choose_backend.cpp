@@ -28,7 +28,7 @@ std::string not_on_gpu(const Simulation& s) {
 
 Backend choose_backend(const Simulation& s) {
   const std::string& asked = s.scene.solver.backend;
-  const bool in_double = s.scene.solver.precision == "double";
+  const bool single = s.scene.solver.precision == "single";
   const int gpus = s.scene.solver.gpus;
   if (asked == "cpu") return Backend::cpu;
   const std::string missing = not_on_gpu(s);
@@ -43,24 +43,25 @@ Backend choose_backend(const Simulation& s) {
                                      s.scene.path.empty() ? "" : s.scene.path.string() + ": ", missing));
     return Backend::cuda;
   }
-  if (!missing.empty() || (in_double && gpus == 1 && s.model.free_dof_count() < kWorthwhile)) return Backend::cpu;
+  if (!missing.empty() || (!single && gpus == 1 && s.model.free_dof_count() < kWorthwhile)) return Backend::cpu;
   std::string reason;
   return gpu::find_device(reason) ? Backend::cuda : Backend::cpu;
 }
 
-std::string precision_of(const Simulation& s, Backend backend) {
-  return backend == Backend::cuda ? s.scene.solver.precision : "double";
+std::string precision_of(const Simulation& s, Backend backend, bool iterated) {
+  const std::string& asked = s.scene.solver.precision;
+  return backend == Backend::cuda || (asked == "mixed" && iterated) ? asked : "double";
 }
 
 std::string not_as_asked(const Simulation& s, Backend backend) {
   const Solver& solver = s.scene.solver;
-  const bool in_double = solver.precision == "double";
-  if (backend == Backend::cuda || (in_double && solver.gpus == 1)) return "";
+  const bool single = solver.precision == "single";
+  if (backend == Backend::cuda || (!single && solver.gpus == 1)) return "";
   const std::string missing = not_on_gpu(s);
-  std::string asked = in_double ? "" : fmt::format("precision = \"{}\"", solver.precision);
-  if (solver.gpus > 1) asked += fmt::format("{}gpus = {}", in_double ? "" : " with ", solver.gpus);
-  return fmt::format("{} needs the GPU, {}: computed in double on the processor", asked,
-                     missing.empty() ? "and there is none" : "which does not compute " + missing);
+  const std::string asked = single ? "precision = \"single\"" : fmt::format("gpus = {}", solver.gpus);
+  return fmt::format("{} needs the GPU, {}: computed {}on the processor", asked,
+                     missing.empty() ? "and there is none" : "which does not compute " + missing,
+                     solver.precision == "mixed" ? "" : "in double ");
 }
 
 bool is_of_device(const std::exception& e) {

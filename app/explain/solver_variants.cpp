@@ -100,13 +100,14 @@ std::vector<Variant> solver_variants(const Scene& scene, const RunFacts& facts) 
     if (!twin.complete()) v.refused = fmt::format("{}", fmt::join(twin.kept, "; "));
     found.push_back(std::move(v));
   }
-  if (newton && facts.backend == "cuda") {
-    for (const char* precision : {"double", "mixed", "single"})
-      if (solver.precision != precision)
-        found.push_back(of_solver(VariantKind::precision, "precision", fmt::format("\"{}\"", precision),
-                                  std::string(precision) == "double"));
-    found.push_back(of_solver(VariantKind::backend, "backend", "\"cpu\""));
+  const bool on_gpu = facts.backend == "cuda";
+  if (newton && (on_gpu || facts.iterative)) {
+    for (const std::string precision : {"double", "mixed", "single"})
+      if (solver.precision != precision && (on_gpu || precision != "single"))
+        found.push_back(
+            of_solver(VariantKind::precision, "precision", fmt::format("\"{}\"", precision), precision == "double"));
   }
+  if (newton && on_gpu) found.push_back(of_solver(VariantKind::backend, "backend", "\"cpu\""));
   if (facts.threads > 1)
     found.push_back(of_solver(VariantKind::threads, "threads", "1"));
   else if (facts.processors > 1)

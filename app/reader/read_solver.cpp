@@ -117,7 +117,7 @@ void read_budget(const TableReader& table, bool under_need, Solver& solver) {
     table.error("budget", "does not go with a need; leave it out: need.step chooses a model whose steps take so long");
 }
 
-/// Products of 32 bits are the GPU's, of solvers with Newton's directions.
+/// Products of 32 bits are those of solvers with Newton's directions, vectors of 32 bits the GPU's.
 void read_precision(const TableReader& table, Solver& solver) {
   solver.precision = table.text("precision").value_or("double");
   if (solver.precision == "double") return;
@@ -125,9 +125,9 @@ void read_precision(const TableReader& table, Solver& solver) {
   if (solver.kind == SolverKind::central_differences || solver.kind == SolverKind::modes)
     return table.error("precision", fmt::format("{} is not used by kind = \"{}\"; must be \"double\"", asked,
                                                 table.text("kind").value_or("static")));
-  if (solver.backend == "cpu")
-    table.error("precision", fmt::format("{} needs the GPU, and backend = \"cpu\" has \"double\" alone; must be "
-                                         "\"double\", or backend \"auto\" or \"cuda\"",
+  if (solver.backend == "cpu" && solver.precision == "single")
+    table.error("precision", fmt::format("{} needs the GPU; must be \"double\" or \"mixed\", or backend \"auto\" or "
+                                         "\"cuda\"",
                                          asked));
 }
 

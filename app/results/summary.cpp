@@ -80,7 +80,7 @@ nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const Run
   j["convergence"] = run.convergence;
   j["backend"] = name_of(end.backend);
   j["gpus"] = end.gpus;
-  j["precision"] = precision_of(s, end.backend);
+  j["precision"] = precision_of(s, end.backend, run.linear_iterations > 0);
   j["threads"] = threads;
   j["library"] = tuning();
   j["bodies"] = bodies_of(s);

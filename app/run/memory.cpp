@@ -195,6 +195,7 @@ class Setup {
     factorizes_ = linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
                   (statics && linear.gives_way_to_factor(guessed_iterations())) ||
                   (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations()));
+    if (solver.precision == "mixed" && !linear.direct()) to_come_.keep(4.0 * static_cast<double>(matrix.value_count()));
     if (!factorizes_) return of_levels(matrix);
     take(linear.factor().cholesky(), matrix);
     if (!load || !s_.model.loads_are_conservative())

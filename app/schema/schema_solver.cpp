@@ -123,10 +123,12 @@ Key solver_schema() {
                .defaults("[]"),
            key("precision",
                choice({{"double", "64 bits."},
-                       {"mixed", "Products with the stiffness of 32 bits."},
-                       {"single", "Vectors of conjugate gradients of 32 bits too."}}),
-               "Arithmetic of Newton's directions; residuals and states are of 64 bits always. Other than `\"double\"` "
-               "needs the GPU; not of `kind = \"explicit\"` and `\"modes\"`.")
+                       {"mixed",
+                        "Products with the stiffness of 32 bits; on the processor its entries, where conjugate "
+                        "gradients solve."},
+                       {"single", "Vectors of conjugate gradients of 32 bits too; needs the GPU."}}),
+               "Arithmetic of Newton's directions; residuals and states are of 64 bits always. Not of `kind = "
+               "\"explicit\"` and `\"modes\"`.")
                .defaults("\"double\""),
            key("backend",
                choice({{"auto", "The best there is."}, {"cpu", "The processor."}, {"cuda", "An NVIDIA GPU."}}),

@@ -2,6 +2,7 @@
 
 #include "core/base/incidence.hpp"
 #include "core/base/index.hpp"
+#include "core/base/parallel_copy.hpp"
 #include "core/structure/blocks.hpp"
 
 #include <algorithm>
@@ -250,20 +251,22 @@ void BlockMatrix::mirror_lower(ThreadPool& pool) {
 namespace {
 
 /// y += B x of a block whose size is known to the compiler.
-template <int N, int M>
-void add_product(const double* b, const double* x, double* y) {
+template <int N, int M, class T>
+void add_product(const T* b, const double* x, double* y) {
   for (int i = 0; i < N; ++i)
-    for (int j = 0; j < M; ++j) y[i] += b[M * i + j] * x[j];
+    for (int j = 0; j < M; ++j) y[i] += static_cast<double>(b[M * i + j]) * x[j];
 }
 
 }  // namespace
 
-void BlockMatrix::multiply_row(int row, std::span<const double> x, std::span<double> y) const {
+template <class T>
+void BlockMatrix::multiply_row(const T* values, int row, std::span<const double> x, std::span<double> y) const {
   double sum[kMostDofs] = {};
   const int n = dofs_.size(row);
   for (int k = row_begin(row); k < row_begin(row + 1); ++k) {
     const int column = column_[at(k)], m = dofs_.size(column);
-    const double *xc = x.data() + dofs_.begin(column), *b = block(k);
+    const double* xc = x.data() + dofs_.begin(column);
+    const T* b = values + value_begin_[at(k)];
     if (n == 6 && m == 6)
       add_product<6, 6>(b, xc, sum);
     else if (n == 3 && m == 3)
@@ -272,17 +275,31 @@ void BlockMatrix::multiply_row(int row, std::span<const double> x, std::span<dou
       add_product<12, 12>(b, xc, sum);
     else
       for (int i = 0; i < n; ++i)
-        for (int j = 0; j < m; ++j) sum[i] += b[m * i + j] * xc[j];
+        for (int j = 0; j < m; ++j) sum[i] += static_cast<double>(b[m * i + j]) * xc[j];
   }
   std::copy(sum, sum + n, y.data() + dofs_.begin(row));
 }
 
-void BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
-  if (uniform_ == 3) return multiply_upper<3>(pool, x, y);
-  if (uniform_ == 6) return multiply_upper<6>(pool, x, y);
+template <class T>
+void BlockMatrix::multiply_by(const T* values, ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  if (uniform_ == 3) return multiply_upper<3>(values, pool, x, y);
+  if (uniform_ == 6) return multiply_upper<6>(values, pool, x, y);
   pool.for_ranges(rows(), kRowGrain, [&](int begin, int end) {
-    for (int row = begin; row < end; ++row) multiply_row(row, x, y);
+    for (int row = begin; row < end; ++row) multiply_row(values, row, x, y);
   });
+}
+
+void BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  multiply_by(values_.data(), pool, x, y);
+}
+
+void BlockMatrix::round(ThreadPool& pool) {
+  rounded_.resize(values_.size());
+  copy_parallel(pool, std::span<const double>(values_), std::span(rounded_));
+}
+
+void BlockMatrix::multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  multiply_by(rounded_.data(), pool, x, y);
 }
 
 }  // namespace fascia

@@ -40,6 +40,11 @@ class BlockMatrix {
   void mirror_lower(ThreadPool& pool);
   /// y = K x
   void multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  /// Keeps the entries rounded to 32 bits beside those of 64, as multiply_rounded() reads them.
+  void round(ThreadPool& pool);
+  /// y = K x with the entries that the last round() found: half as much to read. They are multiplied and added in 64
+  /// bits.
+  void multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
 
   std::size_t value_count() const { return value_begin_.back(); }
   double* values() { return values_.data(); }
@@ -48,11 +53,15 @@ class BlockMatrix {
  private:
   void find_pattern(const PointSet& set, std::span<const SurfaceLoad> surfaces);
   void add_blocks_of_hosts(const PointSet& set);
-  void multiply_row(int row, std::span<const double> x, std::span<double> y) const;
-  template <int N>
-  void multiply_upper(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
-  template <int N>
-  void multiply_chunk(int chunk) const;
+  /// Products take entries of double or of float, that lie as values_ do.
+  template <class T>
+  void multiply_by(const T* values, ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  template <class T>
+  void multiply_row(const T* values, int row, std::span<const double> x, std::span<double> y) const;
+  template <int N, class T>
+  void multiply_upper(const T* values, ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  template <int N, class T>
+  void multiply_chunk(const T* values, int chunk) const;
   void size_chunks();
   void find_mirrors();
 
@@ -63,6 +72,7 @@ class BlockMatrix {
   int uniform_ = 0;                       ///< every block is 3 × 3, or 6 × 6; 0: neither
   std::vector<std::size_t> value_begin_;  ///< of each block, and of all
   AlignedVector<double> values_;
+  AlignedVector<float> rounded_;  ///< these of 32 bits; empty where nobody asked
 
   /// Products with the upper triangle take rows in a few chunks, whose sums for rows behind them wait in a buffer, so
   /// that the order of additions does not depend on threads. Vectors have four or eight numbers a node there.

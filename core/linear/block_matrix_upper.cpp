@@ -17,6 +17,11 @@ inline Four load(const double* p) {
   std::memcpy(&r, p, sizeof r);
   return r;
 }
+inline Four load(const float* p) {
+  float r __attribute__((vector_size(16)));
+  std::memcpy(&r, p, sizeof r);
+  return __builtin_convertvector(r, Four);
+}
 inline void add(const Four& value, double* to) {
   const Four sum = load(to) + value;
   std::memcpy(to, &sum, sizeof sum);
@@ -50,13 +55,13 @@ struct UpperRow<3> {
   explicit UpperRow(const double* xi) {
     for (int i = 0; i < 3; ++i) x[i] = Four{} + xi[i];
   }
-  template <int Parity>
-  void take_diagonal(const double* b, const double* xj) {
+  template <int Parity, class T>
+  void take_diagonal(const T* b, const double* xj) {
     const Four v = load(xj);
     for (int i = 0; i < 3; ++i) sum[Parity][i] += load(b + 3 * i) * v;
   }
-  template <int Parity>
-  void take(const double* b, const double* xj, double* yj) {
+  template <int Parity, class T>
+  void take(const T* b, const double* xj, double* yj) {
     take_diagonal<Parity>(b, xj);
     add(load(b) * x[0] + load(b + 3) * x[1] + load(b + 6) * x[2], yj);
   }
@@ -79,13 +84,13 @@ struct UpperRow<6> {
     for (int c = 0; c < 9; ++c)
       for (int k = 0; k < 4; ++k) x[c][k] = xi[(4 * c + k) / 6];
   }
-  template <int>
-  void take_diagonal(const double* b, const double* xj) {
+  template <int, class T>
+  void take_diagonal(const T* b, const double* xj) {
     const Four v[3] = {load(xj), load(xj + 4), load(xj + 2)};
     for (int c = 0; c < 9; ++c) sum[c] += load(b + 4 * c) * v[c % 3];
   }
-  template <int>
-  void take(const double* b, const double* xj, double* yj) {
+  template <int, class T>
+  void take(const T* b, const double* xj, double* yj) {
     const Four v[3] = {load(xj), load(xj + 4), load(xj + 2)};
     Four t[3] = {};  // of columns 0 … 3, 4 5 0 1 and 2 … 5
     for (int c = 0; c < 9; ++c) {
@@ -149,8 +154,8 @@ void BlockMatrix::size_chunks() {
   overhang_.resize(at(wide) * overhang_row_.size());
 }
 
-template <int N>
-void BlockMatrix::multiply_chunk(int chunk) const {
+template <int N, class T>
+void BlockMatrix::multiply_chunk(const T* values, int chunk) const {
   constexpr int W = kWide<N>, B = N * N;
   const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
   std::fill(wide_y_.begin() + W * begin, wide_y_.begin() + W * end, 0.0);
@@ -162,7 +167,7 @@ void BlockMatrix::multiply_chunk(int chunk) const {
   for (int row = begin; row < end; ++row) {
     const int first = diagonal(row), last = row_begin(row + 1);
     const int* column = column_.data();
-    const double* b = block(first);
+    const T* b = values + value_begin_[at(first)];
     UpperRow<N> of(x + W * row);
     of.template take_diagonal<0>(b, x + W * row);
     b += B;
@@ -178,15 +183,16 @@ void BlockMatrix::multiply_chunk(int chunk) const {
   }
 }
 
-template <int N>
-void BlockMatrix::multiply_upper(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+template <int N, class T>
+void BlockMatrix::multiply_upper(const T* values, ThreadPool& pool, std::span<const double> x,
+                                 std::span<double> y) const {
   constexpr int W = kWide<N>;
   const int chunks = static_cast<int>(chunk_begin_.size()) - 1;
   pool.for_chunks(chunks, [&](int chunk) {
     for (int row = chunk_begin_[at(chunk)]; row < chunk_begin_[at(chunk + 1)]; ++row)
       widen<N>(x.data() + N * row, wide_x_.data() + W * row);
   });
-  pool.for_chunks(chunks, [&](int chunk) { multiply_chunk<N>(chunk); });
+  pool.for_chunks(chunks, [&](int chunk) { multiply_chunk<N>(values, chunk); });
   pool.for_chunks(chunks, [&](int chunk) {
     const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
     for (int row = begin; row < end; ++row) std::copy_n(wide_y_.data() + W * row, N, y.data() + N * row);
@@ -194,14 +200,20 @@ void BlockMatrix::multiply_upper(ThreadPool& pool, std::span<const double> x, st
       const auto stop = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier + 1)]);
       auto row = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier)]);
       row = std::lower_bound(row, stop, begin);
-      const double* values = overhang_.data() + W * (row - overhang_row_.begin());
-      for (; row != stop && *row < end; ++row, values += W)
-        for (int i = 0; i < N; ++i) y[at(N * *row + i)] += values[i];
+      const double* sums = overhang_.data() + W * (row - overhang_row_.begin());
+      for (; row != stop && *row < end; ++row, sums += W)
+        for (int i = 0; i < N; ++i) y[at(N * *row + i)] += sums[i];
     }
   });
 }
 
-template void BlockMatrix::multiply_upper<3>(ThreadPool&, std::span<const double>, std::span<double>) const;
-template void BlockMatrix::multiply_upper<6>(ThreadPool&, std::span<const double>, std::span<double>) const;
+template void BlockMatrix::multiply_upper<3>(const double*, ThreadPool&, std::span<const double>,
+                                             std::span<double>) const;
+template void BlockMatrix::multiply_upper<6>(const double*, ThreadPool&, std::span<const double>,
+                                             std::span<double>) const;
+template void BlockMatrix::multiply_upper<3>(const float*, ThreadPool&, std::span<const double>,
+                                             std::span<double>) const;
+template void BlockMatrix::multiply_upper<6>(const float*, ThreadPool&, std::span<const double>,
+                                             std::span<double>) const;
 
 }  // namespace fascia

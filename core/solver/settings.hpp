@@ -8,11 +8,6 @@
 
 namespace fascia {
 
-/// Arithmetic of Newton's directions; residuals, states and energies are of 64 bits always, and so what a converged run
-/// is judged by. mixed: products with the tangent of 32 bits; single: vectors of conjugate gradients too. Sums over
-/// nodes are of 64 bits. Of the GPU's solver; the processor's has 64 bits.
-enum class Precision { full, mixed, single };
-
 /// Where a solve stands when a Newton iteration begins.
 struct IterationInfo {
   int step = 0;                        ///< load or time step, counted from 1
@@ -30,7 +25,6 @@ struct SolverSettings : LinearSettings {
   bool proceed_on_limit = false;  ///< go on with the residual reached
   double budget = 0;              ///< of implicit dynamics: time that a step may take [s]; 0: as long as it needs
   Tangent tangent = Tangent::full;
-  Precision precision = Precision::full;
   std::function<void(const IterationInfo&)> iterating;  ///< is told of each Newton iteration; may be empty
   std::function<bool()> stops;                          ///< asked before each: true ends the solve; may be empty
   int threads = 0;                                      ///< of the processor, for what it does beside a GPU; 0: all

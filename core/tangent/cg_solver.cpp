@@ -13,15 +13,27 @@ CgSolver::CgSolver(TangentOperator& K, const LinearSettings& settings, FactorSol
 }
 
 void CgSolver::choose_one() {
+  rounds_ = settings_.precision == Precision::mixed;
   one_ = preconditioner_of(settings_.preconditioner, K_, factor_);
   if (!one_) one_ = std::make_unique<DiagonalBlocks>(K_, true);
 }
 
-CgReport CgSolver::solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options) {
+CgReport CgSolver::iterate(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options, bool rounded) {
   M.begin();
   return conjugate_gradients(
-      K_.vectors(), [this](const Vector& p, Vector& Ap) { K_.apply_free(p, Ap); },
+      K_.vectors(),
+      [this, rounded](const Vector& p, Vector& Ap) { rounded ? K_.apply_free_rounded(p, Ap) : K_.apply_free(p, Ap); },
       [&M](const Vector& r, Vector& z) { return M.apply(r, z); }, b, x, options);
+}
+
+CgReport CgSolver::solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options) {
+  if (!rounds_) return iterate(M, b, x, options, false);
+  const CgReport rounded = iterate(M, b, x, options, true);
+  if (rounded.status == CgStatus::converged || rounded.status == CgStatus::limit) return rounded;
+  CgReport exact = iterate(M, b, x, options, false);
+  rounds_ = exact.status == CgStatus::negative_curvature;
+  exact.iterations += rounded.iterations;
+  return exact;
 }
 
 CgReport CgSolver::solve_by_one(const Vector& b, Vector& x, const CgOptions& options) {

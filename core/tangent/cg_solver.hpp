@@ -21,6 +21,9 @@ inline constexpr int kEnoughForBulk = 1000;
 /// Where the preconditioner is left open, blocks precondition; levels of rigid frames do from the first solve on that
 /// ends at its limit of iterations, where the limit is not a budget that the user set. Where the program chose
 /// conjugate gradients itself, they do as soon as they are likely to be cheaper, and hand back where they are not.
+///
+/// Where the precision is mixed, products take the entries of K rounded to 32 bits. Rounding can make a K indefinite
+/// that is not: a solve that finds it so is made again in 64 bits, and where these find K definite, they stay.
 class CgSolver final : public LinearSolver {
  public:
   /// @param K       belongs to the caller, as does factor
@@ -61,6 +64,7 @@ class CgSolver final : public LinearSolver {
   using Vector = CpuVectors::Vector;
   bool levels_are_taken() const { return blocks_or_levels_.levels() && !kept_levels_.fail(); }
   CgReport solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options);
+  CgReport iterate(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options, bool rounded);
   CgReport solve_as_asked(const Vector& b, Vector& x, const CgOptions& options);
   CgReport solve_by_one(const Vector& b, Vector& x, const CgOptions& options);
   CgReport solve_by_levels(const Vector& b, Vector& x, const CgOptions& options);
@@ -76,6 +80,7 @@ class CgSolver final : public LinearSolver {
   long pattern_ = 0;                     ///< of K, that preconditioners were made of
   std::unique_ptr<Preconditioner> one_;  ///< that is asked for, or blocks
   bool one_is_ready_ = false;            ///< for K as it is
+  bool rounds_ = false;                  ///< products are of 32 bits
   LevelsOfFrames levels_, material_;
   KeptLevels kept_levels_;
   BlocksOrLevels blocks_or_levels_{{}};  ///< of an automatic preconditioner

@@ -20,7 +20,7 @@ TangentOperator::TangentOperator(const Model& model, CpuExecutor& executor, cons
 void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
   at_ = &lin;
   tamer_ = tamer;
-  assembled_ = tamed_ = false;
+  assembled_ = rounded_ = tamed_ = false;
   if (pattern_ != executor_.pattern()) {
     pattern_ = executor_.pattern();
     matrix_.reset();
@@ -33,6 +33,7 @@ void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
 void TangentOperator::tame(TamerTangent kind) {
   assemble((*tamer_)(kind), pattern(), Entries::all);
   assembled_ = tamed_ = true;
+  rounded_ = false;
 }
 
 void TangentOperator::assemble(const Linearization& lin, BlockMatrix& out, Entries entries) {
@@ -57,17 +58,34 @@ const BlockMatrix& TangentOperator::material_part(Entries entries) {
   return *material_;
 }
 
-void TangentOperator::apply_blocks(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
-  if (!filter_.turns()) return matrix.multiply(pool(), x, y);
+/// y = K x, where multiply(x, y) does so in the axes of the world.
+template <class Multiply>
+void TangentOperator::apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y) {
+  if (!filter_.turns()) return multiply(x, y);
   copy_parallel(pool(), x, std::span(work_));
   filter_.to_global(work_);
-  matrix.multiply(pool(), work_, y);
+  multiply(work_, y);
   filter_.to_local(y);
 }
 
 void TangentOperator::apply(std::span<const double> x, std::span<double> y) {
-  apply_blocks(matrix(), x, y);
+  const BlockMatrix& K = matrix();
+  apply_in_world([&](auto from, auto to) { K.multiply(pool(), from, to); }, x, y);
   beside_.add_product(x, y);
+}
+
+void TangentOperator::apply_free(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
+  apply_in_world([&](auto from, auto to) { matrix.multiply(pool(), from, to); }, x, y);
+  filter_.clear_fixed(y);
+}
+
+void TangentOperator::apply_free_rounded(std::span<const double> x, std::span<double> y) {
+  const BlockMatrix& K = matrix();
+  if (!rounded_) matrix_->round(pool());
+  rounded_ = true;
+  apply_in_world([&](auto from, auto to) { K.multiply_rounded(pool(), from, to); }, x, y);
+  beside_.add_product(x, y);
+  filter_.clear_fixed(y);
 }
 
 void TangentOperator::apply_whole(std::span<const double> x, std::span<double> y) {

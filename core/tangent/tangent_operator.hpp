@@ -57,11 +57,10 @@ class TangentOperator {
     apply(x, y);
     filter_.clear_fixed(y);
   }
+  /// Does so with the entries of matrix() rounded to 32 bits.
+  void apply_free_rounded(std::span<const double> x, std::span<double> y);
   /// Does so with a matrix of K's pattern.
-  void apply_free(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
-    apply_blocks(matrix, x, y);
-    filter_.clear_fixed(y);
-  }
+  void apply_free(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y);
   /// y = K x with all that the tangent has, of held degrees of freedom too.
   void apply_whole(std::span<const double> x, std::span<double> y);
 
@@ -86,7 +85,8 @@ class TangentOperator {
 
  private:
   void assemble(const Linearization& at, BlockMatrix& out, Entries entries);
-  void apply_blocks(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y);
+  template <class Multiply>
+  void apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y);
 
   const Model& model_;
   CpuExecutor& executor_;
@@ -96,7 +96,7 @@ class TangentOperator {
   const Linearization* at_ = nullptr;
   const Relinearize* tamer_ = nullptr;
   std::optional<BlockMatrix> matrix_, material_;
-  bool assembled_ = false, tamed_ = false;
+  bool assembled_ = false, rounded_ = false, tamed_ = false;
   long pattern_ = 0;  ///< CpuExecutor::pattern() of the matrices
   LowRank beside_;
   std::vector<double> work_, lengths_;

@@ -7,7 +7,7 @@
 namespace fascia::gpu {
 
 /// A small motion of all nodes: by degrees of freedom, and as (dx, dA) of each node.
-/// @tparam T  scalar of products, V  of vectors (core/solver/settings.hpp, Precision)
+/// @tparam T  scalar of products, V  of vectors (core/tangent/linear_settings.hpp, Precision)
 template <class T, class V>
 struct DirectionOf {
   const V* d = nullptr;         ///< (degrees of freedom)

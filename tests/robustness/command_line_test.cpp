@@ -148,22 +148,41 @@ TEST_F(CommandLine, TakesTheBackendOrSaysThatItIsNotThere) {
   EXPECT_EQ(fascia({"run", "scene.toml", "--backend", "auto"}).status, 0);
 }
 
-TEST_F(CommandLine, SaysThatAPrecisionNeedsTheGpu) {
+TEST_F(CommandLine, SaysThatSinglePrecisionNeedsTheGpu) {
   write("scene.toml", kCantilever);
   const ProgramResult refused =
-      fascia({"run", "scene.toml", "--set", "solver.precision=mixed", "--backend", "cpu", "--output", "refused"});
+      fascia({"run", "scene.toml", "--set", "solver.precision=single", "--backend", "cpu", "--output", "refused"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("solver.precision: \"mixed\" needs the GPU"), std::string::npos) << refused.err;
-  const ProgramResult result = fascia({"run", "scene.toml", "--set", "solver.precision=mixed", "--output", "out"});
+  EXPECT_NE(refused.err.find("solver.precision: \"single\" needs the GPU"), std::string::npos) << refused.err;
+  const ProgramResult result = fascia({"run", "scene.toml", "--set", "solver.precision=single", "--output", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json summary = this->summary("out");
   if (summary.at("backend") == "cuda") {
-    EXPECT_EQ(summary.at("precision"), "mixed");
+    EXPECT_EQ(summary.at("precision"), "single");
     return;
   }
   EXPECT_EQ(summary.at("precision"), "double");
-  EXPECT_NE(result.err.find("precision = \"mixed\" needs the GPU, and there is none"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("precision = \"single\" needs the GPU, and there is none"), std::string::npos)
+      << result.err;
   EXPECT_EQ(summary.at("warnings").size(), 1u);
+}
+
+/// On the processor conjugate gradients know mixed precision, and a factor does not.
+TEST_F(CommandLine, TellsThePrecisionThatWasUsed) {
+  write("scene.toml", kCantilever);
+  const auto precision = [&](const std::string& backend, const std::string& linear) {
+    const std::string out = backend + "_" + linear;
+    const ProgramResult result = fascia({"run", "scene.toml", "--set", "solver.precision=mixed", "--set",
+                                         "solver.linear.kind=" + linear, "--backend", backend, "--output", out});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const nlohmann::json summary = this->summary(out);
+    EXPECT_EQ(summary.at("backend"), "cpu");
+    EXPECT_TRUE(summary.at("warnings").empty()) << result.err;
+    return summary.at("precision");
+  };
+  EXPECT_EQ(precision("cpu", "cg"), "mixed");
+  EXPECT_EQ(precision("cpu", "cholesky"), "double");
+  EXPECT_EQ(precision("auto", "cg"), "mixed");
 }
 
 TEST_F(CommandLine, SeveralGpusAreThoseThatThereAre) {

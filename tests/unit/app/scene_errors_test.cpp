@@ -102,10 +102,11 @@ TEST(SceneErrors, WrongTypes) {
             "acceleration in m/s2");
 }
 
-TEST(SceneErrors, PrecisionOfTheGpuAlone) {
+TEST(SceneErrors, Precision) {
   EXPECT_EQ(errors_of_beam("[solver]\nprecision = \"single\"\nbackend = \"cpu\"\n"),
-            "a.toml:11:13: solver.precision: \"single\" needs the GPU, and backend = \"cpu\" has \"double\" alone; "
-            "must be \"double\", or backend \"auto\" or \"cuda\"");
+            "a.toml:11:13: solver.precision: \"single\" needs the GPU; must be \"double\" or \"mixed\", or backend "
+            "\"auto\" or \"cuda\"");
+  EXPECT_EQ(errors_of_beam("[solver]\nprecision = \"mixed\"\nbackend = \"cpu\"\n"), "");
   EXPECT_EQ(errors_of_beam("[solver]\nkind = \"explicit\"\ntime_step = 1e-4\nsteps = 1\nprecision = \"mixed\"\n"),
             "a.toml:14:13: solver.precision: \"mixed\" is not used by kind = \"explicit\"; must be \"double\"");
   EXPECT_EQ(errors_of_beam("[solver]\nkind = \"modes\"\nprecision = \"mixed\"\n"),

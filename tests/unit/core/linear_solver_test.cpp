@@ -2,6 +2,7 @@
 // method, beside loads without a potential, and where stability is asked for.
 #include "core/run/drivers.hpp"
 #include "core/tangent/cg_solver.hpp"
+#include "core/tangent/stability.hpp"
 #include "core/tangent/tangent_operator.hpp"
 #include "tests/support/statics.hpp"
 
@@ -10,7 +11,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace fascia::linear_solver_test {
 namespace {
@@ -158,6 +161,90 @@ TEST(LinearSolver, KeptLevelsTakeProductsWithThePresentTangent) {
     EXPECT_NE(solver.levels(), nullptr);
   }
   EXPECT_EQ(found[0], found[1]);
+}
+
+double largest_difference(const State& a, const State& b) {
+  double largest = 0, difference = 0;
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    largest = std::max(largest, norm(b.u[i]));
+    difference = std::max(difference, norm(a.u[i] - b.u[i]));
+  }
+  return difference / largest;
+}
+
+/// Conjugate gradients with each precision, and a tolerance that leaves the difference to it.
+std::array<SolverSettings, 2> double_and_mixed() {
+  std::array<SolverSettings, 2> settings;
+  for (SolverSettings& s : settings) {
+    s.linear = LinearMethod::cg;
+    s.tolerance = 1e-10;
+  }
+  settings[1].precision = Precision::mixed;
+  return settings;
+}
+
+TEST(LinearSolver, MixedPrecisionEndsAtTheSameEquilibrium) {
+  BuiltModel built = held_block();
+  add_gravity(built.model, {{0, -0.5, 0.2}});
+  const auto [exactly, rounded] = double_and_mixed();
+  const Solved a = solved(built.model, exactly), b = solved(built.model, rounded);
+  EXPECT_NE(b.run.linear_iterations, a.run.linear_iterations);
+  EXPECT_LT(largest_difference(b.end, a.end), 1e-9);
+}
+
+TEST(LinearSolver, MixedPrecisionGoesTheSameWayInTime) {
+  BuiltModel built = held_block();
+  add_gravity(built.model, {{0, -0.5, 0.2}});
+  State ends[2];
+  for (std::size_t k = 0; k < 2; ++k) {
+    const SolverSettings settings = double_and_mixed()[k];
+    ThreadPool pool(2);
+    MechanicalSystem system(built.model, pool, settings);
+    ends[k] = State::at_rest(built.model);
+    const RunReport run = run_implicit(system, ends[k], kAlways, settings, {TimeScheme::newmark, 0.05, 10}, nullptr);
+    EXPECT_EQ(run.status, RunStatus::converged) << run.message;
+  }
+  const double difference = largest_difference(ends[1], ends[0]);
+  EXPECT_LT(difference, 1e-9);
+  EXPECT_GT(difference, 0);
+}
+
+/// A beam six hundred times as long as thick: rounded to 32 bits, its softest directions may have any stiffness.
+TEST(LinearSolver, MixedPrecisionGoesBackWhereRoundingMakesATangentIndefinite) {
+  BlockOptions o;
+  o.grid = {12, 2, 2};
+  o.size = {{12, 0.02, 0.02}};
+  BuiltModel built = block(o);
+  hold_face(built.model);
+  ThreadPool pool(2);
+  CpuExecutor executor(built.model.points, pool);
+  const DofFilter filter(built.model);
+  std::vector<double> b(static_cast<std::size_t>(built.model.dof_count())), x = b;
+  const State state = random_state(built.model, 1e-3, 0.01);
+  executor.gradient(state, {}, b);
+  Linearization tangent;
+  executor.linearize(state, {}, Tangent::material, tangent);
+  TangentOperator K(built.model, executor, filter);
+  FactorSolver factor(K);
+  b = smooth_motion(built.model);
+  filter.clear_fixed(b);
+  K.take(tangent);
+  const auto iterations = [&](CgSolver& solver) {
+    const LinearReport report = solver.solve(b, x);
+    EXPECT_TRUE(report.usable && !report.unsolved) << report.trouble;
+    EXPECT_EQ(report.negative, 0);
+    return report.iterations;
+  };
+  LinearSettings settings;
+  settings.preconditioner = PreconditionerKind::block_jacobi;
+  settings.cg = {100000, 1e-6};
+  CgSolver exact(K, settings, factor);
+  settings.precision = Precision::mixed;
+  CgSolver rounded(K, settings, factor);
+  const int in_double = iterations(exact), at_first = iterations(rounded);
+  std::printf("thin beam: iterations %d, and %d with those in 32 bits before\n", in_double, at_first);
+  EXPECT_GT(at_first, in_double);
+  EXPECT_EQ(iterations(rounded), in_double);
 }
 
 TEST(LinearSolver, NothingIsPreparedWhereNothingIsFree) {

@@ -5,12 +5,19 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <string>
+
 namespace fascia::block_matrix_test {
 namespace {
 
 using namespace test;
 
 enum class Nodes { vertices, rigid, several };
+
+std::string name_of(Nodes nodes) {
+  return nodes == Nodes::vertices ? "vertices" : nodes == Nodes::rigid ? "rigid" : "several";
+}
 
 /// Several ranges of nodes and rows, and a matrix of several chunks.
 Model model_of(Nodes nodes) {
@@ -36,7 +43,7 @@ class BlockMatrixOf : public testing::TestWithParam<Nodes> {
 
   struct Found {
     Linearization lin;
-    std::vector<double> values, product;
+    std::vector<double> values, product, rounded;
   };
   /// The last tangent is written over another one.
   Found found(int threads) {
@@ -54,6 +61,9 @@ class BlockMatrixOf : public testing::TestWithParam<Nodes> {
     f.values.assign(matrix.values(), matrix.values() + matrix.value_count());
     f.product.resize(x.size());
     matrix.multiply(pool, x, f.product);
+    f.rounded.resize(x.size());
+    matrix.round(pool);
+    matrix.multiply_rounded(pool, x, f.rounded);
     std::vector<double> free(x.size());
     executor.multiply(f.lin, x, free);
     for (std::size_t i = 0; i < free.size(); ++i) free[i] -= f.product[i];
@@ -77,11 +87,19 @@ TEST_P(BlockMatrixOf, TangentEntriesAndProductsDoNotDependOnThreads) {
     EXPECT_EQ(more.lin.kept, one.lin.kept);
     EXPECT_EQ(more.values, one.values);
     EXPECT_EQ(more.product, one.product);
+    EXPECT_EQ(more.rounded, one.rounded);
   }
 }
 
-std::string name_of(Nodes nodes) {
-  return nodes == Nodes::vertices ? "vertices" : nodes == Nodes::rigid ? "rigid" : "several";
+/// Each entry is off by half a unit of its last place, 6e-8 of it, at most.
+TEST_P(BlockMatrixOf, ProductsWithRoundedEntriesMissByThatRounding) {
+  const Found f = found(2);
+  std::vector<double> rest = f.rounded;
+  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= f.product[i];
+  const double error = norm(rest) / norm(f.product);
+  std::printf("%-9s rounded entries: %.1e\n", name_of(GetParam()).c_str(), error);
+  EXPECT_LT(error, 1e-7);
+  EXPECT_GT(error, 1e-10);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BlockMatrixOf, testing::Values(Nodes::vertices, Nodes::rigid, Nodes::several),
