@@ -74,9 +74,10 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
   turn(pool_, state.D, out.Q);
   out.node_blocks.resize(set_.dofs.block_total());
   pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
+    std::fill(out.node_blocks.data() + set_.dofs.block_begin(begin),
+              out.node_blocks.data() + set_.dofs.block_begin(end), 0.0);
     for (int node = begin; node < end; ++node) {
       double* block = out.node_blocks.data() + set_.dofs.block_begin(node);
-      std::fill_n(block, set_.dofs.size(node) * set_.dofs.size(node), 0.0);
       if (tangent == Tangent::material || set_.dofs.kind(node) != FrameKind::rigid) continue;
       const Mat3d L = tethers_turn || tether_L_.empty() ? turning[at(node)] : turning[at(node)] - tether_L_[at(node)];
       const Mat3d rr = sym(L) - Mat3d::diagonal(trace(L));
