@@ -96,9 +96,18 @@ struct Stepper::Parts {
     const State& start = simulation.initial;
     steps = backend == Backend::cuda ? gpu::make_stepper(simulation.model, start, settings, stepping)
                                      : make_stepper(simulation.model, start, pool, settings, stepping);
-    if (settings.budget > 0)
-      if (const std::string no = steps->warm_up(factors(start.time, solver.time_step), solver.time_step); !no.empty())
-        simulation.warnings.add("budget", no);
+    if (settings.budget > 0) warm_up(solver.time_step);
+  }
+
+  /// Tries steps of this length, so that the first one is no slower than others.
+  void warm_up(double dt) {
+    std::string trouble;
+    try {
+      trouble = steps->warm_up(factors(simulation.initial.time, dt), dt);
+    } catch (const StateError& e) {
+      trouble = e.what();
+    }
+    if (!trouble.empty()) simulation.warnings.add("budget", trouble);
   }
 
   bool statics() const { return simulation.scene.solver.kind == SolverKind::statics; }

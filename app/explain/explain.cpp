@@ -83,6 +83,8 @@ class Explainer {
     e_.overrides = options.overrides;
     e_.scene = parse_scene_file(options.scene, e_.overrides);
     if (e_.scene.output.picture) e_.overrides.emplace_back("output.picture=");
+    if (e_.scene.solver.budget)
+      e_.overrides.emplace_back("solver.budget=\"none\"");  // else all runs would take as long
     add_probes();
     e_.scene = parse_scene_file(options.scene, e_.overrides);
     const double program = peak_memory();

@@ -144,6 +144,11 @@ std::vector<ExtremeCell> sweep_cells(const fs::path& path, const std::vector<std
         fmt::format("{}: states a need, which would choose other frames or cells at every value; run it "
                     "once, and sweep the chosen.toml of its result",
                     path.string()));
+  if (scene.solver.budget)
+    throw InputError(
+        fmt::format("{}: gives steps a budget, which would end them before they are right; add --set "
+                    "solver.budget=none",
+                    path.string()));
   Diagnostics none(path.string());
   Value document = parse_document(io::read_file(path), none);
   for (const std::string& change : overrides) apply_override(document, change, none);

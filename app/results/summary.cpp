@@ -111,6 +111,7 @@ nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const Run
   if (const std::optional<double>& budget = s.scene.solver.budget)
     j["budget"] = {{"seconds", *budget},
                    {"cut_steps", times.budget.cut},
+                   {"idle_steps", times.budget.idle},
                    {"late_steps", times.budget.late},
                    {"residual_max", finite(times.budget.most_left)}};
   j["peak_memory_bytes"] = static_cast<std::uint64_t>(peak_memory());

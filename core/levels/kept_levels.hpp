@@ -30,7 +30,7 @@ class KeptLevels {
       CgOptions few = options;
       few.max_iterations = std::min(options.max_iterations, iterations_ + iterations_ / 2 + 2);
       const CgReport report = solve(false, few);
-      if (report.status == converged) return report;
+      if (report.status == converged || (report.status == limit && options.timed)) return report;
       before = report.iterations;
     }
     iterations_ = 0;

@@ -9,6 +9,7 @@ namespace fascia {
 struct CgOptions {
   int max_iterations = 1000;
   double tolerance = 1e-6;  ///< on |r|_M⁻¹ relative to the right-hand side's
+  bool timed = false;       ///< the limit is that of the time left: a solve that ends there says nothing of its solver
 };
 
 enum class CgStatus { converged, limit, negative_curvature, not_finite };

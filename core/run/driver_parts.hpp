@@ -39,6 +39,8 @@ inline void accept(RunReport& run, const NewtonReport& newton, const SolverSetti
   run.residual = std::max(run.residual, newton.last.relative);
   const bool cut = newton.status == NewtonStatus::out_of_time;
   run.steps_out_of_time += cut;
+  if (cut) run.left_by_time = std::max(run.left_by_time, newton.last.relative);
+  run.steps_without_progress += cut && !newton.progress;
   run.steps_at_limit += newton.status != NewtonStatus::converged && !cut;
   run.convergence = convergence_sentence(newton, settings);
   run.residual_floor = std::max(run.residual_floor, newton.last.relative_floor);

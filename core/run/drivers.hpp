@@ -43,6 +43,8 @@ struct RunReport {
   double time = 0;
   int steps_at_limit = 0;                     ///< accepted above the tolerance (proceed_on_limit)
   int steps_out_of_time = 0;                  ///< accepted above the tolerance where their budget ended
+  int steps_without_progress = 0;             ///< those of them whose iterations led to no better state
+  double left_by_time = 0;                    ///< largest residual of those, relative
   std::string trouble;                        ///< of a followed path: its end may be unstable
   std::string convergence;                    ///< why the last step counts as converged, in words
   Stability stability;                        ///< of the end of statics under load control

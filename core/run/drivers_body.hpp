@@ -101,11 +101,8 @@ RunReport run_implicit(System& system, typename System::Pose& state, const Facto
     }
   }
   ImplicitStepper<System> stepper(system, settings, dynamics.scheme);
-  if (dynamics.steps > 0) run.message = stepper.warm_up(state, factors, dynamics.end_of(1), dynamics.length_of(1));
-  if (!run.message.empty()) {
-    run.status = RunStatus::not_converged;
-    return run;
-  }
+  if (dynamics.steps > 0) run = stepper.warm_up(state, factors, dynamics.end_of(1), dynamics.length_of(1));
+  if (run.status != RunStatus::converged) return run;
   for (int step = 1; step <= dynamics.steps; ++step) {
     const Clock::time_point start = Clock::now();
     const double end = dynamics.end_of(step);

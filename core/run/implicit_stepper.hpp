@@ -2,6 +2,7 @@
 
 #include "core/run/driver_parts.hpp"
 
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <type_traits>
@@ -51,29 +52,45 @@ class ImplicitStepper {
   }
 
   /// Takes a step twice and forgets it, where steps have a budget: the first has the memory that it needs and the
-  /// solvers that suit it, the second shows what its parts take.
+  /// solvers that suit it, the second shows what its parts take. Where none of them needs an iteration, or they fail,
+  /// one is taken all the same.
   /// @param end, dt  of the first step to come
-  /// @return         why no step fits into the budget; empty where one does, and where there is none
-  std::string warm_up(const Pose& state, const FactorFunction& factors, double end, double dt) {
-    if (!budget_) return {};
+  /// @return         converged, where a step fits into the budget or nothing is known of it, and where there is none;
+  ///                 else how it ended, and why
+  RunReport warm_up(const Pose& state, const FactorFunction& factors, double end, double dt) {
+    RunReport run;
+    if (!budget_) return run;
     const StepMemory memory = on_host(memory_);
-    const std::vector<double> pressures = system_.reached_pressures();
-    for (int twice = 0; twice < 2; ++twice) {
+    const std::vector<double> pressures = system_.reached_pressures(), reached = system_.reached_factors();
+    const auto forget = [&] {
+      system_.forget_steps(reached, pressures);
+      begin_afresh(Memory(memory));
+    };
+    ready_ = false;
+    for (int twice = 0; twice < 2 && run.status == RunStatus::converged; ++twice) {
       budget_->forget();
       Pose tried = state;
-      RunReport run;
+      run = {};
       step(tried, factors, end, dt, run);
-      system_.forget_steps(factors(end - dt), pressures);
-      begin_afresh(Memory(memory));
+      forget();
     }
+    if (run.status == RunStatus::interrupted) return run;
+    run = {};
+    measure(state, factors, end, dt);
+    forget();
     ready_ = true;
-    return budget_->least() <= budget_->seconds() ? "" : too_short_sentence(*budget_);
+    if (!(budget_->least() > budget_->seconds()) || !std::isfinite(budget_->least())) return run;
+    run.status = RunStatus::not_converged;
+    run.message = too_short_sentence(*budget_);
+    return run;
   }
 
   /// Has the system look at the state that the last step reached, where that step's equations hold elsewhere.
   void look_back(const Pose& state) {
     if (!system_.solves_for_middle()) return;
+    const Clock::time_point start = Clock::now();
     system_.look_back(state, before_, as_long_as_before_ ? earlier_ : Pose{}, last_step_);
+    if (budget_) budget_->took_look(seconds_since(start));
   }
 
   /// Numbers of the steps before that the scheme keeps.
@@ -111,8 +128,8 @@ class ImplicitStepper {
     std::swap(earlier_, before_);
   }
 
-  NewtonReport advance(Pose& state, const FactorFunction& factors, double end, double dt, int depth, RunReport& run) {
-    using namespace drivers;
+  /// Begins a step. @return  when its equations hold
+  double begin(const Pose& state, const FactorFunction& factors, double end, double dt) {
     const TimeScheme taken = scheme_of_step(scheme_, dt, memory_);
     const double solved_at = taken == TimeScheme::midpoint ? end - 0.5 * dt : end;
     if (taken == TimeScheme::newmark && memory_.acceleration.empty()) {
@@ -121,6 +138,31 @@ class ImplicitStepper {
     }
     system_.begin_step(state, dt, taken, memory_);
     system_.set_factors(factors(solved_at));
+    return solved_at;
+  }
+
+  /// Takes the parts of a step with one iteration, which leads nowhere.
+  void measure(const Pose& state, const FactorFunction& factors, double end, double dt) {
+    budget_->begin(false);
+    begin(state, factors, end, dt);
+    system_.evaluate();
+    budget_->took_start(budget_->elapsed());
+    const auto timed = [](const auto& act) {
+      const Clock::time_point start = Clock::now();
+      act();
+      return seconds_since(start);
+    };
+    DirectionReport d;
+    const double in_direction = timed([&] { d = system_.direction(kAsManyAsNeeded); });
+    budget_->took_direction(in_direction, d.cg_seconds, d.linear_iterations);
+    budget_->took_evaluation(timed([&] { system_.evaluate(); }));
+    Pose reached = state;
+    budget_->took_end(timed([&] { system_.finish_step(end, memory_, reached); }));
+  }
+
+  NewtonReport advance(Pose& state, const FactorFunction& factors, double end, double dt, int depth, RunReport& run) {
+    using namespace drivers;
+    const double solved_at = begin(state, factors, end, dt);
     NewtonReport report;
     if (depth == 0 || system_.prescribed_rotation() <= kRotationPerStep) {
       system_.start_from_prediction();

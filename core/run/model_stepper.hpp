@@ -34,7 +34,7 @@ class ModelStepper {
   virtual RunReport step(const FactorFunction& factors, double dt) = 0;
 
   /// Before the first step, where steps have a budget: see ImplicitStepper::warm_up().
-  /// @return  a sentence where the budget holds no step
+  /// A model that is edited later is tried again. @return  a sentence where the budget holds no step
   virtual std::string warm_up(const FactorFunction& factors, double dt) = 0;
 
   virtual double time() const = 0;  ///< that was reached [s]; in statics the load factor

@@ -59,8 +59,10 @@ class SystemStepper final : public ModelStepper {
   }
 
   std::string warm_up(const FactorFunction& factors, double dt) override {
+    if (stepping_.statics) return "";
     system_->restart_motions();
-    return stepping_.statics ? "" : implicit_->warm_up(pose(), factors, pose().time + dt, dt);
+    tried_ = dt;
+    return implicit_->warm_up(pose(), factors, pose().time + dt, dt).message;
   }
 
   double time() const override {
@@ -109,6 +111,7 @@ class SystemStepper final : public ModelStepper {
     system_ = std::move(anew);
     implicit_.emplace(*system_, settings_, stepping_.scheme);
     restore(here, factors);
+    if (tried_ > 0) warm_up(factors, tried_);
   }
 
   SteppingSnapshot snapshot(const FactorFunction& factors) override {
@@ -164,6 +167,7 @@ class SystemStepper final : public ModelStepper {
   bool reached_ = false;  ///< the system stands at the end of a step
   bool looked_ = false;   ///< its gradient is what acts at the state
   bool fetched_ = true;   ///< the host has the state
+  double tried_ = 0;      ///< length of the step that warms up [s]; 0: none does
 };
 
 }  // namespace fascia

@@ -73,6 +73,8 @@ class MechanicalSystem {
   void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
   /// Does so but for what linear solvers have learned.
   void forget_steps(std::span<const double> factors, const std::vector<double>& pressures);
+  /// Factors of schedules at the end of the last step.
+  const std::vector<double>& reached_factors() const { return reached_factors_; }
   /// Newton's pressures of enclosed volumes at the end of the last step [Pa].
   const std::vector<double>& reached_pressures() const { return surfaces_.reached(); }
 

@@ -49,6 +49,7 @@ struct NewtonReport {
   double linear_residual = 0;  ///< of the last direction
   double last_tangent = 0;     ///< relative residual where the last tangent was taken; infinite where a boundary moved
   double cg_seconds = 0;       ///< of all directions
+  bool progress = false;       ///< a better state was found than the first one
 };
 
 /// The load or time step that a solve belongs to.
@@ -81,12 +82,13 @@ class Newton {
     while (system_.has_prescribed_increment() || !settled()) {
       if (report_.iterations >= settings_.max_iterations) return give_up(NewtonStatus::limit);
       if (settings_.stops && settings_.stops()) return finish(NewtonStatus::stopped);
-      if (report_.iterations > 0 && budget_ && !budget_->holds_iteration()) return give_up(NewtonStatus::out_of_time);
-      const bool moving = system_.has_prescribed_increment();
+      const bool moving = system_.has_prescribed_increment();  // arrives, whatever time that takes
+      if (report_.iterations > 0 && !moving && !holds_iteration()) return give_up(NewtonStatus::out_of_time);
       const DirectionReport d = direction();
       if (!d.usable) return give_up(NewtonStatus::linear_failure);
       const double before = current_.residual;
-      system_.apply(system_.largest_step(capped(d)));
+      const double step = system_.largest_step(capped(d));
+      system_.apply(step);
       current_ = evaluate();
       if (moving) first_residual_ = std::max(first_residual_, current_.residual);
       if (!moving) count_standing(before);
@@ -94,8 +96,10 @@ class Newton {
       if (!moving && d.unsolved && !settled() && standing_ >= kUnsolvedStands) return give_up(NewtonStatus::unsolved);
       if (current_.finite() && (moving || better_than_mark())) {
         mark();
-      } else if (!current_.finite() || (++detour_ > kDetour && current_.residual > kFalls * before)) {
-        if (const NewtonStatus status = search_from_mark(); status != NewtonStatus::converged) return give_up(status);
+      } else if (!current_.finite() || (++detour_ > kDetour && current_.residual > kFalls * before) || is_late()) {
+        const bool from_mark = since_mark_ == 1;
+        const NewtonStatus status = from_mark && !holds_iteration() ? shorten(step, d.slope) : search_from_mark();
+        if (status != NewtonStatus::converged) return give_up(status);
       }
     }
     report_.convergence = current_.by_rounding ? Convergence::rounding : Convergence::tolerance;
@@ -106,6 +110,7 @@ class Newton {
   static constexpr double kRotationCap = 0.8;    ///< largest rotation of a frame or a cell in one iteration [rad]
   static constexpr double kIndefiniteCap = 0.4;  ///< the same along a direction that no minimum gave
   static constexpr double kShorterLeap = 0.25;   ///< such a step, after one that led to no better state
+  static constexpr double kShorter = 0.25;       ///< a step in the place of one that led to no better state
   static constexpr int kDetour = 4, kHalvings = 14;
   static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
   static constexpr double kNoDecrement = 1e-12;    ///< the same of a correction of 1e-6 of the motion
@@ -150,7 +155,9 @@ class Newton {
     budget_->took_evaluation(seconds_since(start));
     return e;
   }
-  bool has_time() const { return !budget_ || budget_->holds_evaluation(); }
+  bool holds_iteration() const { return !budget_ || budget_->holds_iteration(); }
+  /// A detour would take what is left of the step's time.
+  bool is_late() const { return budget_ && budget_->half_is_over(); }
 
   /// True where the residual is a small share of the loads, the last corrections were small, and it falls no further.
   bool stagnates(const DirectionReport& d) const {
@@ -170,6 +177,7 @@ class Newton {
         system_.has_prescribed_increment() ? std::numeric_limits<double>::infinity() : current_.relative;
     if (budget_ && report_.iterations == 0) budget_->took_start(budget_->elapsed());
     const Clock::time_point start = Clock::now();
+    ++since_mark_;
     DirectionReport d = system_.direction(budget_ ? budget_->cg_iterations() : kAsManyAsNeeded);
     if (budget_) budget_->took_direction(seconds_since(start), d.cg_seconds, d.linear_iterations);
     ++report_.iterations;
@@ -190,6 +198,8 @@ class Newton {
     system_.save();
     marked_ = current_;
     detour_ = 0;
+    if (since_mark_ > 0) report_.progress = true;
+    since_mark_ = 0;
   }
 
   /// Less energy than at the mark while the residual stays within reach, or a residual that is clearly smaller.
@@ -206,26 +216,44 @@ class Newton {
     system_.restore();
     standing_ = 0;
     current_ = evaluate();
+    since_mark_ = 0;
     if (report_.iterations >= settings_.max_iterations) return NewtonStatus::limit;
-    if (budget_ && !budget_->holds_iteration()) return NewtonStatus::out_of_time;
+    if (!system_.has_prescribed_increment() && !holds_iteration()) return NewtonStatus::out_of_time;
     const DirectionReport d = direction();
     if (!d.usable) return NewtonStatus::linear_failure;
-    double step = system_.largest_step(std::min(1.0, 0.25 * kRotationCap / std::max(d.largest_rotation, 1e-300)));
+    const double step = system_.largest_step(std::min(1.0, 0.25 * kRotationCap / std::max(d.largest_rotation, 1e-300)));
+    return search(step, d.slope);
+  }
+
+  /// Takes a shorter step in the place of the last one, which led from the mark to no better state.
+  NewtonStatus shorten(double step, double slope) {
+    leap_ = 0;
+    turned_back_ = true;
+    system_.restore();
+    standing_ = 0;
+    return search(kShorter * step, slope);
+  }
+
+  /// Takes the longest step along the direction at the mark, of those half as long as one another, that leads to a
+  /// better state.
+  NewtonStatus search(double step, double slope) {
     const bool moving = system_.has_prescribed_increment();  // then the mark's residual is no measure
-    for (int halving = 0; halving < kHalvings && has_time(); ++halving, step *= 0.5) {
+    bool in_time = true;
+    for (int halving = 0; halving < kHalvings && in_time; ++halving, step *= 0.5) {
       system_.apply(step);
       current_ = evaluate();
       if (current_.finite() &&
           (moving || current_.residual <= (1 - 0.1 * step) * marked_.residual ||
-           (system_.compares_energies() && current_.energy <= marked_.energy + 1e-4 * step * std::min(d.slope, 0.0)))) {
+           (system_.compares_energies() && current_.energy <= marked_.energy + 1e-4 * step * std::min(slope, 0.0)))) {
         mark();
         return NewtonStatus::converged;
       }
       system_.restore();
+      in_time = moving || !budget_ || budget_->holds_evaluation();
     }
     current_ = evaluate();
-    last_decrement_ = std::abs(d.slope);
-    return has_time() ? NewtonStatus::stalled : NewtonStatus::out_of_time;
+    last_decrement_ = std::abs(slope);
+    return in_time ? NewtonStatus::stalled : NewtonStatus::out_of_time;
   }
 
   /// Goes back to the best state met, where that is better than the present one.
@@ -269,6 +297,7 @@ class Newton {
   NewtonReport report_;
   Evaluation current_, marked_;
   int detour_ = 0, standing_ = 0;
+  int since_mark_ = 0;                ///< directions
   bool unsolved_ = false;             ///< the last direction is what conjugate gradients had at their limit
   bool in_doubt_ = false;             ///< DirectionReport::indefinite of any direction
   bool turned_back_ = false;          ///< to the best state, to search from there

@@ -37,22 +37,28 @@ class StepBudget {
   bool holds_evaluation() const { return !limited_ || elapsed() + rest() <= kPart * seconds_; }
   /// Iterations of conjugate gradients that a direction which begins now may take, at least one.
   int cg_iterations() const {
-    if (!limited_ || cg_.expected <= 0) return std::numeric_limits<int>::max();
+    if (!limited_) return std::numeric_limits<int>::max();
+    const double one = cg_.expected > 0 ? cg_.expected : std::max(direction_.expected / kOfDirection, 1e-9);
     const double left = kPart * seconds_ - elapsed() - direction_.expected - rest();
-    return static_cast<int>(std::clamp(left / cg_.expected, 1.0, 1e9));
+    return static_cast<int>(std::clamp(left / one, 1.0, 1e9));
   }
+  /// Half of the time of a limited step is over.
+  bool half_is_over() const { return limited_ && elapsed() > 0.5 * kPart * seconds_; }
 
   void took_evaluation(double seconds) { evaluation_.take(seconds); }
   /// @param seconds  of a direction, of which conjugate gradients took a part
   void took_direction(double seconds, double in_iterations, int iterations) {
     direction_.take(std::max(seconds - in_iterations, 0.0));
-    if (iterations > 0) cg_.take(in_iterations / iterations);
+    if (iterations > 0 && in_iterations > 0) cg_.take(in_iterations / iterations);
   }
   /// What comes before the first direction, and behind Newton's method.
   void took_start(double seconds) { opening_.take(seconds); }
   void took_end(double seconds) { ending_.take(seconds); }
+  /// A look at the state that was reached, of schemes that need one.
+  void took_look(double seconds) { look_.take(seconds); }
 
-  /// The shortest step that was possible so far: one iteration of Newton's method, with one of conjugate gradients [s].
+  /// The shortest step that was possible so far: one iteration of Newton's method, with one of conjugate gradients [s];
+  /// infinite where it is not known.
   double least() const {
     return opening_.least + direction_.least + (cg_.expected > 0 ? cg_.least : 0) + evaluation_.least + ending_.least;
   }
@@ -61,6 +67,7 @@ class StepBudget {
   /// What is not planned: a step is to end in time although a part takes a little longer than before.
   static constexpr double kPart = 0.95;
   static constexpr int kFewIterations = 4;  ///< a direction of fewer is hardly worth its linearisation
+  static constexpr int kOfDirection = 40;   ///< iterations that a linearisation is worth, where nothing is known
 
   struct Part {
     double expected = 0, least = std::numeric_limits<double>::infinity();  ///< [s]
@@ -70,12 +77,12 @@ class StepBudget {
       least = std::min(least, seconds);
     }
   };
-  double rest() const { return evaluation_.expected + ending_.expected; }
+  double rest() const { return evaluation_.expected + ending_.expected + look_.expected; }
 
   double seconds_;
   Clock::time_point start_ = Clock::now();
   bool limited_ = false;
-  Part opening_, evaluation_, direction_, cg_, ending_;
+  Part opening_, evaluation_, direction_, cg_, ending_, look_;
 };
 
 }  // namespace fascia

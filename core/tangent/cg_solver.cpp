@@ -27,7 +27,7 @@ CgReport CgSolver::iterate(Preconditioner& M, const Vector& b, Vector& x, const 
 }
 
 CgReport CgSolver::solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options) {
-  if (!rounds_) return iterate(M, b, x, options, false);
+  if (!rounds_ || exact_) return iterate(M, b, x, options, false);
   const CgReport rounded = iterate(M, b, x, options, true);
   if (rounded.status == CgStatus::converged || rounded.status == CgStatus::limit) return rounded;
   CgReport exact = iterate(M, b, x, options, false);
@@ -58,7 +58,7 @@ CgReport CgSolver::solve_by_either(const Vector& b, Vector& x, const CgOptions& 
     return cg;
   };
   if (levels_are_taken()) return by_levels();
-  const bool budget = limited_ || options.max_iterations < kEnoughForBulk,
+  const bool budget = options.timed || options.max_iterations < kEnoughForBulk,
              chosen = settings_.linear == LinearMethod::automatic;
   CgOptions first = options;
   if (chosen && !budget && !kept_levels_.fail())
@@ -101,7 +101,10 @@ CgReport CgSolver::solve_as_asked(const Vector& b, Vector& x, const CgOptions& o
 LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, const CgOptions& asked) {
   const Clock::time_point start = Clock::now();
   CgOptions options = asked;
-  if (limited_) options.max_iterations = std::clamp(left_, 1, options.max_iterations);
+  if (limited_) {
+    options.max_iterations = std::clamp(left_, 1, options.max_iterations);
+    options.timed = true;
+  }
   Vector found;
   const CgReport cg = solve_as_asked(Vector(b.begin(), b.end()), found, options);
   left_ -= cg.iterations;

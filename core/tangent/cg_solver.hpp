@@ -45,8 +45,10 @@ class CgSolver final : public LinearSolver {
   /// a step has. What a solve does not reach because of it says nothing of preconditioners.
   void limit_iterations(int most) {
     left_ = most;
-    limited_ = most < std::numeric_limits<int>::max();
+    limited_ = most < settings_.cg.max_iterations;
   }
+  /// Products have 64 bits, whatever the precision.
+  void take_exact_products(bool exact) { exact_ = exact; }
   bool spent() const override { return limited_ && left_ <= 0; }
   /// Makes preconditioners anew and counts iterations afresh.
   void begin_afresh();
@@ -75,7 +77,7 @@ class CgSolver final : public LinearSolver {
   TangentOperator& K_;
   LinearSettings settings_;
   FactorSolver& factor_;
-  bool limited_ = false;
+  bool limited_ = false, exact_ = false;
   int left_ = 0;                         ///< iterations, where they are limited
   long pattern_ = 0;                     ///< of K, that preconditioners were made of
   std::unique_ptr<Preconditioner> one_;  ///< that is asked for, or blocks

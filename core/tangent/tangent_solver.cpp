@@ -231,6 +231,11 @@ bool TangentSolver::solve_as_is(std::span<const double> prescribed, std::span<co
 }
 
 SoftestDirection TangentSolver::softest(const Linearization& lin, long made, bool current) {
+  cg_.take_exact_products(true);  // the softest stiffness may be as small as what rounding changes
+  const struct Lent {
+    CgSolver& cg;
+    ~Lent() { cg.take_exact_products(false); }
+  } lent{cg_};
   const bool reusable = current && direct() && factor_.definite() && !K_.tamed();
   K_.take(lin);
   const bool factor_first = reusable || direct() || (!own_ && factor_is_cheap(made));

@@ -62,7 +62,7 @@ LinearReport solve_whole(TangentOperator& K, LinearSolver& inner, bool limit_end
     report.negative = std::max(report.negative, once.negative);
     if (!once.trouble.empty()) report.negative = std::max(report.negative, 1);
     if (!inner.iterates()) return once.usable;
-    return once.usable && once.trouble.empty() && !(once.unsolved && limit_ends);
+    return once.usable && once.trouble.empty() && !(once.unsolved && limit_ends && !inner.spent());
   };
   GmresOptions options;
   options.tolerance = tolerance;
@@ -74,7 +74,8 @@ LinearReport solve_whole(TangentOperator& K, LinearSolver& inner, bool limit_end
   std::copy(found.begin(), found.end(), x.begin());
   report.unsolved = !gmres.converged;
   report.residual = gmres.relative_residual;
-  report.usable = gmres.converged || gmres.relative_residual <= kUsefulResidual;
+  report.usable = gmres.converged || gmres.relative_residual <= kUsefulResidual ||
+                  (inner.spent() && gmres.iterations > 0);  // as far as time went
   return report;
 }
 

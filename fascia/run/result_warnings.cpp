@@ -260,7 +260,10 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   if (run.steps_out_of_time > 0)
     run.message +=
         fmt::format("{}{} of {} steps ended where their budget did, with residuals of up to {:.2g} of what acts",
-                    run.message.empty() ? "" : "; ", run.steps_out_of_time, run.steps, run.residual);
+                    run.message.empty() ? "" : "; ", run.steps_out_of_time, run.steps, run.left_by_time);
+  if (run.steps_without_progress > 0)
+    run.message += fmt::format("; {} of them found no better state than they began with: the motion lags there",
+                               run.steps_without_progress);
 }
 
 }  // namespace fascia

@@ -51,6 +51,7 @@ class System {
   void restart_motions();
   void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
   void forget_steps(std::span<const double> factors, const std::vector<double>& pressures);
+  const std::vector<double>& reached_factors() const { return reached_factors_; }
   std::vector<double> reached_pressures() const {
     return surfaces_.empty() ? std::vector<double>{} : surfaces_.reached();
   }

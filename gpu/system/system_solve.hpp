@@ -187,6 +187,7 @@ template <class Space>
 CgOptions System<Space>::solve_options() const {
   CgOptions options = settings_.cg;
   if (limit_is_guessed()) options.max_iterations *= kPatience;
+  options.timed = most_iterations_ < options.max_iterations;
   options.max_iterations = std::min(options.max_iterations, most_iterations_);
   return options;
 }
@@ -234,7 +235,8 @@ void System<Space>::product_at_rest(double* p) {
 
 template <class Space>
 DirectionReport System<Space>::direction(int most_iterations) {
-  most_iterations_ = most_iterations;
+  most_iterations_ = kAsManyAsNeeded;
+  if (most_iterations < solve_options().max_iterations) most_iterations_ = most_iterations;
   const bool whole = unsymmetric();
   if (indefinite_ || too_slow_ || (whole && host_may_solve())) return direction_of_host();
   if (blocks_or_levels_.levels() && (kept_levels_.fail() || !levels_fit_)) blocks_or_levels_.turn_to_blocks();
@@ -269,7 +271,7 @@ DirectionReport System<Space>::direction(int most_iterations) {
   };
   CgReport cg = solved_by_either(true);
   const bool failed = cg.status == CgStatus::negative_curvature || cg.status == CgStatus::limit;
-  if (host_is_faster(cg.iterations)) too_slow_ = true;
+  if (most_iterations_ == kAsManyAsNeeded && host_is_faster(cg.iterations)) too_slow_ = true;
   if ((too_slow_ || cg.status == CgStatus::negative_curvature) && failed && host_may_solve()) {
     DirectionReport report = direction_of_host();
     report.linear_iterations += cg.iterations;

@@ -38,6 +38,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"implicit_euler", "struck_beam", {"solver.kind=\"implicit-euler\"", "solver.steps=20"}},
                       Case{"newmark", "struck_beam", {"solver.kind=\"newmark\"", "solver.steps=20"}},
                       Case{"bdf2", "struck_beam", {"solver.kind=\"bdf2\"", "solver.steps=20"}},
+                      Case{"conjugate_gradients",
+                           "struck_beam",
+                           {"solver.linear={kind=\"cg\", preconditioner=\"block-jacobi\"}", "solver.steps=5"}},
                       Case{"midpoint", "midpoint_spin", {"solver.duration=0.5"}},
                       Case{"tethers", "uterus_bladder", {"solver.duration=0.05"}},
                       Case{"driven", "breathing_liver", {"solver.duration=0.05"}},
@@ -50,6 +53,20 @@ TEST(Budget, ThatHoldsNoIterationEndsTheRunBeforeItsFirstStep) {
   EXPECT_EQ(run.status(), "not-converged");
   EXPECT_NE(run.message().find("holds no iteration of Newton's method"), std::string::npos) << run.message();
   EXPECT_NE(run.message().find("give solver.budget more"), std::string::npos) << run.message();
+  EXPECT_EQ(run.message().find("inf"), std::string::npos) << run.message();
+}
+
+/// Nothing moves at first, so that no step needs an iteration: one is measured all the same.
+TEST(Budget, OfABodyAtRestIsJudgedToo) {
+  const SolvedScene moving("settling_beam", {"solver.duration=0.3", "solver.budget=1e6"});
+  EXPECT_EQ(moving.status(), "converged");
+  const SolvedScene still("settling_beam", {"world.gravity=[0, 0, 0]", "solver.duration=0.3", "solver.budget=1e6"});
+  EXPECT_EQ(still.status(), "converged");
+  const SolvedScene refused =
+      SolvedScene::of_file("settling_beam", {"world.gravity=[0, 0, 0]", "solver.duration=0.3", "solver.budget=1e-9"});
+  EXPECT_EQ(refused.status(), "not-converged");
+  EXPECT_NE(refused.message().find("holds no iteration"), std::string::npos) << refused.message();
+  EXPECT_EQ(refused.message().find("inf"), std::string::npos) << refused.message();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace fascia {
@@ -58,15 +59,19 @@ TEST(StepBudget, KnowsTheShortestStep) {
   EXPECT_EQ(budget.seconds(), kHour);
 }
 
-/// f(x) = x³ − 8 from x = 6, on which Newton's method takes some seven iterations.
-struct Cubic {
-  double x = 6, saved = 0, d = 0;
+/// f(x) = 0 of one unknown, with a boundary that arrives after some steps.
+struct OneEquation {
+  using Function = double (*)(double);
+  Function f, slope;
+  double x = 0;
+  int arrives_after = 0;
+  double saved = 0, d = 0;
   int most = 0;  ///< iterations that the last direction was given
 
   Evaluation evaluate() const {
     Evaluation e;
     PartForces forces;
-    forces.residual = (x * x * x - 8) * (x * x * x - 8);  // squares
+    forces.residual = f(x) * f(x);  // squares
     forces.load = 64;
     judge(std::array{forces}, std::array{0}, 1e-10, e);
     e.energy_scale = 1;
@@ -74,25 +79,38 @@ struct Cubic {
   }
   DirectionReport direction(int most_iterations) {
     most = most_iterations;
-    d = -(x * x * x - 8) / (3 * x * x);
+    d = -f(x) / slope(x);
     DirectionReport report;
     report.linear_iterations = 1;
     return report;
   }
   static double largest_step(double wanted) { return wanted; }
-  void apply(double step) { x += step * d; }
+  void apply(double step) {
+    x += step * d;
+    --arrives_after;
+  }
   void save() { saved = x; }
   void restore() { x = saved; }
-  static bool has_prescribed_increment() { return false; }
+  bool has_prescribed_increment() const { return arrives_after > 0; }
   static bool conservative() { return true; }
   static bool compares_energies() { return false; }
 };
 
-TEST(StepBudget, EndsNewtonsMethodAfterOneIterationAtLeast) {
-  const SolverSettings settings;
-  Cubic cut, whole;
+/// x³ − 8 from x = 6, on which Newton's method takes some seven iterations.
+OneEquation cubic() {
+  return {[](double x) { return x * x * x - 8; }, [](double x) { return 3 * x * x; }, 6};
+}
+
+StepBudget spent_budget() {
   StepBudget spent(1e-9);
   spent.begin(true);
+  return spent;
+}
+
+TEST(StepBudget, EndsNewtonsMethodAfterOneIterationAtLeast) {
+  const SolverSettings settings;
+  OneEquation cut = cubic(), whole = cubic();
+  StepBudget spent = spent_budget();
   Newton newton(cut, settings, {}, &spent);
   const NewtonReport report = newton.solve();
   EXPECT_EQ(report.status, NewtonStatus::out_of_time);
@@ -105,6 +123,35 @@ TEST(StepBudget, EndsNewtonsMethodAfterOneIterationAtLeast) {
   EXPECT_EQ(Newton(whole, settings, {}, &ample).solve().status, NewtonStatus::converged);
   EXPECT_NEAR(whole.x, 2, 1e-9);
   EXPECT_GT(whole.most, 1000);
+}
+
+/// Newton's method on 8 atan(x) from x = 3 leads to ever larger x.
+TEST(StepBudget, LeavesTimeForAShorterStepWhereAFullOneLeadsNowhere) {
+  OneEquation arc{[](double x) { return 8 * std::atan(x); }, [](double x) { return 8 / (1 + x * x); }, 3};
+  StepBudget spent = spent_budget();
+  const NewtonReport report = Newton(arc, SolverSettings{}, {}, &spent).solve();
+  EXPECT_EQ(report.status, NewtonStatus::out_of_time);
+  EXPECT_TRUE(report.progress);
+  EXPECT_EQ(report.iterations, 1);
+  EXPECT_LT(std::abs(arc.x), 3);
+
+  // Nor does any shorter one here: the slope has the wrong sign.
+  OneEquation wrong{[](double x) { return 8 * std::atan(x); }, [](double) { return -1.0; }, 3};
+  spent = spent_budget();
+  const NewtonReport stuck = Newton(wrong, SolverSettings{}, {}, &spent).solve();
+  EXPECT_EQ(stuck.status, NewtonStatus::out_of_time);
+  EXPECT_FALSE(stuck.progress) << "which is told";
+  EXPECT_EQ(wrong.x, 3);
+}
+
+TEST(StepBudget, WaitsForABoundaryToArrive) {
+  OneEquation moved = cubic();
+  moved.arrives_after = 4;
+  StepBudget spent = spent_budget();
+  const NewtonReport report = Newton(moved, SolverSettings{}, {}, &spent).solve();
+  EXPECT_EQ(report.status, NewtonStatus::out_of_time);
+  EXPECT_EQ(report.iterations, 4);
+  EXPECT_FALSE(moved.has_prescribed_increment());
 }
 
 }  // namespace
