@@ -26,7 +26,6 @@
 namespace fascia {
 
 namespace {
-
 /// Refuses what a stepper does not advance: other kinds of solution are runs of their own.
 void require_steps(const Scene& scene) {
   const Solver& solver = scene.solver;
@@ -93,21 +92,19 @@ struct Stepper::Parts {
     backend = solver.backend == "cuda" ? choose_backend(simulation) : Backend::cpu;
     if (const std::string lost = not_as_asked(simulation, backend); !lost.empty())
       simulation.warnings.add("backend", lost);
-    const State& start = simulation.initial;
-    steps = backend == Backend::cuda ? gpu::make_stepper(simulation.model, start, settings, stepping)
-                                     : make_stepper(simulation.model, start, pool, settings, stepping);
+    steps = backend == Backend::cuda ? gpu::make_stepper(simulation.model, simulation.initial, settings, stepping)
+                                     : make_stepper(simulation.model, simulation.initial, pool, settings, stepping);
     if (settings.budget > 0) warm_up(solver.time_step);
   }
 
   /// Tries steps of this length, so that the first one is no slower than others.
   void warm_up(double dt) {
-    std::string trouble;
     try {
-      trouble = steps->warm_up(factors(simulation.initial.time, dt), dt);
+      if (const std::string no = steps->warm_up(factors(simulation.initial.time, dt), dt); !no.empty())
+        simulation.warnings.add("budget", no);
     } catch (const StateError& e) {
-      trouble = e.what();
+      simulation.warnings.add("budget", e.what());
     }
-    if (!trouble.empty()) simulation.warnings.add("budget", trouble);
   }
 
   bool statics() const { return simulation.scene.solver.kind == SolverKind::statics; }

@@ -52,8 +52,8 @@ class Snapshot {
 /// Builds what a scene describes and advances it on demand.
 ///
 /// Statics and the implicit schemes of Solver::kind can be stepped, on the processor or, with Solver::backend = "cuda",
-/// on a GPU. Solver::time_step, Solver::steps, Solver::duration and Output are not used; of a time step with a
-/// Solver::budget the first is, by steps that are tried and forgotten before the first. A call that throws InputError
+/// on a GPU. Solver::time_step, Solver::steps, Solver::duration and Output are not used, but where there is a
+/// Solver::budget: steps of Solver::time_step are tried then, and forgotten. A call that throws InputError
 /// changes nothing. One stepper is used by one thread at a time; several may be used side by side.
 ///
 /// The address of a view stays the same as long as the stepper lives; its numbers are those of the last step. Nobody

@@ -50,8 +50,8 @@ void PointExecutor::split_energy(const BlockState& state, int group, int batch, 
 }
 
 template <PointKind Kind>
-GroupStress PointExecutor::stress_on_group(const BlockState& state, int group, Rows rows, bool energies,
-                                           std::span<const double> part_motion) {
+[[gnu::flatten]] GroupStress PointExecutor::stress_on_group(const BlockState& state, int group, Rows rows,
+                                                            bool energies, std::span<const double> part_motion) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   GroupStress out;
   const Lanes motion(energies ? part_motion[at(set_.part_of_group(group))] : 0.0);

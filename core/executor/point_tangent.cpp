@@ -10,7 +10,8 @@ namespace fascia {
 using namespace kernels;
 
 template <PointKind Kind>
-void PointExecutor::linearize_group(const BlockState& now, int group, Rows rows, std::span<double> kept) const {
+[[gnu::flatten]] void PointExecutor::linearize_group(const BlockState& now, int group, Rows rows,
+                                                     std::span<double> kept) const {
   for (int b = 0; b < kBatches; ++b) {
     const PointMotion<Lanes> x = frames_.motion<true>(group, b, rows);
     const auto m = material<Kind>(set_, group, b, now, targets_);
@@ -23,8 +24,8 @@ void PointExecutor::linearize_group(const BlockState& now, int group, Rows rows,
 
 /// @param rows  of the state, of where a step to it started, and of the step
 template <PointKind Kind>
-void PointExecutor::extrapolate_group(const BlockState& now, int group, const std::array<Rows, 3>& rows,
-                                      std::span<double> kept) {
+[[gnu::flatten]] void PointExecutor::extrapolate_group(const BlockState& now, int group,
+                                                       const std::array<Rows, 3>& rows, std::span<double> kept) {
   GroupStress sums;
   for (int b = 0; b < kBatches; ++b) {
     const PointMotion<Lanes> x = frames_.motion<true>(group, b, rows[0]);
@@ -61,7 +62,7 @@ void PointExecutor::linearize(const BlockState& now, const BlockState* start, co
 }
 
 template <PointKind Kind>
-void PointExecutor::product_of_group(const BlockState& state, int group, Rows rows) {
+[[gnu::flatten]] void PointExecutor::product_of_group(const BlockState& state, int group, Rows rows) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   GroupStress sums;
   for (int b = 0; b < kBatches; ++b) {

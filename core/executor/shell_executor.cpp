@@ -147,7 +147,7 @@ void store_corners(const Mat3<Lanes>& axes, const ShellNodes<Lanes>& f, double* 
 
 }  // namespace
 
-void ShellExecutor::forces_of_batch(const BlockState& state, int batch, bool energies, double motion) {
+[[gnu::flatten]] void ShellExecutor::forces_of_batch(const BlockState& state, int batch, bool energies, double motion) {
   Sums sums;
   for (int half = 0; half < kBatches; ++half) {
     const ShellBatch shell(block_, batch, half, state);

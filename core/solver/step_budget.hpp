@@ -51,7 +51,7 @@ class StepBudget {
     direction_.take(std::max(seconds - in_iterations, 0.0));
     if (iterations > 0 && in_iterations > 0) cg_.take(in_iterations / iterations);
   }
-  /// What comes before the first direction, and behind Newton's method.
+  /// Times of a step before its first direction, and behind Newton's method.
   void took_start(double seconds) { opening_.take(seconds); }
   void took_end(double seconds) { ending_.take(seconds); }
   /// A look at the state that was reached, of schemes that need one.
@@ -64,7 +64,7 @@ class StepBudget {
   }
 
  private:
-  /// What is not planned: a step is to end in time although a part takes a little longer than before.
+  /// A part of the time is not planned: a step is to end in it although something takes a little longer.
   static constexpr double kPart = 0.95;
   static constexpr int kFewIterations = 4;  ///< a direction of fewer is hardly worth its linearisation
   static constexpr int kOfDirection = 40;   ///< iterations that a linearisation is worth, where nothing is known
