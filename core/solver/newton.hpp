@@ -157,7 +157,7 @@ class Newton {
   }
   bool holds_iteration() const { return !budget_ || budget_->holds_iteration(); }
   /// A detour would take what is left of the step's time.
-  bool is_late() const { return budget_ && budget_->half_is_over(); }
+  bool is_late() const { return budget_ && budget_->half_is_over() && !settled(); }
 
   /// True where the residual is a small share of the loads, the last corrections were small, and it falls no further.
   bool stagnates(const DirectionReport& d) const {

@@ -144,6 +144,16 @@ TEST(StepBudget, LeavesTimeForAShorterStepWhereAFullOneLeadsNowhere) {
   EXPECT_EQ(wrong.x, 3);
 }
 
+/// A residual that falls by less than half, and is small enough all the same.
+TEST(StepBudget, LeavesAStateThatConvergedAsItIs) {
+  OneEquation near{[](double x) { return x < 0.5 ? 1.2e-9 : 0.7e-9; },
+                   [](double x) { return x < 0.5 ? -1.2e-9 : -0.7e-9; }};
+  StepBudget spent = spent_budget();
+  const NewtonReport report = Newton(near, SolverSettings{}, {}, &spent).solve();
+  EXPECT_EQ(report.status, NewtonStatus::converged);
+  EXPECT_EQ(near.x, 1);
+}
+
 TEST(StepBudget, WaitsForABoundaryToArrive) {
   OneEquation moved = cubic();
   moved.arrives_after = 4;
