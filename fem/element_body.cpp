@@ -125,12 +125,12 @@ void ElementBody::number_nodes(Model& model) {
 }
 
 void ElementBody::add_points(const ElementBodySpec& spec) {
-  const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
+  const std::vector<QuadraturePoint>& rule = quadrature(mesh().shape);
   points_.reserve(mesh().size() * rule.size());
   for (std::size_t e = 0; e < mesh().size(); ++e) {
     const PointMaterialSpec& m = material_[e];
     for (const QuadraturePoint& q : rule) {
-      const ElementPoint p = shape_at(mesh(), e, q.xi);
+      const ElementPoint p = shape_at(mesh(), e, q);
       const double v = p.det_J * q.weight;
       BodyPoint point{m};
       point.X = point.middle = p.X;
@@ -145,7 +145,7 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
 }
 
 void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& builder) {
-  const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
+  const std::vector<QuadraturePoint>& rule = quadrature(mesh().shape);
   const double length = mean_edge(mesh());
   std::map<Law, std::vector<std::size_t>> by_law;
   for (std::size_t e = 0; e < mesh().size(); ++e) by_law[law(static_cast<int>(e))].push_back(e);
@@ -164,7 +164,7 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
     for (const std::size_t e : ordered(mesh(), chosen)) {
       for (const int node : mesh().element(e)) block.node.push_back(first_node_ + node);
       for (const QuadraturePoint& q : rule) {
-        const ElementPoint p = shape_at(mesh(), e, q.xi);
+        const ElementPoint p = shape_at(mesh(), e, q);
         block.gradient.insert(block.gradient.end(), p.dN_dX.begin(), p.dN_dX.begin() + block.nodes);
         block.volume.push_back(p.det_J * q.weight);
       }
@@ -179,13 +179,13 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
 void ElementBody::add_mass(const ElementBodySpec& spec, Model& model) {
   model.inertia.resize(model.rest_position.size());
   const bool linear = order_of(mesh().shape) == 1;
-  const std::vector<QuadraturePoint> rule = quadrature(mesh().shape);
+  const std::vector<QuadraturePoint>& rule = quadrature(mesh().shape);
   if (!linear) weights_.assign(mesh().nodes.size(), 0.0);
   for (std::size_t e = 0; e < mesh().size(); ++e) {
     ShapeValues first{}, second{};
     double sum = 0, volume = 0;
     for (const QuadraturePoint& q : rule) {
-      const ElementPoint p = shape_at(mesh(), e, q.xi);
+      const ElementPoint p = shape_at(mesh(), e, q);
       const double v = p.det_J * q.weight;
       volume += v;
       for (std::size_t a = 0; a < first.size(); ++a) {

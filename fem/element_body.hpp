@@ -55,6 +55,7 @@ class ElementBody final : public ModelBody {
   bool averaged() const { return averaged_; }
 
  private:
+  using PointGradients = std::array<Mat3d, kMostElementPoints>;
   struct Strained {
     double swelling = 0;  ///< relative change of the element's volume
     Mat3d turn;           ///< rotation of the element − I
@@ -70,8 +71,9 @@ class ElementBody final : public ModelBody {
   void add_elements(const ElementBodySpec& spec, PointSetBuilder& points);
   void add_mass(const ElementBodySpec& spec, Model& model);
   void describe();
-  Attachment attachment(std::size_t element, const Vec3d& xi) const;
-  Strained strained(std::size_t element, const State& state) const;
+  Attachment attachment(std::size_t element, const ElementPoint& place) const;
+  PointGradients gradients(std::size_t element, const State& state) const;
+  Strained strained(std::size_t element, const PointGradients& gradients) const;
   std::vector<Averaged> averages(const State& state) const;
   PointTensors tensors_of(std::size_t point, const Mat3d& H, const RememberedStress& past, const Strained& element,
                           const std::optional<Averaged>& averaged) const;

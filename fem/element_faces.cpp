@@ -88,7 +88,7 @@ std::vector<FacePoint> ElementBody::face_points() const {
         dt += mesh().nodes[at(element[a])] * dot(slope[a], along_t);
       }
       const ElementPoint p = shape_at(mesh(), e, xi);
-      points.push_back({p.X, norm(cross(ds, dt)) * place.weight, attachment(e, xi), nodes});
+      points.push_back({p.X, norm(cross(ds, dt)) * place.weight, attachment(e, p), nodes});
     }
   });
   return points;

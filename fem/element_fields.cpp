@@ -5,38 +5,40 @@
 #include "fem/quadrature.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 /// Places, strains and stresses of finite elements, for results.
 namespace fascia {
 
-Attachment ElementBody::attachment(std::size_t e, const Vec3d& xi) const {
-  const ElementPoint p = shape_at(mesh(), e, xi);
+Attachment ElementBody::attachment(std::size_t e, const ElementPoint& place) const {
   const auto nodes = mesh().element(e);
-  std::vector<std::size_t> order(nodes.size());
+  std::array<std::size_t, kMostElementNodes> places;
+  const std::span order = std::span(places).first(nodes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nodes[a] < nodes[b]; });
   Attachment a;
   a.cell = static_cast<int>(e);
+  a.nodes.reserve(nodes.size());
+  a.influences.reserve(nodes.size());
   for (const std::size_t k : order) {
     a.nodes.push_back(first_node_ + nodes[k]);
-    a.influences.push_back({p.N[k], p.dN_dX[k], {}, {}});
+    a.influences.push_back({place.N[k], place.dN_dX[k], {}, {}});
   }
   return a;
 }
 
 Attachment ElementBody::attach(const Vec3d& X) const {
   const Located l = locator_.locate(X);
-  return attachment(at(l.element), l.xi);
+  return attachment(at(l.element), shape_at(mesh(), at(l.element), l.xi));
 }
 
 Attachment ElementBody::attach_point(std::size_t point) const {
-  static const std::array<std::vector<QuadraturePoint>, 4> rules{
-      quadrature(ElementShape::tet4), quadrature(ElementShape::tet10), quadrature(ElementShape::hex8),
-      quadrature(ElementShape::hex20)};
-  const std::vector<QuadraturePoint>& rule = rules[static_cast<std::size_t>(mesh().shape)];
-  return attachment(point / rule.size(), rule[point % rule.size()].xi);
+  const std::vector<QuadraturePoint>& rule = quadrature(mesh().shape);
+  const std::size_t e = point / rule.size();
+  return attachment(e, shape_at(mesh(), e, rule[point % rule.size()]));
 }
 
 Attachment ElementBody::attach_surface(std::size_t point) const {
@@ -47,16 +49,34 @@ Attachment ElementBody::attach_surface(std::size_t point) const {
   return a;
 }
 
-ElementBody::Strained ElementBody::strained(std::size_t e, const State& state) const {
+/// ∂u/∂X at each integration point of an element; zero where it has no volume.
+ElementBody::PointGradients ElementBody::gradients(std::size_t e, const State& state) const {
+  PointGradients H;
+  const auto nodes = mesh().element(e);
+  const Vec3d& origin = mesh().nodes[at(nodes[0])];
+  std::size_t q = 0;
+  for (const QuadraturePoint& place : quadrature(mesh().shape)) {
+    Mat3d J, G;  // ∂X/∂ξ, ∂u/∂ξ
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      J += outer(mesh().nodes[at(nodes[n])] - origin, place.dN[n]);
+      G += outer(state.u[at(first_node_ + nodes[n])], place.dN[n]);
+    }
+    H[q++] = determinant(J) == 0 ? Mat3d{} : G * inverse(J);
+  }
+  return H;
+}
+
+ElementBody::Strained ElementBody::strained(std::size_t e, const PointGradients& gradients) const {
   const std::size_t points = points_.size() / mesh().size();
   Strained s;
   Mat3d mean;
   double volume = 0;
-  for (std::size_t q = points * e; q < points * (e + 1); ++q) {
-    const Mat3d H = field_at(attach_point(q), state).H;
-    mean += H * points_[q].volume;
-    s.swelling += volume_change(H) * points_[q].volume;
-    volume += points_[q].volume;
+  for (std::size_t k = 0; k < points; ++k) {
+    const Mat3d& H = gradients[k];
+    const double v = points_[points * e + k].volume;
+    mean += H * v;
+    s.swelling += volume_change(H) * v;
+    volume += v;
   }
   s.swelling /= volume;
   if (formulation_ == ElementFormulation::corotational) s.turn = nearest_rotation_increment(mean * (1 / volume));
@@ -73,7 +93,7 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
     std::vector<VolumetricMean> modulus(n);
     for (std::size_t e = 0; e < mesh().size(); ++e) {
       if (points_[e].law != law) continue;
-      const Mat3d H = field_at(attach_point(e), state).H;
+      const Mat3d H = gradients(e, state)[0];
       const double strain = with_solid_law(law, [&]<Law L>() { return SolidLaw<L, double>::volumetric_strain(H); });
       for (const int node : mesh().element(e)) {
         theta[at(node)] += strain * points_[e].volume;
@@ -136,9 +156,10 @@ std::vector<PointTensors> ElementBody::tensors(const State& state) const {
   std::vector<PointTensors> all;
   all.reserve(points_.size());
   for (std::size_t e = 0; e < mesh().size(); ++e) {
-    const Strained element = strained(e, state);
+    const PointGradients H = gradients(e, state);
+    const Strained element = strained(e, H);
     for (std::size_t q = points * e; q < points * (e + 1); ++q)
-      all.push_back(tensors_of(q, field_at(attach_point(q), state).H, remembered(q, state), element,
+      all.push_back(tensors_of(q, H[q - points * e], remembered(q, state), element,
                                average.empty() ? std::nullopt : std::optional(average[e])));
   }
   return all;
@@ -150,8 +171,10 @@ PointTensors ElementBody::tensors_at(const Attachment& place, std::size_t neares
 
 TensorField ElementBody::tensor_field(const State& state) const {
   return [this, &state, average = averages(state)](const Attachment& place, std::size_t nearest) {
-    return tensors_of(nearest, field_at(place, state).H, remembered(nearest, state), strained(at(place.cell), state),
-                      average.empty() ? std::nullopt : std::optional(average[at(place.cell)]));
+    const std::size_t cell = at(place.cell);
+    return tensors_of(nearest, field_at(place, state).H, remembered(nearest, state),
+                      strained(cell, gradients(cell, state)),
+                      average.empty() ? std::nullopt : std::optional(average[cell]));
   };
 }
 

@@ -51,10 +51,11 @@ ElementMesh quadratic(const ElementMesh& mesh) {
   return result;
 }
 
-ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d& xi) {
+namespace {
+
+ElementPoint placed(const ElementMesh& mesh, std::size_t element, const ShapeValues& N, const ShapeGradients& dN) {
   ElementPoint point;
-  point.N = shape_values(mesh.shape, xi);
-  const ShapeGradients dN = shape_gradients(mesh.shape, xi);
+  point.N = N;
   const auto nodes = mesh.element(element);
   const Vec3d& origin = mesh.nodes[at(nodes[0])];  // far from the scene's origin, sums of places would lose digits
   Mat3d J;                                         // dX/dξ
@@ -71,12 +72,18 @@ ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d&
   return point;
 }
 
-Vec3d element_middle(const ElementMesh& mesh, std::size_t element) {
-  return shape_at(mesh, element, reference_center(family_of(mesh.shape))).X;
+}  // namespace
+
+ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d& xi) {
+  return placed(mesh, element, shape_values(mesh.shape, xi), shape_gradients(mesh.shape, xi));
 }
 
-double element_volume(const ElementMesh& mesh, std::size_t element) {
-  return ElementJacobians(mesh.shape).volume(mesh, element);
+ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const QuadraturePoint& place) {
+  return placed(mesh, element, place.N, place.dN);
+}
+
+Vec3d element_middle(const ElementMesh& mesh, std::size_t element) {
+  return shape_at(mesh, element, reference_center(family_of(mesh.shape))).X;
 }
 
 namespace {
@@ -91,19 +98,15 @@ double jacobian(const ElementMesh& mesh, std::size_t element, const ShapeGradien
 
 }  // namespace
 
-element_parts::ElementJacobians::ElementJacobians(ElementShape shape) {
-  for (const QuadraturePoint& q : quadrature(shape)) points_.push_back({q.weight, shape_gradients(shape, q.xi)});
-}
-
-double element_parts::ElementJacobians::volume(const ElementMesh& mesh, std::size_t element) const {
+double element_volume(const ElementMesh& mesh, std::size_t element) {
   double volume = 0;
-  for (const Point& point : points_) volume += point.weight * jacobian(mesh, element, point.dN);
+  for (const QuadraturePoint& q : quadrature(mesh.shape)) volume += q.weight * jacobian(mesh, element, q.dN);
   return volume;
 }
 
-double element_parts::ElementJacobians::least_jacobian(const ElementMesh& mesh, std::size_t element) const {
+double element_parts::least_determinant(const ElementMesh& mesh, std::size_t element) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Point& point : points_) least = std::min(least, jacobian(mesh, element, point.dN));
+  for (const QuadraturePoint& q : quadrature(mesh.shape)) least = std::min(least, jacobian(mesh, element, q.dN));
   return least;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/geometry/mesh.hpp"
 #include "fem/element_shape.hpp"
+#include "fem/quadrature.hpp"
 
 #include <cstdint>
 #include <span>
@@ -52,6 +53,8 @@ struct ElementPoint {
 };
 
 ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d& xi);
+/// At a point of the quadrature of the mesh's own shape.
+ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const QuadraturePoint& place);
 
 /// An element's place at the centre of its reference element [m].
 Vec3d element_middle(const ElementMesh& mesh, std::size_t element);

@@ -64,21 +64,8 @@ std::vector<int> face_nodes(const ElementMesh& mesh, const ElementFace& face);
 void add_edge_nodes(const ElementMesh& mesh, const EdgeNumbers& edges, std::span<const int> edge_node,
                     std::vector<ElementGroup>& groups);
 
-/// det dX/dξ of elements at the points of their shape's quadrature, whose shape functions are evaluated once.
-class ElementJacobians {
- public:
-  explicit ElementJacobians(ElementShape shape);
-
-  double volume(const ElementMesh& mesh, std::size_t element) const;          ///< [m³]
-  double least_jacobian(const ElementMesh& mesh, std::size_t element) const;  ///< [m³]
-
- private:
-  struct Point {
-    double weight = 0;
-    ShapeGradients dN{};
-  };
-  std::vector<Point> points_;
-};
+/// Least det dX/dξ of an element at the points of its shape's quadrature [m³].
+double least_determinant(const ElementMesh& mesh, std::size_t element);
 
 /// Sorts and drops repetitions.
 template <class T>

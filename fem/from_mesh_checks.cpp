@@ -127,10 +127,9 @@ std::string first_few(const std::vector<std::int64_t>& numbers) {
 void check_corners(ElementMesh& mesh) {
   check_repeated_nodes(mesh);
   const ElementMesh linear = corners_only(mesh);
-  const ElementJacobians jacobians(linear.shape);
   std::vector<std::int64_t> right, wrong;
   for (std::size_t e = 0; e < mesh.size(); ++e) {
-    const double volume = jacobians.volume(linear, e), length = longest_edge(linear, e);
+    const double volume = element_volume(linear, e), length = longest_edge(linear, e);
     if (!(std::abs(volume) > flat_volume * length * length * length))
       fail(mesh.file, "element " + std::to_string(mesh.element_number[e]) + " is flat (its volume is below 1e-9 of " +
                           "its longest edge cubed); remove it or mesh again");
@@ -173,11 +172,10 @@ void check_middles(const ElementMesh& mesh) {
 }
 
 void check_folds(const ElementMesh& mesh) {
-  const ElementJacobians jacobians(mesh.shape);
   std::vector<std::int64_t> folded;
   for (std::size_t e = 0; e < mesh.size(); ++e) {
     const double length = longest_edge(mesh, e);
-    bool sound = jacobians.least_jacobian(mesh, e) > least_jacobian * length * length * length;
+    bool sound = least_determinant(mesh, e) > least_jacobian * length * length * length;
     if (order_of(mesh.shape) == 2)
       for (const Vec3d& corner : reference_corners(family_of(mesh.shape)))
         sound = sound && shape_at(mesh, e, corner).det_J > 0;

@@ -95,7 +95,6 @@ MeshQuality mesh_quality(const ElementMesh& mesh) {
   q.least_dihedral.value = q.least_volume.value = q.least_jacobian.value = q.shortest_height.value =
       q.least_ratio.value = infinite;
   q.greatest_dihedral.value = -infinite;
-  const element_parts::ElementJacobians jacobians(mesh.shape);
   std::size_t folded = 0;
   std::int64_t first_sliver = 0, first_folded = 0;
   for (std::size_t e = 0; e < mesh.size(); ++e) {
@@ -110,7 +109,7 @@ MeshQuality mesh_quality(const ElementMesh& mesh) {
     keep_least(q.least_jacobian, figures.jacobian);
     if (figures.ratio < q.least_ratio.value) q.least_ratio = {figures.ratio, number, element_middle(mesh, e)};
     keep_least(q.shortest_height, figures.height);
-    const double volume = jacobians.volume(mesh, e);
+    const double volume = element_volume(mesh, e);
     keep_least(q.least_volume, volume);
     q.volume += volume;
     if ((least < 5 || greatest > 175) && q.slivers++ == 0) first_sliver = number;

@@ -22,6 +22,11 @@ using Vector = Eigen::Vector3d;
 
 Vector vector_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
+bool of_one_material(const BodyPoint& a, const BodyPoint& b) {
+  const LawConstants& constants = a;
+  return b == constants && b.law == a.law;
+}
+
 /// Stresses jump where materials or thicknesses meet: no slope goes across.
 void keep_nearest_material(const ModelBody& body, const Vec3d& X, std::vector<NodalRecovery::Share>& patch) {
   const auto point = [&](const NodalRecovery::Share& s) -> const BodyPoint& { return body.points()[at(s.point)]; };
@@ -30,11 +35,7 @@ void keep_nearest_material(const ModelBody& body, const Vec3d& X, std::vector<No
   });
   if (nearest == patch.end()) return;
   const BodyPoint own = point(*nearest);
-  const LawConstants& constants = own;
-  std::erase_if(patch, [&](const auto& s) {
-    const BodyPoint& p = point(s);
-    return p != constants || p.law != own.law;
-  });
+  std::erase_if(patch, [&](const auto& s) { return !of_one_material(own, point(s)); });
 }
 
 }  // namespace
@@ -48,10 +49,12 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
       patches[b.index_of(a.nodes[k])].push_back(
           {static_cast<int>(q), body.points()[q].volume * std::max(a.influences[k].w, 1e-3)});
   }
+  const bool uniform = std::all_of(body.points().begin(), body.points().end(),
+                                   [&](const BodyPoint& p) { return of_one_material(body.points()[0], p); });
   const auto place = [&](const Share& s) { return vector_of(body.points()[at(s.point)].X); };
   for (std::size_t i = 0; i < patches.size(); ++i) {
     std::vector<Share>& patch = patches[i];
-    keep_nearest_material(body, b.nodes[i], patch);
+    if (!uniform) keep_nearest_material(body, b.nodes[i], patch);
     double sum = 0;
     for (const Share& s : patch) sum += s.weight;
     Vector centre = Vector::Zero();

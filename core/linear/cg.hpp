@@ -10,6 +10,8 @@ struct CgOptions {
   int max_iterations = 1000;
   double tolerance = 1e-6;  ///< on |r|_M⁻¹ relative to the right-hand side's
   bool timed = false;       ///< the limit is that of the time left: a solve that ends there says nothing of its solver
+  int look = 0;             ///< after so many iterations a solve ends as at its limit where more is left of |r|_M⁻¹ than
+  double hope = 0;          ///< this part; 0 iterations: it goes on
 };
 
 enum class CgStatus { converged, limit, negative_curvature, not_finite };
@@ -73,6 +75,10 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
     if (rz_next <= options.tolerance * options.tolerance * rz_start) {
       ++report.iterations;
       return stop(CgStatus::converged, std::sqrt(std::max(rz_next, 0.0) / rz_start));
+    }
+    if (report.iterations + 1 == options.look && rz_next > options.hope * options.hope * rz_start) {
+      ++report.iterations;
+      return stop(CgStatus::limit, std::sqrt(rz_next / rz_start));
     }
     space.xpay(z, rz_next / rz, p);
     rz = rz_next;

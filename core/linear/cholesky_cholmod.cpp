@@ -52,12 +52,15 @@ EliminationOrder order_by(NodeGraph& graph, int method) {
 }  // namespace
 
 /// Minimum degree; where the factor fills much, nested dissection too: by the measures that CHOLMOD itself has for it,
-/// which it takes of the matrix of single degrees of freedom.
-EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilter& filter) {
+/// which it takes of the matrix of single degrees of freedom. That takes several times as long.
+EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilter& filter, double enough) {
   NodeGraph graph(pattern, filter);
   EliminationOrder order = order_by(graph, CHOLMOD_AMD);
   const double entries = 0.5 * static_cast<double>(pattern.value_count()) * (pattern.fills_upper() ? 2 : 1);
   if (order.flops < 500 * order.numbers || order.numbers < 5 * entries) return order;
+  order.rough = true;
+  if (order.exceeds(enough)) return order;
+  order.rough = false;
   EliminationOrder dissected = order_by(graph, CHOLMOD_METIS);
   return dissected.numbers < order.numbers ? dissected : order;
 }

@@ -27,7 +27,7 @@ struct Analysed : Solver {
 }  // namespace
 
 /// Minimum degree. Factors of this build order single degrees of freedom by themselves.
-EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilter& filter) {
+EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilter& filter, double /*enough*/) {
   const NodeGraph graph(pattern, filter);
   const std::vector<double> ones(graph.row.size(), 1.0);
   Analysed<Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower>> analysis;

@@ -3,6 +3,7 @@
 #include "core/linear/block_matrix.hpp"
 #include "core/node/dof_filter.hpp"
 
+#include <limits>
 #include <vector>
 
 namespace fascia {
@@ -13,6 +14,11 @@ struct EliminationOrder {
   std::vector<int> nodes;  ///< those that have free degrees of freedom
   double flops = 0;        ///< of one factorisation
   double numbers = 0;      ///< in the factor
+  bool rough = false;      ///< another order takes fewer: it was not looked for
+
+  /// More operations than these, whatever the order: nested dissection takes 1 to 5.5 times fewer than minimum
+  /// degree on bodies of 14,000 to 120,000 nodes, most on those that are far beyond any limit.
+  bool exceeds(double limit) const { return flops > (rough ? 5 : 1) * limit; }
 
   /// Indices of 32 bits, with which factors are made, reach all of its numbers, with room for the zeros of their dense
   /// columns.
@@ -20,7 +26,9 @@ struct EliminationOrder {
   /// @throws InputError  where it does not fit
   void expect_to_fit() const;
 
-  static EliminationOrder of(const BlockMatrix& pattern, const DofFilter& filter);
+  /// @param enough  operations: an order that no other one brings down to as few may be rough
+  static EliminationOrder of(const BlockMatrix& pattern, const DofFilter& filter,
+                             double enough = std::numeric_limits<double>::infinity());
 };
 
 /// The lower triangle, by columns, of the graph of those nodes of a matrix that have free degrees of freedom.

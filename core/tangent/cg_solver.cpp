@@ -60,10 +60,8 @@ CgReport CgSolver::solve_by_either(const Vector& b, Vector& x, const CgOptions& 
   if (levels_are_taken()) return by_levels();
   const bool budget = options.timed || options.max_iterations < kEnoughForBulk,
              chosen = settings_.linear == LinearMethod::automatic;
-  CgOptions first = options;
-  if (chosen && !budget && !kept_levels_.fail())
-    first.max_iterations = std::min(options.max_iterations, blocks_or_levels_.patience());
-  const CgReport tried = solve_by_one(b, x, first);
+  const bool limited = chosen && !budget && !kept_levels_.fail();
+  const CgReport tried = solve_by_one(b, x, limited ? blocks_or_levels_.limited(options) : options);
   if (tried.status != CgStatus::limit || budget || kept_levels_.fail()) return tried;
   blocks_or_levels_.turn_to_levels();
   CgReport cg = by_levels();

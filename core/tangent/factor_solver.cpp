@@ -26,8 +26,14 @@ void FactorSolver::follow_pattern() {
 
 const EliminationOrder& FactorSolver::order() {
   follow_pattern();
-  if (!order_) order_ = EliminationOrder::of(K_.pattern(), K_.filter());
+  if (!order_ || order_->rough) order_ = EliminationOrder::of(K_.pattern(), K_.filter());
   return *order_;
+}
+
+bool FactorSolver::takes_more_than(double flops) {
+  follow_pattern();
+  if (!order_) order_ = EliminationOrder::of(K_.pattern(), K_.filter(), flops);
+  return order_->exceeds(flops) || order().flops > flops;
 }
 
 BlockCholesky& FactorSolver::cholesky() {
@@ -36,9 +42,9 @@ BlockCholesky& FactorSolver::cholesky() {
   return *cholesky_;
 }
 
-double FactorSolver::flops_per_number() {
+double FactorSolver::matrix_numbers() {
   const BlockMatrix& matrix = K_.pattern();
-  return order().flops / (static_cast<double>(matrix.value_count()) * (matrix.fills_upper() ? 2 : 1));
+  return static_cast<double>(matrix.value_count()) * (matrix.fills_upper() ? 2 : 1);
 }
 
 bool FactorSolver::fits() {

@@ -44,9 +44,14 @@ class FactorSolver final : public LinearSolver {
 
   /// How nodes are eliminated; known before a factor is made.
   const EliminationOrder& order();
-  bool knows_order() const { return order_.has_value() && pattern_ == K_.pattern_revision(); }
-  /// How many operations a factor takes for each number of the matrix.
-  double flops_per_number();
+  /// An order that is known, perhaps a rough one; null where nobody asked.
+  const EliminationOrder* known_order() const {
+    return order_.has_value() && pattern_ == K_.pattern_revision() ? &*order_ : nullptr;
+  }
+  /// Of the matrix, below and above its diagonal.
+  double matrix_numbers();
+  /// A factor takes more operations than these, whatever the order.
+  bool takes_more_than(double flops);
   /// A factor fits into memory.
   bool fits();
   BlockCholesky& cholesky();

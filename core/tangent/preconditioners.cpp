@@ -97,8 +97,9 @@ bool LevelsOfFrames::prepare() {
   const BlockMatrix& from = material_ ? K_.material_part() : K_.matrix();
   if (!levels_) levels_.emplace(from, K_.filter(), K_.pool());
   K_.invert_diagonal(from, true, inverse_);
-  return levels_->build(K_.places(), inverse_,
-                        [this, &from](std::span<const double> x, std::span<double> y) { K_.apply_free(from, x, y); });
+  return levels_->build(K_.places(), inverse_, [this](std::span<const double> x, std::span<double> y) {
+    K_.apply_free_rounded(material_, x, y);
+  });
 }
 
 /// Where nothing but rounding is left, the sign of r · z says nothing.

@@ -55,6 +55,7 @@ const BlockMatrix& TangentOperator::matrix() {
 const BlockMatrix& TangentOperator::material_part(Entries entries) {
   if (!material_) material_.emplace(model_.points, model_.surfaces);
   assemble((*tamer_)(TamerTangent::material), *material_, entries);
+  material_rounded_ = false;
   return *material_;
 }
 
@@ -74,17 +75,25 @@ void TangentOperator::apply(std::span<const double> x, std::span<double> y) {
   beside_.add_product(x, y);
 }
 
-void TangentOperator::apply_free(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y) {
-  apply_in_world([&](auto from, auto to) { matrix.multiply(pool(), from, to); }, x, y);
-  filter_.clear_fixed(y);
+/// The matrix as it is, with its rounded entries beside the others.
+const BlockMatrix& TangentOperator::rounded(bool material) {
+  BlockMatrix& K = material ? *material_ : (matrix(), *matrix_);
+  bool& made = material ? material_rounded_ : rounded_;
+  if (!made) K.round(pool());
+  made = true;
+  return K;
 }
 
 void TangentOperator::apply_free_rounded(std::span<const double> x, std::span<double> y) {
-  const BlockMatrix& K = matrix();
-  if (!rounded_) matrix_->round(pool());
-  rounded_ = true;
+  const BlockMatrix& K = rounded(false);
   apply_in_world([&](auto from, auto to) { K.multiply_rounded(pool(), from, to); }, x, y);
   beside_.add_product(x, y);
+  filter_.clear_fixed(y);
+}
+
+void TangentOperator::apply_free_rounded(bool material, std::span<const double> x, std::span<double> y) {
+  const BlockMatrix& K = rounded(material);
+  apply_in_world([&](auto from, auto to) { K.multiply_rounded(pool(), from, to); }, x, y);
   filter_.clear_fixed(y);
 }
 

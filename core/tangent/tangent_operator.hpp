@@ -59,8 +59,8 @@ class TangentOperator {
   }
   /// Does so with the entries of matrix() rounded to 32 bits.
   void apply_free_rounded(std::span<const double> x, std::span<double> y);
-  /// Does so with a matrix of K's pattern.
-  void apply_free(const BlockMatrix& matrix, std::span<const double> x, std::span<double> y);
+  /// Does so with matrix() or material_part() alone, rounded likewise.
+  void apply_free_rounded(bool material, std::span<const double> x, std::span<double> y);
   /// y = K x with all that the tangent has, of held degrees of freedom too.
   void apply_whole(std::span<const double> x, std::span<double> y);
 
@@ -85,6 +85,7 @@ class TangentOperator {
 
  private:
   void assemble(const Linearization& at, BlockMatrix& out, Entries entries);
+  const BlockMatrix& rounded(bool material);
   template <class Multiply>
   void apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y);
 
@@ -96,7 +97,7 @@ class TangentOperator {
   const Linearization* at_ = nullptr;
   const Relinearize* tamer_ = nullptr;
   std::optional<BlockMatrix> matrix_, material_;
-  bool assembled_ = false, rounded_ = false, tamed_ = false;
+  bool assembled_ = false, rounded_ = false, material_rounded_ = false, tamed_ = false;
   long pattern_ = 0;  ///< CpuExecutor::pattern() of the matrices
   LowRank beside_;
   std::vector<double> work_, lengths_;

@@ -53,7 +53,7 @@ bool TangentSolver::direct() {
   else if (filter_.free_count() <= kDirectDofs)
     direct_ = true;
   else
-    direct_ = factor_.order().fits() && factor_.flops_per_number() < kFlopsPerNumber;
+    direct_ = !factor_.takes_more_than(kFlopsPerNumber * factor_.matrix_numbers()) && factor_.order().fits();
   return *direct_;
 }
 
@@ -62,10 +62,11 @@ SolverChoice TangentSolver::choice() {
   made.direct = direct_.value_or(true);
   made.preconditioner = cg_.preconditioner();
   if (cg_.levels() != nullptr) made.levels = cg_.levels()->level_sizes();
-  if (!factor_.knows_order()) return made;
-  made.flops = factor_.order().flops;
-  made.numbers = factor_.order().numbers;
-  made.flops_per_number = factor_.flops_per_number();
+  const EliminationOrder* order = factor_.known_order();
+  if (order == nullptr) return made;
+  made.flops = order->flops;
+  made.numbers = order->numbers;
+  made.flops_per_number = order->flops / factor_.matrix_numbers();
   return made;
 }
 
@@ -78,10 +79,8 @@ bool TangentSolver::factor_is_cheap(long made) {
   constexpr double kSpeedup = 5, kShare = 0.1;
   constexpr int kAlways = 5000;  // less than a second, whatever the shape
   if (settings_.preconditioner == PreconditionerKind::cholesky || filter_.free_count() <= kAlways) return true;
-  const BlockMatrix& matrix = K_.pattern();
-  const double product = (cg_.levels() != nullptr ? kCycle : 1) * 2.0 * static_cast<double>(matrix.value_count()) *
-                         (matrix.fills_upper() ? 2 : 1);
-  return factor_.order().flops <= kSpeedup * kShare * static_cast<double>(made) * product && factor_.fits();
+  const double product = (cg_.levels() != nullptr ? kCycle : 1) * 2.0 * factor_.matrix_numbers();
+  return !factor_.takes_more_than(kSpeedup * kShare * static_cast<double>(made) * product) && factor_.fits();
 }
 
 /// @param whole  with what is beside the symmetric part
