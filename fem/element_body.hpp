@@ -41,6 +41,7 @@ class ElementBody final : public ModelBody {
   Attachment attach(const Vec3d& X) const override;
   Attachment attach_point(std::size_t point) const override;
   Attachment attach_surface(std::size_t point) const override;
+  std::vector<Mat3d> gradients(const State& state) const override;
   std::vector<PointTensors> tensors(const State& state) const override;
   PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const override;
   TensorField tensor_field(const State& state) const override;
@@ -72,7 +73,7 @@ class ElementBody final : public ModelBody {
   void add_mass(const ElementBodySpec& spec, Model& model);
   void describe();
   Attachment attachment(std::size_t element, const ElementPoint& place) const;
-  PointGradients gradients(std::size_t element, const State& state) const;
+  PointGradients gradients_in(std::size_t element, const State& state) const;
   Strained strained(std::size_t element, const PointGradients& gradients) const;
   std::vector<Averaged> averages(const State& state) const;
   PointTensors tensors_of(std::size_t point, const Mat3d& H, const RememberedStress& past, const Strained& element,

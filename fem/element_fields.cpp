@@ -50,7 +50,7 @@ Attachment ElementBody::attach_surface(std::size_t point) const {
 }
 
 /// ∂u/∂X at each integration point of an element; zero where it has no volume.
-ElementBody::PointGradients ElementBody::gradients(std::size_t e, const State& state) const {
+ElementBody::PointGradients ElementBody::gradients_in(std::size_t e, const State& state) const {
   PointGradients H;
   const auto nodes = mesh().element(e);
   const Vec3d& origin = mesh().nodes[at(nodes[0])];
@@ -93,7 +93,7 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
     std::vector<VolumetricMean> modulus(n);
     for (std::size_t e = 0; e < mesh().size(); ++e) {
       if (points_[e].law != law) continue;
-      const Mat3d H = gradients(e, state)[0];
+      const Mat3d H = gradients_in(e, state)[0];
       const double strain = with_solid_law(law, [&]<Law L>() { return SolidLaw<L, double>::volumetric_strain(H); });
       for (const int node : mesh().element(e)) {
         theta[at(node)] += strain * points_[e].volume;
@@ -150,13 +150,24 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Re
   return t;
 }
 
+std::vector<Mat3d> ElementBody::gradients(const State& state) const {
+  const auto points = static_cast<std::ptrdiff_t>(points_.size() / mesh().size());
+  std::vector<Mat3d> all;
+  all.reserve(points_.size());
+  for (std::size_t e = 0; e < mesh().size(); ++e) {
+    const PointGradients H = gradients_in(e, state);
+    all.insert(all.end(), H.begin(), H.begin() + points);
+  }
+  return all;
+}
+
 std::vector<PointTensors> ElementBody::tensors(const State& state) const {
   const std::vector<Averaged> average = averages(state);
   const std::size_t points = points_.size() / mesh().size();
   std::vector<PointTensors> all;
   all.reserve(points_.size());
   for (std::size_t e = 0; e < mesh().size(); ++e) {
-    const PointGradients H = gradients(e, state);
+    const PointGradients H = gradients_in(e, state);
     const Strained element = strained(e, H);
     for (std::size_t q = points * e; q < points * (e + 1); ++q)
       all.push_back(tensors_of(q, H[q - points * e], remembered(q, state), element,
@@ -173,7 +184,7 @@ TensorField ElementBody::tensor_field(const State& state) const {
   return [this, &state, average = averages(state)](const Attachment& place, std::size_t nearest) {
     const std::size_t cell = at(place.cell);
     return tensors_of(nearest, field_at(place, state).H, remembered(nearest, state),
-                      strained(cell, gradients(cell, state)),
+                      strained(cell, gradients_in(cell, state)),
                       average.empty() ? std::nullopt : std::optional(average[cell]));
   };
 }

@@ -187,6 +187,8 @@ void fill(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   add_fields(grid, mesh);
 }
 
+constexpr int kCompression = 1;
+
 /// Of an array: the writer compresses blocks, of which some are taken as samples, evenly spaced.
 double estimated_size(vtkDataArray& array, vtkZLibDataCompressor& compressor) {
   constexpr std::size_t block = 32768, most_samples = 6;  // the writer's block; enough for a few percent
@@ -211,7 +213,7 @@ double estimated_size(const VisualMesh& mesh) {
   vtkNew<vtkUnstructuredGrid> grid;
   fill(*grid, mesh);
   vtkNew<vtkZLibDataCompressor> compressor;
-  compressor->SetCompressionLevel(vtkNew<vtkXMLUnstructuredGridWriter>()->GetCompressionLevel());
+  compressor->SetCompressionLevel(kCompression);
   std::vector<vtkDataArray*> arrays{grid->GetPoints()->GetData(), grid->GetCells()->GetConnectivityArray(),
                                     grid->GetCells()->GetOffsetsArray(), grid->GetCellTypesArray()};
   for (vtkFieldData* data :
@@ -235,6 +237,7 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(kCompression);
   writer->WriteToOutputStringOn();
   int written = 0;
   without_vtk_threads([&] { written = writer->Write(); });

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 namespace fascia::app {
 namespace {
@@ -27,34 +29,55 @@ bool of_one_material(const BodyPoint& a, const BodyPoint& b) {
   return b == constants && b.law == a.law;
 }
 
-/// Stresses jump where materials or thicknesses meet: no slope goes across.
-void keep_nearest_material(const ModelBody& body, const Vec3d& X, std::vector<NodalRecovery::Share>& patch) {
+/// Stresses jump where materials or thicknesses meet: no slope goes across. @return  what is left of the patch
+std::span<NodalRecovery::Share> of_nearest_material(const ModelBody& body, const Vec3d& X,
+                                                    std::span<NodalRecovery::Share> patch) {
   const auto point = [&](const NodalRecovery::Share& s) -> const BodyPoint& { return body.points()[at(s.point)]; };
   const auto nearest = std::min_element(patch.begin(), patch.end(), [&](const auto& a, const auto& b) {
     return squared_norm(point(a).X - X) < squared_norm(point(b).X - X);
   });
-  if (nearest == patch.end()) return;
+  if (nearest == patch.end()) return patch;
   const BodyPoint own = point(*nearest);
-  std::erase_if(patch, [&](const auto& s) { return !of_one_material(own, point(s)); });
+  const auto end =
+      std::remove_if(patch.begin(), patch.end(), [&](const auto& s) { return !of_one_material(own, point(s)); });
+  return patch.first(at(static_cast<int>(end - patch.begin())));
 }
 
 }  // namespace
 
-NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1) {
+/// Points that each node moves, weighted with w v: shares of node i are those from begin_[i] on.
+void NodalRecovery::find_patches(const SimulatedBody& b) {
+  struct Found {
+    std::size_t node;
+    Share share;
+  };
   const ModelBody& body = *b.body;
-  std::vector<std::vector<Share>> patches(b.nodes.size());
+  std::vector<Found> found;
+  if (!body.points().empty()) found.reserve(body.points().size() * body.attach_point(0).nodes.size());
   for (std::size_t q = 0; q < body.points().size(); ++q) {
     const Attachment a = body.attach_point(q);
     for (std::size_t k = 0; k < a.nodes.size(); ++k)
-      patches[b.index_of(a.nodes[k])].push_back(
-          {static_cast<int>(q), body.points()[q].volume * std::max(a.influences[k].w, 1e-3)});
+      found.push_back({b.index_of(a.nodes[k]),
+                       {static_cast<int>(q), body.points()[q].volume * std::max(a.influences[k].w, 1e-3)}});
   }
+  for (const Found& f : found) ++begin_[f.node + 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  shares_.resize(found.size());
+  for (const Found& f : found) shares_[next[f.node]++] = f.share;
+}
+
+NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1) {
+  find_patches(b);
+  const ModelBody& body = *b.body;
   const bool uniform = std::all_of(body.points().begin(), body.points().end(),
                                    [&](const BodyPoint& p) { return of_one_material(body.points()[0], p); });
   const auto place = [&](const Share& s) { return vector_of(body.points()[at(s.point)].X); };
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    std::vector<Share>& patch = patches[i];
-    if (!uniform) keep_nearest_material(body, b.nodes[i], patch);
+  std::size_t kept = 0;  // shares of the nodes before
+  for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+    std::span<Share> patch = std::span(shares_).subspan(begin_[i], begin_[i + 1] - begin_[i]);
+    begin_[i] = kept;
+    if (!uniform) patch = of_nearest_material(body, b.nodes[i], patch);
     double sum = 0;
     for (const Share& s : patch) sum += s.weight;
     Vector centre = Vector::Zero();
@@ -73,9 +96,10 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
       const double reach = std::max({axes.eigenvalues()[k], o2 / kFarthest, kFlat * axes.eigenvalues()[2]});
       if (o2 > 0) slope += axis * (o / reach);
     }
-    for (const Share& s : patch) shares_.push_back({s.point, s.weight * (1 + slope.dot(place(s) - centre))});
-    begin_[i + 1] = shares_.size();
+    for (const Share& s : patch) shares_[kept++] = {s.point, s.weight * (1 + slope.dot(place(s) - centre))};
   }
+  begin_.back() = kept;
+  shares_.resize(kept);
 }
 
 std::vector<PointTensors> NodalRecovery::at_nodes(const std::vector<PointTensors>& points) const {

@@ -26,6 +26,8 @@ class NodalRecovery {
   std::vector<PointTensors> at_nodes(const std::vector<PointTensors>& points) const;
 
  private:
+  void find_patches(const SimulatedBody& body);
+
   std::vector<Share> shares_;
   std::vector<std::size_t> begin_;  ///< of each node's shares, and the end
 };

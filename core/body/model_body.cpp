@@ -85,6 +85,13 @@ std::vector<FacePoint> ModelBody::face_points() const {
   return points;
 }
 
+std::vector<Mat3d> ModelBody::gradients(const State& state) const {
+  std::vector<Mat3d> all;
+  all.reserve(points_.size());
+  for (std::size_t q = 0; q < points_.size(); ++q) all.push_back(field_at(attach_point(q), state).H);
+  return all;
+}
+
 std::vector<PointTensors> ModelBody::tensors(const State& state) const {
   std::vector<PointTensors> all;
   all.reserve(points_.size());

@@ -144,6 +144,8 @@ class ModelBody {
   virtual std::vector<std::vector<int>> faces() const;
   /// Quadrature points of all faces: here three a triangle, exact for weights of degree two.
   virtual std::vector<FacePoint> face_points() const;
+  /// ∂u/∂X at each integration point.
+  virtual std::vector<Mat3d> gradients(const State& state) const;
   /// At each integration point.
   virtual std::vector<PointTensors> tensors(const State& state) const;
   /// At any place. @param nearest  index of the integration point whose material counts there

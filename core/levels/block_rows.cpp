@@ -1,7 +1,5 @@
 #include "core/levels/block_rows.hpp"
 
-#include <algorithm>
-
 namespace fascia {
 
 void FineRows::find_lower() {
@@ -34,19 +32,6 @@ const double* FineRows::taken(int row, int column, const double* stored, double*
     for (int j = 0; j < m; ++j)
       if (((held >> i) & 1U) != 0 || ((held_column >> j) & 1U) != 0) copy[m * i + j] = 0;
   return copy;
-}
-
-void FrameMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
-  pool.for_ranges(rows(), 64, [&](int first, int end) {
-    for (int row = first; row < end; ++row) {
-      double sum[kFrameDofs] = {};
-      const std::span<const int> columns = blocks_.columns(row);
-      for (std::size_t k = 0; k < columns.size(); ++k)
-        add_block_product(blocks_.block(row, static_cast<int>(k), kFrameDofs), kFrameDofs, x.data() + begin(columns[k]),
-                          sum);
-      std::copy(sum, sum + kFrameDofs, y.data() + begin(row));
-    }
-  });
 }
 
 }  // namespace fascia

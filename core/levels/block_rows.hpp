@@ -118,8 +118,6 @@ class FrameMatrix {
       act(columns[k], blocks_.block(row, static_cast<int>(k), kFrameDofs));
   }
   const BlockRows& blocks() const { return blocks_; }
-  /// y = K x
-  void multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
 
  private:
   BlockRows blocks_;
@@ -145,11 +143,20 @@ inline void add_matrix_product(const double* A, int n, int m, const double* B, d
 
 /// C += Aᵀ B of blocks n × 6 and n × 6.
 inline void add_transposed_matrix_product(const double* A, int n, const double* B, double* C) {
-  for (int k = 0; k < n; ++k)
+  const auto sized = [&](auto N) {
     for (int i = 0; i < kFrameDofs; ++i) {
-      const double a = A[kFrameDofs * k + i];
-      for (int j = 0; j < kFrameDofs; ++j) C[kFrameDofs * i + j] += a * B[kFrameDofs * k + j];
+      double sum[kFrameDofs] = {};
+      for (int k = 0; k < N; ++k)
+        for (int j = 0; j < kFrameDofs; ++j) sum[j] += A[kFrameDofs * k + i] * B[kFrameDofs * k + j];
+      for (int j = 0; j < kFrameDofs; ++j) C[kFrameDofs * i + j] += sum[j];
     }
+  };
+  if (n == 3)
+    sized(std::integral_constant<int, 3>{});
+  else if (n == 6)
+    sized(std::integral_constant<int, 6>{});
+  else
+    sized(n);
 }
 
 /// y += B x of a block of N rows and six columns.
@@ -159,12 +166,6 @@ inline void add_block_product(const double* B, int rows, const double* x, double
     for (int j = 0; j < kFrameDofs; ++j) sum += B[kFrameDofs * i + j] * x[j];
     y[i] += sum;
   }
-}
-
-/// y += Bᵀ x
-inline void add_transposed_block_product(const double* B, int rows, const double* x, double* y) {
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < kFrameDofs; ++j) y[j] += B[kFrameDofs * i + j] * x[i];
 }
 
 }  // namespace fascia

@@ -1,6 +1,7 @@
 #include "core/levels/multigrid.hpp"
 
 #include "core/levels/galerkin.hpp"
+#include "core/levels/rounded_rows.hpp"
 #include "core/linear/lanczos.hpp"
 #include "core/math/mat3.hpp"
 #include "core/node/positive_inverse.hpp"
@@ -82,11 +83,14 @@ unsigned dependent_motions(std::array<double, 36>& G) {
 struct Multigrid::Level {
   int nodes = 0;
   std::size_t dofs = 0;
+  std::size_t length = 0;  ///< of vectors: of a coarse level a little more, which stays zero
   Product product;
   std::unique_ptr<FrameMatrix> matrix;  ///< of a coarse level
+  RoundedRows rounded;                  ///< this one
   std::vector<double> inverse;          ///< D⁻¹, by node
   Places places;
   BlockRows P;                 ///< from the next coarser level; empty: none
+  RoundedRows rounded_P;
   std::vector<unsigned> dead;  ///< of the next coarser level: motions that its aggregates do not have
   double largest = 0;          ///< eigenvalue of D⁻¹ K
   std::vector<double> b, x, r, d, z;
@@ -104,7 +108,7 @@ Multigrid::~Multigrid() = default;
 
 double Multigrid::largest_eigenvalue_of(const Level& level) const {
   // No direction is favoured, and the same numbers come again in every run.
-  std::vector<double> start(level.dofs), product(level.dofs);
+  std::vector<double> start(level.length), product(level.length);
   std::uint64_t state = 1;
   for (double& v : start) {
     state = state * 6364136223846793005U + 1442695040888963407U;
@@ -125,7 +129,7 @@ bool Multigrid::build(const Places& places, std::vector<double> inverse_blocks, 
   coarsest_.reset();
   auto finest = std::make_unique<Level>();
   finest->nodes = matrix_.rows();
-  finest->dofs = at(matrix_.dofs().total());
+  finest->dofs = finest->length = at(matrix_.dofs().total());
   finest->product = product;
   finest->inverse = std::move(inverse_blocks);
   finest->places = places;
@@ -143,7 +147,7 @@ bool Multigrid::build(const Places& places, std::vector<double> inverse_blocks, 
     if (levels_[depth]->nodes > kFewNodes && !add_coarser(*levels_[depth]->matrix, depth)) return false;
   Level& last = *levels_.back();
   for (const auto& l : levels_)
-    for (std::vector<double>* v : {&l->b, &l->x, &l->r, &l->d, &l->z}) v->assign(l->dofs, 0.0);
+    for (std::vector<double>* v : {&l->b, &l->x, &l->r, &l->d, &l->z}) v->assign(l->length, 0.0);
   const bool factorizes = last.matrix && last.nodes <= kFewNodes;
   if (!factorizes && last.largest == 0) last.largest = largest_eigenvalue_of(last);
   if (!factorizes) return last.largest > 0 && std::isfinite(last.largest);
@@ -217,9 +221,11 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
     return level.inverse.data() + (fine ? matrix_.dofs().block_begin(i) : at(36 * i));
   };
   level.P = galerkin::smoothed(matrix, pool_, groups, 4 / (3 * level.largest), tentative, inverse);
+  level.rounded_P = RoundedRows(level.P, [&](int i) { return matrix.size(i); });
   auto next = std::make_unique<Level>();
   next->nodes = groups.count;
   next->dofs = at(kFrameDofs * groups.count);
+  next->length = next->dofs + RoundedRows::kBeyond;
   next->places.x = std::move(centre);
   next->matrix = std::make_unique<FrameMatrix>(galerkin::product(matrix, level.P, pool_, groups.count), level.dead);
   next->inverse.assign(at(36 * groups.count), 0.0);
@@ -235,7 +241,17 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
       });
   });
   Level* made = next.get();
-  next->product = [this, made](std::span<const double> x, std::span<double> y) { made->matrix->multiply(pool_, x, y); };
+  const auto coarse_size = [](int) { return kFrameDofs; };
+  next->rounded = RoundedRows(next->matrix->blocks(), coarse_size);
+  next->product = [this, made](std::span<const double> x, std::span<double> y) {
+    pool_.for_ranges(made->nodes, 64, [&](int first, int end) {
+      for (int row = first; row < end; ++row) {
+        double* sum = y.data() + kFrameDofs * row;
+        std::fill_n(sum, kFrameDofs, 0.0);
+        made->rounded.add_product(row, kFrameDofs, made->matrix->blocks().columns(row), x.data(), sum);
+      }
+    });
+  };
   next->precondition = [this, made](std::span<const double> r, std::span<double> z) {
     apply_blocks(
         pool_, made->nodes, [](int node) { return std::tuple(kFrameDofs * node, kFrameDofs, at(36 * node)); },
@@ -299,13 +315,10 @@ void Multigrid::cycle(std::size_t depth) {
     part.resize(at(chunks));
     const auto edge = [&](int c) { return static_cast<int>(static_cast<std::int64_t>(level.nodes) * c / chunks); };
     pool_.for_chunks(chunks, [&](int c) {
-      part[at(c)].assign(next.dofs, 0.0);
+      part[at(c)].assign(next.length, 0.0);
       for (int i = edge(c); i < edge(c + 1); ++i) {
         const auto [begin, n] = rows(i);
-        const std::span<const int> columns = level.P.columns(i);
-        for (std::size_t k = 0; k < columns.size(); ++k)
-          add_transposed_block_product(level.P.block(i, static_cast<int>(k), n), n, level.r.data() + begin,
-                                       part[at(c)].data() + kFrameDofs * columns[k]);
+        level.rounded_P.add_transposed_product(i, n, level.P.columns(i), level.r.data() + begin, part[at(c)].data());
       }
     });
     std::copy(part[0].begin(), part[0].end(), next.b.begin());
@@ -314,10 +327,7 @@ void Multigrid::cycle(std::size_t depth) {
     pool_.for_ranges(level.nodes, 256, [&](int first, int end) {
       for (int i = first; i < end; ++i) {
         const auto [begin, n] = rows(i);
-        const std::span<const int> columns = level.P.columns(i);
-        for (std::size_t k = 0; k < columns.size(); ++k)
-          add_block_product(level.P.block(i, static_cast<int>(k), n), n, next.x.data() + kFrameDofs * columns[k],
-                            level.x.data() + begin);
+        level.rounded_P.add_product(i, n, level.P.columns(i), next.x.data(), level.x.data() + begin);
       }
     });
     renew_residual();

@@ -1,31 +1,15 @@
 #include "core/base/index.hpp"
 #include "core/linear/block_matrix.hpp"
-#include "core/math/batch.hpp"
+#include "core/linear/four.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 /// Products with matrices of vertices only or of rigid frames only, of which the upper triangle is filled.
 namespace fascia {
 
 namespace {
 
-using Four = BatchRegister<4>::Type;
-
-inline Four load(const double* p) {
-  Four r;
-  std::memcpy(&r, p, sizeof r);
-  return r;
-}
-inline Four load(const float* p) {
-  float r __attribute__((vector_size(16)));
-  std::memcpy(&r, p, sizeof r);
-  return __builtin_convertvector(r, Four);
-}
-inline void add(const Four& value, double* to) {
-  const Four sum = load(to) + value;
-  std::memcpy(to, &sum, sizeof sum);
-}
+inline void add(const Four& value, double* to) { store_four(load_four(to) + value, to); }
 
 /// Numbers of a node in the vectors here, whole registers: x₀ x₁ x₂ 0, or x₀ … x₅ x₀ x₁. In a sum the last ones are not
 /// read.
@@ -57,13 +41,13 @@ struct UpperRow<3> {
   }
   template <int Parity, class T>
   void take_diagonal(const T* b, const double* xj) {
-    const Four v = load(xj);
-    for (int i = 0; i < 3; ++i) sum[Parity][i] += load(b + 3 * i) * v;
+    const Four v = load_four(xj);
+    for (int i = 0; i < 3; ++i) sum[Parity][i] += load_four(b + 3 * i) * v;
   }
   template <int Parity, class T>
   void take(const T* b, const double* xj, double* yj) {
     take_diagonal<Parity>(b, xj);
-    add(load(b) * x[0] + load(b + 3) * x[1] + load(b + 6) * x[2], yj);
+    add(load_four(b) * x[0] + load_four(b + 3) * x[1] + load_four(b + 6) * x[2], yj);
   }
   void add_to(double* y) const {
     for (int i = 0; i < 3; ++i) {
@@ -86,15 +70,15 @@ struct UpperRow<6> {
   }
   template <int, class T>
   void take_diagonal(const T* b, const double* xj) {
-    const Four v[3] = {load(xj), load(xj + 4), load(xj + 2)};
-    for (int c = 0; c < 9; ++c) sum[c] += load(b + 4 * c) * v[c % 3];
+    const Four v[3] = {load_four(xj), load_four(xj + 4), load_four(xj + 2)};
+    for (int c = 0; c < 9; ++c) sum[c] += load_four(b + 4 * c) * v[c % 3];
   }
   template <int, class T>
   void take(const T* b, const double* xj, double* yj) {
-    const Four v[3] = {load(xj), load(xj + 4), load(xj + 2)};
+    const Four v[3] = {load_four(xj), load_four(xj + 4), load_four(xj + 2)};
     Four t[3] = {};  // of columns 0 … 3, 4 5 0 1 and 2 … 5
     for (int c = 0; c < 9; ++c) {
-      const Four entries = load(b + 4 * c);
+      const Four entries = load_four(b + 4 * c);
       sum[c] += entries * v[c % 3];
       t[c % 3] += entries * x[c];
     }

@@ -14,13 +14,13 @@ namespace fascia {
 
 MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings)
     : model_(model),
-      settings_(settings),
+      settings_(settings_for(model, settings)),
       filter_(model),
       space_(pool),
       data_(model, filter_, zero_factors(model).size()),
       node_parts_(model.points.node_part, model.points.part_count(), space_),
       executor_(model.points, pool),
-      tangent_(model, executor_, filter_, settings),
+      tangent_(model, executor_, filter_, settings_),
       dependents_(model.points),
       conservative_(model.loads_are_conservative()),
       extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
