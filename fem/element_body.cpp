@@ -130,7 +130,7 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
   for (std::size_t e = 0; e < mesh().size(); ++e) {
     const PointMaterialSpec& m = material_[e];
     for (const QuadraturePoint& q : rule) {
-      const ElementPoint p = shape_at(mesh(), e, q);
+      const ElementPoint p = shape_at_point(mesh(), e, q);
       const double v = p.det_J * q.weight;
       BodyPoint point{m};
       point.X = point.middle = p.X;
@@ -164,7 +164,7 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
     for (const std::size_t e : ordered(mesh(), chosen)) {
       for (const int node : mesh().element(e)) block.node.push_back(first_node_ + node);
       for (const QuadraturePoint& q : rule) {
-        const ElementPoint p = shape_at(mesh(), e, q);
+        const ElementPoint p = shape_at_point(mesh(), e, q);
         block.gradient.insert(block.gradient.end(), p.dN_dX.begin(), p.dN_dX.begin() + block.nodes);
         block.volume.push_back(p.det_J * q.weight);
       }
@@ -185,7 +185,7 @@ void ElementBody::add_mass(const ElementBodySpec& spec, Model& model) {
     ShapeValues first{}, second{};
     double sum = 0, volume = 0;
     for (const QuadraturePoint& q : rule) {
-      const ElementPoint p = shape_at(mesh(), e, q);
+      const ElementPoint p = shape_at_point(mesh(), e, q);
       const double v = p.det_J * q.weight;
       volume += v;
       for (std::size_t a = 0; a < first.size(); ++a) {

@@ -56,7 +56,7 @@ class ElementBody final : public ModelBody {
   bool averaged() const { return averaged_; }
 
  private:
-  using PointGradients = std::array<Mat3d, kMostElementPoints>;
+  using PointGradients = std::array<Mat3d, kMostRulePoints>;
   struct Strained {
     double swelling = 0;  ///< relative change of the element's volume
     Mat3d turn;           ///< rotation of the element − I

@@ -38,7 +38,7 @@ Attachment ElementBody::attach(const Vec3d& X) const {
 Attachment ElementBody::attach_point(std::size_t point) const {
   const std::vector<QuadraturePoint>& rule = quadrature(mesh().shape);
   const std::size_t e = point / rule.size();
-  return attachment(e, shape_at(mesh(), e, rule[point % rule.size()]));
+  return attachment(e, shape_at_point(mesh(), e, rule[point % rule.size()]));
 }
 
 Attachment ElementBody::attach_surface(std::size_t point) const {

@@ -78,7 +78,7 @@ ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d&
   return placed(mesh, element, shape_values(mesh.shape, xi), shape_gradients(mesh.shape, xi));
 }
 
-ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const QuadraturePoint& place) {
+ElementPoint shape_at_point(const ElementMesh& mesh, std::size_t element, const QuadraturePoint& place) {
   return placed(mesh, element, place.N, place.dN);
 }
 

@@ -54,7 +54,7 @@ struct ElementPoint {
 
 ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const Vec3d& xi);
 /// At a point of the quadrature of the mesh's own shape.
-ElementPoint shape_at(const ElementMesh& mesh, std::size_t element, const QuadraturePoint& place);
+ElementPoint shape_at_point(const ElementMesh& mesh, std::size_t element, const QuadraturePoint& place);
 
 /// An element's place at the centre of its reference element [m].
 Vec3d element_middle(const ElementMesh& mesh, std::size_t element);

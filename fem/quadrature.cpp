@@ -51,8 +51,9 @@ std::vector<QuadraturePoint> rule_of(ElementShape shape) {
 }  // namespace
 
 const std::vector<QuadraturePoint>& quadrature(ElementShape shape) {
-  static const std::array<std::vector<QuadraturePoint>, 4> rules{rule_of(ElementShape::tet4), rule_of(ElementShape::tet10),
-                                                                 rule_of(ElementShape::hex8), rule_of(ElementShape::hex20)};
+  static const std::array<std::vector<QuadraturePoint>, 4> rules{
+      rule_of(ElementShape::tet4), rule_of(ElementShape::tet10), rule_of(ElementShape::hex8),
+      rule_of(ElementShape::hex20)};
   return rules[static_cast<std::size_t>(shape)];
 }
 

@@ -7,7 +7,7 @@
 namespace fascia {
 
 /// Points of any rule: 3 × 3 × 3.
-inline constexpr int kMostElementPoints = 27;
+inline constexpr int kMostRulePoints = 27;
 
 /// A point of a rule on the reference element, with the shape functions of the rule's elements there.
 struct QuadraturePoint {

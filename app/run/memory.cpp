@@ -29,6 +29,7 @@ namespace {
 constexpr double kCodeOfRun = 3.5e6;
 
 constexpr double kLevels = 0.45;    // of the matrix's numbers: what levels hold
+constexpr double kRounded = 0.67;   // of these once more: their rounded entries
 constexpr long kGuessedSolves = 3;  // Newton iterations of a static solve
 
 /// A number of bytes for people.
@@ -143,7 +144,7 @@ class Setup {
     for (const SimulatedBody& b : s.bodies) to_come_.pass(output_bytes(s, b));
     to_come_.keep(attachment_bytes(s) + kCodeOfRun);
     const double recovery = recovery_bytes(s);
-    to_come_.pass(3 * recovery);  // patches, which grow by doubling, beside what is made of them
+    to_come_.pass(2 * recovery);  // shares as they are found, beside them by node
     to_come_.keep(recovery);
   }
   const ToCome& to_come() const { return to_come_; }
@@ -195,8 +196,8 @@ class Setup {
     factorizes_ = linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
                   (statics && linear.gives_way_to_factor(guessed_iterations())) ||
                   (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations()));
-    if (solver.precision == "mixed" && !linear.direct()) to_come_.keep(4.0 * static_cast<double>(matrix.value_count()));
     if (!factorizes_) return of_levels(matrix);
+    if (solver.precision == "mixed" && !linear.direct()) to_come_.keep(rounded_bytes(matrix));
     take(linear.factor().cholesky(), matrix);
     if (!load || !s_.model.loads_are_conservative())
       beyond_ = bytes_of(BlockCholesky(matrix, system_->filter(), Pivots::any, &linear.factor().order()), matrix);
@@ -210,10 +211,12 @@ class Setup {
     const int most =
         solver.linear == LinearMethod::automatic ? BlocksOrLevels({}).patience() : solver.linear_max_iterations;
     const bool budget = solver.linear_max_iterations < CgOptions{}.max_iterations;
-    if (!asked && (kind != PreconditionerKind::automatic || budget || guessed_iterations() < most)) return;
+    const bool none = !asked && (kind != PreconditionerKind::automatic || budget || guessed_iterations() < most);
+    if (!none || solver.precision == "mixed") to_come_.keep(rounded_bytes(matrix));
+    if (none) return;
     const double levels = kLevels * 8 * static_cast<double>(matrix.value_count());
     to_come_.pass(2 * levels);
-    to_come_.keep(levels);
+    to_come_.keep((1 + kRounded) * levels);
   }
 
   /// CG takes about ten iterations a solve for each node along a body. At the end of statics a factor tells whether the
@@ -227,6 +230,8 @@ class Setup {
     return std::lround(10 * std::min(along, static_cast<double>(s_.model.node_count())));
   }
 
+  /// The entries of a matrix once more, of 32 bits.
+  static double rounded_bytes(const BlockMatrix& matrix) { return 4.0 * static_cast<double>(matrix.value_count()); }
   /// The lower triangle of a matrix, by columns, takes this.
   static double bytes_of(const BlockMatrix& matrix) {
     return 12.0 * static_cast<double>(matrix.value_count()) * (matrix.fills_upper() ? 1 : 0.5);

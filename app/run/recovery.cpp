@@ -48,8 +48,8 @@ std::span<NodalRecovery::Share> of_nearest_material(const ModelBody& body, const
 /// Points that each node moves, weighted with w v: shares of node i are those from begin_[i] on.
 void NodalRecovery::find_patches(const SimulatedBody& b) {
   struct Found {
-    std::size_t node;
-    Share share;
+    int node, point;
+    double weight;
   };
   const ModelBody& body = *b.body;
   std::vector<Found> found;
@@ -57,14 +57,14 @@ void NodalRecovery::find_patches(const SimulatedBody& b) {
   for (std::size_t q = 0; q < body.points().size(); ++q) {
     const Attachment a = body.attach_point(q);
     for (std::size_t k = 0; k < a.nodes.size(); ++k)
-      found.push_back({b.index_of(a.nodes[k]),
-                       {static_cast<int>(q), body.points()[q].volume * std::max(a.influences[k].w, 1e-3)}});
+      found.push_back({static_cast<int>(b.index_of(a.nodes[k])), static_cast<int>(q),
+                       body.points()[q].volume * std::max(a.influences[k].w, 1e-3)});
   }
-  for (const Found& f : found) ++begin_[f.node + 1];
+  for (const Found& f : found) ++begin_[at(f.node) + 1];
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
   shares_.resize(found.size());
-  for (const Found& f : found) shares_[next[f.node]++] = f.share;
+  for (const Found& f : found) shares_[next[at(f.node)]++] = {f.point, f.weight};
 }
 
 NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1) {

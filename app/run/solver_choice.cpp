@@ -26,8 +26,8 @@ std::string told(const SolverChoice& choice) {
   return text + fmt::format(
                     "; a factor {} {:.2g} operations and {:.2g} numbers, {:.0f} operations for each number of the "
                     "matrix (beyond {:.0f}, and {} unknowns, \"auto\" takes conjugate gradients)",
-                    choice.direct ? "takes" : "would take at most", choice.flops, choice.numbers, choice.flops_per_number,
-                    TangentSolver::kFlopsPerNumber, TangentSolver::kDirectDofs);
+                    choice.direct ? "takes" : "would take at most", choice.flops, choice.numbers,
+                    choice.flops_per_number, TangentSolver::kFlopsPerNumber, TangentSolver::kDirectDofs);
 }
 
 }  // namespace fascia::app

@@ -159,13 +159,4 @@ inline void add_transposed_matrix_product(const double* A, int n, const double* 
     sized(n);
 }
 
-/// y += B x of a block of N rows and six columns.
-inline void add_block_product(const double* B, int rows, const double* x, double* y) {
-  for (int i = 0; i < rows; ++i) {
-    double sum = 0;
-    for (int j = 0; j < kFrameDofs; ++j) sum += B[kFrameDofs * i + j] * x[j];
-    y[i] += sum;
-  }
-}
-
 }  // namespace fascia

@@ -10,8 +10,9 @@ namespace fascia {
 /// counted, no clock is read, so that a run can be repeated.
 ///
 /// Blocks go first, for about half as long as levels would take: whichever is right, little more than twice its time is
-/// spent. In a solve that needs many times as long they gain nothing at first, for each iteration couples nodes that are
-/// one further from one another: such a solve goes on with levels after a few iterations. Levels that turn out far more expensive hand back to blocks, which may then take as long as those did.
+/// spent. In a solve that needs many times as long they gain nothing at first, for each iteration couples nodes that
+/// are one further from one another: such a solve of the processor goes on with levels after a few iterations. Levels
+/// that turn out far more expensive hand back to blocks, which may then take as long as those did.
 class BlocksOrLevels {
  public:
   /// Both in iterations with blocks; of a processor unless said.
@@ -24,7 +25,7 @@ class BlocksOrLevels {
   bool levels() const { return levels_; }
   /// Iterations that blocks get in a solve before levels take their place.
   int patience() const { return static_cast<int>(std::min(patience_, 1e9)); }
-  /// The same as a limit for a solve by them, which ends earlier where it gains nothing.
+  /// Limits a solve by blocks to that, and lets it end earlier where it gains nothing.
   CgOptions limited(CgOptions options) const {
     options.max_iterations = std::min(options.max_iterations, patience());
     options.look = handed_back_ ? 0 : kLook;
@@ -50,8 +51,8 @@ class BlocksOrLevels {
   static constexpr double kCycles = 16;  ///< of a solve
   static constexpr int kMemory = 4;      ///< solves
   static constexpr double kTooMuch = 4;
-  /// What blocks leave after 20 iterations: 0.03 to 0.2 in solves that take them 60, 0.8 to 2.6 in those of statics that
-  /// take them 350 to 1,200.
+  /// Blocks leave so much after 20 iterations: 0.03 to 0.2 in solves that take them 60, 0.8 to 2.6 in those of statics
+  /// that take them 350 to 1,200.
   static constexpr int kLook = 20;
   static constexpr double kHope = 0.5;
 

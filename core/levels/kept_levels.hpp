@@ -3,12 +3,13 @@
 #include "core/linear/cg.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fascia {
 
 /// Says when levels of rigid frames are made and of which tangent, wherever the solve runs. They are kept while the
-/// iterations that they take grow by less than half: making them costs as much as ten. Those of an indefinite tangent
-/// are made again from its material part; where no levels are definite, blocks are left.
+/// iterations that they take grow by less than half, for as many digits: making them costs as much as ten. Those of an
+/// indefinite tangent are made again from its material part; where no levels are definite, blocks are left.
 class KeptLevels {
  public:
   /// @param has_material  the material part of the tangent can be had
@@ -26,9 +27,10 @@ class KeptLevels {
       report.iterations += before;
       return report;
     };
-    if (iterations_ > 0 && tolerance_ == options.tolerance) {
+    if (iterations_ > 0) {
       CgOptions few = options;
-      few.max_iterations = std::min(options.max_iterations, iterations_ + iterations_ / 2 + 2);
+      const int enough = static_cast<int>(iterations_ * std::max(1.0, std::log(options.goal()) / std::log(goal_)));
+      few.max_iterations = std::min(options.max_iterations, enough + enough / 2 + 2);
       const CgReport report = solve(false, few);
       if (report.status == converged || (report.status == limit && options.timed)) return report;
       before = report.iterations;
@@ -40,7 +42,7 @@ class KeptLevels {
       if (make(false)) report = solve(false, options);
       if (report.status == converged && report.iterations > 0) {
         iterations_ = report.iterations;
-        tolerance_ = options.tolerance;
+        goal_ = options.goal();
       }
       if (report.status == converged) failures_ = 0;
       if (report.status == converged || report.status == limit) return counted(report);
@@ -66,9 +68,9 @@ class KeptLevels {
   int made() const { return made_; }
 
  private:
-  int iterations_ = 0;    ///< that the levels took when they were made; 0: not made, or of no use
-  double tolerance_ = 0;  ///< that those were made for
-  int failures_ = 0;      ///< solves in a row that blocks had to do
+  int iterations_ = 0;  ///< that the levels took when they were made; 0: not made, or of no use
+  double goal_ = 0;     ///< of the solve that they took them in
+  int failures_ = 0;    ///< solves in a row that blocks had to do
   int made_ = 0;
   bool material_first_ = false;  ///< the last tangent was indefinite
 };

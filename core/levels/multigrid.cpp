@@ -89,7 +89,7 @@ struct Multigrid::Level {
   RoundedRows rounded;                  ///< this one
   std::vector<double> inverse;          ///< D⁻¹, by node
   Places places;
-  BlockRows P;                 ///< from the next coarser level; empty: none
+  BlockRows P;  ///< from the next coarser level; empty: none
   RoundedRows rounded_P;
   std::vector<unsigned> dead;  ///< of the next coarser level: motions that its aggregates do not have
   double largest = 0;          ///< eigenvalue of D⁻¹ K

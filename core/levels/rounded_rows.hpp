@@ -7,8 +7,8 @@
 
 namespace fascia {
 
-/// The entries of BlockRows as products of a cycle read them: of 32 bits, which is exact enough for a preconditioner and
-/// half as much to read, and each row of a block padded to eight. Sums are of 64 bits.
+/// The entries of BlockRows as products of a cycle read them: of 32 bits, which is exact enough for a preconditioner
+/// and half as much to read, and each row of a block padded to eight. Sums are of 64 bits.
 class RoundedRows {
  public:
   /// Numbers that lie beyond the last node in vectors of rigid frames: a product reads them, times zero, or adds zeros.
@@ -24,15 +24,14 @@ class RoundedRows {
       begin_.push_back(begin_.back() + blocks.columns(row).size() * at(size(row)) * kWide);
     values_.resize(begin_.back());
     for (int row = 0; row < blocks.rows(); ++row)
-      pad(blocks.block(row, 0, size(row)), blocks.columns(row).size() * at(size(row)), values_.data() + begin_[at(row)]);
+      pad(blocks.block(row, 0, size(row)), blocks.columns(row).size() * at(size(row)),
+          values_.data() + begin_[at(row)]);
   }
 
   /// y += B x of a row. @param x  six numbers a column, and kBeyond behind them
   void add_product(int row, int size, std::span<const int> columns, const double* x, double* y) const;
   /// x += Bᵀ y of a row.
   void add_transposed_product(int row, int size, std::span<const int> columns, const double* y, double* x) const;
-
-  std::size_t bytes() const { return values_.size() * sizeof(float); }
 
  private:
   static constexpr std::size_t kWide = 8;

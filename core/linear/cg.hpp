@@ -9,9 +9,12 @@ namespace fascia {
 struct CgOptions {
   int max_iterations = 1000;
   double tolerance = 1e-6;  ///< on |r|_M⁻¹ relative to the right-hand side's
+  double aim = 0;           ///< it goes on to this, which need not be reached, where it is less
   bool timed = false;       ///< the limit is that of the time left: a solve that ends there says nothing of its solver
-  int look = 0;             ///< after so many iterations a solve ends as at its limit where more is left of |r|_M⁻¹ than
-  double hope = 0;          ///< this part; 0 iterations: it goes on
+  int look = 0;     ///< after so many iterations a solve ends as at its limit where more is left of |r|_M⁻¹ than
+  double hope = 0;  ///< this part; 0 iterations: it goes on
+
+  double goal() const { return aim > 0 ? std::min(aim, tolerance) : tolerance; }
 };
 
 enum class CgStatus { converged, limit, negative_curvature, not_finite };
@@ -44,6 +47,7 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
   // direction without stiffness does not take all of the step.
   constexpr double kLeast = 1e-4;
   const bool reflects = negative == NegativeCurvature::reflected;
+  const double goal = options.goal();
   CgReport report;
   Vector r = b, z = space.zeros(b.size()), p = z, Ap = z;
   const auto stop = [&](CgStatus status, double residual) {
@@ -72,7 +76,7 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
     const double alpha = rz / curvature;
     space.advance(alpha, p, Ap, x, r);
     const double rz_next = precondition(r, z);
-    if (rz_next <= options.tolerance * options.tolerance * rz_start) {
+    if (rz_next <= goal * goal * rz_start) {
       ++report.iterations;
       return stop(CgStatus::converged, std::sqrt(std::max(rz_next, 0.0) / rz_start));
     }
@@ -83,7 +87,8 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
     space.xpay(z, rz_next / rz, p);
     rz = rz_next;
   }
-  return stop(CgStatus::limit, std::sqrt(rz / rz_start));
+  const double left = std::sqrt(rz / rz_start);
+  return stop(left <= options.tolerance ? CgStatus::converged : CgStatus::limit, left);
 }
 
 }  // namespace fascia

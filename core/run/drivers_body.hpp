@@ -76,11 +76,8 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     definite = !report.indefinite;
     reached = target;
     increment = std::min(longest, 2 * increment);
-    if (reached >= statics.to) {
-      const bool one_tangent = system.model().is_linear() && !report.indefinite;  // that Newton's method solved with
-      run.stability = one_tangent ? Stability{.known = true}
-                                  : end_stability(system, state, run, has_tangent_of_end(report, system.model()));
-    }
+    if (reached >= statics.to)
+      run.stability = end_stability(system, state, run, has_tangent_of_end(report, system.model()));
     const double progress = (reached - statics.from) / whole;
     if (observe && !observe({run.steps, reached, progress, report, seconds_since(start)}, state, system)) {
       if (reached < statics.to) run.status = RunStatus::interrupted;

@@ -12,17 +12,26 @@
 
 namespace fascia {
 
+namespace {
+
+/// What conjugate gradients leave, in their norm, of a residual that is to fall to Newton's tolerance at once: in its
+/// own norm it may be a hundred times as much.
+constexpr double kOfTolerance = 0.003;
+
+}  // namespace
+
 MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings)
     : model_(model),
-      settings_(settings_for(model, settings)),
+      settings_(settings),
       filter_(model),
       space_(pool),
       data_(model, filter_, zero_factors(model).size()),
       node_parts_(model.points.node_part, model.points.part_count(), space_),
       executor_(model.points, pool),
-      tangent_(model, executor_, filter_, settings_),
+      tangent_(model, executor_, filter_, settings),
       dependents_(model.points),
       conservative_(model.loads_are_conservative()),
+      linear_(model.is_linear()),
       extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
       surfaces_(model),
       motions_(motion_sizes(model)),
@@ -174,6 +183,7 @@ Evaluation MechanicalSystem::evaluate() {
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
   e.energy_scale = internal_.size() + std::abs(load_energy_) + inertia_energy_;
   judge(forces_of_parts(), model_.points.part_whole, settings_.tolerance, e);
+  relative_ = e.relative;
   return e;
 }
 
@@ -219,6 +229,8 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
   if (has_prescribed_increment()) prescribed = prescribed_;
   Linearization fallback;
   tangent_.limit_iterations(most_iterations);
+  tangent_.aim_at(
+      linear_ && form_.h == 0 ? kOfTolerance * settings_.tolerance / std::max(relative_, settings_.tolerance) : 0);
   const TangentReport solved = tangent_.solve(
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
         const bool material = kind == TamerTangent::material;

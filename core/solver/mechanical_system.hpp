@@ -231,7 +231,7 @@ class MechanicalSystem {
   CpuExecutor executor_;
   TangentSolver tangent_;
   DependentNodes dependents_;  ///< at the present state
-  bool conservative_, extrapolates_;
+  bool conservative_, linear_, extrapolates_;
   SurfaceLoads surfaces_;
   MotionSizes motions_;
   std::vector<double> masses_;  ///< part_masses()
@@ -261,6 +261,7 @@ class MechanicalSystem {
   std::optional<Evaluation> known_;  ///< of the present state, where evaluate() would repeat itself
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0;
+  double relative_ = 1;  ///< residual of the last evaluation, relative
   /// Work of loads without a potential along the steps of Newton's method, by the mean of their forces at the ends of
   /// each [J]; the length of a step whose end was not evaluated yet; where the direction starts, the loads' work along
   /// it and their potential [J].

@@ -1,10 +1,8 @@
 #pragma once
 
 #include "core/physics/point_physics.hpp"
-#include "core/structure/model.hpp"
 #include "core/tangent/linear_settings.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -32,13 +30,5 @@ struct SolverSettings : LinearSettings {
   int threads = 0;                                      ///< of the processor, for what it does beside a GPU; 0: all
   std::vector<int> devices;  ///< GPUs that share the points of the linear solves; empty: one computes all
 };
-
-/// One direction solves a linear model: conjugate gradients take it as far as the step is to go, in whose residual a
-/// hundredth and more of that is left, since they measure theirs in another norm.
-inline SolverSettings settings_for(const Model& model, SolverSettings settings) {
-  if (model.is_linear() && settings.precision == Precision::full)
-    settings.cg.tolerance = std::min(settings.cg.tolerance, 0.003 * settings.tolerance);
-  return settings;
-}
 
 }  // namespace fascia

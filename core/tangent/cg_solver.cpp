@@ -82,6 +82,7 @@ void CgSolver::begin_afresh() {
 LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, double rough) {
   CgOptions options = settings_.cg;
   options.tolerance = std::max(options.tolerance, rough);
+  if (rough == 0 && !rounds_) options.aim = aim_;
   return solve(b, x, options);
 }
 

@@ -47,6 +47,9 @@ class CgSolver final : public LinearSolver {
     left_ = most;
     limited_ = most < settings_.cg.max_iterations;
   }
+  /// Solves to come go on to this tolerance, where it is less than that of the settings, as far as their limit of
+  /// iterations lets them; 0: to that of the settings. Where products are rounded they do not.
+  void aim_at(double tolerance) { aim_ = tolerance; }
   /// Products have 64 bits, whatever the precision.
   void take_exact_products(bool exact) { exact_ = exact; }
   bool spent() const override { return limited_ && left_ <= 0; }
@@ -79,6 +82,7 @@ class CgSolver final : public LinearSolver {
   FactorSolver& factor_;
   bool limited_ = false, exact_ = false;
   int left_ = 0;                         ///< iterations, where they are limited
+  double aim_ = 0;                       ///< as aim_at() was told
   long pattern_ = 0;                     ///< of K, that preconditioners were made of
   std::unique_ptr<Preconditioner> one_;  ///< that is asked for, or blocks
   bool one_is_ready_ = false;            ///< for K as it is

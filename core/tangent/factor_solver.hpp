@@ -48,7 +48,7 @@ class FactorSolver final : public LinearSolver {
   const EliminationOrder* known_order() const {
     return order_.has_value() && pattern_ == K_.pattern_revision() ? &*order_ : nullptr;
   }
-  /// Of the matrix, below and above its diagonal.
+  /// Counts the numbers of the matrix, below and above its diagonal.
   double matrix_numbers();
   /// A factor takes more operations than these, whatever the order.
   bool takes_more_than(double flops);

@@ -25,6 +25,7 @@ void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
     pattern_ = executor_.pattern();
     matrix_.reset();
     material_.reset();
+    material_rounded_ = false;
   }
   beside_.set(lin.low_rank, filter_);
   if (!dependents_.empty()) dependents_.turn(lin.Q);

@@ -15,10 +15,14 @@ constexpr int kRoundsOfFactor = 4, kRoundsOfCg = 1;
 /// Products that an iteration with levels is worth.
 constexpr double kCycle = 6;
 
+/// A tangent that nothing changes is never indefinite, but it may be singular: that shows without many digits.
+constexpr double kRoughOfLinear = 1e-2;
+
 /// Inverse iteration with a solver that was prepared.
 SoftestDirection softest_by(LinearSolver& solver, const TangentOperator& K, int rounds) {
+  const double rough = K.model().is_linear() ? kRoughOfLinear : 0;
   const auto solve = [&](std::span<const double> b, std::span<double> x) {
-    const LinearReport report = solver.solve(b, x);
+    const LinearReport report = solver.solve(b, x, rough);
     const int negative = std::max(report.negative, report.trouble.empty() ? 0 : 1);
     return TangentProbe{report.usable && (!report.unsolved || negative > 0), negative};
   };

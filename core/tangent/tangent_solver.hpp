@@ -50,6 +50,9 @@ class TangentSolver {
   /// say nothing of the solver's choice.
   void limit_iterations(int most) { cg_.limit_iterations(most); }
 
+  /// As CgSolver::aim_at().
+  void aim_at(double tolerance) { cg_.aim_at(tolerance); }
+
   /// Factorises K as it is, indefinite or not, and counts the directions in which the equilibrium is unstable. None
   /// where a pivot vanishes.
   std::optional<int> factorize_as_is(const Linearization& at);

@@ -16,7 +16,7 @@ namespace fascia::gpu {
 template <class Space>
 System<Space>::System(const Model& model, const SolverSettings& settings)
     : model_(model),
-      settings_(settings_for(model, settings)),
+      settings_(settings),
       filter_(model),
       data_(model, filter_, zero_factors(model).size()),
       blocks_(model.points, settings.precision),

@@ -91,7 +91,7 @@ bool System<Space>::host_is_faster(int iterations) {
   const double iterating = (use_tiles() ? kInTiles : kIteration) * iterations,
                assembling = kUnknown * model_.free_dof_count();
   if (iterating <= 2 * assembling) return false;  // nor where all is prescribed, and there is nothing to solve
-  return iterating > 2 * (assembling + kOperation * host().linear().factor().order().flops);
+  return !host().linear().factor().takes_more_than((0.5 * iterating - assembling) / kOperation);
 }
 
 template <class Space>

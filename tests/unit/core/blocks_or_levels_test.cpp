@@ -35,5 +35,18 @@ TEST(BlocksOrLevelsTest, HandsBackWhatIsFarTooSlow) {
   EXPECT_TRUE(choice.levels());
 }
 
+/// Blocks that have gained nothing give way early; once levels have handed back to them they are left to it.
+TEST(BlocksOrLevelsTest, LooksEarlyUntilLevelsHandBack) {
+  BlocksOrLevels choice({.cycle = 5, .making = 40});
+  const CgOptions first = choice.limited({1000, 1e-6});
+  EXPECT_EQ(first.max_iterations, 60);
+  EXPECT_GT(first.look, 0);
+  EXPECT_LT(first.look, 60);
+  EXPECT_EQ(choice.limited({30, 1e-6}).max_iterations, 30);
+  choice.turn_to_levels();
+  for (int solve = 0; solve < 20; ++solve) choice.took(200, 2);
+  EXPECT_EQ(choice.limited({1000, 1e-6}).look, 0);
+}
+
 }  // namespace
 }  // namespace fascia::test::blocks_or_levels_test

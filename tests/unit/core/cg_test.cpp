@@ -16,7 +16,8 @@ struct Solved {
 };
 
 /// A diagonal matrix, without a preconditioner.
-Solved solve(const std::vector<double>& diagonal, const std::vector<double>& b, NegativeCurvature negative) {
+Solved solve(const std::vector<double>& diagonal, const std::vector<double>& b, NegativeCurvature negative,
+             const CgOptions& options = {100, 1e-12}) {
   ThreadPool pool(1);
   const CpuVectors space(pool);
   Solved solved;
@@ -29,7 +30,7 @@ Solved solve(const std::vector<double>& diagonal, const std::vector<double>& b, 
         z = r;
         return space.dot(r, z);
       },
-      b, solved.x, {100, 1e-12}, negative);
+      b, solved.x, options, negative);
   return solved;
 }
 
@@ -65,6 +66,44 @@ TEST(ConjugateGradients, ADefiniteMatrixIsSolvedAlikeEitherWay) {
     EXPECT_NEAR(solved.x[0], 0.25, 1e-12);
     EXPECT_NEAR(solved.x[2], 2, 1e-12);
   }
+}
+
+/// Ends as at a limit where too much is left, with what it has; and not where enough is gone, or nobody looks.
+TEST(ConjugateGradients, EndEarlyWhereNothingIsGained) {
+  std::vector<double> diagonal(40), b(40, 1.0);
+  for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = static_cast<double>(1 + i * i);
+  const Solved whole = solve(diagonal, b, NegativeCurvature::stops);
+  ASSERT_EQ(whole.report.status, CgStatus::converged);
+  CgOptions options{100, 1e-12};
+  options.look = 3;
+  options.hope = 1e-6;
+  const Solved ended = solve(diagonal, b, NegativeCurvature::stops, options);
+  EXPECT_EQ(ended.report.status, CgStatus::limit);
+  EXPECT_EQ(ended.report.iterations, 3);
+  EXPECT_NE(ended.x[0], 0);
+  options.hope = 1e6;
+  EXPECT_EQ(solve(diagonal, b, NegativeCurvature::stops, options).x, whole.x);
+}
+
+/// An aim beyond the tolerance costs iterations and need not be reached.
+TEST(ConjugateGradients, GoOnToTheirAimAsFarAsTheirLimitLetsThem) {
+  std::vector<double> diagonal(40), b(40, 1.0);
+  for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = static_cast<double>(1 + i * i);
+  CgOptions options{100, 1e-3};
+  const CgReport rough = solve(diagonal, b, NegativeCurvature::stops, options).report;
+  options.aim = 1e-9;
+  const CgReport fine = solve(diagonal, b, NegativeCurvature::stops, options).report;
+  EXPECT_GT(fine.iterations, rough.iterations);
+  EXPECT_LE(fine.relative_residual, 1e-9);
+  options.max_iterations = rough.iterations + 1;
+  const CgReport limited = solve(diagonal, b, NegativeCurvature::stops, options).report;
+  EXPECT_EQ(limited.status, CgStatus::converged);
+  EXPECT_EQ(limited.iterations, rough.iterations + 1);
+  options.max_iterations = rough.iterations - 1;
+  EXPECT_EQ(solve(diagonal, b, NegativeCurvature::stops, options).report.status, CgStatus::limit);
+  options.aim = 1;  // no farther than that
+  options.max_iterations = 100;
+  EXPECT_EQ(solve(diagonal, b, NegativeCurvature::stops, options).report.iterations, rough.iterations);
 }
 
 }  // namespace

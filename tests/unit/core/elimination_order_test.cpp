@@ -45,5 +45,24 @@ TEST(EliminationOrder, TakesEveryFreeNodeOnce) {
   EXPECT_LT(expected.size(), at(t.model.node_count()));
 }
 
+/// What is told without the best order holds for it too.
+TEST(EliminationOrder, ARoughOneIsEnoughWhereEveryOneIsFarBeyond) {
+  BlockOptions o;
+  o.grid = {14, 14, 14};
+  TangentAtRest t(held(vertex_block(o)), 1);
+  const EliminationOrder best = EliminationOrder::of(t.matrix, t.filter);
+  EXPECT_FALSE(best.rough);
+  const EliminationOrder rough = EliminationOrder::of(t.matrix, t.filter, 0.01 * best.flops);
+  std::printf("%.3g operations by minimum degree, %.3g at best\n", rough.flops, best.flops);
+  EXPECT_GE(rough.flops, best.flops);
+  for (const double part : {0.01, 0.1, 0.3, 0.9, 0.999}) {
+    const double limit = part * best.flops;
+    if (EliminationOrder::of(t.matrix, t.filter, limit).exceeds(limit)) continue;
+    ADD_FAILURE() << part;
+  }
+  EXPECT_FALSE(best.exceeds(1.001 * best.flops));
+  EXPECT_EQ(EliminationOrder::of(t.matrix, t.filter, 1.001 * best.flops).flops, best.flops);
+}
+
 }  // namespace
 }  // namespace fascia::elimination_order_test

@@ -1,4 +1,5 @@
 #include "core/levels/multigrid.hpp"
+#include "core/levels/rounded_rows.hpp"
 #include "core/linear/cg.hpp"
 #include "tests/support/shell_models.hpp"
 #include "tests/support/tangent_at_rest.hpp"
@@ -6,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <vector>
 
 namespace fascia::multigrid_test {
@@ -130,7 +133,9 @@ void expect_rigid_motions(Model model) {
       for (std::size_t k = 0; k < columns.size(); ++k) {
         const Vec3d V = motion(coarse.x[at(columns[k])]);
         const double rigid[] = {V[0], V[1], V[2], turn[0], turn[1], turn[2]};
-        add_block_product(fine.P->block(i, static_cast<int>(k), n), n, rigid, u.data());
+        for (int a = 0; a < n; ++a)
+          u[at(a)] += std::inner_product(rigid, rigid + kFrameDofs,
+                                         fine.P->block(i, static_cast<int>(k), n) + kFrameDofs * a, 0.0);
       }
       const Vec3d expected = motion(fine.x[at(i)]);
       for (int k = 0; k < 3; ++k) error = std::max(error, std::abs(u[at(k)] - expected[k]));
@@ -179,6 +184,37 @@ TEST(MultigridTest, DoesNotDependOnThreads) {
     const Solved more = solve(held_block(9), threads);
     EXPECT_EQ(more.cg.iterations, one.cg.iterations);
     EXPECT_EQ(more.x, one.x) << threads;
+  }
+}
+
+/// As sums over the entries, of blocks of three, six and twelve rows; what lies beyond the last column stays.
+TEST(RoundedRowsTest, MultiplyAsTheEntriesDo) {
+  for (const int size : {3, 6, 12}) {
+    BlockRows rows;
+    rows.column = {0, 2, 1, 2};
+    rows.begin = {0, 2, 2, 4};
+    rows.value_begin = {0, at(2 * size * kFrameDofs), at(2 * size * kFrameDofs), at(4 * size * kFrameDofs)};
+    for (int k = 0; k < 4 * size * kFrameDofs; ++k) rows.values.push_back(std::sin(1.0 + k));
+    const RoundedRows rounded(rows, [&](int) { return size; });
+    std::vector<double> x(3 * kFrameDofs + RoundedRows::kBeyond, 0.0), y(at(3 * size), 0.5), expected = y, back = x,
+                                                                                             expected_back = x;
+    for (std::size_t i = 0; i < 3 * kFrameDofs; ++i) x[i] = std::cos(static_cast<double>(i));
+    for (int row = 0; row < 3; ++row) {
+      rounded.add_product(row, size, rows.columns(row), x.data(), y.data() + size * row);
+      rounded.add_transposed_product(row, size, rows.columns(row), x.data(), back.data());
+      for (std::size_t k = 0; k < rows.columns(row).size(); ++k)
+        for (int i = 0; i < size; ++i)
+          for (int j = 0; j < kFrameDofs; ++j) {
+            const double entry = rows.block(row, static_cast<int>(k), size)[kFrameDofs * i + j];
+            const std::size_t column = at(kFrameDofs * rows.columns(row)[k] + j);
+            expected[at(size * row + i)] += entry * x[column];
+            expected_back[column] += entry * x[at(i)];
+          }
+    }
+    for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], expected[i], 1e-6) << size;
+    for (std::size_t i = 0; i < back.size(); ++i) EXPECT_NEAR(back[i], expected_back[i], 1e-6) << size;
+    EXPECT_EQ(back[3 * kFrameDofs], 0);
+    EXPECT_EQ(back[3 * kFrameDofs + 1], 0);
   }
 }
 

@@ -1,6 +1,8 @@
 #include "core/executor/executor.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "fem/quadrature.hpp"
 #include "tests/support/fading.hpp"
+#include "tests/support/statics.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
 #include <gtest/gtest.h>
@@ -79,6 +81,24 @@ TEST(ElementBody, PatchTest) {
       for (const PointTensors& t : tensors)
         EXPECT_LT(norm(t.stress - tensors[0].stress), 1e-12 * norm(tensors[0].stress));
     }
+  }
+}
+
+/// Shape functions of a rule are those at its points, and gradients there those of the attachments.
+TEST(ElementBody, GradientsAreThoseOfAttachments) {
+  for (const ElementShape shape : kShapes) {
+    for (const QuadraturePoint& q : quadrature(shape)) {
+      EXPECT_EQ(q.N, shape_values(shape, q.xi));
+      EXPECT_EQ(q.dN, shape_gradients(shape, q.xi));
+    }
+    ElementOptions o;
+    o.shape = shape;
+    const ElementModel built = element_model(o, distorted_mesh(o));
+    const State state = random_state(built.model, 0.03, 0);
+    const std::vector<Mat3d> H = built.body->gradients(state);
+    ASSERT_EQ(H.size(), built.body->points().size());
+    for (std::size_t q = 0; q < H.size(); ++q)
+      EXPECT_LT(norm(H[q] - field_at(built.body->attach_point(q), state).H), 1e-13 * norm(H[q]));
   }
 }
 
@@ -241,6 +261,37 @@ TEST(LinearModels, AreThoseOfTheLinearLawAlone) {
   with_spring.points.springs.emplace_back();
   EXPECT_FALSE(with_spring.is_linear());
   EXPECT_FALSE(block().model.is_linear()) << "a meshless body";
+}
+
+/// Of conjugate gradients as of a factor, as far as Newton's tolerance goes.
+TEST(ElementBody, OneDirectionSolvesALinearModel) {
+  for (const ElementShape shape : kShapes) {
+    ElementOptions o;
+    o.shape = shape;
+    o.formulation = ElementFormulation::linear;
+    o.cells = {8, 3, 2};
+    ElementModel built =
+        element_model(o, generate_box({}, {{1, 0.4, 0.25}}, o.cells, {family_of(shape), order_of(shape), 6}));
+    hold_face(built.model);
+    add_gravity(built.model, {{0, 0, -9.81}});
+    SolverSettings settings;
+    settings.linear = LinearMethod::cholesky;
+    const Solved exact = solved(built.model, settings);
+    settings.linear = LinearMethod::cg;
+    const Solved iterated = solved(built.model, settings);
+    for (const Solved& s : {exact, iterated}) {
+      EXPECT_EQ(s.run.newton_iterations, 1) << s.run.residual;
+      EXPECT_LE(s.run.residual, settings.tolerance);
+      EXPECT_TRUE(s.run.stability.known);
+      EXPECT_EQ(s.run.stability.unstable, 0);
+    }
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < exact.end.u.size(); ++i) {
+      difference = std::max(difference, norm(iterated.end.u[i] - exact.end.u[i]));
+      size = std::max(size, norm(exact.end.u[i]));
+    }
+    EXPECT_LE(difference, 1e-8 * size);
+  }
 }
 
 }  // namespace
