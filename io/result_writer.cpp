@@ -9,6 +9,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
 #include <vtkIntArray.h>
@@ -22,9 +23,11 @@
 #include <vtkZLibDataCompressor.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <new>
 #include <stdexcept>
 
 namespace fascia::io {
@@ -241,6 +244,9 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
   writer->WriteToOutputStringOn();
   int written = 0;
   without_vtk_threads([&] { written = writer->Write(); });
+  // A stream into memory fails where memory ends; VTK takes it for a full disk, or says what the system said.
+  const unsigned long code = writer->GetErrorCode();
+  if (code == vtkErrorCode::OutOfDiskSpaceError || code == ENOMEM) throw std::bad_alloc();
   if (written == 0 || !errors.first().empty())
     throw FileError(fmt::format("{}: cannot be written: {}", file.string(), errors.first()));
   replace_file(file, writer->GetOutputString());

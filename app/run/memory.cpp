@@ -144,7 +144,7 @@ class Setup {
     for (const SimulatedBody& b : s.bodies) to_come_.pass(output_bytes(s, b));
     to_come_.keep(attachment_bytes(s) + kCodeOfRun);
     const double recovery = recovery_bytes(s);
-    to_come_.pass(2 * recovery);  // shares as they are found, beside them by node
+    to_come_.pass(3 * recovery);  // shares as they are found, beside them by node, and attachments that come and go
     to_come_.keep(recovery);
   }
   const ToCome& to_come() const { return to_come_; }

@@ -9,11 +9,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 /// The cycle of a space against that of the processor.
 namespace fascia::gpu::test::levels_test {
 namespace {
 
 using namespace fascia::test;
+
+/// The processor rounds entries to 32 bits, a space does not: of a solution 4e-10 to 2e-7.
+constexpr double kRounded = 1e-6;
 
 void expect_same_cycle(Model model, const char* name) {
   TangentAtRest t(std::move(model), 1);
@@ -34,7 +40,7 @@ void expect_same_cycle(Model model, const char* name) {
       size = std::max(size, std::abs(expected[i]));
     }
     std::printf("%-10s %zu levels: %.1e\n", name, made.level_count(), error / size);
-    EXPECT_LE(error, 1e-11 * size) << name;
+    EXPECT_LE(error, kRounded * size) << name;
   }
 }
 
@@ -115,7 +121,8 @@ TEST(LevelsTest, AreTakenAgain) {
     std::vector<double> expected(n), got(n);
     made.precondition(r, expected);
     levels.cycle(r.data(), got.data());
-    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(got[i], expected[i], 1e-11 * std::abs(expected[i]) + 1e-15);
+    const double size = std::abs(*std::ranges::max_element(expected, {}, [](double v) { return std::abs(v); }));
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(got[i], expected[i], kRounded * size);
   }
 }
 
