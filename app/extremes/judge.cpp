@@ -177,7 +177,7 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
   // A reaction is a sum of residuals, known no better than these; a displacement has no such excuse.
   const double floor = run.summary.value("residual_floor", 0.0);
   const bool motions_agree = deviation(without_forces(numbers), twins, least, runs.units).size <= kAllowedDifference;
-  if (motions_agree && found.size <= 2 * floor) {  // each of the two has that of its own
+  if (motions_agree && found.size <= floor) {
     outcome.verdict = CellVerdict::sensitive;
     outcome.reason += fmt::format("; the run says that rounding leaves {:.1e} of what acts", floor);
     return outcome;

@@ -221,7 +221,7 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
     return level.inverse.data() + (fine ? matrix_.dofs().block_begin(i) : at(36 * i));
   };
   level.P = galerkin::smoothed(matrix, pool_, groups, 4 / (3 * level.largest), tentative, inverse);
-  level.rounded_P = RoundedRows(level.P, [&](int i) { return matrix.size(i); });
+  level.rounded_P = RoundedRows(level.P);
   auto next = std::make_unique<Level>();
   next->nodes = groups.count;
   next->dofs = at(kFrameDofs * groups.count);
@@ -241,14 +241,13 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
       });
   });
   Level* made = next.get();
-  const auto coarse_size = [](int) { return kFrameDofs; };
-  next->rounded = RoundedRows(next->matrix->blocks(), coarse_size);
+  next->rounded = RoundedRows(next->matrix->blocks());
   next->product = [this, made](std::span<const double> x, std::span<double> y) {
     pool_.for_ranges(made->nodes, 64, [&](int first, int end) {
       for (int row = first; row < end; ++row) {
         double* sum = y.data() + kFrameDofs * row;
         std::fill_n(sum, kFrameDofs, 0.0);
-        made->rounded.add_product(row, kFrameDofs, made->matrix->blocks().columns(row), x.data(), sum);
+        made->rounded.add_product(made->matrix->blocks(), row, kFrameDofs, x.data(), sum);
       }
     });
   };
@@ -318,7 +317,7 @@ void Multigrid::cycle(std::size_t depth) {
       part[at(c)].assign(next.length, 0.0);
       for (int i = edge(c); i < edge(c + 1); ++i) {
         const auto [begin, n] = rows(i);
-        level.rounded_P.add_transposed_product(i, n, level.P.columns(i), level.r.data() + begin, part[at(c)].data());
+        level.rounded_P.add_transposed_product(level.P, i, n, level.r.data() + begin, part[at(c)].data());
       }
     });
     std::copy(part[0].begin(), part[0].end(), next.b.begin());
@@ -327,7 +326,7 @@ void Multigrid::cycle(std::size_t depth) {
     pool_.for_ranges(level.nodes, 256, [&](int first, int end) {
       for (int i = first; i < end; ++i) {
         const auto [begin, n] = rows(i);
-        level.rounded_P.add_product(i, n, level.P.columns(i), next.x.data(), level.x.data() + begin);
+        level.rounded_P.add_product(level.P, i, n, next.x.data(), level.x.data() + begin);
       }
     });
     renew_residual();

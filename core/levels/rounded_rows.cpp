@@ -33,24 +33,24 @@ void transposed_product(const float* block, std::span<const int> columns, const 
 
 }  // namespace
 
-void RoundedRows::pad(const double* from, std::size_t rows, float* to) {
-  for (std::size_t r = 0; r < rows; ++r, from += kFrameDofs, to += kWide)
-    for (int j = 0; j < kFrameDofs; ++j) to[j] = static_cast<float>(from[j]);
+RoundedRows::RoundedRows(const BlockRows& blocks) : values_(blocks.values.size() / kFrameDofs * kWide) {
+  float* to = values_.data();
+  for (std::size_t k = 0; k < blocks.values.size(); k += kFrameDofs, to += kWide)
+    for (std::size_t j = 0; j < kFrameDofs; ++j) to[j] = static_cast<float>(blocks.values[k + j]);
 }
 
-void RoundedRows::add_product(int row, int size, std::span<const int> columns, const double* x, double* y) const {
-  const float* block = values_.data() + begin_[at(row)];
-  if (size == 3) return product<3>(block, columns, x, y);
-  if (size == 6) return product<6>(block, columns, x, y);
-  product<12>(block, columns, x, y);
+void RoundedRows::add_product(const BlockRows& blocks, int row, int size, const double* x, double* y) const {
+  const std::span<const int> columns = blocks.columns(row);
+  if (size == 3) return product<3>(row_of(blocks, row), columns, x, y);
+  if (size == 6) return product<6>(row_of(blocks, row), columns, x, y);
+  product<12>(row_of(blocks, row), columns, x, y);
 }
 
-void RoundedRows::add_transposed_product(int row, int size, std::span<const int> columns, const double* y,
-                                         double* x) const {
-  const float* block = values_.data() + begin_[at(row)];
-  if (size == 3) return transposed_product<3>(block, columns, y, x);
-  if (size == 6) return transposed_product<6>(block, columns, y, x);
-  transposed_product<12>(block, columns, y, x);
+void RoundedRows::add_transposed_product(const BlockRows& blocks, int row, int size, const double* y, double* x) const {
+  const std::span<const int> columns = blocks.columns(row);
+  if (size == 3) return transposed_product<3>(row_of(blocks, row), columns, y, x);
+  if (size == 6) return transposed_product<6>(row_of(blocks, row), columns, y, x);
+  transposed_product<12>(row_of(blocks, row), columns, y, x);
 }
 
 }  // namespace fascia

@@ -78,7 +78,8 @@ void TangentOperator::apply(std::span<const double> x, std::span<double> y) {
 
 /// The matrix as it is, with its rounded entries beside the others.
 const BlockMatrix& TangentOperator::rounded(bool material) {
-  BlockMatrix& K = material ? *material_ : (matrix(), *matrix_);
+  if (!material) matrix();
+  BlockMatrix& K = material ? *material_ : *matrix_;
   bool& made = material ? material_rounded_ : rounded_;
   if (!made) K.round(pool());
   made = true;

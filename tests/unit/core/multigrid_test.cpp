@@ -195,13 +195,13 @@ TEST(RoundedRowsTest, MultiplyAsTheEntriesDo) {
     rows.begin = {0, 2, 2, 4};
     rows.value_begin = {0, at(2 * size * kFrameDofs), at(2 * size * kFrameDofs), at(4 * size * kFrameDofs)};
     for (int k = 0; k < 4 * size * kFrameDofs; ++k) rows.values.push_back(std::sin(1.0 + k));
-    const RoundedRows rounded(rows, [&](int) { return size; });
+    const RoundedRows rounded(rows);
     std::vector<double> x(3 * kFrameDofs + RoundedRows::kBeyond, 0.0), y(at(3 * size), 0.5), expected = y, back = x,
                                                                                              expected_back = x;
     for (std::size_t i = 0; i < 3 * kFrameDofs; ++i) x[i] = std::cos(static_cast<double>(i));
     for (int row = 0; row < 3; ++row) {
-      rounded.add_product(row, size, rows.columns(row), x.data(), y.data() + size * row);
-      rounded.add_transposed_product(row, size, rows.columns(row), x.data(), back.data());
+      rounded.add_product(rows, row, size, x.data(), y.data() + size * row);
+      rounded.add_transposed_product(rows, row, size, x.data(), back.data());
       for (std::size_t k = 0; k < rows.columns(row).size(); ++k)
         for (int i = 0; i < size; ++i)
           for (int j = 0; j < kFrameDofs; ++j) {
