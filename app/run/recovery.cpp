@@ -72,7 +72,10 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
   const ModelBody& body = *b.body;
   const bool uniform = std::all_of(body.points().begin(), body.points().end(),
                                    [&](const BodyPoint& p) { return of_one_material(body.points()[0], p); });
-  const auto place = [&](const Share& s) { return vector_of(body.points()[at(s.point)].X); };
+  std::vector<Vector> X;  // read often, and points hold much more
+  X.reserve(body.points().size());
+  for (const BodyPoint& p : body.points()) X.push_back(vector_of(p.X));
+  const auto place = [&](const Share& s) -> const Vector& { return X[at(s.point)]; };
   std::size_t kept = 0;  // shares of the nodes before
   for (std::size_t i = 0; i < b.nodes.size(); ++i) {
     std::span<Share> patch = std::span(shares_).subspan(begin_[i], begin_[i + 1] - begin_[i]);

@@ -50,6 +50,7 @@ class FineRows {
     return largest;
   }
   int begin(int row) const { return matrix_.dofs().begin(row); }
+  std::size_t block_begin(int row) const { return matrix_.dofs().block_begin(row); }  ///< of the diagonal's blocks
   unsigned fixed(int row) const { return fixed_[at(row)]; }
 
   /// Calls act(column) for each block of a row.
@@ -106,6 +107,7 @@ class FrameMatrix {
   int rows() const { return blocks_.rows(); }
   static int size(int) { return kFrameDofs; }
   static int begin(int row) { return kFrameDofs * row; }
+  static std::size_t block_begin(int row) { return at(kFrameDofs * kFrameDofs * row); }
   unsigned fixed(int row) const { return fixed_[at(row)]; }
   template <class Act>
   void for_each_column(int row, const Act& act) const {

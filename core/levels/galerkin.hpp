@@ -158,8 +158,49 @@ void row_of_product(const Matrix& K, const BlockRows& P, int i, Slots& slots, st
   });
 }
 
-/// Pᵀ K P. Rows of K P are made for a few thousand nodes at a time, by node; then each coarse row adds what is its own
-/// of them, in ascending order of nodes.
+/// Rows of a symmetric matrix of N × N blocks from those of its upper half, whose columns come in any order. They are
+/// used up.
+template <int N>
+void mirror(std::vector<std::vector<int>>& columns, std::vector<std::vector<double>>& blocks, std::vector<int>& begin,
+            std::vector<int>& column, AlignedVector<double>& values) {
+  constexpr std::size_t kSize = N * N;
+  const std::size_t rows = columns.size();
+  std::vector<int> next(rows + 1, 0);
+  for (std::size_t I = 0; I < rows; ++I)
+    for (const int J : columns[I]) {
+      ++next[I + 1];
+      if (at(J) != I) ++next[at(J) + 1];
+    }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  begin = next;
+  column.resize(at(next[rows]));
+  values.resize(kSize * at(next[rows]));
+  // What a row has of the lower half comes from rows above, in their order, before its own half begins.
+  std::vector<int> order;
+  for (std::size_t I = 0; I < rows; ++I) {
+    order.resize(columns[I].size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return columns[I][at(a)] < columns[I][at(b)]; });
+    for (const int k : order) {
+      const int J = columns[I][at(k)];
+      const double* block = blocks[I].data() + at(k) * kSize;
+      const std::size_t own = at(next[I]++);
+      column[own] = J;
+      std::copy(block, block + kSize, values.data() + own * kSize);
+      if (at(J) == I) continue;
+      const std::size_t other = at(next[at(J)]++);
+      column[other] = static_cast<int>(I);
+      double* turned = values.data() + other * kSize;
+      for (int a = 0; a < N; ++a)
+        for (int b = 0; b < N; ++b) turned[N * b + a] = block[N * a + b];
+    }
+    columns[I] = {};
+    blocks[I] = {};
+  }
+}
+
+/// Pᵀ K P of a symmetric K. Rows of K P are made for a few thousand nodes at a time, by node; then each coarse row adds
+/// what is its own of them, in ascending order of nodes, from its diagonal on.
 template <class Matrix>
 BlockRows product(const Matrix& K, const BlockRows& P, ThreadPool& pool, int coarse) {
   constexpr int kRowsAtOnce = 2048;
@@ -201,6 +242,7 @@ BlockRows product(const Matrix& K, const BlockRows& P, ThreadPool& pool, int coa
           const double* p = P.block(i, of_column.place[at(k)], n);
           const Row& row = made[at(i - from)];
           for (std::size_t b = 0; b < row.column.size(); ++b) {
+            if (row.column[b] < I) continue;
             const std::size_t slot = at(slots.add(row.column[b])) * kFrameDofs * kFrameDofs;
             if (sums[at(I)].size() <= slot) sums[at(I)].resize(slot + kFrameDofs * kFrameDofs, 0.0);
             add_transposed_matrix_product(p, n, row.value.data() + b * at(n * kFrameDofs), sums[at(I)].data() + slot);
@@ -211,24 +253,9 @@ BlockRows product(const Matrix& K, const BlockRows& P, ThreadPool& pool, int coa
     });
   }
   BlockRows out;
-  std::size_t values = 0;
-  for (const std::vector<double>& sum : sums) values += sum.size();
-  out.values.reserve(values);
-  out.column.reserve(values / (kFrameDofs * kFrameDofs));
-  for (int I = 0; I < coarse; ++I) {
-    const std::vector<int>& columns = pattern[at(I)];
-    std::vector<int> order(columns.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return columns[at(a)] < columns[at(b)]; });
-    for (const int k : order) {
-      out.column.push_back(columns[at(k)]);
-      const double* block = sums[at(I)].data() + k * kFrameDofs * kFrameDofs;
-      out.values.insert(out.values.end(), block, block + kFrameDofs * kFrameDofs);
-    }
-    out.begin.push_back(static_cast<int>(out.column.size()));
-    out.value_begin.push_back(out.values.size());
-    sums[at(I)] = {};
-  }
+  mirror<kFrameDofs>(pattern, sums, out.begin, out.column, out.values);
+  out.value_begin.reserve(out.begin.size());
+  for (const int k : std::span(out.begin).subspan(1)) out.value_begin.push_back(at(kFrameDofs * kFrameDofs * k));
   return out;
 }
 

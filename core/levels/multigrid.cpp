@@ -1,7 +1,9 @@
 #include "core/levels/multigrid.hpp"
 
 #include "core/levels/galerkin.hpp"
+#include "core/levels/rigid_motions.hpp"
 #include "core/levels/rounded_rows.hpp"
+#include "core/levels/vertex_rows.hpp"
 #include "core/linear/lanczos.hpp"
 #include "core/math/mat3.hpp"
 #include "core/node/positive_inverse.hpp"
@@ -17,13 +19,14 @@ namespace fascia {
 
 namespace {
 
-constexpr double kStrong = 0.08;    ///< of neighbours on the finest level; half as much on each coarser one
-constexpr int kFewNodes = 150;      ///< that a dense factor takes
-constexpr double kLeastGain = 0.7;  ///< a level with more nodes than this part of the finer one's is not worth it
-constexpr double kRatio = 20;       ///< of the eigenvalues that a smoother damps
-constexpr double kSafety = 1.05;    ///< on the largest eigenvalue, which Lanczos iterations find from below
+constexpr double kStrong = 0.08;  ///< of neighbours where aggregates begin; half as much on each coarser level
+constexpr int kFewNodes = 150;    ///< that a dense factor takes
+constexpr int kVertexDofs = 3;
+constexpr double kManyMiddles = 0.5;  ///< of the nodes lie in the middle of edges where a level of corners is worth it
+constexpr double kLeastGain = 0.7;    ///< a level with more nodes than this part of the finer one's is not worth it
+constexpr double kRatio = 20;         ///< of the eigenvalues that a smoother damps
+constexpr double kSafety = 1.05;      ///< on the largest eigenvalue, which Lanczos iterations find from below
 constexpr int kEigenProducts = 10;
-constexpr double kIndependent = 1e-8;  ///< squared sine of the angle between a rigid motion and those before it
 
 /// z = B r of square blocks by node, as large as they are.
 template <class Size>
@@ -42,52 +45,18 @@ void apply_blocks(ThreadPool& pool, int nodes, const Size& layout, std::span<con
   });
 }
 
-/// A rigid motion about x_A of a node at x: columns U and Θ, rows by degrees of freedom in the axes of the world.
-void rigid_motion(int size, const Vec3d& arm, const Mat3d& Q, double* T) {
-  std::fill(T, T + size * kFrameDofs, 0.0);
-  const auto entry = [&](int row, int column) -> double& { return T[kFrameDofs * row + column]; };
-  for (int k = 0; k < 3; ++k) entry(k, k) = 1;
-  for (int k = 0; k < 3; ++k) {
-    Vec3d axis;
-    axis[k] = 1;
-    const Vec3d u = cross(axis, arm);
-    for (int i = 0; i < 3; ++i) entry(i, 3 + k) = u[i];
-    if (size == 6) entry(3 + k, 3 + k) = 1;
-    if (size != 12) continue;
-    const Mat3d dA = skew(axis) * Q;
-    for (int q = 0; q < 3; ++q)
-      for (int i = 0; i < 3; ++i) entry(3 + 3 * q + i, 3 + k) = dA(i, q);
-  }
-}
-
-/// Bit k: the motion k is a combination of those before it. @param G  6 × 6, products of motions; becomes L of L Lᵀ
-unsigned dependent_motions(std::array<double, 36>& G) {
-  unsigned found = 0;
-  for (int j = 0; j < kFrameDofs; ++j) {
-    const double whole = G[at(7 * j)];
-    double pivot = whole;
-    for (int k = 0; k < j; ++k) pivot -= G[at(6 * j + k)] * G[at(6 * j + k)];
-    const bool dead = !(pivot > kIndependent * whole);
-    if (dead) found |= 1U << j;
-    for (int i = j + 1; i < kFrameDofs; ++i) {
-      double sum = G[at(6 * i + j)];
-      for (int k = 0; k < j; ++k) sum -= G[at(6 * i + k)] * G[at(6 * j + k)];
-      G[at(6 * i + j)] = dead ? 0 : sum / std::sqrt(pivot);
-    }
-  }
-  return found;
-}
-
 }  // namespace
 
 struct Multigrid::Level {
   int nodes = 0;
+  int size = 0;  ///< degrees of freedom of a node; 0: as the layout says
   std::size_t dofs = 0;
   std::size_t length = 0;  ///< of vectors: of a coarse level a little more, which stays zero
   Product product;
-  std::unique_ptr<FrameMatrix> matrix;  ///< of a coarse level
-  RoundedRows rounded;                  ///< this one
-  std::vector<double> inverse;          ///< D⁻¹, by node
+  std::unique_ptr<VertexRows> vertices;  ///< of the level of corners
+  std::unique_ptr<FrameMatrix> matrix;   ///< of a coarser one
+  RoundedRows rounded;                   ///< this one
+  std::vector<double> inverse;           ///< D⁻¹, by node
   Places places;
   BlockRows P;  ///< from the next coarser level; empty: none
   RoundedRows rounded_P;
@@ -102,8 +71,13 @@ struct Multigrid::Coarsest {
   Eigen::LLT<Eigen::MatrixXd> factor;
 };
 
-Multigrid::Multigrid(const BlockMatrix& matrix, const DofFilter& filter, ThreadPool& pool)
-    : matrix_(matrix), filter_(filter), pool_(pool), vectors_(pool), fine_(new FineRows(matrix, filter)) {}
+Multigrid::Multigrid(const BlockMatrix& matrix, const DofFilter& filter, ThreadPool& pool, const EdgeEnds& ends)
+    : matrix_(matrix), filter_(filter), pool_(pool), vectors_(pool), fine_(new FineRows(matrix, filter)) {
+  const auto middles = std::count_if(ends.begin(), ends.end(), [](const auto& e) { return e[0] >= 0; });
+  const bool vertices = matrix.dofs().total() == kVertexDofs * matrix.rows();
+  if (vertices && static_cast<double>(middles) >= kManyMiddles * matrix.rows())
+    corners_ = std::make_unique<Corners>(ends);
+}
 Multigrid::~Multigrid() = default;
 
 double Multigrid::largest_eigenvalue_of(const Level& level) const {
@@ -142,8 +116,8 @@ bool Multigrid::build(const Places& places, std::vector<double> inverse_blocks, 
         r, z);
   };
   levels_.push_back(std::move(finest));
-  if (!add_coarser(*fine_, 0)) return false;
-  for (std::size_t depth = 1; depth < levels_.size(); ++depth)
+  if (corners_ ? !add_corners() : !add_coarser(*fine_, 0)) return false;
+  for (std::size_t depth = corners_ ? 2 : 1; depth < levels_.size(); ++depth)
     if (levels_[depth]->nodes > kFewNodes && !add_coarser(*levels_[depth]->matrix, depth)) return false;
   Level& last = *levels_.back();
   for (const auto& l : levels_)
@@ -165,16 +139,44 @@ bool Multigrid::build(const Places& places, std::vector<double> inverse_blocks, 
   return coarsest_->factor.info() == Eigen::Success;
 }
 
+/// The level of corners, and the first of frames.
+bool Multigrid::add_corners() {
+  Level& fine = *levels_.front();
+  fine.largest = largest_eigenvalue_of(fine);
+  if (!(fine.largest > 0) || !std::isfinite(fine.largest)) return false;
+  auto next = std::make_unique<Level>();
+  next->nodes = corners_->count();
+  next->size = kVertexDofs;
+  next->dofs = next->length = at(kVertexDofs * next->nodes);
+  next->places.x.reserve(at(next->nodes));
+  for (const int node : corners_->origin()) next->places.x.push_back(fine.places.x[at(node)]);
+  next->vertices = std::make_unique<VertexRows>(*fine_, *corners_, pool_);
+  next->inverse = next->vertices->inverse_blocks(pool_);
+  Level* made = next.get();
+  next->product = [this, made](std::span<const double> x, std::span<double> y) {
+    made->vertices->multiply_rounded(pool_, x, y);
+  };
+  next->precondition = [this, made](std::span<const double> r, std::span<double> z) {
+    apply_blocks(
+        pool_, made->nodes,
+        [](int node) { return std::tuple(VertexRows::begin(node), kVertexDofs, VertexRows::block_begin(node)); },
+        made->inverse, r, z);
+  };
+  levels_.push_back(std::move(next));
+  return add_coarser(*made->vertices, 1);
+}
+
 template <class Matrix>
 bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   Level& level = *levels_[depth];
   level.largest = largest_eigenvalue_of(level);
   if (!(level.largest > 0) || !std::isfinite(level.largest)) return false;
-  if (aggregates_.size() <= depth)
-    aggregates_.push_back(aggregate(matrix, pool_, std::ldexp(kStrong, -static_cast<int>(depth))));
-  const Aggregates& groups = aggregates_[depth];
+  const std::size_t coarsening = depth - (corners_ ? 1 : 0);
+  if (aggregates_.size() <= coarsening)
+    aggregates_.push_back(aggregate(matrix, pool_, std::ldexp(kStrong, -static_cast<int>(coarsening))));
+  const Aggregates& groups = aggregates_[coarsening];
   if (groups.count == 0 || groups.count > kLeastGain * level.nodes) {
-    aggregates_.resize(depth);  // of another tangent they may be worth it
+    aggregates_.resize(coarsening);  // of another tangent they may be worth it
     return true;
   }
 
@@ -184,16 +186,16 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   for (int i = 0; i < level.nodes; ++i)
     if (const int g = groups.of_node[at(i)]; g >= 0) centre[at(g)] += level.places.x[at(i)], ++members[at(g)];
   for (int g = 0; g < groups.count; ++g) centre[at(g)] = centre[at(g)] * (1.0 / members[at(g)]);
-  const bool fine = depth == 0;
   const auto raw = [&](int i, double* T) {
-    const Mat3d Q = fine && !level.places.Q.empty() ? level.places.Q[at(i)] : Mat3d::identity();
+    const Mat3d Q = level.places.Q.empty() ? Mat3d::identity() : level.places.Q[at(i)];
     const int n = matrix.size(i);
     rigid_motion(n, level.places.x[at(i)] - centre[at(groups.of_node[at(i)])], Q, T);
-    const DofTurn* turn = fine ? filter_.turn_of(i) : nullptr;
+    const int own = level.matrix ? -1 : level.vertices ? corners_->origin()[at(i)] : i;  // a node of the model
+    const DofTurn* turn = own >= 0 ? filter_.turn_of(own) : nullptr;
     for (int c = 0; c < kFrameDofs; ++c) {
       double column[kMostDofs];
       for (int a = 0; a < n; ++a) column[a] = T[kFrameDofs * a + c];
-      if (turn != nullptr) turn_dofs(matrix_.dofs().kind(i), turn->translation, turn->rotation, false, column);
+      if (turn != nullptr) turn_dofs(matrix_.dofs().kind(own), turn->translation, turn->rotation, false, column);
       for (int a = 0; a < n; ++a) T[kFrameDofs * a + c] = ((matrix.fixed(i) >> a) & 1U) != 0 ? 0.0 : column[a];
     }
   };
@@ -217,13 +219,12 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
       if (((dead >> c) & 1U) != 0)
         for (int a = 0; a < matrix.size(i); ++a) T[kFrameDofs * a + c] = 0;
   };
-  const auto inverse = [&](int i) {
-    return level.inverse.data() + (fine ? matrix_.dofs().block_begin(i) : at(36 * i));
-  };
+  const auto inverse = [&](int i) { return level.inverse.data() + matrix.block_begin(i); };
   level.P = galerkin::smoothed(matrix, pool_, groups, 4 / (3 * level.largest), tentative, inverse);
   level.rounded_P = RoundedRows(level.P);
   auto next = std::make_unique<Level>();
   next->nodes = groups.count;
+  next->size = kFrameDofs;
   next->dofs = at(kFrameDofs * groups.count);
   next->length = next->dofs + RoundedRows::kBeyond;
   next->places.x = std::move(centre);
@@ -302,11 +303,17 @@ void Multigrid::cycle(std::size_t depth) {
     vectors_.xpay(level.b, -1, level.r);
   };
   renew_residual();
-  if (!last) {
+  if (!last && corners_ && depth == 0) {
+    Level& next = *levels_[1];
+    corners_->restrict_to(*fine_, pool_, level.r, next.b);
+    cycle(1);
+    corners_->add_prolonged(*fine_, pool_, next.x, level.x);
+    renew_residual();
+  } else if (!last) {
     Level& next = *levels_[depth + 1];
     const auto rows = [&](int i) {
-      return depth == 0 ? std::pair(matrix_.dofs().begin(i), matrix_.dofs().size(i))
-                        : std::pair(kFrameDofs * i, kFrameDofs);
+      return level.size == 0 ? std::pair(matrix_.dofs().begin(i), matrix_.dofs().size(i))
+                             : std::pair(level.size * i, level.size);
     };
     // Chunks add to parts of their own, which are then added in order.
     const int chunks = std::clamp(level.nodes / 2048, 1, 16);
@@ -369,7 +376,8 @@ std::vector<int> Multigrid::level_sizes() const {
 
 std::size_t Multigrid::value_count() const {
   std::size_t count = 0;
-  for (const auto& level : levels_) count += level->P.values.size() + level->inverse.size();
+  for (const auto& level : levels_)
+    count += level->P.values.size() + level->inverse.size() + (level->vertices ? level->vertices->value_count() : 0);
   return count;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/levels/aggregation.hpp"
 #include "core/levels/block_rows.hpp"
+#include "core/levels/edge_ends.hpp"
 #include "core/linear/vectors.hpp"
 #include "core/math/vec3.hpp"
 #include "core/structure/model.hpp"
@@ -14,6 +15,8 @@
 
 namespace fascia {
 
+class Corners;
+
 /// Part of r · z at the start of a solve below which rounding alone may make it negative later on.
 inline constexpr double kCycleRounding = 1e-12;
 
@@ -25,13 +28,16 @@ struct Smoothing {
 };
 
 /// A preconditioner whose cost grows with the number of unknowns and whose iterations hardly do: smoothed aggregation
-/// (Vanek, Mandel, Brezina 1996) in which a coarse node is a rigid frame, whatever its nodes are, so that every coarse
-/// level is a matrix of 6 × 6 blocks.
+/// (Vanek, Mandel, Brezina 1996) in which a coarse node is a rigid frame, whatever its nodes are, so that coarse levels
+/// are matrices of 6 × 6 blocks.
 ///
 /// The tentative prolongator is the rigid motion of an aggregate at the present state: u_i = U + Θ × (x_i − x_A), of a
 /// frame also θ_i = Θ, of an affine frame dA = skew(Θ) A. P = (I − 4/(3ρ) D⁻¹ K) of it, with D the block diagonal and ρ
 /// the largest eigenvalue of D⁻¹ K. A V-cycle with Chebyshev smoothing of degree 2, and a dense factor of the coarsest
 /// level: symmetric and positive definite where K is. Sums run in a fixed order: results do not depend on threads.
+///
+/// Quadratic elements have a level of their corners between: a vertex in the middle of an edge moves by the mean of its
+/// ends. Aggregates of all their nodes, most of which are no corners, take more than twice the iterations.
 class Multigrid {
  public:
   /// y = K x on the free degrees of freedom, in constraint axes; those prescribed become 0.
@@ -44,7 +50,9 @@ class Multigrid {
   };
 
   /// @param matrix  and the filter, stay what they are for as long as this does; the matrix's values may change
-  Multigrid(const BlockMatrix& matrix, const DofFilter& filter, ThreadPool& pool);
+  /// @param ends    of a model whose nodes are vertices, half of them or more in the middle of edges: the first coarser
+  ///                level is one of corners, of which the others are made. Empty: frames alone
+  Multigrid(const BlockMatrix& matrix, const DofFilter& filter, ThreadPool& pool, const EdgeEnds& ends = {});
   ~Multigrid();
   Multigrid(const Multigrid&) = delete;
   Multigrid& operator=(const Multigrid&) = delete;
@@ -57,7 +65,7 @@ class Multigrid {
   /// z = M⁻¹ r; returns r · z. Calls the product of build().
   double precondition(std::span<const double> r, std::span<double> z);
 
-  /// A level as a cycle needs it, for those that run elsewhere.
+  /// A level as a cycle needs it, for those that run elsewhere; they know no level of corners.
   struct LevelView {
     int nodes = 0;
     std::span<const Vec3d> x;           ///< where they are
@@ -81,6 +89,7 @@ class Multigrid {
  private:
   struct Level;
   struct Coarsest;
+  bool add_corners();
   template <class Matrix>
   bool add_coarser(const Matrix& matrix, std::size_t depth);
   void cycle(std::size_t depth);
@@ -92,6 +101,7 @@ class Multigrid {
   ThreadPool& pool_;
   CpuVectors vectors_;
   std::unique_ptr<FineRows> fine_;
+  std::unique_ptr<Corners> corners_;  ///< null: none
   std::vector<std::unique_ptr<Level>> levels_;
   std::unique_ptr<Coarsest> coarsest_;
   std::vector<Aggregates> aggregates_;  ///< by level, kept

@@ -116,6 +116,7 @@ class Newton {
   static constexpr double kNoDecrement = 1e-12;    ///< the same of a correction of 1e-6 of the motion
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
+  static constexpr int kCorrections = 4;           ///< small ones, each to a residual that rounding excuses
   static constexpr int kCircles = 4;               ///< iterations after the least residual that rounding left
   static constexpr int kUnsolvedStands = 5;        ///< the same, where conjugate gradients do not get to their end
   static constexpr double kReduced = kLargestShare;
@@ -131,11 +132,18 @@ class Newton {
   /// Rounding excuses a residual only where Newton's method has reduced it by a correction that was small itself, or
   /// has tried to and cannot; and only with directions that were solved for. What a linear solver leaves of a large
   /// correction may be as small as rounding and still bend what is soft: the next correction takes it away.
-  bool settled() const {
+  bool in_equilibrium() const {
     if (!current_.converged()) return false;
     if (!current_.by_rounding) return true;
     const bool reduced = current_.residual <= kReduced * first_residual_ && small_correction_;
     return !unsolved_ && (reduced || standing_ >= kStands || circling_ >= kCircles);
+  }
+
+  /// A residual that rounding excuses after conjugate gradients must not have fallen by a half in the last correction,
+  /// of a few: smooth ones, as they leave them, sum up in reactions to more than rounding of the same norm does.
+  bool settled() const {
+    const bool untried = iterates_ && standing_ == 0 && corrections_ < kCorrections;
+    return in_equilibrium() && !(current_.by_rounding && untried);
   }
 
   /// Counts full steps in a row that did not reduce the residual, and those between states of rounding alone that did
@@ -146,6 +154,7 @@ class Newton {
     if (!rounding) least_ = std::numeric_limits<double>::infinity();
     circling_ = rounding && current_.residual >= kFalls * least_ ? circling_ + 1 : 0;
     if (circling_ == 0 && rounding) least_ = current_.residual;
+    if (rounding && small_correction_) ++corrections_;
   }
 
   Evaluation evaluate() {
@@ -184,6 +193,7 @@ class Newton {
     report_.linear_iterations += d.linear_iterations;
     report_.trouble = d.trouble;
     unsolved_ = d.unsolved;
+    iterates_ = d.linear_residual > 0;
     small_correction_ = is_small(d, kNoDecrement);
     report_.indefinite = report_.indefinite || !d.trouble.empty();
     in_doubt_ = in_doubt_ || d.indefinite;
@@ -273,6 +283,7 @@ class Newton {
   /// equilibrium, however well its forces balance.
   NewtonReport give_up(NewtonStatus status) {
     if (system_.has_prescribed_increment()) return finish(status);
+    if (in_equilibrium()) return finish_at_best(current_.by_rounding ? Convergence::rounding : Convergence::tolerance);
     if (unsolved_ && (status == NewtonStatus::stalled || status == NewtonStatus::limit))
       status = NewtonStatus::unsolved;
     if (status == NewtonStatus::stalled && marked_.converged()) return finish_at_best(Convergence::rounding);
@@ -299,6 +310,7 @@ class Newton {
   int detour_ = 0, standing_ = 0;
   int since_mark_ = 0;                ///< directions
   bool unsolved_ = false;             ///< the last direction is what conjugate gradients had at their limit
+  bool iterates_ = false;             ///< conjugate gradients found the last direction
   bool in_doubt_ = false;             ///< DirectionReport::indefinite of any direction
   bool turned_back_ = false;          ///< to the best state, to search from there
   bool small_correction_ = false;     ///< the last direction gained next to no energy
@@ -307,6 +319,7 @@ class Newton {
   double first_residual_ = 0;
   double least_ = std::numeric_limits<double>::infinity();  ///< residual of states of rounding, in a row
   int circling_ = 0;
+  int corrections_ = 0;        ///< small ones that led to a residual that rounding excuses
   double last_decrement_ = 0;  ///< of a search that found nothing better [J]
 };
 

@@ -64,6 +64,11 @@ class CgSolver final : public LinearSolver {
   const Multigrid* levels(bool material = false) const { return (material ? material_ : levels_).levels(); }
   /// Makes them. False where one of them is not positive definite.
   bool make_levels(bool material) { return (material ? material_ : levels_).prepare(); }
+  /// Levels made from now on are of frames alone, as those that run elsewhere take them.
+  void take_frames_alone() {
+    const bool either = levels_.take_frames_alone(), other = material_.take_frames_alone();
+    if (either || other) kept_levels_ = {};
+  }
 
  private:
   using Vector = CpuVectors::Vector;

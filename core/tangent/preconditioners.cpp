@@ -95,7 +95,8 @@ bool OldFactor::took(int iterations) {
 
 bool LevelsOfFrames::prepare() {
   const BlockMatrix& from = material_ ? K_.material_part() : K_.matrix();
-  if (!levels_) levels_.emplace(from, K_.filter(), K_.pool());
+  if (!levels_)
+    levels_.emplace(from, K_.filter(), K_.pool(), corners_ ? find_edge_ends(K_.model(), K_.filter()) : EdgeEnds{});
   K_.invert_diagonal(from, true, inverse_);
   return levels_->build(K_.places(), inverse_, [this](std::span<const double> x, std::span<double> y) {
     K_.apply_free_rounded(material_, x, y);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Preconditioners of conjugate gradients. Another one is a class that derives from Preconditioner, its kind, and its
@@ -73,7 +74,7 @@ class OldFactor final : public Preconditioner {
   bool ready_ = false;
 };
 
-/// A cycle over levels of rigid frames, of K or of its material part.
+/// A cycle over levels of rigid frames, of quadratic elements with one of their corners, of K or of its material part.
 class LevelsOfFrames final : public Preconditioner {
  public:
   /// @param material  of the part that is definite whatever the stress
@@ -82,12 +83,18 @@ class LevelsOfFrames final : public Preconditioner {
   double apply(std::span<const double> r, std::span<double> z) override;
   void begin() override { start_ = 0; }
   void forget() { levels_.reset(); }
+  /// Those made from now on have no level of corners.
+  /// @return  they had
+  bool take_frames_alone() {
+    if (corners_) levels_.reset();
+    return std::exchange(corners_, false);
+  }
   /// Null where they were never made.
   const Multigrid* levels() const { return levels_ ? &*levels_ : nullptr; }
 
  private:
   TangentOperator& K_;
-  bool material_;
+  bool material_, corners_ = true;
   std::optional<Multigrid> levels_;
   std::vector<double> inverse_;
   double start_ = 0;  ///< |r · z| where the solve began; 0: nowhere yet

@@ -266,6 +266,7 @@ const Multigrid* TangentSolver::levels(const Linearization& lin, bool material) 
     TangentOperator& K;
     ~Lent() { K.forget(); }
   } lent{K_};
+  cg_.take_frames_alone();
   return cg_.make_levels(material) ? cg_.levels(material) : nullptr;
 }
 

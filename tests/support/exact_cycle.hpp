@@ -37,6 +37,27 @@ class ExactCycle {
     return x;
   }
 
+  /// K x of a level.
+  Vector product(std::size_t depth, const Vector& x) {
+    Vector Kx(x.size(), 0.0);
+    if (depth == 0)
+      tangent_.multiply(x, Kx);
+    else
+      for_each_entry(*levels_.level(depth).matrix, depth,
+                     [&](std::size_t i, std::size_t j, double K) { Kx[i] += K * x[j]; });
+    return Kx;
+  }
+  /// Pᵀ K P x, where K and P are those of a level and x lies on the next coarser one.
+  Vector galerkin_product(std::size_t depth, const Vector& x) {
+    const Multigrid::LevelView level = levels_.level(depth);
+    Vector fine(depth == 0 ? at(tangent_.matrix.dofs().total()) : at(kFrameDofs * level.nodes), 0.0);
+    for_each_entry(*level.P, depth, [&](std::size_t i, std::size_t j, double p) { fine[i] += p * x[j]; });
+    fine = product(depth, fine);
+    Vector y(x.size(), 0.0);
+    for_each_entry(*level.P, depth, [&](std::size_t i, std::size_t j, double p) { y[j] += p * fine[i]; });
+    return y;
+  }
+
  private:
   static Vector multiplied(std::span<const double> A, std::size_t rows, std::size_t columns, const Vector& x) {
     Vector y(rows);
@@ -61,12 +82,7 @@ class ExactCycle {
     }
   }
   Vector residual(std::size_t depth, const Vector& b, const Vector& x) {
-    Vector Kx(x.size(), 0.0);
-    if (depth == 0)
-      tangent_.multiply(x, Kx);
-    else
-      for_each_entry(*levels_.level(depth).matrix, depth,
-                     [&](std::size_t i, std::size_t j, double K) { Kx[i] += K * x[j]; });
+    Vector Kx = product(depth, x);
     for (std::size_t i = 0; i < b.size(); ++i) Kx[i] = b[i] - Kx[i];
     return Kx;
   }

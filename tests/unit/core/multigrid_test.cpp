@@ -1,6 +1,7 @@
 #include "core/levels/multigrid.hpp"
 #include "core/levels/rounded_rows.hpp"
 #include "core/linear/cg.hpp"
+#include "tests/support/exact_cycle.hpp"
 #include "tests/support/shell_models.hpp"
 #include "tests/support/tangent_at_rest.hpp"
 
@@ -176,6 +177,50 @@ TEST(MultigridTest, IsSymmetricAndPositive) {
   const CpuVectors vectors(t.pool);
   const double size = std::sqrt(vectors.dot(a, Ma) * vectors.dot(b, Mb));
   EXPECT_NEAR(vectors.dot(a, Mb), vectors.dot(b, Ma), 1e-12 * size);
+}
+
+/// Of frames, and of vertices under them; blocks below the diagonal mirror those above it bit for bit.
+TEST(MultigridTest, CoarseMatricesAreGalerkinProducts) {
+  BlockOptions o;
+  o.grid = {21, 20, 17};
+  BuiltModel frames = build({block_spec(o)});
+  hold_face(frames.model);
+  Model vertices = vertex_block(o);
+  hold_face(vertices);
+  for (Model* model : {&frames.model, &vertices}) {
+    TangentAtRest t(std::move(*model), 2);
+    Multigrid levels(t.matrix, t.filter, t.pool);
+    ASSERT_TRUE(t.build(levels));
+    ASSERT_GE(levels.level_count(), 3U);
+    ExactCycle exact(levels, t);
+    for (std::size_t depth = 1; depth < levels.level_count(); ++depth) {
+      const Multigrid::LevelView level = levels.level(depth);
+      std::vector<double> x(at(kFrameDofs * level.nodes));
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + static_cast<double>(i * i % 1009));
+      const std::vector<double> y = exact.product(depth, x), expected = exact.galerkin_product(depth - 1, x);
+      double largest = 0, error = 0;
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        largest = std::max(largest, std::abs(expected[i]));
+        error = std::max(error, std::abs(y[i] - expected[i]));
+      }
+      EXPECT_LE(error, 1e-12 * largest) << "level " << depth;
+      const BlockRows& rows = *level.matrix;
+      for (int row = 0; row < rows.rows(); ++row) {
+        const std::span<const int> columns = rows.columns(row);
+        EXPECT_TRUE(std::is_sorted(columns.begin(), columns.end()));
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+          const std::span<const int> back = rows.columns(columns[k]);
+          const auto found = std::lower_bound(back.begin(), back.end(), row);
+          ASSERT_TRUE(found != back.end() && *found == row);
+          const double *block = rows.block(row, static_cast<int>(k), kFrameDofs),
+                       *mirror = rows.block(columns[k], static_cast<int>(found - back.begin()), kFrameDofs);
+          for (int a = 0; a < kFrameDofs; ++a)
+            for (int b = 0; b < kFrameDofs && row != columns[k]; ++b)
+              EXPECT_EQ(block[kFrameDofs * a + b], mirror[kFrameDofs * b + a]);
+        }
+      }
+    }
+  }
 }
 
 TEST(MultigridTest, DoesNotDependOnThreads) {

@@ -127,9 +127,11 @@ struct OneSpring {
     DirectionReport report;
     report.slope = force(x) * d;
     report.unsolved = unsolved;
+    report.linear_residual = left;
     return report;
   }
   bool unsolved = false;  ///< conjugate gradients end at their limit
+  double left = 0;        ///< of the right-hand side, by conjugate gradients
   static double largest_step(double wanted) { return wanted; }
   void apply(double step) { x += step * d; }
   void save() { saved = x; }
@@ -239,6 +241,26 @@ TEST(NewtonVerdict, RoundingIsNotReachedByALargeCorrection) {
   EXPECT_EQ(r.convergence, Convergence::rounding);
   EXPECT_GE(r.iterations, 2);
   EXPECT_NEAR(system.x, 1, 1e-15) << "the second correction takes away what the first left";
+}
+
+/// The same of corrections that are small: what conjugate gradients leave is smooth, so that it sums up to more than
+/// rounding of the same norm does. Another correction, which must not lower the residual, says that it is rounding. A
+/// factor leaves nothing that another solve would take.
+TEST(NewtonVerdict, RoundingAfterConjugateGradientsIsTriedOnceMore) {
+  const auto tangent = [](double x) {
+    if (x == 0) return 1 + 5e-7;
+    return std::abs(x - 1) > 1e-8 ? 1 + 1e-3 : 1.0;
+  };
+  for (const double left : {0.0, 1e-7}) {
+    OneSpring system{[](double x) { return x - 1; }, tangent, 1e-7};
+    system.left = left;
+    const NewtonReport r = solve(system, 50);
+    EXPECT_EQ(r.convergence, Convergence::rounding);
+    EXPECT_EQ(r.iterations, left > 0 ? 3 : 2);
+    EXPECT_NEAR(system.x, 1, left > 0 ? 1e-15 : 2e-9);
+    system.x = 0;
+    EXPECT_EQ(solve(system, 2).convergence, Convergence::rounding) << "no iteration is left to try";
+  }
 }
 
 TEST(NewtonVerdict, StagnationFarFromTheSolutionIsNoConvergence) {
