@@ -177,8 +177,12 @@ using DeviceChoice = Device;
 /// Kept for later tangents they smooth with the matrix that they were made of, where the processor has the present one:
 /// up to half as many iterations more, from which on they are made again.
 TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
-  std::optional<Simulation> simulation = loaded({"solver.linear.kind=cg", "solver.linear.preconditioner=multigrid",
-                                                 "solver.linear.tolerance=1e-10", "solver.newton.tolerance=1e-12"});
+  const auto with = [](std::vector<std::string> more) {
+    more.insert(more.end(), {"solver.linear.kind=cg", "solver.linear.preconditioner=multigrid",
+                             "solver.linear.tolerance=1e-10", "solver.newton.tolerance=1e-12"});
+    return more;
+  };
+  std::optional<Simulation> simulation = loaded(with({}));
   if (!simulation) GTEST_SKIP() << why_not;
   ASSERT_EQ(not_on_gpu(*simulation), "");
   Simulation& s = *simulation;
@@ -200,7 +204,9 @@ TEST_P(DeviceLevels, TakeTheIterationsOfTheProcessors) {
     mixed.precision = Precision::mixed;
     EXPECT_LE(displacement_difference(solve(s, where(), mixed).state, expected), 1e-9);
   }
-  // The first solve alone; a large motion is cut into more steps, whose levels are kept.
+  // The first solve alone; a large motion is cut into more steps, whose levels are kept. Of quadratic elements the
+  // processor has a level of corners as well: there it is linear ones that take as many.
+  if (scene() == "soft_cantilever_tetrahedra") simulation = loaded(with({"bodies.beam.order=1"}));
   s.scene.solver.load_steps = s.scene.solver.steps = 1;
   settings.max_iterations = 1;
   settings.proceed_on_limit = true;
