@@ -40,7 +40,7 @@ Ends ends_around(std::span<const int> nodes, int middle, std::span<const Vec3d> 
 
 }  // namespace
 
-EdgeEnds find_edge_ends(const Model& model, const DofFilter& filter) {
+EdgeEnds find_edge_ends(const Model& model) {
   EdgeEnds ends(at(model.node_count()), kNone);
   std::vector<char> taken(ends.size(), 0);  // an end of an edge
   for (const ElementBlock& block : model.points.blocks) {
@@ -59,9 +59,8 @@ EdgeEnds find_edge_ends(const Model& model, const DofFilter& filter) {
   const EdgeEnds found = ends;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (ends[i] == kNone) continue;
-    bool good = filter.turn_of(static_cast<int>(i)) == nullptr;
-    for (const int end : ends[i])
-      good = good && found[at(end)] == kNone && follows[at(end)] == 0 && filter.turn_of(end) == nullptr;
+    bool good = true;
+    for (const int end : ends[i]) good = good && found[at(end)] == kNone && follows[at(end)] == 0;
     if (!good) ends[i] = kNone;
   }
   return ends;

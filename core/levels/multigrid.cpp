@@ -76,7 +76,7 @@ Multigrid::Multigrid(const BlockMatrix& matrix, const DofFilter& filter, ThreadP
   const auto middles = std::count_if(ends.begin(), ends.end(), [](const auto& e) { return e[0] >= 0; });
   const bool vertices = matrix.dofs().total() == kVertexDofs * matrix.rows();
   if (vertices && static_cast<double>(middles) >= kManyMiddles * matrix.rows())
-    corners_ = std::make_unique<Corners>(ends);
+    corners_ = std::make_unique<Corners>(ends, filter);
 }
 Multigrid::~Multigrid() = default;
 

@@ -9,7 +9,13 @@
 
 namespace fascia {
 
-Corners::Corners(const EdgeEnds& ends) : parents_(ends.size()) {
+namespace {
+
+Vec3d vector_at(const double* v) { return {{v[0], v[1], v[2]}}; }
+
+}  // namespace
+
+Corners::Corners(const EdgeEnds& ends, const DofFilter& filter) : parents_(ends.size()), filter_(filter) {
   std::vector<int> coarse(ends.size(), -1);
   origin_.reserve(ends.size());
   for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -38,9 +44,8 @@ void Corners::restrict_to(const FineRows& fine, ThreadPool& pool, std::span<cons
                           std::span<double> coarse) const {
   pool.for_ranges(count(), 256, [&](int first, int end) {
     for (int c = first; c < end; ++c) {
-      double sum[3] = {};
-      for (const int i : children(c))
-        for (int k = 0; k < 3; ++k) sum[k] += weight(i) * r[at(3 * i + k)];
+      Vec3d sum;
+      for (const int i : children(c)) sum += turn(i, origin_[at(c)]).apply(vector_at(&r[at(3 * i)])) * weight(i);
       const unsigned fixed = fine.fixed(origin_[at(c)]);
       for (int k = 0; k < 3; ++k) coarse[at(3 * c + k)] = ((fixed >> k) & 1U) != 0 ? 0 : sum[k];
     }
@@ -51,12 +56,28 @@ void Corners::add_prolonged(const FineRows& fine, ThreadPool& pool, std::span<co
                             std::span<double> x) const {
   pool.for_ranges(fine.rows(), 512, [&](int first, int end) {
     for (int i = first; i < end; ++i) {
-      const auto [a, b] = parents(i);
+      Vec3d u;
+      for (const int p : parents(i)) u += turn(origin_[at(p)], i).apply(vector_at(&coarse[at(3 * p)])) * 0.5;
       const unsigned fixed = fine.fixed(i);
       for (int k = 0; k < 3; ++k)
-        if (((fixed >> k) & 1U) == 0) x[at(3 * i + k)] += 0.5 * (coarse[at(3 * a + k)] + coarse[at(3 * b + k)]);
+        if (((fixed >> k) & 1U) == 0) x[at(3 * i + k)] += u[k];
     }
   });
+}
+
+const double* Corners::turned(int coarse_row, int row, int coarse_column, int column, const double* block,
+                              double* copy) const {
+  const Turn of_row = turn(row, origin_[at(coarse_row)]), of_column = turn(column, origin_[at(coarse_column)]);
+  if (of_row.none() && of_column.none()) return block;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d v = of_column.apply(vector_at(block + 3 * i));
+    for (int j = 0; j < 3; ++j) copy[3 * i + j] = v[j];
+  }
+  for (int j = 0; j < 3; ++j) {
+    const Vec3d v = of_row.apply({{copy[j], copy[3 + j], copy[6 + j]}});
+    for (int i = 0; i < 3; ++i) copy[3 * i + j] = v[i];
+  }
+  return copy;
 }
 
 VertexRows::VertexRows(const FineRows& K, const Corners& corners, ThreadPool& pool) {
@@ -70,8 +91,11 @@ VertexRows::VertexRows(const FineRows& K, const Corners& corners, ThreadPool& po
     for (int row = galerkin::chunk_begin(rows, chunk); row < galerkin::chunk_begin(rows, chunk + 1); ++row) {
       slots.clear();
       std::vector<double>& sums = blocks[at(row)];
-      const auto add = [&](int column, double weight, const double* B) {
+      const auto add = [&](int i, int j, int column, const double* B) {
         if (column < row) return;
+        const double weight = corners.weight(i) * corners.weight(j);
+        double copy[kSize];
+        B = corners.turned(row, i, column, j, B, copy);
         const std::size_t slot = at(slots.add(column) * kSize);
         if (sums.size() <= slot) sums.resize(slot + kSize, 0.0);
         for (int k = 0; k < kDofs; ++k)
@@ -83,9 +107,8 @@ VertexRows::VertexRows(const FineRows& K, const Corners& corners, ThreadPool& po
       for (const int i : corners.children(row))
         K.for_each_block(i, [&](int j, const double* B) {
           const auto [a, b] = corners.parents(j);
-          const double weight = corners.weight(i) * corners.weight(j);
-          add(a, weight, B);
-          if (b != a) add(b, weight, B);
+          add(i, j, a, B);
+          if (b != a) add(i, j, b, B);
         });
       columns[at(row)] = slots.met();
     }

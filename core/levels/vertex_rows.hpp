@@ -11,13 +11,13 @@
 namespace fascia {
 
 /// P between the vertices of quadratic elements and those at their corners: a vertex in the middle of an edge moves by
-/// the mean of its ends, every other one as it does there.
+/// the mean of its ends, every other one as it does there. Vectors are in constraint axes, of a coarse node in those of
+/// the node that it is.
 class Corners {
  public:
-  Corners() = default;
-  explicit Corners(const EdgeEnds& ends);
+  /// @param filter  belongs to the caller
+  Corners(const EdgeEnds& ends, const DofFilter& filter);
 
-  bool empty() const { return origin_.empty(); }
   int count() const { return static_cast<int>(origin_.size()); }
   /// The fine node of each coarse one.
   const std::vector<int>& origin() const { return origin_; }
@@ -28,6 +28,8 @@ class Corners {
     return std::span(child_).subspan(at(begin_[at(coarse)]), at(begin_[at(coarse + 1)] - begin_[at(coarse)]));
   }
   double weight(int node) const { return parents_[at(node)][0] == parents_[at(node)][1] ? 1 : 0.5; }
+  /// A block of a fine row and column in the axes of coarse ones: itself, or what was made in `copy`.
+  const double* turned(int coarse_row, int row, int coarse_column, int column, const double* block, double* copy) const;
 
   /// coarse = Pᵀ r, without prescribed degrees of freedom.
   void restrict_to(const FineRows& fine, ThreadPool& pool, std::span<const double> r, std::span<double> coarse) const;
@@ -37,6 +39,22 @@ class Corners {
  private:
   std::vector<int> origin_;
   std::vector<std::array<int, 2>> parents_;
+  /// From the axes of one node into those of another.
+  struct Turn {
+    const DofTurn *from = nullptr, *to = nullptr;  ///< null: the axes of the world
+    bool none() const { return from == nullptr && to == nullptr; }
+    Vec3d apply(Vec3d v) const {
+      if (from != nullptr) v = transpose(from->translation) * v;
+      return to != nullptr ? to->translation * v : v;
+    }
+  };
+  Turn turn(int from, int to) const {
+    const DofTurn *a = filter_.turn_of(from), *b = filter_.turn_of(to);
+    const bool alike = a != nullptr && b != nullptr && a->translation == b->translation;
+    return alike ? Turn{} : Turn{a, b};
+  }
+
+  const DofFilter& filter_;
   std::vector<int> begin_, child_;
 };
 

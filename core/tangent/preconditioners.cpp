@@ -95,8 +95,7 @@ bool OldFactor::took(int iterations) {
 
 bool LevelsOfFrames::prepare() {
   const BlockMatrix& from = material_ ? K_.material_part() : K_.matrix();
-  if (!levels_)
-    levels_.emplace(from, K_.filter(), K_.pool(), corners_ ? find_edge_ends(K_.model(), K_.filter()) : EdgeEnds{});
+  if (!levels_) levels_.emplace(from, K_.filter(), K_.pool(), corners_ ? find_edge_ends(K_.model()) : EdgeEnds{});
   K_.invert_diagonal(from, true, inverse_);
   return levels_->build(K_.places(), inverse_, [this](std::span<const double> x, std::span<double> y) {
     K_.apply_free_rounded(material_, x, y);

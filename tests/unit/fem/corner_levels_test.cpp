@@ -53,7 +53,7 @@ void expect_ends(ElementShape shape, const Vec3d& size) {
   const ElementOptions o = bar(shape, {5, 3, 2});
   const ElementMesh mesh = generate_box({}, size, o.cells, {family_of(shape), order_of(shape), 6});
   const ElementModel built = element_model(o, mesh);
-  const EdgeEnds ends = find_edge_ends(built.model, DofFilter(built.model));
+  const EdgeEnds ends = find_edge_ends(built.model);
   std::vector<std::array<int, 2>> expected(mesh.nodes.size(), {-1, -1});
   const auto edges = edges_of(family_of(shape));
   for (std::size_t e = 0; e < mesh.size() && order_of(shape) == 2; ++e)
@@ -76,11 +76,11 @@ TEST(CornerLevels, FindTheEndsOfEdges) {
     for (const Vec3d& size : {Vec3d{{4, 1, 1}}, Vec3d{{4, 3, 0.02}}, Vec3d{{40, 1, 0.5}}}) expect_ends(shape, size);
 }
 
-/// A node that a constraint turns, and what hangs on one, moves by itself; so does the node of a curved edge.
+/// The node of a curved edge moves by itself, and so does one whose end hangs on others.
 TEST(CornerLevels, LeaveWhatTheMeanOfTheEndsDoesNotMove) {
   const ElementOptions o = bar(ElementShape::hex20, {4, 2, 2});
   Model model = held_bar(o);
-  const EdgeEnds before = find_edge_ends(model, DofFilter(model));
+  const EdgeEnds before = find_edge_ends(model);
   int middle = -1;
   for (std::size_t i = 0; i < before.size() && middle < 0; ++i)
     if (before[i][0] >= 0 && model.rest_position[i][0] > 2.1) middle = static_cast<int>(i);
@@ -89,7 +89,7 @@ TEST(CornerLevels, LeaveWhatTheMeanOfTheEndsDoesNotMove) {
   const double length = norm(model.rest_position[at(b)] - model.rest_position[at(a)]);
   Model curved = model;
   curved.rest_position[at(middle)] += Vec3d{{0.06, 0.06, 0.06}} * length;
-  EXPECT_EQ(find_edge_ends(curved, DofFilter(curved))[at(middle)][0], -1);
+  EXPECT_EQ(find_edge_ends(curved)[at(middle)][0], -1);
   Model hanging = model;
   DependentNode follower;
   follower.node = b;
@@ -97,84 +97,11 @@ TEST(CornerLevels, LeaveWhatTheMeanOfTheEndsDoesNotMove) {
   follower.w = {1};
   follower.b = {Vec3d{}};
   hanging.points.dependents.push_back(follower);
-  EXPECT_EQ(find_edge_ends(hanging, DofFilter(hanging))[at(middle)][0], -1);
-  Model turned = model;
-  FrameConstraint c;
-  c.node = a;
-  c.translations = 1;
-  c.translation_axes = Mat3d::identity() + rotation_increment(Vec3d{{0.2, 0.3, 0.1}});
-  turned.constraints.push_back(c);
-  const DofFilter filter(turned);
-  ASSERT_NE(filter.turn_of(a), nullptr);
-  const EdgeEnds after = find_edge_ends(turned, filter);
-  for (std::size_t i = 0; i < after.size(); ++i)
-    EXPECT_EQ(after[i][0] >= 0, before[i][0] >= 0 && before[i][0] != a && before[i][1] != a) << i;
+  EXPECT_EQ(find_edge_ends(hanging)[at(middle)][0], -1);
 }
 
-/// Corners have Pᵀ K P, with P as the mean of ends: entry by entry of products with unit vectors would be long, so with
-/// vectors that nothing favours. A rigid motion comes through unchanged, and where nothing holds the body it costs
-/// nothing on the level of corners either.
-TEST(CornerLevels, HaveTheMatrixOfMeans) {
-  for (const ElementShape shape : {ElementShape::tet10, ElementShape::hex20}) {
-    for (const bool held : {true, false}) {
-      const ElementOptions o = bar(shape, {5, 3, 2});
-      ElementMesh mesh = generate_box({}, {{4, 1, 1}}, o.cells, {family_of(shape), 2, 6});
-      Model model = element_model(o, std::move(mesh)).model;
-      if (held) hold_face(model);
-      TangentAtRest t(std::move(model), 2);
-      const FineRows fine(t.matrix, t.filter);
-      const Corners corners(find_edge_ends(t.model, t.filter));
-      ASSERT_GT(corners.count(), 0);
-      const VertexRows coarse(fine, corners, t.pool);
-      std::vector<double> x(at(3 * corners.count())), y(x.size()), expected(x.size()), on_fine(at(t.model.dof_count())),
-          product(on_fine.size());
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        const bool fixed = ((coarse.fixed(static_cast<int>(i / 3)) >> (i % 3)) & 1U) != 0;
-        x[i] = fixed ? 0 : std::sin(1.0 + static_cast<double>(i * i % 1009));
-      }
-      corners.add_prolonged(fine, t.pool, x, on_fine);
-      t.multiply(on_fine, product);
-      corners.restrict_to(fine, t.pool, product, expected);
-      coarse.multiply_rounded(t.pool, x, y);
-      double largest = 0, error = 0, exact_error = 0;
-      for (int row = 0; row < coarse.rows(); ++row)
-        coarse.for_each_block(row, [&](int column, const double* B) {
-          for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) expected[at(3 * row + i)] -= B[3 * i + j] * x[at(3 * column + j)];
-        });
-      for (const double v : y) largest = std::max(largest, std::abs(v));
-      for (const double v : expected) exact_error = std::max(exact_error, std::abs(v));
-      EXPECT_LE(exact_error, 1e-13 * largest);
-      std::vector<double> exact(y.size(), 0.0);
-      for (int row = 0; row < coarse.rows(); ++row)
-        coarse.for_each_block(row, [&](int column, const double* B) {
-          for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) exact[at(3 * row + i)] += B[3 * i + j] * x[at(3 * column + j)];
-        });
-      for (std::size_t i = 0; i < y.size(); ++i) error = std::max(error, std::abs(y[i] - exact[i]));
-      EXPECT_LE(error, 1e-6 * largest) << "rounding of entries";
-      if (held) continue;
-      const Vec3d U{{0.3, -0.7, 1.1}}, turn{{0.5, 0.2, -0.4}};
-      const auto motion = [&](int node) { return U + cross(turn, t.model.rest_position[at(node)]); };
-      for (int c = 0; c < corners.count(); ++c)
-        for (int k = 0; k < 3; ++k) x[at(3 * c + k)] = motion(corners.origin()[at(c)])[k];
-      std::fill(on_fine.begin(), on_fine.end(), 0.0);
-      corners.add_prolonged(fine, t.pool, x, on_fine);
-      for (int i = 0; i < t.model.node_count(); ++i)
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(on_fine[at(3 * i + k)], motion(i)[k], 1e-14 * 8);
-      for (int row = 0; row < coarse.rows(); ++row) {
-        Vec3d force;
-        coarse.for_each_block(row, [&](int column, const double* B) {
-          for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) force[i] += B[3 * i + j] * x[at(3 * column + j)];
-        });
-        EXPECT_LE(norm(force), 1e-12 * largest);
-      }
-    }
-  }
-}
-
-/// With corners that a constraint turns, and others that follow a node far away.
+/// With a plane of symmetry, corners that constraints turn into axes of their own, and one that follows a node far
+/// away.
 Model bar_of_all_sorts() {
   ElementOptions o = bar(ElementShape::hex20, {12, 4, 4});
   Model model = held_bar(o);
@@ -186,14 +113,24 @@ Model bar_of_all_sorts() {
   };
   for (const double along : {1.0, 2.0, 3.0}) {
     FrameConstraint c;
-    c.node = nearest({{along, 0, 0}});
+    c.node = nearest({{along, 1, 0}});
     c.translations = 1;
     c.translation_axes = Mat3d::identity() + rotation_increment(Vec3d{{0.2, 0.3, 0.1}});
     model.constraints.push_back(c);
   }
+  Mat3d across;  // y first
+  across(0, 1) = across(1, 2) = across(2, 0) = 1;
+  for (int i = 0; i < model.node_count(); ++i) {
+    if (model.rest_position[at(i)][1] > 1e-9 || model.rest_position[at(i)][0] < 1e-9) continue;
+    FrameConstraint c;
+    c.node = i;
+    c.translations = 1;
+    c.translation_axes = across;
+    model.constraints.push_back(c);
+  }
   DependentNode follower;
   follower.node = nearest({{4, 1, 1}});
-  follower.hosts = {nearest({{4, 0, 0}})};
+  follower.hosts = {nearest({{4, 1, 0}})};
   follower.w = {1};
   follower.b = {Vec3d{}};
   PointSetBuilder again(std::move(model.points));
@@ -202,9 +139,84 @@ Model bar_of_all_sorts() {
   return model;
 }
 
+/// Corners have Pᵀ K P, with P as the mean of ends: entry by entry of products with unit vectors would be long, so with
+/// vectors that nothing favours. A rigid motion comes through unchanged, and where nothing holds the body it costs
+/// nothing on the level of corners either.
+void expect_matrix_of_means(Model model, bool free) {
+  TangentAtRest t(std::move(model), 2);
+  const FineRows fine(t.matrix, t.filter);
+  const Corners corners(find_edge_ends(t.model), t.filter);
+  ASSERT_GT(corners.count(), 0);
+  const VertexRows coarse(fine, corners, t.pool);
+  std::vector<double> x(at(3 * corners.count())), y(x.size()), expected(x.size()), on_fine(at(t.model.dof_count())),
+      product(on_fine.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool fixed = ((coarse.fixed(static_cast<int>(i / 3)) >> (i % 3)) & 1U) != 0;
+    x[i] = fixed ? 0 : std::sin(1.0 + static_cast<double>(i * i % 1009));
+  }
+  corners.add_prolonged(fine, t.pool, x, on_fine);
+  std::vector<double> ends(on_fine.size()), world = on_fine;  // in the axes of the world
+  for (std::size_t i = 0; i < x.size(); ++i) ends[at(3 * corners.origin()[i / 3]) + i % 3] = x[i];
+  t.filter.to_global(ends);
+  t.filter.to_global(world);
+  for (int i = 0; i < t.model.node_count(); ++i)
+    for (int k = 0; k < 3 && fine.fixed(i) == 0; ++k) {
+      const auto [a, b] = corners.parents(i);
+      const double mean = 0.5 * (ends[at(3 * corners.origin()[at(a)] + k)] + ends[at(3 * corners.origin()[at(b)] + k)]);
+      EXPECT_NEAR(world[at(3 * i + k)], mean, 1e-14);
+    }
+  t.multiply(on_fine, product);
+  corners.restrict_to(fine, t.pool, product, expected);
+  coarse.multiply_rounded(t.pool, x, y);
+  double largest = 0, error = 0, exact_error = 0;
+  for (int row = 0; row < coarse.rows(); ++row)
+    coarse.for_each_block(row, [&](int column, const double* B) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) expected[at(3 * row + i)] -= B[3 * i + j] * x[at(3 * column + j)];
+    });
+  for (const double v : y) largest = std::max(largest, std::abs(v));
+  for (const double v : expected) exact_error = std::max(exact_error, std::abs(v));
+  EXPECT_LE(exact_error, 1e-13 * largest);
+  std::vector<double> exact(y.size(), 0.0);
+  for (int row = 0; row < coarse.rows(); ++row)
+    coarse.for_each_block(row, [&](int column, const double* B) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) exact[at(3 * row + i)] += B[3 * i + j] * x[at(3 * column + j)];
+    });
+  for (std::size_t i = 0; i < y.size(); ++i) error = std::max(error, std::abs(y[i] - exact[i]));
+  EXPECT_LE(error, 1e-6 * largest) << "rounding of entries";
+  if (!free) return;
+  const Vec3d U{{0.3, -0.7, 1.1}}, turn{{0.5, 0.2, -0.4}};
+  const auto motion = [&](int node) { return U + cross(turn, t.model.rest_position[at(node)]); };
+  for (int c = 0; c < corners.count(); ++c)
+    for (int k = 0; k < 3; ++k) x[at(3 * c + k)] = motion(corners.origin()[at(c)])[k];
+  std::fill(on_fine.begin(), on_fine.end(), 0.0);
+  corners.add_prolonged(fine, t.pool, x, on_fine);
+  for (int i = 0; i < t.model.node_count(); ++i)
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(on_fine[at(3 * i + k)], motion(i)[k], 1e-14 * 8);
+  for (int row = 0; row < coarse.rows(); ++row) {
+    Vec3d force;
+    coarse.for_each_block(row, [&](int column, const double* B) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) force[i] += B[3 * i + j] * x[at(3 * column + j)];
+    });
+    EXPECT_LE(norm(force), 1e-12 * largest);
+  }
+}
+
+TEST(CornerLevels, HaveTheMatrixOfMeans) {
+  for (const ElementShape shape : {ElementShape::tet10, ElementShape::hex20}) {
+    const ElementOptions o = bar(shape, {5, 3, 2});
+    ElementMesh mesh = generate_box({}, {{4, 1, 1}}, o.cells, {family_of(shape), 2, 6});
+    expect_matrix_of_means(held_bar(o), false);
+    expect_matrix_of_means(element_model(o, std::move(mesh)).model, true);
+  }
+  expect_matrix_of_means(bar_of_all_sorts(), false);
+}
+
 TEST(CornerLevels, AreSymmetricAndPositive) {
   TangentAtRest t(bar_of_all_sorts(), 2);
-  const EdgeEnds ends = find_edge_ends(t.model, t.filter);
+  const EdgeEnds ends = find_edge_ends(t.model);
   Multigrid levels(t.matrix, t.filter, t.pool, ends);
   ASSERT_TRUE(t.build(levels));
   EXPECT_EQ(levels.level_sizes()[1], t.model.node_count() - middles_of(ends));
@@ -241,7 +253,7 @@ TEST(CornerLevels, TakeFewerIterations) {
     std::vector<int> counts;
     for (const int n : {3, 6}) {
       TangentAtRest t(held_bar(bar(shape, {4 * n, n, n})), 2);
-      const EdgeEnds ends = find_edge_ends(t.model, t.filter);
+      const EdgeEnds ends = find_edge_ends(t.model);
       EXPECT_GT(middles_of(ends), t.model.node_count() / 2);
       Multigrid frames(t.matrix, t.filter, t.pool), corners(t.matrix, t.filter, t.pool, ends);
       std::vector<double> x, y;
@@ -287,7 +299,7 @@ TEST(CornerLevels, TakeCurvedElements) {
     Model model = element_model(o, std::move(mesh)).model;
     hold_face(model);
     TangentAtRest t(std::move(model), 2);
-    const EdgeEnds ends = find_edge_ends(t.model, t.filter);
+    const EdgeEnds ends = find_edge_ends(t.model);
     EXPECT_EQ(middles_of(ends), t.model.node_count() - corners_of_mesh - (all ? 0 : around));
     Multigrid frames(t.matrix, t.filter, t.pool), corners(t.matrix, t.filter, t.pool, ends);
     std::vector<double> x, y;
