@@ -38,7 +38,7 @@ class ExtremesProgram : public testing::Test {
 /// map at the ends of its axes, and slower ones of scattered frames, whose weights are their own.
 TEST_F(ExtremesProgram, TheReducedMapIsNoWorseThanTheStoredOne) {
   const std::string stored = (source_dir() / "docs/extremes.csv").string();
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"--quicker-than", "0.095"},
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--quicker-than", "0.075"},
                                                {"--only", "scattered, static", "--quicker-than", "0.5"}}) {
     std::vector<std::string> words{"--reduced", "--compare", stored};
     words.insert(words.end(), more.begin(), more.end());
@@ -53,7 +53,7 @@ TEST_F(ExtremesProgram, TheStepsOfAGpuAreNoWorseThanTheStoredMap) {
   const std::string stored = (source_dir() / "docs/extremes.csv").string();
   const std::string module = (build_dir() / "fascia-host.so").string();
   const ProgramResult r =
-      extremes({"--backend", "cuda", "--reduced", "--only", ", cg", "--compare", stored, "--quicker-than", "0.074"},
+      extremes({"--backend", "cuda", "--reduced", "--only", ", cg", "--compare", stored, "--quicker-than", "0.053"},
                {"FASCIA_DEVICE_MODULE=" + module});
   EXPECT_EQ(r.status, 0) << r.out << r.err;
   EXPECT_EQ(r.out.find("worse: "), std::string::npos) << r.out;
