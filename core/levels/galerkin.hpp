@@ -3,6 +3,7 @@
 #include "core/base/thread_pool.hpp"
 #include "core/levels/aggregation.hpp"
 #include "core/levels/block_rows.hpp"
+#include "core/node/positive_inverse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -197,6 +198,25 @@ void mirror(std::vector<std::vector<int>>& columns, std::vector<std::vector<doub
     columns[I] = {};
     blocks[I] = {};
   }
+}
+
+/// D⁻¹ of each node of a matrix, with 1 in the place of what is fixed.
+template <class Matrix>
+std::vector<double> inverse_diagonal(const Matrix& K, ThreadPool& pool) {
+  std::vector<double> inverse(K.block_begin(K.rows()));
+  pool.for_ranges(K.rows(), 64, [&](int first, int end) {
+    for (int row = first; row < end; ++row)
+      K.for_each_block(row, [&](int column, const double* B) {
+        if (column != row) return;
+        const int n = K.size(row);
+        double* D = inverse.data() + K.block_begin(row);
+        std::copy(B, B + n * n, D);
+        for (int k = 0; k < n; ++k)
+          if (((K.fixed(row) >> k) & 1U) != 0) D[(n + 1) * k] = 1;
+        positive_inverse(D, n);
+      });
+  });
+  return inverse;
 }
 
 /// Pᵀ K P of a symmetric K. Rows of K P are made for a few thousand nodes at a time, by node; then each coarse row adds

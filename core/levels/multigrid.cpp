@@ -6,7 +6,6 @@
 #include "core/levels/vertex_rows.hpp"
 #include "core/linear/lanczos.hpp"
 #include "core/math/mat3.hpp"
-#include "core/node/positive_inverse.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -151,7 +150,7 @@ bool Multigrid::add_corners() {
   next->places.x.reserve(at(next->nodes));
   for (const int node : corners_->origin()) next->places.x.push_back(fine.places.x[at(node)]);
   next->vertices = std::make_unique<VertexRows>(*fine_, *corners_, pool_);
-  next->inverse = next->vertices->inverse_blocks(pool_);
+  next->inverse = galerkin::inverse_diagonal(*next->vertices, pool_);
   Level* made = next.get();
   next->product = [this, made](std::span<const double> x, std::span<double> y) {
     made->vertices->multiply_rounded(pool_, x, y);
@@ -229,18 +228,7 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   next->length = next->dofs + RoundedRows::kBeyond;
   next->places.x = std::move(centre);
   next->matrix = std::make_unique<FrameMatrix>(galerkin::product(matrix, level.P, pool_, groups.count), level.dead);
-  next->inverse.assign(at(36 * groups.count), 0.0);
-  pool_.for_ranges(groups.count, 64, [&](int first, int end) {
-    for (int row = first; row < end; ++row)
-      next->matrix->for_each_block(row, [&](int column, const double* B) {
-        if (column != row) return;
-        double* D = next->inverse.data() + at(36 * row);
-        std::copy(B, B + 36, D);
-        for (int k = 0; k < kFrameDofs; ++k)
-          if (((level.dead[at(row)] >> k) & 1U) != 0) D[7 * k] = 1;
-        positive_inverse(D, kFrameDofs);
-      });
-  });
+  next->inverse = galerkin::inverse_diagonal(*next->matrix, pool_);
   Level* made = next.get();
   next->rounded = RoundedRows(next->matrix->blocks());
   next->product = [this, made](std::span<const double> x, std::span<double> y) {

@@ -2,7 +2,6 @@
 
 #include "core/levels/galerkin.hpp"
 #include "core/linear/four.hpp"
-#include "core/node/positive_inverse.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -126,22 +125,6 @@ void VertexRows::round(ThreadPool& pool) {
           rounded_[at(kRoundedSize * block + 4 * k + m)] =
               m < kDofs ? static_cast<float>(values_[block_begin(block) + at(kDofs * m + k)]) : 0.0F;
   });
-}
-
-std::vector<double> VertexRows::inverse_blocks(ThreadPool& pool) const {
-  std::vector<double> inverse(block_begin(rows()));
-  pool.for_ranges(rows(), 128, [&](int first, int end) {
-    for (int row = first; row < end; ++row)
-      for_each_block(row, [&](int column, const double* B) {
-        if (column != row) return;
-        double* D = inverse.data() + block_begin(row);
-        std::copy(B, B + kSize, D);
-        for (int k = 0; k < kDofs; ++k)
-          if (((fixed(row) >> k) & 1U) != 0) D[(kDofs + 1) * k] = 1;
-        positive_inverse(D, kDofs);
-      });
-  });
-  return inverse;
 }
 
 void VertexRows::multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {

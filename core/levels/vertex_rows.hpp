@@ -76,8 +76,6 @@ class VertexRows {
   void for_each_block(int row, const Act& act) const {
     for (int k = begin_[at(row)]; k < begin_[at(row + 1)]; ++k) act(column_[at(k)], values_.data() + block_begin(k));
   }
-  /// D⁻¹ of each node, with 1 in the place of what is prescribed.
-  std::vector<double> inverse_blocks(ThreadPool& pool) const;
   /// y = K x, of entries rounded to 32 bits. Sums are of 64 bits.
   void multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
   std::size_t value_count() const { return values_.size(); }

@@ -6,6 +6,9 @@
 #include "core/tangent/dependents.hpp"
 #include "tests/support/models.hpp"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <random>
 #include <span>
 #include <vector>
@@ -67,5 +70,16 @@ struct TangentAtRest {
     return f;
   }
 };
+
+/// Expects of two forces that nothing favours that the cycle is symmetric and positive definite.
+inline void expect_symmetric_and_positive(Multigrid& levels, TangentAtRest& t) {
+  const std::vector<double> a = t.random_force(2), b = t.random_force(3);
+  std::vector<double> Ma(a.size()), Mb(b.size());
+  EXPECT_GT(levels.precondition(a, Ma), 0);
+  EXPECT_GT(levels.precondition(b, Mb), 0);
+  const CpuVectors vectors(t.pool);
+  const double size = std::sqrt(vectors.dot(a, Ma) * vectors.dot(b, Mb));
+  EXPECT_NEAR(vectors.dot(a, Mb), vectors.dot(b, Ma), 1e-12 * size);
+}
 
 }  // namespace fascia::test

@@ -170,13 +170,7 @@ TEST(MultigridTest, IsSymmetricAndPositive) {
   TangentAtRest t(held_block(7), 2);
   Multigrid levels(t.matrix, t.filter, t.pool);
   ASSERT_TRUE(t.build(levels));
-  const std::vector<double> a = t.random_force(2), b = t.random_force(3);
-  std::vector<double> Ma(a.size()), Mb(b.size());
-  EXPECT_GT(levels.precondition(a, Ma), 0);
-  EXPECT_GT(levels.precondition(b, Mb), 0);
-  const CpuVectors vectors(t.pool);
-  const double size = std::sqrt(vectors.dot(a, Ma) * vectors.dot(b, Mb));
-  EXPECT_NEAR(vectors.dot(a, Mb), vectors.dot(b, Ma), 1e-12 * size);
+  expect_symmetric_and_positive(levels, t);
 }
 
 /// Of frames, and of vertices under them; blocks below the diagonal mirror those above it bit for bit.

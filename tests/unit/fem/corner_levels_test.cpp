@@ -220,13 +220,7 @@ TEST(CornerLevels, AreSymmetricAndPositive) {
   Multigrid levels(t.matrix, t.filter, t.pool, ends);
   ASSERT_TRUE(t.build(levels));
   EXPECT_EQ(levels.level_sizes()[1], t.model.node_count() - middles_of(ends));
-  const std::vector<double> a = t.random_force(2), b = t.random_force(3);
-  std::vector<double> Ma(a.size()), Mb(b.size());
-  EXPECT_GT(levels.precondition(a, Ma), 0);
-  EXPECT_GT(levels.precondition(b, Mb), 0);
-  const CpuVectors vectors(t.pool);
-  const double size = std::sqrt(vectors.dot(a, Ma) * vectors.dot(b, Mb));
-  EXPECT_NEAR(vectors.dot(a, Mb), vectors.dot(b, Ma), 1e-12 * size);
+  expect_symmetric_and_positive(levels, t);
   std::vector<double> x;
   EXPECT_LE(solved(t, levels, x).iterations, 20);
 }
