@@ -193,6 +193,9 @@ class Setup {
     BlockMatrix& matrix = linear.tangent().pattern();
     system_->executor().assemble(lin_, matrix);
     const bool load = solver.control == StaticControl::load, statics = solver.kind == SolverKind::statics;
+    blocks_serve_ =
+        !statics && s_.model.loads_are_conservative() && guessed_iterations() <= BlocksOrLevels({}).patience();
+    linear.expect_inertia(blocks_serve_);
     factorizes_ = linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
                   (statics && linear.gives_way_to_factor(guessed_iterations())) ||
                   (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations()));
@@ -211,7 +214,8 @@ class Setup {
     const int most =
         solver.linear == LinearMethod::automatic ? BlocksOrLevels({}).patience() : solver.linear_max_iterations;
     const bool budget = solver.linear_max_iterations < CgOptions{}.max_iterations;
-    const bool none = !asked && (kind != PreconditionerKind::automatic || budget || guessed_iterations() < most);
+    const bool none =
+        !asked && (kind != PreconditionerKind::automatic || budget || blocks_serve_ || guessed_iterations() < most);
     if (!none || solver.precision == "mixed") to_come_.keep(rounded_bytes(matrix));
     if (none) return;
     const double levels = kLevels * 8 * static_cast<double>(matrix.value_count());
@@ -288,6 +292,7 @@ class Setup {
   ToCome to_come_;
   double beyond_ = 0;  ///< what a limit point asks for
   bool factorizes_ = false;
+  bool blocks_serve_ = false;  ///< in implicit dynamics, where inertia makes them quick
 };
 
 }  // namespace

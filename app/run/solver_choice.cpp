@@ -23,11 +23,13 @@ std::string told(const SolverChoice& choice) {
   std::string text = "linear solver: ";
   text += choice.direct ? "Cholesky" : "conjugate gradients " + preconditioned_by(choice);
   if (choice.flops == 0) return text;
-  return text + fmt::format(
-                    "; a factor {} {:.2g} operations and {:.2g} numbers, {:.0f} operations for each number of the "
-                    "matrix (beyond {:.0f}, and {} unknowns, \"auto\" takes conjugate gradients)",
-                    choice.direct ? "takes" : "would take at most", choice.flops, choice.numbers,
-                    choice.flops_per_number, TangentSolver::kFlopsPerNumber, TangentSolver::kDirectDofs);
+  return text +
+         fmt::format(
+             "; a factor {} {:.2g} operations and {:.2g} numbers, {:.0f} operations for each number of the "
+             "matrix (beyond {:.0f}, and {} unknowns, \"auto\" takes conjugate gradients; in dynamics it tries them "
+             "first)",
+             choice.direct ? "takes" : "would take at most", choice.flops, choice.numbers, choice.flops_per_number,
+             TangentSolver::kFlopsPerNumber, TangentSolver::kDirectDofs);
 }
 
 }  // namespace fascia::app

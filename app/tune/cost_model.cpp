@@ -9,7 +9,8 @@ namespace fascia::app {
 namespace {
 
 constexpr double kUsualIterations = 5, kStepIterations = 2;
-/// Above so many unknowns conjugate gradients solve, as core/tangent/tangent_solver.cpp decides.
+/// Above so many unknowns conjugate gradients are taken to solve. TangentSolver also looks at the shape, and in
+/// dynamics tries them on small bodies too, so that this forecasts more time rather than less.
 constexpr double kFactorised = 15000;
 /// The least part of an iteration that the linear solver can have: timing spreads more.
 constexpr double kLeastSolve = 0.1;

@@ -228,9 +228,9 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
   filter_.to_local(rhs);
   if (has_prescribed_increment()) prescribed = prescribed_;
   Linearization fallback;
+  tangent_.expect_inertia(form_.h > 0 && conservative_);
   tangent_.limit_iterations(most_iterations);
-  tangent_.aim_at(
-      linear_ && form_.h == 0 ? kOfTolerance * settings_.tolerance / std::max(relative_, settings_.tolerance) : 0);
+  tangent_.aim_at(linear_ ? kOfTolerance * settings_.tolerance / std::max(relative_, settings_.tolerance) : 0);
   const TangentReport solved = tangent_.solve(
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
         const bool material = kind == TamerTangent::material;

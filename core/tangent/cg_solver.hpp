@@ -20,7 +20,8 @@ inline constexpr int kEnoughForBulk = 1000;
 ///
 /// Where the preconditioner is left open, blocks precondition; levels of rigid frames do from the first solve on that
 /// ends at its limit of iterations, where the limit is not a budget that the user set. Where the program chose
-/// conjugate gradients itself, they do as soon as they are likely to be cheaper, and hand back where they are not.
+/// conjugate gradients itself, they do as soon as they are likely to be cheaper, and hand back where they are not; or a
+/// factor takes over, where that is cheaper than either.
 ///
 /// Where the precision is mixed, products take the entries of K rounded to 32 bits. Rounding can make a K indefinite
 /// that is not: a solve that finds it so is made again in 64 bits, and where these find K definite, they stay.
@@ -50,9 +51,12 @@ class CgSolver final : public LinearSolver {
   /// Solves to come go on to this tolerance, where it is less than that of the settings, as far as their limit of
   /// iterations lets them; 0: to that of the settings. Where products are rounded they do not.
   void aim_at(double tolerance) { aim_ = tolerance; }
-  /// Products have 64 bits, whatever the precision.
+  /// Products have 64 bits, whatever the precision, and no factor takes over: for what is asked of this solver itself.
   void take_exact_products(bool exact) { exact_ = exact; }
   bool spent() const override { return limited_ && left_ <= 0; }
+  /// A factor is the cheaper solver from here on: the last solve may have ended without a solution. Only where the
+  /// program chose the solver.
+  bool hands_over() const { return hands_over_; }
   /// Makes preconditioners anew and counts iterations afresh.
   void begin_afresh();
 
@@ -81,11 +85,12 @@ class CgSolver final : public LinearSolver {
   CgReport solve_by_either(const Vector& b, Vector& x, const CgOptions& options);
 
   void choose_one();
+  bool factor_takes_less(double iterations);
 
   TangentOperator& K_;
   LinearSettings settings_;
   FactorSolver& factor_;
-  bool limited_ = false, exact_ = false;
+  bool limited_ = false, exact_ = false, hands_over_ = false;
   int left_ = 0;                         ///< iterations, where they are limited
   double aim_ = 0;                       ///< as aim_at() was told
   long pattern_ = 0;                     ///< of K, that preconditioners were made of

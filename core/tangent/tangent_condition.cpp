@@ -73,7 +73,9 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   few.max_iterations = std::min(few.max_iterations, static_cast<int>(kPartOfFlops * most_flops / product));
   Vector x(start.size());
   cg_.prepare();
+  cg_.take_exact_products(true);
   const LinearReport made = cg_.solve(start, x, few);
+  cg_.take_exact_products(false);
   out.cg_iterations = made.iterations;
   out.cg_converged = made.usable && !made.unsolved;
   out.kind = TangentCondition::Kind::known;

@@ -12,6 +12,9 @@ namespace {
 
 constexpr int kRoundsOfFactor = 4, kRoundsOfCg = 1;
 
+/// Up to here a shifted factor takes seconds at most, whatever the shape.
+constexpr int kShiftedDofs = 15000;
+
 /// Products that an iteration with levels is worth.
 constexpr double kCycle = 6;
 
@@ -48,17 +51,37 @@ void TangentSolver::begin_afresh() {
   if (own_) own_ = settings_.own(K_);
 }
 
+void TangentSolver::expect_inertia(bool expected) {
+  if (inertia_ == expected) return;
+  inertia_ = expected;
+  direct_.reset();
+  cg_.begin_afresh();
+}
+
+/// What the user said of preconditioners or iterations is not for them to overrule.
+bool TangentSolver::blocks_go_first() const {
+  return guessed() && inertia_ && filter_.free_count() > kDirectDofsWithInertia &&
+         settings_.cg.max_iterations >= kEnoughForBulk && settings_.preconditioner == PreconditionerKind::automatic;
+}
+
 bool TangentSolver::direct() {
+  if (cg_.hands_over()) direct_ = true;
   if (direct_) return *direct_;
   if (own_)
     direct_ = false;
   else if (!guessed())
     direct_ = settings_.linear == LinearMethod::cholesky;
+  else if (blocks_go_first())
+    direct_ = false;
   else if (filter_.free_count() <= kDirectDofs)
     direct_ = true;
   else
-    direct_ = !factor_.takes_more_than(kFlopsPerNumber * factor_.matrix_numbers()) && factor_.order().fits();
+    direct_ = factor_is_small();
   return *direct_;
+}
+
+bool TangentSolver::factor_is_small() {
+  return !factor_.takes_more_than(kFlopsPerNumber * factor_.matrix_numbers()) && factor_.order().fits();
 }
 
 SolverChoice TangentSolver::choice() {
@@ -155,9 +178,19 @@ TangentReport TangentSolver::descend(std::span<double> x) {
     report->trouble = "the linear solver does not take the tangent, and a factor of it would be too large";
     return *report;
   }
-  if (!report->usable || !report->unsolved || !gives_way_to_factor(report->iterations)) return *report;
-  direct_ = true;
+  if (!report->usable) return *report;
+  // Truncated directions lead Newton's method nowhere for long; shifted factors do better.
+  const bool bends_down = report->negative > 0 && guessed() && settings_.cg.max_iterations >= kEnoughForBulk &&
+                          (filter_.free_count() <= kShiftedDofs || (blocks_go_first() && factor_is_small()));
+  const bool ends = report->unsolved && (cg_.hands_over() || gives_way_to_factor(report->iterations));
+  if (!bends_down && !ends) return *report;
+  if (ends) direct_ = true;
+  const std::vector<double> truncated(x.begin(), x.end());
   TangentReport by_factor = descend_by_factor(x);
+  if (!by_factor.usable) {
+    std::copy(truncated.begin(), truncated.end(), x.begin());
+    return *report;
+  }
   by_factor.iterations = report->iterations;
   return by_factor;
 }
@@ -239,7 +272,7 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
     CgSolver& cg;
     ~Lent() { cg.take_exact_products(false); }
   } lent{cg_};
-  const bool reusable = current && direct() && factor_.definite() && !K_.tamed();
+  const bool reusable = current && direct_.value_or(false) && factor_.definite() && !K_.tamed();
   K_.take(lin);
   const bool factor_first = reusable || direct() || (!own_ && factor_is_cheap(made));
   const bool by_factor = factor_first || !iterative().prepare();

@@ -32,9 +32,11 @@ struct SolverChoice {
 /// where K is not positive definite. Vectors are in constraint axes; of dependent nodes their entries are zero.
 class TangentSolver {
  public:
-  /// Up to here a factorisation takes a few seconds at most, whatever the conditioning; CG may be 2 to 3 times faster
-  /// on a bulky compressible body, and far slower on a slender or nearly incompressible one (docs/manual/solvers.md).
-  static constexpr int kDirectDofs = 15000;
+  /// Up to here statics take a factor, which is a matter of a second or two, whatever the conditioning. Levels may be
+  /// twice as fast on a bulky body, and slower on a slender one (docs/manual/solvers.md).
+  static constexpr int kDirectDofs = 10000;
+  /// Up to here dynamics do too.
+  static constexpr int kDirectDofsWithInertia = 500;
   /// From so many operations of a factor for each number of the matrix on, CG is taken beyond those unknowns: those of
   /// the iterations that a bulky body needs with blocks, or of 40 cycles with their levels, where a factor's operations
   /// run four times as fast as those of products, which wait for memory.
@@ -49,6 +51,11 @@ class TangentSolver {
   /// Sets a limit to iterations of CG in solves to come, where it is below that of the settings. Solves that end there
   /// say nothing of the solver's choice.
   void limit_iterations(int most) { cg_.limit_iterations(most); }
+
+  /// Inertia stands beside the stiffness in tangents to come, which makes conjugate gradients with blocks quick on most
+  /// bodies, however small. Where the choice is the program's they go first then, and a factor or levels follow where
+  /// they take long.
+  void expect_inertia(bool expected);
 
   /// As CgSolver::aim_at().
   void aim_at(double tolerance) { cg_.aim_at(tolerance); }
@@ -91,6 +98,8 @@ class TangentSolver {
   bool gives_way_to_factor(long iterations);
 
  private:
+  bool blocks_go_first() const;
+  bool factor_is_small();
   bool guessed() const { return settings_.linear == LinearMethod::automatic && !own_; }
   LinearSolver& iterative() { return own_ ? *own_ : cg_; }
   void set_right_side(std::span<const double> prescribed, std::span<const double> b, bool whole);
@@ -106,6 +115,7 @@ class TangentSolver {
   CgSolver cg_;
   std::unique_ptr<LinearSolver> own_;
   std::optional<bool> direct_;
+  bool inertia_ = false;
   int unstable_ = 0;  ///< negative directions that factorize_as_is() met last
   std::vector<double> rhs_, product_;
 };

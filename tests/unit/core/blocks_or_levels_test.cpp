@@ -35,6 +35,20 @@ TEST(BlocksOrLevelsTest, HandsBackWhatIsFarTooSlow) {
   EXPECT_TRUE(choice.levels());
 }
 
+/// Beyond what was expected of them, and not in one solve alone: a factor may be cheaper then.
+TEST(BlocksOrLevelsTest, SaysWhereLevelsDisappoint) {
+  BlocksOrLevels choice({.cycle = 5, .making = 40});
+  EXPECT_EQ(choice.expected(), 120);
+  choice.turn_to_levels();
+  choice.took(100, 1);
+  EXPECT_EQ(choice.recent(), 540);
+  EXPECT_FALSE(choice.disappoint());
+  for (int solve = 0; solve < 10; ++solve) choice.took(10, 0);
+  EXPECT_FALSE(choice.disappoint());
+  for (int solve = 0; solve < 10; ++solve) choice.took(40, 1);
+  EXPECT_TRUE(choice.disappoint());
+}
+
 /// Blocks that have gained nothing give way early; once levels have handed back to them they are left to it.
 TEST(BlocksOrLevelsTest, LooksEarlyUntilLevelsHandBack) {
   BlocksOrLevels choice({.cycle = 5, .making = 40});
