@@ -67,16 +67,12 @@ bool TangentSolver::blocks_go_first() const {
 bool TangentSolver::direct() {
   if (cg_.hands_over()) direct_ = true;
   if (direct_) return *direct_;
-  if (own_)
+  if (own_ || blocks_go_first())
     direct_ = false;
   else if (!guessed())
     direct_ = settings_.linear == LinearMethod::cholesky;
-  else if (blocks_go_first())
-    direct_ = false;
-  else if (filter_.free_count() <= kDirectDofs)
-    direct_ = true;
   else
-    direct_ = factor_is_small();
+    direct_ = filter_.free_count() <= kDirectDofs || factor_is_small();
   return *direct_;
 }
 
