@@ -2,6 +2,7 @@
 #include "core/run/drivers.hpp"
 #include "core/tangent/tangent_solver.hpp"
 #include "tests/support/models.hpp"
+#include "tests/unit/fem/element_models.hpp"
 
 #include <gtest/gtest.h>
 
@@ -82,6 +83,21 @@ TEST(ChosenSolver, TakesAFactorInDynamicsWhereThatIsCheaper) {
   EXPECT_TRUE(chosen.choice.direct);
   EXPECT_GT(chosen.run.linear_iterations, 0);
   EXPECT_LE(chosen.run.linear_iterations, BlocksOrLevels({}).patience());
+  expect_as_by_factor(built.model, chosen, true);
+}
+
+/// Conjugate gradients go on to Newton's tolerance where nothing is left for a second direction.
+TEST(ChosenSolver, TakesOneDirectionAStepOfALinearModel) {
+  ElementOptions o;
+  o.formulation = ElementFormulation::linear;
+  o.cells = {8, 6, 5};
+  o.distortion = 0;
+  ElementModel built = element_model(o);
+  hold_face(built.model);
+  add_gravity(built.model, {{0, -2, 0.3}});
+  const Chosen chosen = run(built.model, {}, true);
+  EXPECT_FALSE(chosen.choice.direct);
+  EXPECT_EQ(chosen.run.newton_iterations, 5);
   expect_as_by_factor(built.model, chosen, true);
 }
 
