@@ -66,7 +66,7 @@ SharedModel built(const Case& c) {
     host.kind = HostKind::turning;
     add_host(s, host);
   }
-  ScatterSpec scatter = unit_scatter(SpacedChoice{c.shared ? 0.3 : 0.2, 1});
+  ScatterSpec scatter = unit_scatter(SpacedChoice{0.3, 1});
   scatter.weights = c.weights;
   scatter.neighbours = c.neighbours;
   add_cloud(s, scatter, c.block);
@@ -158,6 +158,7 @@ TEST_P(LaneFramesOf, EqualGroupsOfOnePoint) {
   int by_lanes = 0;
   for (int group = 0; group < set.group_count(); ++group) by_lanes += lanes.count(group) > 0 ? 1 : 0;
   EXPECT_GT(2 * by_lanes, GetParam().lanes ? set.group_count() : -1);
+  EXPECT_GT(lanes.patch_count(), GetParam().lanes ? 4 : -1);
   const PointSet single = one_by_one(set, built_.model);
   EXPECT_EQ(LaneFrames(single).patch_count(), 0);
   for (const bool taken : {false, true}) {
