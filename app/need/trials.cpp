@@ -19,6 +19,8 @@
 namespace fascia::app {
 namespace {
 
+constexpr double kLongSteps = 1e9;  // a Courant number
+
 namespace fs = std::filesystem;
 
 /// Times at which trials are compared: a quarter of what the coarsest steps are.
@@ -161,13 +163,14 @@ const std::vector<Trials::CostedBody>& Trials::costed(const NeedChoice& choice) 
   return known->second;
 }
 
+/// How far waves run in a step is not known before the finer body is built: of a long step conjugate gradients take the
+/// most iterations.
 std::optional<double> Trials::tuned_growth(const Trial& trial, double more) const {
   double most = 0;  // of the bodies: which of them has the unknowns is not known
   for (const CostedBody& body : costed(trial.choice)) {
+    const LinearUse use{scene_.solver.linear, body.dimension, is_dynamic(scene_.solver.kind) ? kLongSteps : 0};
     const auto time = [&](double times) {
-      return body.cost.point * times * trial.points + linear_solve_time(body.cost, times * trial.dofs,
-                                                                        factorises(scene_.solver, times * trial.dofs),
-                                                                        body.dimension);
+      return body.cost.point * times * trial.points + linear_cost(body.cost, times * trial.dofs, use).seconds;
     };
     most = std::max(most, time(more) / time(1));
   }

@@ -1,6 +1,7 @@
 #include "app/tune/cost_model.hpp"
 
 #include "core/base/thread_pool.hpp"
+#include "core/tangent/tangent_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +10,8 @@ namespace fascia::app {
 namespace {
 
 constexpr double kUsualIterations = 5, kStepIterations = 2;
-/// Above so many unknowns conjugate gradients are taken to solve. TangentSolver also looks at the shape, and in
-/// dynamics tries them on small bodies too, so that this forecasts more time rather than less.
-constexpr double kFactorised = 15000;
+/// Iterations of conjugate gradients of a step so short that there is inertia alone.
+constexpr double kLeastIterations = 2;
 /// The least part of an iteration that the linear solver can have: timing spreads more.
 constexpr double kLeastSolve = 0.1;
 
@@ -52,16 +52,15 @@ double faster(const std::vector<CostSample>& samples, const CostSample& many) {
   return 1;
 }
 
+/// An iteration of an implicit step over what its parts take.
 void fit_threads_and_steps(const std::vector<CostSample>& samples, const std::string& kind, KindCost& cost) {
   double ratio = 0, count = 0;
   for (const CostSample& s : samples) {
     if (s.kind != kind) continue;
     if (s.threads > 1 && !s.dynamics) (s.factorised ? cost.faster_factor : cost.faster_cg) = faster(samples, s);
     if (!s.dynamics || s.threads > 1) continue;
-    for (const CostSample& still : samples)
-      if (still.kind == kind && !still.dynamics && still.threads == 1 && still.factorised == s.factorised &&
-          still.unknowns == s.unknowns)
-        ratio += iteration_of(s) / iteration_of(still), count += 1;
+    const LinearUse use{s.factorised ? LinearMethod::cholesky : LinearMethod::cg, dimension_of(kind), s.courant};
+    ratio += iteration_of(s) / (cost.point * s.points + linear_cost(cost, s.unknowns, use).seconds), count += 1;
   }
   if (count > 0) cost.step = std::clamp(ratio / count, 0.2, 5.0);
 }
@@ -70,20 +69,20 @@ std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::s
   std::vector<std::array<double, 3>> cg, setup;
   std::vector<const CostSample*> direct;
   KindCost cost;
-  double spread = 0;
+  double spread = 0, wave = 0;
+  int still = 0, waves = 0;
   for (const CostSample& s : samples) {
-    if (s.kind != kind || s.threads > 1 || s.dynamics) continue;
-    setup.push_back({1, s.points, s.setup});
-    if (s.factorised) {
-      direct.push_back(&s);
-      continue;
-    }
+    if (s.kind != kind || s.threads > 1) continue;
     const double n = s.linear / std::max(1.0, s.newton);
-    cg.push_back({s.points, s.unknowns * n, iteration_of(s)});
-    spread += n / std::pow(s.unknowns, 1.0 / dimension_of(kind));
+    if (!s.factorised) cg.push_back({s.points, s.unknowns * n, iteration_of(s)});
+    if (!s.dynamics) setup.push_back({1, s.points, s.setup});
+    if (s.factorised && !s.dynamics) direct.push_back(&s);
+    if (!s.factorised && s.dynamics) wave += std::max(0.0, n - kLeastIterations) / s.courant, ++waves;
+    if (!s.factorised && !s.dynamics) spread += n / std::pow(s.unknowns, 1.0 / dimension_of(kind)), ++still;
   }
-  if (cg.size() < 2 || direct.size() < 2) return std::nullopt;
-  cost.spread = spread / static_cast<double>(cg.size());
+  if (still < 2 || direct.size() < 2) return std::nullopt;
+  cost.spread = spread / still;
+  if (waves > 0) cost.wave = wave / waves;
   const auto [point, product] = nonnegative_fit(cg);
   cost.point = point;
   cost.product = product;
@@ -105,15 +104,11 @@ std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::s
 
 /// Keys of a kind's costs with what they hold.
 std::vector<std::pair<const char*, double KindCost::*>> members() {
-  return {{"point", &KindCost::point},
-          {"factor", &KindCost::factor},
-          {"exponent", &KindCost::exponent},
-          {"product", &KindCost::product},
-          {"spread", &KindCost::spread},
-          {"start", &KindCost::start},
-          {"setup_point", &KindCost::setup_point},
-          {"step", &KindCost::step},
-          {"faster_factor", &KindCost::faster_factor},
+  return {{"point", &KindCost::point},        {"factor", &KindCost::factor},
+          {"exponent", &KindCost::exponent},  {"product", &KindCost::product},
+          {"spread", &KindCost::spread},      {"wave", &KindCost::wave},
+          {"start", &KindCost::start},        {"setup_point", &KindCost::setup_point},
+          {"step", &KindCost::step},          {"faster_factor", &KindCost::faster_factor},
           {"faster_cg", &KindCost::faster_cg}};
 }
 
@@ -125,14 +120,38 @@ std::string cost_kind(const Body& body) {
   return std::string(body.model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra") + (body.order == 2 ? "-2" : "");
 }
 
-bool factorises(const Solver& solver, double unknowns) {
-  return solver.linear == LinearMethod::cholesky ||
-         (solver.linear == LinearMethod::automatic && unknowns <= kFactorised);
+/// In dynamics a factor takes over from conjugate gradients where it is cheaper. In statics they are taken of a large
+/// body alone, and more of them on a bulky one, of which TangentSolver looks at the shape.
+LinearCost linear_cost(const KindCost& cost, double unknowns, const LinearUse& use) {
+  double n = cost.spread * std::pow(unknowns, 1.0 / use.dimension);
+  if (use.courant > 0) n = std::min(n, kLeastIterations + cost.wave * use.courant);
+  const LinearCost factor{cost.factor * std::pow(unknowns, cost.exponent), true},
+      cg{cost.product * unknowns * n, false};
+  switch (use.method) {
+    case LinearMethod::cholesky:
+      return factor;
+    case LinearMethod::cg:
+      return cg;
+    case LinearMethod::automatic:
+      break;
+  }
+  if (use.courant == 0) return unknowns <= TangentSolver::kDirectDofs ? factor : cg;
+  return unknowns <= TangentSolver::kDirectDofsWithInertia || factor.seconds < cg.seconds ? factor : cg;
 }
 
-double linear_solve_time(const KindCost& cost, double unknowns, bool factorised, int dimension) {
-  if (factorised) return cost.factor * std::pow(unknowns, cost.exponent);
-  return cost.product * unknowns * cost.spread * std::pow(unknowns, 1.0 / dimension);
+double courant_of(const Simulation& s) {
+  const Solver& solver = s.scene.solver;
+  double most = 0;
+  for (std::size_t b = 0; b < s.bodies.size() && is_dynamic(solver.kind); ++b) {
+    const ModelBody& body = *s.bodies[b].body;
+    if (is_carrier(s.scene.bodies[b]) || body.mass() == 0) continue;
+    double stiffness = 0;
+    for (const MaterialUse& use : s.scene.bodies[b].materials)
+      stiffness = std::max(stiffness, use.material.lambda + 2 * use.material.mu);
+    const double speed = std::sqrt(stiffness * body.volume() / body.mass());
+    most = std::max(most, speed * solver.time_step / mean_spacing(s.bodies[b]));
+  }
+  return most;
 }
 
 nlohmann::ordered_json CostModel::json() const {
@@ -192,12 +211,11 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   const bool dynamics = is_dynamic(solver.kind);
   forecast.iterations = dynamics ? solver.steps * (linear ? 1 : kStepIterations)
                                  : std::max(1, solver.load_steps) * (linear ? 1 : kUsualIterations);
-  const bool factorised = factorises(solver, unknowns);
   const bool shell = std::all_of(s.scene.bodies.begin(), s.scene.bodies.end(),
                                  [](const Body& b) { return is_carrier(b) || is_shell(b); });
-  const double solve = linear_solve_time(*main, unknowns, factorised, shell ? 2 : 3);
-  const double speed = many ? (factorised ? main->faster_factor : main->faster_cg) : 1;
-  forecast.seconds = setup + forecast.iterations * (points + solve) * (dynamics ? main->step : 1) / speed;
+  const LinearCost solve = linear_cost(*main, unknowns, {solver.linear, shell ? 2 : 3, courant_of(s)});
+  const double speed = many ? (solve.factorised ? main->faster_factor : main->faster_cg) : 1;
+  forecast.seconds = setup + forecast.iterations * (points + solve.seconds) * (dynamics ? main->step : 1) / speed;
   return forecast;
 }
 

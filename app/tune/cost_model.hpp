@@ -19,6 +19,7 @@ struct CostSample {
   int threads = 1;
   double points = 0, unknowns = 0;
   double newton = 0, linear = 0;  ///< iterations of the run; linear: of conjugate gradients
+  double courant = 0;             ///< of its steps, as LinearUse has it
   double setup = 0, solve = 0;    ///< [s]
 };
 
@@ -26,11 +27,13 @@ struct CostSample {
 ///
 ///   Newton iteration = point P + { factor U^exponent | product U n },   set-up = start + setup_point P
 ///
-/// with P integration points, U unknowns, n = spread U^(1/d) iterations of conjugate gradients, d the dimension.
+/// with P integration points, U unknowns and n iterations of conjugate gradients: spread U^(1/d) in dimension d; of an
+/// implicit step at Courant number C the fewer of these and of 2 + wave C.
 struct KindCost {
   double point = 0;                         ///< [s]
   double factor = 0, exponent = 1.5;        ///< [s], [-]
   double product = 0, spread = 10;          ///< [s], [-]
+  double wave = 8;                          ///< [-]
   double start = 0, setup_point = 0;        ///< [s]
   double step = 1;                          ///< an iteration of an implicit step over one of statics
   double faster_factor = 1, faster_cg = 1;  ///< on all threads
@@ -50,11 +53,22 @@ CostModel fitted_costs(const std::vector<CostSample>& samples);
 /// The kind of costs that a body has: "hexahedra-2".
 std::string cost_kind(const Body& body);
 
-/// Up to so many unknowns stiffness is factorised where the scene does not say how.
-bool factorises(const Solver& solver, double unknowns);
+/// How tangents of a run are solved.
+struct LinearUse {
+  LinearMethod method = LinearMethod::automatic;
+  int dimension = 3;   ///< of the body
+  double courant = 0;  ///< of implicit steps: speed of pressure waves × step / distance of nodes; 0: statics
+};
 
-/// Time of an iteration's linear solve on one thread [s]. @param dimension  of the body
-double linear_solve_time(const KindCost& cost, double unknowns, bool factorised, int dimension);
+/// What the linear solve of a Newton iteration takes on one thread.
+struct LinearCost {
+  double seconds = 0;
+  bool factorised = false;
+};
+LinearCost linear_cost(const KindCost& cost, double unknowns, const LinearUse& use);
+
+/// Courant number of a scene's implicit steps, the largest of its bodies; 0 in statics.
+double courant_of(const Simulation& simulation);
 
 /// Time of a scene's run [s], without what it writes: 5 Newton iterations for a static solve (1 where all is linear),
 /// 2 for an implicit step. None where a body's kind was not timed.

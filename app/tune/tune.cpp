@@ -37,6 +37,7 @@ std::optional<CostSample> timed(const TuneCase& c, const fs::path& folder, const
   s.unknowns = j.at("dofs").get<double>();
   s.newton = j.at("newton_iterations").get<double>();
   s.linear = j.at("linear_iterations").get<double>();
+  s.courant = courant_of(c);
   s.setup = seconds.at("setup").get<double>();
   s.solve = seconds.at("solve").get<double>();
   return s;

@@ -1,8 +1,11 @@
 #include "app/tune/tune_scenes.hpp"
 
+#include "core/physics/law_constants.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 namespace fascia::app {
 namespace {
@@ -18,6 +21,8 @@ constexpr std::array<Sizes, 7> kSizes{{{"frames", 3, 6},
                                        {"tetrahedra", 4, 8},
                                        {"tetrahedra-2", 2, 4},
                                        {"shell", 8, 16}}};
+
+constexpr double kYoung = 200e3, kPoisson = 0.3, kDensity = 1000, kStep = 0.01;
 
 std::string body_of(const TuneCase& c) {
   const int n = c.size;
@@ -48,20 +53,28 @@ std::vector<TuneCase> tune_cases(bool quick, int threads) {
   if (quick) return cases;
   for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, true, true});
   for (const Sizes& s : kSizes)
+    for (const int size : {s.small, s.large}) cases.push_back({s.kind, size, false, true});
+  for (const Sizes& s : kSizes)
     for (const bool factorised : {true, false})
       if (threads > 1) cases.push_back({s.kind, s.large, factorised, false, threads});
-  for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, false, true});
   return cases;
 }
 
 std::string tune_scene(const TuneCase& c) {
-  const char* solver =
-      c.dynamics ? "kind = \"newmark\"\ntime_step = \"10 ms\"\nsteps = 10\n" : "kind = \"static\"\nload_steps = 3\n";
+  const std::string solver = c.dynamics ? fmt::format("kind = \"newmark\"\ntime_step = {}\nsteps = 10\n", kStep)
+                                        : "kind = \"static\"\nload_steps = 3\n";
   return fmt::format(
-      "[world]\ngravity = [0, 0, -1]\n\n[bodies.body]\n{}density = 1000\nmaterial = {{ young = \"200 kPa\", poisson = "
-      "0.3 }}\n\n[[constraints]]\nbody = \"body\"\nwhere = {{ box = {{ min = [-1e-6, -1, -1], max = [1e-6, 2, 2] }} "
+      "[world]\ngravity = [0, 0, -1]\n\n[bodies.body]\n{}density = {}\nmaterial = {{ young = {}, poisson = {} "
+      "}}\n\n[[constraints]]\nbody = \"body\"\nwhere = {{ box = {{ min = [-1e-6, -1, -1], max = [1e-6, 2, 2] }} "
       "}}\nfix = \"all\"\n\n[solver]\n{}linear = {{ kind = \"{}\" }}\n\n[output]\nfields = [\"displacement\"]\n",
-      body_of(c), solver, c.factorised ? "cholesky" : "cg");
+      body_of(c), kDensity, kYoung, kPoisson, solver, c.factorised ? "cholesky" : "cg");
+}
+
+double courant_of(const TuneCase& c) {
+  if (!c.dynamics) return 0;
+  const Lame lame = Lame::from_young(kYoung, kPoisson);
+  const double spacing = 1.0 / (c.kind.ends_with("-2") ? 2 * c.size : c.size);
+  return std::sqrt((lame.lambda + 2 * lame.mu) / kDensity) * kStep / spacing;
 }
 
 }  // namespace fascia::app

@@ -20,4 +20,7 @@ std::vector<TuneCase> tune_cases(bool quick, int threads);
 /// implicit steps.
 std::string tune_scene(const TuneCase& c);
 
+/// Courant number of its steps, as LinearUse has it; 0 in statics.
+double courant_of(const TuneCase& c);
+
 }  // namespace fascia::app

@@ -192,11 +192,11 @@ TEST(TunedGrowth, IsOfTheMethodThatSolvesEachSize) {
   const Trials trials(scene, open_parts(scene), wanted_of(scene), {}, nullptr, {}, [] { return false; });
   Trial trial;
   trial.choice = {{0, 1}, 0, "", {}};
-  trial.dofs = 10000, trial.points = 20000;
-  const double own = 1e-6 * 20000 + 2e-9 * std::pow(10000, 1.5);
-  EXPECT_NEAR(*trials.tuned_growth(trial, 1.2), (1e-6 * 24000 + 2e-9 * std::pow(12000, 1.5)) / own, 1e-12);
-  // Above 15,000 unknowns conjugate gradients solve.
-  EXPECT_NEAR(*trials.tuned_growth(trial, 2), (1e-6 * 40000 + 3e-9 * 20000 * 10 * std::cbrt(20000.0)) / own, 1e-12);
+  trial.dofs = 8000, trial.points = 16000;
+  const double own = 1e-6 * 16000 + 2e-9 * std::pow(8000, 1.5);
+  EXPECT_NEAR(*trials.tuned_growth(trial, 1.2), (1e-6 * 19200 + 2e-9 * std::pow(9600, 1.5)) / own, 1e-12);
+  // Above 10,000 unknowns conjugate gradients solve.
+  EXPECT_NEAR(*trials.tuned_growth(trial, 2), (1e-6 * 32000 + 3e-9 * 16000 * 10 * std::cbrt(16000.0)) / own, 1e-12);
   unsetenv("XDG_CACHE_HOME");
   fs::remove_all(name);
 }
@@ -211,7 +211,7 @@ StoredStudy three_runs() {
 }
 
 TEST(StudiedChoice, IsTheCheapestThatMeetsTheNeed) {
-  const auto first = [](const StatedNeed& need) { return choose_of_study(three_runs(), need).runs.front(); };
+  const auto first = [](const StatedNeed& stated) { return choose_of_study(three_runs(), stated).runs.front(); };
   EXPECT_EQ(first({.error = 0.03}), 1u);
   EXPECT_EQ(first({.error = 0.03, .step = 2.5e-3}), 2u);
   EXPECT_EQ(first({.step = 5e-3}), 2u);  // the most accurate

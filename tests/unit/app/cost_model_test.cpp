@@ -1,0 +1,91 @@
+// What the times of small runs foretell of others.
+#include "app/tune/cost_model.hpp"
+#include "app/tune/tune_scenes.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "tests/unit/app/scene_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace fascia::app::cost_model_test {
+namespace {
+
+using test::parse;
+using test::parse_beam;
+
+constexpr double kPoint = 2e-6, kFactor = 3e-7, kExponent = 1.3, kProduct = 1e-9, kSpread = 9, kWave = 7;
+
+double iterations(double unknowns, double courant) {
+  const double still = kSpread * std::cbrt(unknowns);
+  return courant > 0 ? std::min(still, 2 + kWave * courant) : still;
+}
+
+/// A run of ten Newton iterations that takes exactly what the law says.
+CostSample sample(double unknowns, bool factorised, double courant = 0) {
+  CostSample s{"frames", factorised, courant > 0};
+  s.points = 2 * unknowns;
+  s.unknowns = unknowns;
+  s.courant = courant;
+  s.newton = 10;
+  const double n = iterations(unknowns, courant);
+  if (!factorised) s.linear = s.newton * n;
+  s.setup = 1e-3 + 1e-5 * s.points;
+  s.solve =
+      s.newton * (kPoint * s.points + (factorised ? kFactor * std::pow(unknowns, kExponent) : kProduct * unknowns * n));
+  return s;
+}
+
+KindCost fitted() {
+  return fitted_costs({sample(600, true), sample(600, false), sample(3500, true), sample(3500, false),
+                       sample(600, true, 0.5), sample(600, false, 0.5)})
+      .kinds.at("frames");
+}
+
+TEST(CostModel, FindsTheLawThatItsSamplesKeep) {
+  const KindCost cost = fitted();
+  EXPECT_NEAR(cost.point, kPoint, 1e-9 * kPoint);
+  EXPECT_NEAR(cost.factor, kFactor, 1e-9 * kFactor);
+  EXPECT_NEAR(cost.exponent, kExponent, 1e-9);
+  EXPECT_NEAR(cost.product, kProduct, 1e-9 * kProduct);
+  EXPECT_NEAR(cost.spread, kSpread, 1e-9);
+  EXPECT_NEAR(cost.wave, kWave, 1e-9);
+  EXPECT_NEAR(cost.step, 1, 1e-9);
+}
+
+/// Steps are solved by conjugate gradients while waves do not run far, and statics by a factor up to 10,000 unknowns,
+/// as the solver itself chooses.
+TEST(CostModel, TakesTheSolverThatARunTakes) {
+  const KindCost cost = fitted();
+  const auto choice = [&](double unknowns, double courant, LinearMethod method = LinearMethod::automatic) {
+    return linear_cost(cost, unknowns, {method, 3, courant});
+  };
+  EXPECT_TRUE(choice(9000, 0).factorised);
+  EXPECT_FALSE(choice(11000, 0).factorised);
+  EXPECT_TRUE(choice(400, 0.5).factorised);
+  EXPECT_FALSE(choice(9000, 0.5).factorised);
+  EXPECT_NEAR(choice(9000, 0.5).seconds, kProduct * 9000 * (2 + kWave * 0.5), 1e-9);
+  EXPECT_NEAR(choice(9000, 1e9, LinearMethod::cg).seconds, kProduct * 9000 * kSpread * std::cbrt(9000), 1e-9);
+  EXPECT_TRUE(choice(9000, 0.5, LinearMethod::cholesky).factorised);
+  EXPECT_NEAR(choice(9000, 0.5, LinearMethod::cholesky).seconds, kFactor * std::pow(9000, kExponent), 1e-9);
+}
+
+/// Speed of pressure waves × step over the distance of frames: a metre.
+TEST(CostModel, KnowsHowFarWavesRunInAStep) {
+  const Scene scene = parse_beam("[solver]\nkind = \"newmark\"\ntime_step = \"2 ms\"\nsteps = 3\n");
+  const std::string held = "[[constraints]]\nbody = \"beam\"\nwhere = { nearest = [0, 0, 0] }\nfix = \"all\"\n";
+  const double density = 5 / 4.0, stiffness = 40e3 * 0.7 / (1.3 * 0.4);
+  EXPECT_NEAR(courant_of(build_simulation(scene)), std::sqrt(stiffness / density) * 2e-3, 1e-6);
+  EXPECT_EQ(courant_of(build_simulation(parse_beam(held))), 0);
+}
+
+TEST(CostModel, ScenesThatAreTimedHaveTheCourantNumberThatTheySay) {
+  for (const TuneCase& c : tune_cases(false, 1)) {
+    const Simulation simulation = build_simulation(parse(tune_scene(c)));
+    EXPECT_NEAR(courant_of(c), courant_of(simulation), 0.01 * courant_of(simulation)) << c.kind;
+    EXPECT_EQ(courant_of(c) > 0, c.dynamics);
+  }
+}
+
+}  // namespace
+}  // namespace fascia::app::cost_model_test
