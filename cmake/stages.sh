@@ -32,7 +32,7 @@ stage_items() {
       sed 's|CMakeFiles/[^/]*/||; s|\.o$||'
   fi
   sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: (.*[^ .]) \.+.* ([0-9.]+) sec$/\2 \1/p' "$log" 2>/dev/null
-  sed -nE 's/^\[ +(OK|FAILED) +\] (.*) \(([0-9]+) ms\)$/\3 \2/p' "$log" 2>/dev/null | awk '{ printf "%.1f %s\n", $1 / 1000, $2 }'
+  sed -nE 's/^\[ +OK \] (.*) \(([0-9]+) ms\)$/\2 \1/p' "$log" 2>/dev/null | awk '{ printf "%.1f %s\n", $1 / 1000, $2 }'
 }
 
 # "  ccache 210 of 214" where the build $1 asked the compiler cache.

@@ -163,14 +163,16 @@ const std::vector<Trials::CostedBody>& Trials::costed(const NeedChoice& choice) 
   return known->second;
 }
 
-/// How far waves run in a step is not known before the finer body is built: of a long step conjugate gradients take the
-/// most iterations.
+/// How far waves run in a step is not kept with a trial: of a long step conjugate gradients take the most iterations.
 std::optional<double> Trials::tuned_growth(const Trial& trial, double more) const {
   double most = 0;  // of the bodies: which of them has the unknowns is not known
   for (const CostedBody& body : costed(trial.choice)) {
-    const LinearUse use{scene_.solver.linear, body.dimension, is_dynamic(scene_.solver.kind) ? kLongSteps : 0};
+    const Solver& solver = scene_.solver;
+    const bool implicit = is_implicit_dynamics(solver.kind), explicit_steps = is_dynamic(solver.kind) && !implicit;
+    const LinearUse use = linear_use(solver, body.dimension, implicit ? kLongSteps : 0, true);
     const auto time = [&](double times) {
-      return body.cost.point * times * trial.points + linear_cost(body.cost, times * trial.dofs, use).seconds;
+      const double solve = explicit_steps ? 0 : linear_cost(body.cost, times * trial.dofs, use).seconds;
+      return body.cost.point * times * trial.points + solve;
     };
     most = std::max(most, time(more) / time(1));
   }

@@ -1,6 +1,7 @@
 #include "app/tune/cost_model.hpp"
 
 #include "core/base/thread_pool.hpp"
+#include "core/levels/blocks_or_levels.hpp"
 #include "core/tangent/tangent_solver.hpp"
 
 #include <algorithm>
@@ -59,7 +60,8 @@ void fit_threads_and_steps(const std::vector<CostSample>& samples, const std::st
     if (s.kind != kind) continue;
     if (s.threads > 1 && !s.dynamics) (s.factorised ? cost.faster_factor : cost.faster_cg) = faster(samples, s);
     if (!s.dynamics || s.threads > 1) continue;
-    const LinearUse use{s.factorised ? LinearMethod::cholesky : LinearMethod::cg, dimension_of(kind), s.courant};
+    const LinearMethod method = s.factorised ? LinearMethod::cholesky : LinearMethod::cg;
+    const LinearUse use{method, dimension_of(kind), s.courant, false};
     ratio += iteration_of(s) / (cost.point * s.points + linear_cost(cost, s.unknowns, use).seconds), count += 1;
   }
   if (count > 0) cost.step = std::clamp(ratio / count, 0.2, 5.0);
@@ -120,29 +122,34 @@ std::string cost_kind(const Body& body) {
   return std::string(body.model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra") + (body.order == 2 ? "-2" : "");
 }
 
-/// In dynamics a factor takes over from conjugate gradients where it is cheaper. In statics they are taken of a large
-/// body alone, and more of them on a bulky one, of which TangentSolver looks at the shape.
+LinearUse linear_use(const Solver& solver, int dimension, double courant, bool conservative) {
+  const bool open = solver.linear == LinearMethod::automatic &&
+                    solver.preconditioner == PreconditionerKind::automatic &&
+                    solver.linear_max_iterations >= kEnoughForBulk;
+  return {solver.linear, dimension, courant, open && conservative && is_implicit_dynamics(solver.kind)};
+}
+
+/// As TangentSolver chooses, but that the shape of a body is not known: of more than so many unknowns, and after more
+/// iterations than blocks may have, the cheaper of the two is taken.
 LinearCost linear_cost(const KindCost& cost, double unknowns, const LinearUse& use) {
+  static const int patience = BlocksOrLevels({}).patience();
   double n = cost.spread * std::pow(unknowns, 1.0 / use.dimension);
   if (use.courant > 0) n = std::min(n, kLeastIterations + cost.wave * use.courant);
   const LinearCost factor{cost.factor * std::pow(unknowns, cost.exponent), true},
       cg{cost.product * unknowns * n, false};
-  switch (use.method) {
-    case LinearMethod::cholesky:
-      return factor;
-    case LinearMethod::cg:
-      return cg;
-    case LinearMethod::automatic:
-      break;
+  if (use.method != LinearMethod::automatic) return use.method == LinearMethod::cholesky ? factor : cg;
+  if (use.blocks_first && unknowns > TangentSolver::kDirectDofsWithInertia) {
+    if (n <= patience) return cg;
+  } else if (unknowns <= TangentSolver::kDirectDofs) {
+    return factor;
   }
-  if (use.courant == 0) return unknowns <= TangentSolver::kDirectDofs ? factor : cg;
-  return unknowns <= TangentSolver::kDirectDofsWithInertia || factor.seconds < cg.seconds ? factor : cg;
+  return factor.seconds < cg.seconds ? factor : cg;
 }
 
 double courant_of(const Simulation& s) {
   const Solver& solver = s.scene.solver;
   double most = 0;
-  for (std::size_t b = 0; b < s.bodies.size() && is_dynamic(solver.kind); ++b) {
+  for (std::size_t b = 0; b < s.bodies.size() && is_implicit_dynamics(solver.kind); ++b) {
     const ModelBody& body = *s.bodies[b].body;
     if (is_carrier(s.scene.bodies[b]) || body.mass() == 0) continue;
     double stiffness = 0;
@@ -213,7 +220,8 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
                                  : std::max(1, solver.load_steps) * (linear ? 1 : kUsualIterations);
   const bool shell = std::all_of(s.scene.bodies.begin(), s.scene.bodies.end(),
                                  [](const Body& b) { return is_carrier(b) || is_shell(b); });
-  const LinearCost solve = linear_cost(*main, unknowns, {solver.linear, shell ? 2 : 3, courant_of(s)});
+  const LinearCost solve =
+      linear_cost(*main, unknowns, linear_use(solver, shell ? 2 : 3, courant_of(s), s.model.loads_are_conservative()));
   const double speed = many ? (solve.factorised ? main->faster_factor : main->faster_cg) : 1;
   forecast.seconds = setup + forecast.iterations * (points + solve.seconds) * (dynamics ? main->step : 1) / speed;
   return forecast;

@@ -35,7 +35,7 @@ struct KindCost {
   double product = 0, spread = 10;          ///< [s], [-]
   double wave = 8;                          ///< [-]
   double start = 0, setup_point = 0;        ///< [s]
-  double step = 1;                          ///< an iteration of an implicit step over one of statics
+  double step = 1;                          ///< an iteration of an implicit step over what its parts take
   double faster_factor = 1, faster_cg = 1;  ///< on all threads
 };
 
@@ -56,9 +56,12 @@ std::string cost_kind(const Body& body);
 /// How tangents of a run are solved.
 struct LinearUse {
   LinearMethod method = LinearMethod::automatic;
-  int dimension = 3;   ///< of the body
-  double courant = 0;  ///< of implicit steps: speed of pressure waves × step / distance of nodes; 0: statics
+  int dimension = 3;          ///< of the body
+  double courant = 0;         ///< of implicit steps: speed of pressure waves × step / distance of nodes; 0: statics
+  bool blocks_first = false;  ///< the choice is the program's, and inertia lets it try conjugate gradients first
 };
+/// @param conservative  loads have a potential
+LinearUse linear_use(const Solver& solver, int dimension, double courant, bool conservative);
 
 /// What the linear solve of a Newton iteration takes on one thread.
 struct LinearCost {

@@ -36,7 +36,7 @@ std::optional<CostModel> kept_costs(std::string& told) {
   if (!j.is_object() || !j.contains("key") || !j.contains("kinds")) return ignored("is not what fascia tune writes");
   if (j["key"] != machine_key(this_machine())) return ignored("is of another machine or version");
   std::optional<CostModel> costs = CostModel::read(j["kinds"]);
-  return costs ? costs : ignored("is damaged");
+  return costs ? costs : ignored("is damaged, or of another version");
 }
 
 std::string time_line(const Simulation& simulation) {

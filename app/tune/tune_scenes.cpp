@@ -52,11 +52,11 @@ std::vector<TuneCase> tune_cases(bool quick, int threads) {
       for (const bool factorised : {true, false}) cases.push_back({s.kind, size, factorised});
   if (quick) return cases;
   for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, true, true});
-  for (const Sizes& s : kSizes)
-    for (const int size : {s.small, s.large}) cases.push_back({s.kind, size, false, true});
+  for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, false, true});
   for (const Sizes& s : kSizes)
     for (const bool factorised : {true, false})
       if (threads > 1) cases.push_back({s.kind, s.large, factorised, false, threads});
+  for (const Sizes& s : kSizes) cases.push_back({s.kind, s.large, false, true});
   return cases;
 }
 

@@ -6,7 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
 namespace fascia::app::cost_model_test {
 namespace {
@@ -53,12 +56,12 @@ TEST(CostModel, FindsTheLawThatItsSamplesKeep) {
   EXPECT_NEAR(cost.step, 1, 1e-9);
 }
 
-/// Steps are solved by conjugate gradients while waves do not run far, and statics by a factor up to 10,000 unknowns,
-/// as the solver itself chooses.
+/// Statics take a factor up to 10,000 unknowns, and dynamics up to 500. Beyond, steps take conjugate gradients as long
+/// as they need few iterations, and both the cheaper of the two where they need more.
 TEST(CostModel, TakesTheSolverThatARunTakes) {
-  const KindCost cost = fitted();
+  KindCost cost = fitted();
   const auto choice = [&](double unknowns, double courant, LinearMethod method = LinearMethod::automatic) {
-    return linear_cost(cost, unknowns, {method, 3, courant});
+    return linear_cost(cost, unknowns, {method, 3, courant, courant > 0});
   };
   EXPECT_TRUE(choice(9000, 0).factorised);
   EXPECT_FALSE(choice(11000, 0).factorised);
@@ -68,6 +71,44 @@ TEST(CostModel, TakesTheSolverThatARunTakes) {
   EXPECT_NEAR(choice(9000, 1e9, LinearMethod::cg).seconds, kProduct * 9000 * kSpread * std::cbrt(9000), 1e-9);
   EXPECT_TRUE(choice(9000, 0.5, LinearMethod::cholesky).factorised);
   EXPECT_NEAR(choice(9000, 0.5, LinearMethod::cholesky).seconds, kFactor * std::pow(9000, kExponent), 1e-9);
+  EXPECT_TRUE(linear_cost(cost, 9000, {LinearMethod::automatic, 3, 0.5, false}).factorised);  // followers
+  cost.product *= 1e4;                                                                        // a factor is cheaper now
+  EXPECT_TRUE(choice(11000, 0).factorised);
+  EXPECT_FALSE(choice(9000, 160 / kWave).factorised);
+  EXPECT_TRUE(choice(9000, 170 / kWave).factorised);
+}
+
+/// Blocks go first where the choice is the program's alone, and where loads have a potential.
+TEST(CostModel, BlocksGoFirstWhereNobodySaidOtherwise) {
+  const std::string step = "[solver]\nkind = \"newmark\"\ntime_step = \"2 ms\"\nsteps = 3\n";
+  const auto first = [&](const std::string& more, bool conservative = true) {
+    return linear_use(parse_beam(step + more).solver, 3, 1, conservative).blocks_first;
+  };
+  EXPECT_TRUE(first(""));
+  EXPECT_FALSE(first("", false));
+  EXPECT_FALSE(first("linear = { kind = \"cg\" }\n"));
+  EXPECT_FALSE(first("linear = { preconditioner = \"jacobi\" }\n"));
+  EXPECT_FALSE(first("linear = { max_iterations = 100 }\n"));
+  EXPECT_FALSE(linear_use(parse_beam("").solver, 3, 0, true).blocks_first);
+}
+
+/// Set-up, and two Newton iterations of each step by the law.
+TEST(CostModel, ForetellsARunOfImplicitSteps) {
+  CostModel costs;
+  KindCost cost = fitted();
+  cost.step = 1.5;
+  costs.kinds["frames"] = cost;
+  const std::string text =
+      "[solver]\nkind = \"newmark\"\ntime_step = \"2 ms\"\nsteps = 30\nthreads = 1\nlinear = { kind = \"cg\" }\n";
+  const Simulation s = build_simulation(parse_beam(text));
+  const auto points = static_cast<double>(s.bodies[0].body->points().size());
+  const double dofs = 120, n = std::min(kSpread * std::cbrt(dofs), 2 + kWave * courant_of(s));
+  const double iteration = 1.5 * (kPoint * points + kProduct * dofs * n);
+  const std::optional<TimeForecast> found = forecast_time(s, costs);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->iterations, 60);
+  EXPECT_NEAR(found->seconds, 1e-3 + 1e-5 * points + 60 * iteration, 1e-6 * found->seconds);
+  EXPECT_FALSE(forecast_time(s, {}).has_value());
 }
 
 /// Speed of pressure waves × step over the distance of frames: a metre.
