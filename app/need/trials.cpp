@@ -19,9 +19,10 @@
 namespace fascia::app {
 namespace {
 
-constexpr double kLongSteps = 1e9;  // a Courant number
-
 namespace fs = std::filesystem;
+
+/// A Courant number of which conjugate gradients take the iterations of statics.
+constexpr double kLongSteps = 1e9;
 
 /// Times at which trials are compared: a quarter of what the coarsest steps are.
 constexpr int kComparedTimes = 16;

@@ -197,6 +197,18 @@ TEST(TunedGrowth, IsOfTheMethodThatSolvesEachSize) {
   EXPECT_NEAR(*trials.tuned_growth(trial, 1.2), (1e-6 * 19200 + 2e-9 * std::pow(9600, 1.5)) / own, 1e-12);
   // Above 10,000 unknowns conjugate gradients solve, which are the cheaper.
   EXPECT_NEAR(*trials.tuned_growth(trial, 2), (1e-6 * 32000 + 3e-10 * 16000 * 10 * std::cbrt(16000.0)) / own, 1e-12);
+  // In implicit dynamics from 500 unknowns on, conjugate gradients come first; explicit steps solve nothing.
+  const auto growth = [&](const std::string& kind) {
+    const std::string solver = "[solver]\nkind = \"" + kind + "\"\nduration = \"1 s\"\ntime_step = \"1 ms\"\n";
+    const Scene run = parse(scene.text + solver);
+    return *Trials(run, open_parts(run), wanted_of(run), {}, nullptr, {}, [] {
+              return false;
+            }).tuned_growth(trial, 1.2);
+  };
+  trial.dofs = 500.5;
+  const auto cg = [](double dofs) { return 3e-10 * dofs * 10 * std::cbrt(dofs); };
+  EXPECT_NEAR(growth("newmark"), (1e-6 * 19200 + cg(600.6)) / (1e-6 * 16000 + cg(500.5)), 1e-12);
+  EXPECT_NEAR(growth("explicit"), 1.2, 1e-12);
   unsetenv("XDG_CACHE_HOME");
   fs::remove_all(name);
 }
