@@ -66,6 +66,38 @@ if(FASCIA_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(fascia_plain_flags INTERFACE $<$<COMPILE_LANGUAGE:C,CXX>:-Wno-array-bounds>)
 endif()
 
+# Compiles the files of a target in batches of up to eight of one folder: the headers of scenes, JSON and VTK take longer
+# to read than the files themselves. For the program; the library's files are compiled one by one, since they are the
+# ones that are edited and measured. cmake/tidy.sh looks at each file by itself all the same.
+function(fascia_compile_in_batches target)
+  get_target_property(sources ${target} SOURCES)
+  get_target_property(base ${target} SOURCE_DIR)
+  set(folders "")
+  foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${base} NORMALIZE)
+    if(source MATCHES "^${CMAKE_BINARY_DIR}/")
+      continue()
+    endif()
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE folder)
+    cmake_path(GET folder PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER ${folder} folder)
+    list(APPEND folders ${folder})
+    list(APPEND files_of_${folder} ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder IN LISTS folders)
+    list(LENGTH files_of_${folder} files)
+    math(EXPR batches "(${files} + 7) / 8")
+    set(place 0)
+    foreach(source IN LISTS files_of_${folder})
+      math(EXPR batch "${place} * ${batches} / ${files}")
+      set_property(SOURCE ${source} TARGET_DIRECTORY ${target} PROPERTY UNITY_GROUP ${folder}_${batch})
+      math(EXPR place "${place} + 1")
+    endforeach()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # Adds a library of the project: fascia_library(NAME sources... LINK targets... [PRECOMPILE headers...]), or
 # PRECOMPILED_FOR another one that has the same flags and precompiles what both read.
 function(fascia_library name)

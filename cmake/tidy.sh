@@ -33,9 +33,35 @@ if ! { mkdir -p "$passed" && [ -r "$passed" ] && [ -w "$passed" ] && [ -x "$pass
 fi
 find "$passed" -type f -mtime +90 -delete 2>/dev/null
 
-# "SOURCE HEADER", a line for each file that the compiler read for a source of ours; paths of ours without the root.
-ninja -C build/release -t deps 2>/dev/null | awk -v root="$root/" '
-  /^[^ ].*: #deps/ { source = ""; next }
+folders=(core meshless fem shells coupling gpu io assembly fascia app)
+
+# "SOURCE HEADER", a line for each file that the compiler read for a source of ours; paths of ours without the root. Of a
+# batch the compiler tells the headers of all of its sources: those of ours are followed from each source instead.
+grep -rEo --include='*.[ch]pp' '^#include "[^"]+"' "${folders[@]}" | sed -E 's/:#include "(.*)"$/\t\1/' >"$work/quoted"
+ninja -C build/release -t deps 2>/dev/null | awk -v root="$root/" -v quoted="$work/quoted" '
+  function follow(source, file,    i, n, next_file) {
+    if ((source, file) in reached) return
+    reached[source, file] = 1
+    print source "\t" file
+    n = includes[file]
+    for (i = 1; i <= n; ++i) {
+      next_file = include[file, i]
+      if (next_file in read_by_batch) follow(source, next_file)
+    }
+  }
+  function end_batch(    source, path) {
+    for (source in batch) {
+      follow(source, source)
+      for (path in read_by_batch) if (path ~ /^\//) print source "\t" path
+    }
+    delete batch
+    delete read_by_batch
+  }
+  BEGIN {
+    while ((getline line < quoted) > 0) { split(line, pair, "\t"); include[pair[1], ++includes[pair[1]]] = pair[2] }
+    is_ours = "^(core|meshless|fem|shells|coupling|gpu|io|assembly|fascia|app)/.*\\.cpp$"
+  }
+  /^[^ ].*: #deps/ { end_batch(); source = ""; next }
   /^ / {
     path = $0
     sub(/^ +/, "", path)
@@ -43,17 +69,44 @@ ninja -C build/release -t deps 2>/dev/null | awk -v root="$root/" '
     sub(/^\.\.\/\.\.\//, "", path)
     if (source == "") {
       source = path
-      ours = source ~ /^(core|meshless|fem|shells|coupling|gpu|io|assembly|fascia|app)\/.*\.cpp$/ && !(source in seen)
+      ours = source ~ is_ours && !(source in seen)
+      batched = source ~ /\/Unity\/unity_[^\/]*$/
       seen[source] = 1
     }
     if (ours) print source "\t" path
-  }' >"$work/includes"
+    if (batched) {
+      read_by_batch[path] = 1
+      if (path ~ is_ours && !(path in seen)) { batch[path] = 1; seen[path] = 1 }
+    }
+  }
+  END { end_batch() }' >"$work/includes"
 [ -s "$work/includes" ] || { echo "tidy: build/release knows no sources; build it with ninja first"; exit 1; }
 
 # Each file's content, or for a system's header, whose packages are many files, its size and date.
 cut -f2 "$work/includes" | sort -u >"$work/files"
 { grep -v '^/' "$work/files" | grep -v '^build/' | xargs -d '\n' sha256sum 2>/dev/null | sed -E 's/^([^ ]+)  (.*)/\2\t\1/'
   grep '^/' "$work/files" | xargs -d '\n' stat -L --printf '%n\t%s-%Y\n' 2>/dev/null; } >"$work/digests"
+
+# How each source is compiled, those of batches by themselves.
+awk '
+  /^ *"command": / { command = $0 }
+  /^ *"directory": / { folder = $0 }
+  /^ *"file": / {
+    file = $0
+    sub(/^ *"file": "/, "", file)
+    sub(/",?$/, "", file)
+    n = 0
+    if (file ~ /\/Unity\/unity_[^\/]*$/) {
+      while ((getline line < file) > 0) if (line ~ /^#include "/) { split(line, part, "\""); sources[++n] = part[2] }
+      close(file)
+    } else sources[++n] = file
+    for (i = 1; i <= n; ++i) {
+      own = command
+      sub(/ -o .*$/, " -c " sources[i] "\",", own)
+      printf "%s{\n%s\n%s\n  \"file\": \"%s\"\n}", entries++ ? ",\n" : "[\n", folder, own, sources[i]
+    }
+  }
+  END { print "\n]" }' build/release/compile_commands.json >"$work/compile_commands.json"
 
 # A key for each source: of all that decides what clang-tidy says of it.
 mkdir "$work/keys"
@@ -98,7 +151,7 @@ fi
 
 # Headers that changed and did not pass: each includes what it uses. One that comes first in the source of its own name
 # has been compiled by itself.
-find core meshless fem shells coupling gpu io assembly fascia app -name '*.hpp' -print0 | xargs -0 grep -L 'cuda_runtime' |
+find "${folders[@]}" -name '*.hpp' -print0 | xargs -0 grep -L 'cuda_runtime' |
   while read -r header; do
     own=${header%.hpp}.cpp
     [ -f "$own" ] && [ "$(grep -m1 '^#include' "$own")" = "#include \"$header\"" ] || printf '%s\0' "$header"
@@ -124,7 +177,7 @@ header_alone() {
 
 tidy_file() {
   local started=$EPOCHREALTIME key status=0
-  clang-tidy --quiet -p build/release "$1" 2>"$work/$$.err" || { status=1; cat "$work/$$.err"; }
+  clang-tidy --quiet -p "$work" "$1" 2>"$work/$$.err" || { status=1; cat "$work/$$.err"; }
   if [ "$status" = 0 ]; then
     key=$(awk -v source="$1" '$1 == source { print $2 }' "$work/sources")
     : >"$passed/$key" || true

@@ -4,6 +4,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/run/drivers.hpp"
+#include "core/solver/mechanical_system.hpp"
 #include "fascia/stepper.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"

@@ -33,7 +33,7 @@ std::string scattered(int points, int neighbours) {
                         disk(kPointSpacing * std::cbrt(kPoints / points), 3), neighbours, "paper");
 }
 
-BenchReport time_all(const Benchmark& benchmark, const BenchOptions& options, const Teller& say) {
+BenchReport run_kernels(const Benchmark& benchmark, const BenchOptions& options, const Teller& say) {
   refuse_options_of_steps(benchmark, options);
   KernelResult result{benchmark.name, benchmark.title, benchmark.notes, {}, {}, load_of_machine()};
   std::vector<int> threads{1};
@@ -91,7 +91,7 @@ Benchmark kernels() {
               100000,
               {},
               100000,
-              time_all};
+              run_kernels};
   for (const KernelBody body : {KernelBody::grid, KernelBody::scattered4, KernelBody::scattered8,
                                 KernelBody::tetrahedra, KernelBody::hexahedra, KernelBody::shells})
     for (const int points : {1000, 10000, 100000, 1000000, 10000000}) {

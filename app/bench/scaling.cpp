@@ -130,7 +130,7 @@ class Scaling {
   const Teller& say_;
 };
 
-BenchReport time_all(const Benchmark& benchmark, const BenchOptions& options, const Teller& say) {
+BenchReport run_scaling(const Benchmark& benchmark, const BenchOptions& options, const Teller& say) {
   refuse_options_of_steps(benchmark, options);
   KernelResult result{benchmark.name, benchmark.title, benchmark.notes, {}, {}, load_of_machine()};
   std::vector<BenchmarkCase> cases = chosen_cases(benchmark, options, result.skipped);
@@ -160,7 +160,7 @@ Benchmark scaling() {
       100000,
       {},
       100000,
-      time_all};
+      run_scaling};
   for (const KernelBody body : kBodies)
     for (const int points : {1000, 10000, 100000, 1000000, 10000000}) {
       if (body == KernelBody::scattered4 && points > 1000000) continue;  // sampling would take long

@@ -37,9 +37,9 @@ std::string value_text(const std::vector<double>& v, const std::string& unit) {
 }
 
 /// Rows of columns, each as wide as its widest cell; the first is aligned to the left.
-class Table {
+class TextTable {
  public:
-  explicit Table(std::vector<std::string> head) { rows_.push_back(std::move(head)); }
+  explicit TextTable(std::vector<std::string> head) { rows_.push_back(std::move(head)); }
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
 
   std::string text() const {
@@ -65,7 +65,7 @@ class Table {
 std::string ratio(const Figure& f) { return f.a > 0 ? fmt::format("{:.3g}", f.b / f.a) : "-"; }
 
 std::string figures_text(const char* head, const std::vector<Figure>& figures) {
-  Table table({head, "A", "B", "B / A"});
+  TextTable table({head, "A", "B", "B / A"});
   for (const Figure& f : figures)
     if (f.a != 0 || f.b != 0) table.add({f.name, with_unit(f.a, f.unit), with_unit(f.b, f.unit), ratio(f)});
   return table.text();
@@ -86,7 +86,7 @@ std::string differences_text(const char* head, const std::vector<Difference>& di
 }
 
 std::string fields_text(const std::vector<FieldDifference>& fields) {
-  Table table({"field", "difference", "root mean square", "largest", "at (rest)", "time"});
+  TextTable table({"field", "difference", "root mean square", "largest", "at (rest)", "time"});
   for (const FieldDifference& d : fields)
     table.add({d.name(), percent(d.relative), with_unit(d.root_mean, d.unit), with_unit(d.largest, d.unit),
                place_text(d.place), fmt::format("{:.4g}", d.time)});
@@ -94,7 +94,7 @@ std::string fields_text(const std::vector<FieldDifference>& fields) {
 }
 
 std::string probes_text(const std::vector<ProbeDifference>& probes) {
-  Table table({"probe", "difference", "A", "B", "unit", "time"});
+  TextTable table({"probe", "difference", "A", "B", "unit", "time"});
   for (const ProbeDifference& d : probes)
     table.add(
         {d.name, percent(d.relative), value_text(d.a, ""), value_text(d.b, ""), d.unit, fmt::format("{:.4g}", d.time)});

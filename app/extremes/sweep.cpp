@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSteps = 20;  ///< of a dynamic scene whose time step is swept
+constexpr int kSweepSteps = 20;  ///< of a dynamic scene whose time step is swept
 
 /// Cells lie elsewhere than the scene: its files are named from the root.
 void name_files(Value& value, const fs::path& folder) {
@@ -94,7 +94,7 @@ class Sweep {
       for (const char* key : {"duration", "steps"})
         if (solver->find(key) != nullptr) apply_override(document, fmt::format("solver.{}=", key), none);
       apply_override(document, fmt::format("solver.time_step={}", v), none);
-      apply_override(document, fmt::format("solver.steps={}", kSteps), none);
+      apply_override(document, fmt::format("solver.steps={}", kSweepSteps), none);
       add("time step", fmt::format("{:g} s", v), document_text(document));
     }
   }

@@ -18,8 +18,6 @@ constexpr double kMostDoubt = 0.5;
 constexpr double kMeasuring = 0.25;
 /// Memory of the program itself, which does not grow with the scene [bytes].
 constexpr double kProgramMemory = 40e6;
-/// Trials below this time are mostly noise: no exponent is taken from them [s].
-constexpr double kClearTime = 0.05;
 
 class Search {
  public:

@@ -14,7 +14,7 @@ constexpr double kSettled = 0.03;
 constexpr double kMostOfError = 4;
 constexpr int kMostStretch = 4;
 /// Where no error is stated, cells are shaped for this one.
-constexpr double kUnstated = 0.01;
+constexpr double kShapedFor = 0.01;
 
 class Shape {
  public:
@@ -52,7 +52,7 @@ class Shape {
     for (std::size_t w = 0; w < own.values.size(); ++w)
       if (trials_.judges(w))
         most = std::max(most, relative_distance(own.values[w], twice.values[w]).value_or(INFINITY) /
-                                  trials_.wanted()[w].allowed.value_or(kUnstated));
+                                  trials_.wanted()[w].allowed.value_or(kShapedFor));
     return most;
   }
 

@@ -19,8 +19,6 @@ constexpr double kPart = 0.8;
 constexpr double kSaving = 0.9;
 /// Times of two runs differ by this where the machine does something else.
 constexpr double kTimesSpread = 1.3;
-/// Times below this are those of the start [s].
-constexpr double kClearTime = 0.05;
 
 /// So much of the allowed errors is kept for what may be left out: finer meshes that use less cost more than that
 /// saves.

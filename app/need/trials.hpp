@@ -25,6 +25,9 @@ struct Wanted {
   std::optional<double> allowed;  ///< relative error; none: it is only told
 };
 
+/// Trials below this time are mostly start and noise: they are not told apart by it [s].
+inline constexpr double kClearTime = 0.05;
+
 /// What a run may choose.
 struct NeedChoice {
   Resolution resolution;

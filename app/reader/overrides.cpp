@@ -1,6 +1,7 @@
 #include "app/reader/overrides.hpp"
 
 #include "app/reader/text_checks.hpp"
+#include "app/scene/trimmed.hpp"
 
 #include <fmt/format.h>
 
@@ -19,12 +20,6 @@ struct Part {
 };
 
 Position at_column(int column) { return {1, column, true}; }
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 /// Where the value starts: the first "=" outside quotes.
 std::size_t find_equals(std::string_view text) {

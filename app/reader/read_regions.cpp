@@ -7,7 +7,7 @@ namespace {
 
 Region region_from(const Value& value, const std::string& path, Diagnostics& diagnostics);
 
-BoxRegion read_box(const TableReader& box) {
+BoxRegion read_box_region(const TableReader& box) {
   const BoxRegion region{box.vector("min").value_or(Vec3d{}), box.vector("max").value_or(Vec3d{})};
   if (box.value("min") && box.value("max"))
     for (int i = 0; i < 3; ++i)
@@ -17,7 +17,7 @@ BoxRegion read_box(const TableReader& box) {
   return region;
 }
 
-CylinderRegion read_cylinder(const TableReader& cylinder) {
+CylinderRegion read_cylinder_region(const TableReader& cylinder) {
   const CylinderRegion region{cylinder.vector("from").value_or(Vec3d{}), cylinder.vector("to").value_or(Vec3d{}),
                               cylinder.number("radius").value_or(1)};
   if (cylinder.value("from") && cylinder.value("to") && region.from == region.to)
@@ -49,8 +49,8 @@ BoundaryRegion read_boundary(const TableReader& table) {
 }
 
 decltype(Region::shape) shape_from(const TableReader& table) {
-  if (table.value("box")) return read_box(table.table("box"));
-  if (table.value("cylinder")) return read_cylinder(table.table("cylinder"));
+  if (table.value("box")) return read_box_region(table.table("box"));
+  if (table.value("cylinder")) return read_cylinder_region(table.table("cylinder"));
   if (table.value("boundary")) return read_boundary(table);
   if (table.value("group")) return read_group(table);
   if (table.value("all_of")) return AllOfRegion{read_parts(table, "all_of")};

@@ -30,7 +30,7 @@ void check_turn(const TableReader& shape, const std::array<double, 2>& angle, bo
     shape.error("caps", "a skin that does not close around the axis has no caps; must be false");
 }
 
-void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
+void read_shell_cells(const TableReader& shape, const std::string& kind, Body& body) {
   constexpr double most = 1e7;
   const bool round = kind == "ellipsoid" || kind == "sphere";
   const std::size_t numbers = round ? 1 : 2;
@@ -68,7 +68,7 @@ void read_cells(const TableReader& shape, const std::string& kind, Body& body) {
 }  // namespace
 
 void read_skin(const TableReader& domain, Body& body) {
-  if (const char* kind = generated_surface(domain)) read_cells(domain.table(kind), kind, body);
+  if (const char* kind = generated_surface(domain)) read_shell_cells(domain.table(kind), kind, body);
 }
 
 void read_shell(const TableReader& table, Body& body) {

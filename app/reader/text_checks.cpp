@@ -1,4 +1,5 @@
 #include "app/reader/text_checks.hpp"
+#include "app/scene/trimmed.hpp"
 
 #include <fmt/format.h>
 
@@ -46,12 +47,6 @@ std::string_view line_of(std::string_view text, int line) {
     text.remove_prefix(end + 1);
   }
   return text.substr(0, text.find_first_of("\r\n"));
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 /// The number with a unit that a text starts with; empty where it starts with something else, or is a key.

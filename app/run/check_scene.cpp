@@ -10,6 +10,7 @@
 #include "assembly/simulation/solver_settings.hpp"
 #include "assembly/simulation/step_limit.hpp"
 #include "assembly/specification/readable.hpp"
+#include "core/solver/mechanical_system.hpp"
 #include "fascia/choose_backend.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include "app/scene/units.hpp"
 
 #include "app/scene/diagnostics.hpp"
+#include "app/scene/trimmed.hpp"
 #include "core/base/errors.hpp"
 
 #include <fmt/format.h>
@@ -125,12 +126,6 @@ std::string wanted(std::string_view si_unit) {
   const Dimension* d = find_dimension(si_unit);
   if (!d) return fmt::format("must be {}", dimension_in_words(si_unit));
   return fmt::format("must be {}, such as \"{}\"", dimension_in_words(si_unit), d->example);
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 struct Split {

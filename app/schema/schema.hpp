@@ -112,6 +112,7 @@ const Shape& scene_schema();
 
 /// A selection of nodes, points or faces: `where`.
 const Shape& region_schema();
+Shape region_reference();
 
 // The sections of the scene.
 Key world_schema();

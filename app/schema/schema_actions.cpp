@@ -3,8 +3,6 @@
 namespace fascia::app {
 namespace {
 
-Shape region() { return reference("region", region_schema); }
-
 Shape axis_names() {
   return array(choice({{"x", "Position along the first axis."},
                        {"y", "Position along the second axis."},
@@ -35,7 +33,7 @@ Shape move_schema() {
 
 Shape constraint_schema() {
   return table({key("body", text("the name of a body"), "The body.").needed(),
-                key("where", region(), "Its nodes.").needed(), key("fix", fix_schema(), "What is held."),
+                key("where", region_reference(), "Its nodes.").needed(), key("fix", fix_schema(), "What is held."),
                 key("driver", text("a name"),
                     "With `fix`. The name under which a program that embeds the library moves what is held at every "
                     "step; `fascia run` holds it where it is."),
@@ -50,7 +48,7 @@ Shape constraint_schema() {
 Shape load_schema() {
   return table(
       {key("body", text("the name of a body"), "The body.").needed(),
-       key("where", region(),
+       key("where", region_reference(),
            "Its nodes, for `total_force`, `total_torque` and `force_per_node`; its faces, for `traction` and "
            "`pressure`; its edges, for `line_force`."),
        key("at", vector3("m"), "A material point by its rest position, for `force` and `torque`."),
@@ -81,7 +79,7 @@ Shape coupling_schema() {
            "What holds the nodes.")
            .needed(),
        key("body", text("the name of a body"), "The body whose nodes are held.").needed(),
-       key("where", region(), "Its nodes.").needed(),
+       key("where", region_reference(), "Its nodes.").needed(),
        key("to", text("the name of a body"), "The other body; for `weld` and `embed`, which need it."),
        key("point", vector3("m"), "Where the springs end; for `spring`, which needs it."),
        key("stiffness", number("N/m", above(0)), "Of all the nodes' springs together; for `spring`, which needs it."),

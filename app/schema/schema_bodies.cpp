@@ -6,13 +6,12 @@
 namespace fascia::app {
 namespace {
 
-Shape region() { return reference("region", region_schema); }
-
 Shape material() { return reference("material", material_schema); }
 
 Shape thickness() {
-  const Shape part = table({key("where", region(), "Points or triangles that take this thickness.").defaults("\"all\""),
-                            key("value", number("m", above(0)), "The thickness.").needed()});
+  const Shape part =
+      table({key("where", region_reference(), "Points or triangles that take this thickness.").defaults("\"all\""),
+             key("value", number("m", above(0)), "The thickness.").needed()});
   return one_of({number("m", above(0)), array(part, 1)});
 }
 
@@ -109,7 +108,7 @@ Shape body_schema() {
 
 Shape body_material_schema() {
   const Shape part =
-      table({key("where", region(), "Points or cells that take this material.").defaults("\"all\""),
+      table({key("where", region_reference(), "Points or cells that take this material.").defaults("\"all\""),
              key("use", one_of({text("the name of a material"), material()}), "Name of a material, or an inline table.")
                  .needed()});
   return one_of({text("the name of a material"), material(), array(part, 1)});

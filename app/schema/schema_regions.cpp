@@ -60,6 +60,8 @@ const Shape& profile_schema() {
   return profile;
 }
 
+Shape region_reference() { return reference("region", region_schema); }
+
 Key profile_key() {
   return key("profile", reference("profile", profile_schema), "How the factor follows time.").defaults("\"linear\"");
 }
