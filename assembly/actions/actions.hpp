@@ -5,6 +5,8 @@
 /// Constraints, drivers, loads, couplings and probes of a simulation: parts of build_simulation().
 namespace fascia {
 
+class MechanicalSystem;
+
 void add_constraints(Simulation& simulation, PointSetBuilder& points);  ///< constraints.cpp
 void add_loads(Simulation& simulation);                                 ///< loads.cpp
 /// Welds, embeddings and springs; couplings.cpp.

@@ -4,6 +4,7 @@
 #include "assembly/specification/errors.hpp"
 #include "core/base/index.hpp"
 #include "core/run/modes.hpp"
+#include "core/solver/mechanical_system.hpp"
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 #include "assembly/specification/errors.hpp"
 #include "core/base/errors.hpp"
 #include "core/run/explicit_dynamics.hpp"
+#include "core/solver/mechanical_system.hpp"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,7 @@
 #include "assembly/specification/scene.hpp"
 #include "assembly/specification/warnings.hpp"
 #include "core/body/model_body.hpp"
-#include "core/run/path_following.hpp"
-#include "core/solver/mechanical_system.hpp"
+#include "core/run/controlled_point.hpp"
 #include "core/structure/model.hpp"
 
 #include <memory>

@@ -4,6 +4,7 @@
 #include "assembly/specification/readable.hpp"
 #include "core/base/index.hpp"
 #include "core/run/explicit_dynamics.hpp"
+#include "core/solver/mechanical_system.hpp"
 
 #include <fmt/format.h>
 

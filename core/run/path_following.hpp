@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/run/controlled_point.hpp"
 #include "core/run/drivers.hpp"
 
 #include <optional>
@@ -11,14 +12,6 @@ namespace fascia {
 enum class PathControl {
   displacement,  ///< one displacement grows by prescribed increments
   arc_length     ///< the displacements of all nodes together move by prescribed lengths
-};
-
-/// A material point whose displacement along a direction is prescribed.
-struct ControlledPoint {
-  std::vector<int> nodes;
-  std::vector<Influence> influences;
-  Vec3d direction{};         ///< of length 1
-  std::optional<double> to;  ///< the run ends there; without it where the load factor is 1 [m]
 };
 
 struct PathSettings {

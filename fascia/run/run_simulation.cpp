@@ -5,6 +5,8 @@
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/run/explicit_dynamics.hpp"
+#include "core/run/path_following.hpp"
+#include "core/solver/mechanical_system.hpp"
 #include "fascia/run/gpu_run.hpp"
 #include "fascia/run/result_warnings.hpp"
 #include "fascia/run/run_modes.hpp"

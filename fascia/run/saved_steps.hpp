@@ -2,6 +2,7 @@
 
 #include "assembly/simulation/simulation.hpp"
 #include "core/run/drivers.hpp"
+#include "core/solver/mechanical_system.hpp"
 
 #include <algorithm>
 #include <cmath>
