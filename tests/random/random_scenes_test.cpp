@@ -139,6 +139,11 @@ const std::map<std::uint64_t, const char*> kOpen{
      "whole is 2e-4 of the shell's displacement; parts are judged apart from 1,000 on"},
     {1917, "a wire that its weight bends double has several ends, of which nothing is said"}};
 
+/// Seeds that take half a minute (20: with the GPU's conjugate gradients, which have no factor to fall back on, until
+/// Newton's method gives up); they run where many do.
+constexpr std::uint64_t kLong[] = {20};
+constexpr int kMany = 100;  ///< cases
+
 void examine(std::uint64_t seed, Tally& tally) {
   Examination examination(seed);
   const char* keep = std::getenv("FASCIA_KEEP_SCENES");
@@ -160,8 +165,10 @@ TEST_P(RandomScenes, KeepTheirInvariants) {
   Tally tally;
   const int count = test::cases(40);
   const char* first = std::getenv("FASCIA_FIRST_SEED");
-  for (int i = GetParam(); i < count; i += kShares)
-    examine(static_cast<std::uint64_t>((first != nullptr ? std::atoi(first) : 1) + i), tally);
+  for (int i = GetParam(); i < count; i += kShares) {
+    const auto seed = static_cast<std::uint64_t>((first != nullptr ? std::atoi(first) : 1) + i);
+    if (first != nullptr || count >= kMany || std::ranges::find(kLong, seed) == std::end(kLong)) examine(seed, tally);
+  }
   tally.print();
 }
 

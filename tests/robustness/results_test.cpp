@@ -147,7 +147,7 @@ TEST_F(Results, NewResultReplacesTheOldOneAsAWhole) {
 
 TEST_F(Results, SamplesAreKeptForTheNextRun) {
   write("cloud.toml",
-        with(kCantilever, "frames   = { grid = [3, 2, 2] }", "frames = { count = 60 }\npoints = { count = 2000 }"));
+        with(kCantilever, "frames   = { grid = [3, 2, 2] }", "frames = { count = 40 }\npoints = { count = 800 }"));
   const auto run = [&](const std::string& output, const std::string& home, const std::string& cache = "") {
     ProgramOptions options;
     options.environment = {"XDG_CACHE_HOME=" + (folder_ / home).string()};

@@ -18,14 +18,14 @@ struct Solved {
   RunReport report;
 };
 
-/// Statics, or eight steps of implicit dynamics at most, twenty in full size.
+/// Statics, or five steps of implicit dynamics at most, twenty in full size.
 inline Solved solve(const Simulation& s, Where where, const SolverSettings& settings) {
   const FactorFunction factors = [&](double t) { return s.factors(t); };
   const auto& solver = s.scene.solver;
   Solved out{s.initial, {}};
   const bool host = where == Where::host, statics = solver.kind == SolverKind::statics;
   const StaticsSettings loading{solver.load_steps};
-  DynamicsSettings dynamics{TimeScheme::implicit_euler, solver.time_step, std::min(solver.steps, full_size() ? 20 : 8)};
+  DynamicsSettings dynamics{TimeScheme::implicit_euler, solver.time_step, std::min(solver.steps, full_size() ? 20 : 5)};
   if (!statics) dynamics.scheme = scheme_of(solver.kind);
   if (where == Where::processor) {
     ThreadPool pool(1);

@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"tethers", "uterus_bladder", {"solver.duration=0.05"}},
                       Case{"driven", "breathing_liver", {"solver.duration=0.05"}},
                       Case{"fading_stress", "relaxing_ligament", {"solver.duration=2"}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& one) { return one.param.name; });
 
 TEST(Budget, ThatHoldsNoIterationEndsTheRunBeforeItsFirstStep) {
   const SolvedScene run = SolvedScene::of_file("struck_beam", {"solver.budget=1e-9"});

@@ -80,7 +80,9 @@ TEST(CouplingBlock, CutInTwo) {
     std::printf("\n");
   }
   std::printf("%-36s deflection at 2, 3, 4 cells a metre, outside of the two blocks in one piece\n", "");
+  int place = 0;
   for (const Cut& c : cuts) {
+    if (place++ % 2 == 1 && !full_size()) continue;
     std::printf("%-36s", c.name);
     double off = 0;
     for (const int n : cells) {

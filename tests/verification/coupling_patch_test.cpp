@@ -1,4 +1,5 @@
 // Uniform strains across the interface of two coupled bodies.
+#include "tests/support/cases.hpp"
 #include "tests/support/coupled_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -147,7 +148,9 @@ TEST(CouplingPatch, UniformStrains) {
       {"scattered embedded in tetrahedra", Kind::tetrahedra, Kind::scattered, 3, 3, "", b_in_a, "b"},
   };
   std::printf("%-36s %12s %12s %12s\n", "error over the displacement", "across", "along", "all round");
+  int place = 0;
   for (const Pair& p : pairs) {
+    if (place++ % 2 == 1 && !full_size()) continue;
     const double across = stretched(p, 0), along = stretched(p, 2);
     std::printf("%-36s %12.1e %12.1e", p.name, across, along);
     const bool exact =

@@ -1,6 +1,7 @@
 // Finite elements against manufactured solutions: order of convergence of the displacement.
 #include "core/run/drivers.hpp"
 #include "fem/quadrature.hpp"
+#include "tests/support/cases.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
 #include <gtest/gtest.h>
@@ -238,13 +239,20 @@ constexpr ElementShape kLinear[] = {ElementShape::tet4, ElementShape::hex8};
 constexpr ElementShape kQuadratic[] = {ElementShape::tet10, ElementShape::hex20};
 
 // Theory: order 2 of linear and 3 of quadratic elements; coarse meshes miss it by a few hundredths.
+/// A mapped mesh has all that a regular one has: there one law will do, unless tests run in full size.
+bool shows_something_new(Mesh mesh, ElasticLaw law) {
+  return mesh != Mesh::regular || law == ElasticLaw::st_venant_kirchhoff || test::full_size();
+}
+
 TEST(Manufactured, LinearElementsAreOfSecondOrder) {
   print_header();
   for (const ElementShape shape : kLinear)
     for (const Mesh mesh : {Mesh::regular, Mesh::mapped})
       for (const ElasticLaw law :
            {ElasticLaw::linear, ElasticLaw::corotational, ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean})
-        EXPECT_GT(order({shape, mesh, law}, {4, 8}), 1.9);
+        if (shows_something_new(mesh, law)) {
+          EXPECT_GT(order({shape, mesh, law}, {4, 8}), 1.9);
+        }
 }
 
 /// Cells along an edge from which on quadratic elements show their order: two mirrored cells of tetrahedra are too few.
@@ -257,7 +265,9 @@ TEST(Manufactured, QuadraticElementsAreOfThirdOrder) {
   for (const ElementShape shape : kQuadratic)
     for (const Mesh mesh : {Mesh::regular, Mesh::mapped})
       for (const ElasticLaw law : {ElasticLaw::linear, ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean})
-        EXPECT_GT(order({shape, mesh, law}, coarse(shape)), 2.8);
+        if (shows_something_new(mesh, law)) {
+          EXPECT_GT(order({shape, mesh, law}, coarse(shape)), 2.8);
+        }
 }
 
 TEST(Manufactured, OrdersHoldOnIrregularMeshes) {

@@ -161,7 +161,7 @@ TEST(ShellPlates, ExplicitAgreesWithImplicit) {
   EXPECT_GT(limit, 0.4 * size / speed);
   const int steps = static_cast<int>(std::ceil(0.4 / (0.9 * limit)));
   State fast = State::at_rest(b.model), slow = fast;
-  EXPECT_EQ(run_explicit(system, fast, kAlways, {0.4 / steps, steps}, {}).status, RunStatus::converged);
+  EXPECT_EQ(run_explicit(system, fast, kAlways, {0.4 / steps, steps, {}}, {}).status, RunStatus::converged);
   EXPECT_EQ(run_implicit(system, slow, kAlways, settings, {TimeScheme::newmark, 2e-3, 200}, {}).status,
             RunStatus::converged);
   const double u = fast.u[at(centre)][2], v = slow.u[at(centre)][2];
