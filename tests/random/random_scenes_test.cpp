@@ -167,7 +167,11 @@ TEST_P(RandomScenes, KeepTheirInvariants) {
   const char* first = std::getenv("FASCIA_FIRST_SEED");
   for (int i = GetParam(); i < count; i += kShares) {
     const auto seed = static_cast<std::uint64_t>((first != nullptr ? std::atoi(first) : 1) + i);
-    if (first != nullptr || count >= kMany || std::ranges::find(kLong, seed) == std::end(kLong)) examine(seed, tally);
+    if (first == nullptr && count < kMany && std::ranges::find(kLong, seed) != std::end(kLong)) {
+      std::printf("seed %d: among many cases only\n", static_cast<int>(seed));
+      continue;
+    }
+    examine(seed, tally);
   }
   tally.print();
 }

@@ -34,6 +34,7 @@ struct Cut {
   Kind left, right;
   std::string share;     ///< of the right half
   std::string coupling;  ///< further text
+  bool always = true;    ///< not in full size alone
 };
 
 Vector cut(const Cut& c, int n) {
@@ -53,20 +54,20 @@ TEST(CouplingBlock, CutInTwo) {
   const std::string a_in_b = coupling("join", "embed", "a", plane(1), "to=\"b\"");
   const std::string b_in_a = coupling("join", "embed", "b", plane(1), "to=\"a\"");
   const Cut cuts[] = {
-      {"grid shares grid", Kind::grid, Kind::grid, face, ""},
+      {"grid shares grid", Kind::grid, Kind::grid, face, "", false},
       {"hexahedra embedded in hexahedra", Kind::hexahedra, Kind::hexahedra, "", b_in_a},
       {"scattered shares grid", Kind::grid, Kind::scattered, face, ""},
       {"scattered shares scattered", Kind::scattered, Kind::scattered, face, ""},
       {"grid shares tetrahedra", Kind::tetrahedra, Kind::grid, face, ""},
-      {"grid shares tetrahedra, still", Kind::tetrahedra, Kind::grid, still, ""},
-      {"scattered shares tetrahedra", Kind::tetrahedra, Kind::scattered, face, ""},
+      {"grid shares tetrahedra, still", Kind::tetrahedra, Kind::grid, still, "", false},
+      {"scattered shares tetrahedra", Kind::tetrahedra, Kind::scattered, face, "", false},
       {"scattered shares tetrahedra, still", Kind::tetrahedra, Kind::scattered, still, ""},
-      {"tetrahedra embedded in grid", Kind::tetrahedra, Kind::grid, "", a_in_b},
+      {"tetrahedra embedded in grid", Kind::tetrahedra, Kind::grid, "", a_in_b, false},
       {"tetrahedra embedded in scattered", Kind::tetrahedra, Kind::scattered, "", a_in_b},
       {"grid embedded in tetrahedra", Kind::tetrahedra, Kind::grid, "", b_in_a},
-      {"scattered embedded in tetrahedra", Kind::tetrahedra, Kind::scattered, "", b_in_a},
-      {"tetrahedra embedded in hexahedra", Kind::tetrahedra, Kind::hexahedra, "", a_in_b},
-      {"hexahedra embedded in tetrahedra", Kind::tetrahedra, Kind::hexahedra, "", b_in_a},
+      {"scattered embedded in tetrahedra", Kind::tetrahedra, Kind::scattered, "", b_in_a, false},
+      {"tetrahedra embedded in hexahedra", Kind::tetrahedra, Kind::hexahedra, "", a_in_b, false},
+      {"hexahedra embedded in tetrahedra", Kind::tetrahedra, Kind::hexahedra, "", b_in_a, false},
   };
   const std::vector<int> cells = full_size() ? std::vector{2, 3, 4} : std::vector{2, 3};
   std::map<std::pair<Kind, int>, Vector> known;
@@ -80,9 +81,8 @@ TEST(CouplingBlock, CutInTwo) {
     std::printf("\n");
   }
   std::printf("%-36s deflection at 2, 3, 4 cells a metre, outside of the two blocks in one piece\n", "");
-  int place = 0;
   for (const Cut& c : cuts) {
-    if (place++ % 2 == 1 && !full_size()) continue;
+    if (!c.always && !full_size()) continue;
     std::printf("%-36s", c.name);
     double off = 0;
     for (const int n : cells) {

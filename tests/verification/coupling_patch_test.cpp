@@ -29,6 +29,7 @@ struct Pair {
   int left_cells, right_cells;
   std::string share, coupling;
   std::string follower;  ///< the body whose nodes on the face depend on the other one
+  bool always = true;    ///< not in full size alone
 };
 
 std::string bodies(const Pair& p) {
@@ -126,31 +127,30 @@ TEST(CouplingPatch, UniformStrains) {
   const std::string b_in_a = coupling("join", "embed", "b", kFace, "to=\"a\"");
   const Pair pairs[] = {
       {"grid shares grid", Kind::grid, Kind::grid, 2, 2, face, "", ""},
-      {"grid shares tetrahedra", Kind::tetrahedra, Kind::grid, 2, 2, face, "", ""},
+      {"grid shares tetrahedra", Kind::tetrahedra, Kind::grid, 2, 2, face, "", "", false},
       {"grid shares tetrahedra, still", Kind::tetrahedra, Kind::grid, 2, 2, still, "", ""},
-      {"grid shares hexahedra, still", Kind::hexahedra, Kind::grid, 2, 2, still, "", ""},
+      {"grid shares hexahedra, still", Kind::hexahedra, Kind::grid, 2, 2, still, "", "", false},
       {"tetrahedra embedded in grid", Kind::tetrahedra, Kind::grid, 2, 2, "", a_in_b, "a"},
-      {"grid embedded in tetrahedra", Kind::tetrahedra, Kind::grid, 2, 2, "", b_in_a, "b"},
+      {"grid embedded in tetrahedra", Kind::tetrahedra, Kind::grid, 2, 2, "", b_in_a, "b", false},
       {"grid embedded in hexahedra", Kind::hexahedra, Kind::grid, 2, 2, "", b_in_a, "b"},
       {"hexahedra embedded in tetrahedra", Kind::tetrahedra, Kind::hexahedra, 2, 2, "", b_in_a, "b"},
-      {"tetrahedra embedded in hexahedra", Kind::tetrahedra, Kind::hexahedra, 2, 2, "", a_in_b, "a"},
+      {"tetrahedra embedded in hexahedra", Kind::tetrahedra, Kind::hexahedra, 2, 2, "", a_in_b, "a", false},
       {"hexahedra 4 in hexahedra 2", Kind::hexahedra, Kind::hexahedra, 2, 4, "", b_in_a, "b"},
-      {"tetrahedra 4 in tetrahedra 2", Kind::tetrahedra, Kind::tetrahedra, 2, 4, "", b_in_a, "b"},
-      {"tetrahedra 4 in grid 2", Kind::grid, Kind::tetrahedra, 2, 4, "", b_in_a, "b"},
+      {"tetrahedra 4 in tetrahedra 2", Kind::tetrahedra, Kind::tetrahedra, 2, 4, "", b_in_a, "b", false},
+      {"tetrahedra 4 in grid 2", Kind::grid, Kind::tetrahedra, 2, 4, "", b_in_a, "b", false},
       {"grid 4 in grid 2", Kind::grid, Kind::grid, 2, 4, "", b_in_a, "b"},
       {"grid 4 in hexahedra 2", Kind::hexahedra, Kind::grid, 2, 4, "", b_in_a, "b"},
-      {"hexahedra 4 in tetrahedra 2", Kind::tetrahedra, Kind::hexahedra, 2, 4, "", b_in_a, "b"},
-      {"hexahedra 3 in hexahedra 2", Kind::hexahedra, Kind::hexahedra, 2, 3, "", b_in_a, "b"},
+      {"hexahedra 4 in tetrahedra 2", Kind::tetrahedra, Kind::hexahedra, 2, 4, "", b_in_a, "b", false},
+      {"hexahedra 3 in hexahedra 2", Kind::hexahedra, Kind::hexahedra, 2, 3, "", b_in_a, "b", false},
       {"hexahedra 2 in hexahedra 4", Kind::hexahedra, Kind::hexahedra, 4, 2, "", b_in_a, "b"},
-      {"scattered shares grid", Kind::grid, Kind::scattered, 3, 3, face, "", ""},
-      {"scattered shares tetrahedra", Kind::tetrahedra, Kind::scattered, 3, 3, face, "", ""},
+      {"scattered shares grid", Kind::grid, Kind::scattered, 3, 3, face, "", "", false},
+      {"scattered shares tetrahedra", Kind::tetrahedra, Kind::scattered, 3, 3, face, "", "", false},
       {"scattered shares tetrahedra, still", Kind::tetrahedra, Kind::scattered, 3, 3, still, "", ""},
       {"scattered embedded in tetrahedra", Kind::tetrahedra, Kind::scattered, 3, 3, "", b_in_a, "b"},
   };
   std::printf("%-36s %12s %12s %12s\n", "error over the displacement", "across", "along", "all round");
-  int place = 0;
   for (const Pair& p : pairs) {
-    if (place++ % 2 == 1 && !full_size()) continue;
+    if (!p.always && !full_size()) continue;
     const double across = stretched(p, 0), along = stretched(p, 2);
     std::printf("%-36s %12.1e %12.1e", p.name, across, along);
     const bool exact =

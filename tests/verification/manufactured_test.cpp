@@ -238,12 +238,12 @@ double order(const Problem& problem, const std::vector<int>& cells) {
 constexpr ElementShape kLinear[] = {ElementShape::tet4, ElementShape::hex8};
 constexpr ElementShape kQuadratic[] = {ElementShape::tet10, ElementShape::hex20};
 
-// Theory: order 2 of linear and 3 of quadratic elements; coarse meshes miss it by a few hundredths.
 /// A mapped mesh has all that a regular one has: there one law will do, unless tests run in full size.
 bool shows_something_new(Mesh mesh, ElasticLaw law) {
   return mesh != Mesh::regular || law == ElasticLaw::st_venant_kirchhoff || test::full_size();
 }
 
+// Theory: order 2 of linear and 3 of quadratic elements; coarse meshes miss it by a few hundredths.
 TEST(Manufactured, LinearElementsAreOfSecondOrder) {
   print_header();
   for (const ElementShape shape : kLinear)

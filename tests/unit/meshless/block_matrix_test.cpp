@@ -23,13 +23,13 @@ std::string name_of(Nodes nodes) {
 Model model_of(Nodes nodes) {
   BlockOptions o;
   if (nodes != Nodes::several) {
-    o.grid = nodes == Nodes::vertices ? std::array{20, 20, 20} : std::array{13, 12, 12};
+    o.grid = nodes == Nodes::vertices ? std::array{17, 17, 17} : std::array{11, 11, 11};
     return nodes == Nodes::vertices ? vertex_block(o) : std::move(block(o).model);
   }
   SharedModel s;
   HostOptions host;
   host.kind = HostKind::turning;
-  host.cells = 9;
+  host.cells = 7;
   add_host(s, host);
   o.affine = true;
   add_cloud(s, unit_scatter(SpacedChoice{0.25, 1}), o);

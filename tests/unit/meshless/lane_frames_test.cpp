@@ -67,6 +67,7 @@ SharedModel built(const Case& c) {
     add_host(s, host);
   }
   ScatterSpec scatter = unit_scatter(SpacedChoice{0.3, 1});
+  scatter.parts.solid->surface = box_surface({}, {{1, 1, 1}}, 2, 2, 2);
   scatter.weights = c.weights;
   scatter.neighbours = c.neighbours;
   add_cloud(s, scatter, c.block);
