@@ -68,6 +68,7 @@ SharedModel built(const Case& c) {
   }
   ScatterSpec scatter = unit_scatter(SpacedChoice{0.3, 1});
   scatter.parts.solid->surface = box_surface({}, {{1, 1, 1}}, 2, 2, 2);
+  scatter.points = SpacedChoice{0.17, 1};
   scatter.weights = c.weights;
   scatter.neighbours = c.neighbours;
   add_cloud(s, scatter, c.block);
