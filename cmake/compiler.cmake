@@ -67,8 +67,8 @@ if(FASCIA_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # Compiles the files of a target in batches of up to eight of one folder: the headers of scenes, JSON and VTK take longer
-# to read than the files themselves. For the program; the library's files are compiled one by one, since they are the
-# ones that are edited and measured. cmake/tidy.sh looks at each file by itself all the same.
+# to read than the files themselves. For the program; in the library, whose files take longer to optimise than to read, one
+# that changes is compiled alone. cmake/tidy.sh looks at each file by itself all the same.
 function(fascia_compile_in_batches target)
   get_target_property(sources ${target} SOURCES)
   get_target_property(base ${target} SOURCE_DIR)
