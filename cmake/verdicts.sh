@@ -43,7 +43,7 @@ listed_tests() {
 test_keys() {
   local build=build/$1 program machine started all few inputs
   machine="$(nproc) $(nvidia-smi -L 2>/dev/null)"
-  started=$(cat "$build/fascia" "$build"/libfascia*.so "$build"/fascia-* 2>/dev/null | sha256sum)
+  started=$(cd "$build" && cat fascia fascia.bash fascia-picture fascia-*.so libfascia*.so 2>/dev/null | sha256sum)
   all=$(inputs_key) few=$(inputs_key '^(check|tests/.*CMakeLists\.txt)$')
   awk '$3 != "-" { print $3 }' "$2" | sort -u | grep -vx architecture_test | while read -r program; do
     inputs=$few

@@ -15,7 +15,7 @@ namespace {
 /// A frame as it moves the points of a batch; nothing at first.
 struct PointFrame {
   FrameKind kind;
-  LaneArray<22> rows;  ///< w, g (3), A (9): B of an affine frame, else Q B; Q (9) = I + D
+  LaneArray<22> rows;  ///< w, g (3), A (9): B of an affine frame, else Q B; w Q (9) with Q = I + D
 
   void set(FrameKind k, const double* shape, bool carries, int batch, const Mat3<Lanes>& Q) {
     kind = k;
@@ -28,14 +28,14 @@ struct PointFrame {
       rows.set(1 + i, g[i]);
       for (int j = 0; j < 3; ++j) {
         rows.set(4 + 3 * i + j, A(i, j));
-        rows.set(13 + 3 * i + j, Q(i, j));
+        rows.set(13 + 3 * i + j, Q(i, j) * row(shape, 0, batch));
       }
     }
   }
   Lanes w() const { return rows[0]; }
   Lanes g(int i) const { return rows[1 + i]; }
   Lanes A(int i, int j) const { return rows[4 + 3 * i + j]; }
-  Lanes Q(int i, int j) const { return rows[13 + 3 * i + j]; }
+  Lanes wQ(int i, int j) const { return rows[13 + 3 * i + j]; }
 
   static Vec3<Lanes> vector(const double* shape, int first, int batch) {
     return {{row(shape, first, batch), row(shape, first + 1, batch), row(shape, first + 2, batch)}};
@@ -54,8 +54,8 @@ PointMotion<Lanes> unit_motion(const PointFrame& f, int dof) {
       d.H(next, j) = -f.A(last, j);
       d.H(last, j) = f.A(next, j);
       if constexpr (Blend) {
-        d.Dbar(next, j) = -f.Q(last, j) * f.w();
-        d.Dbar(last, j) = f.Q(next, j) * f.w();
+        d.Dbar(next, j) = -f.wQ(last, j);
+        d.Dbar(last, j) = f.wQ(next, j);
       }
     }
   } else {
@@ -75,7 +75,7 @@ inline void put_column(const PointFrame& f, const LaneMatrix& dP, const LaneMatr
   const auto moment = [&](int i, int j) {
     Lanes sum = dP(i, 0) * f.A(j, 0) + dP(i, 1) * f.A(j, 1) + dP(i, 2) * f.A(j, 2);
     if constexpr (Blend && Frame == FrameKind::rigid)
-      sum += (dY(i, 0) * f.Q(j, 0) + dY(i, 1) * f.Q(j, 1) + dY(i, 2) * f.Q(j, 2)) * f.w();
+      sum += dY(i, 0) * f.wQ(j, 0) + dY(i, 1) * f.wQ(j, 1) + dY(i, 2) * f.wQ(j, 2);
     else if constexpr (Blend)
       sum += dY(i, j) * f.w();
     return sum;
@@ -102,6 +102,12 @@ void with_frame(FrameKind kind, const Act& act) {
     case FrameKind::affine:
       return act.template operator()<FrameKind::affine>();
   }
+}
+
+/// Has the processor fetch what will be added to: blocks of a large matrix are in no cache.
+inline void prefetch(const double* numbers, int count) {
+  constexpr int kLine = 8;
+  for (int k = 0; k < count; k += kLine) __builtin_prefetch(numbers + k, 1);
 }
 
 /// Adds the sums over lanes of so many batches.
@@ -174,7 +180,11 @@ template <PointKind Kind>
   const auto nodes = set_.nodes(group);
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
   const bool upper = matrix_out.fills_upper();
-  const int columns = set_.dofs.size(nodes[at(b)]);
+  const int columns = set_.dofs.size(nodes[at(b)]), end = entries == Entries::all ? n : b + 1;
+  const int* pair = pairs_.data() + pair_begin_[at(first_slot + b)];
+  for (int a = b, k = 0; a < end; ++a)
+    if (together(first_slot + a, first_slot + b))
+      prefetch(matrix_out.block(pair[k++]), set_.dofs.size(nodes[at(a)]) * columns);
   LaneMatrix dP[kBatches][kMostDofs], dY[kBatches][kBlend ? kMostDofs : 1];
   for (int batch = 0; batch < kBatches; ++batch) {
     const auto m = material<Kind>(set_, group, batch, state, targets_);
@@ -187,8 +197,7 @@ template <PointKind Kind>
       if constexpr (kBlend) dY[batch][k].set(d.dY * m.volume);
     }
   }
-  const int* pair = pairs_.data() + pair_begin_[at(first_slot + b)];
-  for (int a = b; a < (entries == Entries::all ? n : b + 1); ++a) {
+  for (int a = b; a < end; ++a) {
     if (!together(first_slot + a, first_slot + b)) continue;
     const int rows = set_.dofs.size(nodes[at(a)]), stride = (upper ? 1 : columns) * kBatchWidth;
     LaneArray<kMostDofs * kMostDofs> block;
