@@ -18,6 +18,12 @@ add_library(md INTERFACE)
 target_include_directories(md SYSTEM INTERFACE ${MD_INCLUDE})
 target_link_libraries(md INTERFACE ${MD_LIBRARY})
 
+find_path(DEFLATE_INCLUDE libdeflate.h REQUIRED)
+find_library(DEFLATE_LIBRARY deflate REQUIRED)
+add_library(deflate INTERFACE)
+target_include_directories(deflate SYSTEM INTERFACE ${DEFLATE_INCLUDE})
+target_link_libraries(deflate INTERFACE ${DEFLATE_LIBRARY})
+
 find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
 add_library(nanoflann INTERFACE)
 target_include_directories(nanoflann SYSTEM INTERFACE ${NANOFLANN_INCLUDE})

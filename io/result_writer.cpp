@@ -2,6 +2,7 @@
 
 #include "core/base/errors.hpp"
 #include "io/files.hpp"
+#include "io/vtk_deflate.hpp"
 #include "io/vtk_errors.hpp"
 #include "io/vtk_threads.hpp"
 
@@ -20,7 +21,6 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
-#include <vtkZLibDataCompressor.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -190,10 +190,8 @@ void fill(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   add_fields(grid, mesh);
 }
 
-constexpr int kCompression = 1;
-
 /// Of an array: the writer compresses blocks, of which some are taken as samples, evenly spaced.
-double estimated_size(vtkDataArray& array, vtkZLibDataCompressor& compressor) {
+double estimated_size(vtkDataArray& array, VtkDeflate& compressor) {
   constexpr std::size_t block = 32768, most_samples = 6;  // the writer's block; enough for a few percent
   const std::size_t size =
       static_cast<std::size_t>(array.GetNumberOfValues()) * static_cast<std::size_t>(array.GetDataTypeSize());
@@ -215,8 +213,7 @@ double estimated_size(vtkDataArray& array, vtkZLibDataCompressor& compressor) {
 double estimated_size(const VisualMesh& mesh) {
   vtkNew<vtkUnstructuredGrid> grid;
   fill(*grid, mesh);
-  vtkNew<vtkZLibDataCompressor> compressor;
-  compressor->SetCompressionLevel(kCompression);
+  vtkNew<VtkDeflate> compressor;
   std::vector<vtkDataArray*> arrays{grid->GetPoints()->GetData(), grid->GetCells()->GetConnectivityArray(),
                                     grid->GetCells()->GetOffsetsArray(), grid->GetCellTypesArray()};
   for (vtkFieldData* data :
@@ -239,8 +236,8 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
   writer->SetInputData(grid);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(kCompression);
+  const vtkNew<VtkDeflate> compressor;
+  writer->SetCompressor(compressor);
   writer->WriteToOutputStringOn();
   int written = 0;
   without_vtk_threads([&] { written = writer->Write(); });

@@ -35,7 +35,7 @@ struct PointFrame {
   Lanes w() const { return rows[0]; }
   Lanes g(int i) const { return rows[1 + i]; }
   Lanes A(int i, int j) const { return rows[4 + 3 * i + j]; }
-  Lanes wQ(int i, int j) const { return rows[13 + 3 * i + j]; }
+  Lanes Q_weighted(int i, int j) const { return rows[13 + 3 * i + j]; }
 
   static Vec3<Lanes> vector(const double* shape, int first, int batch) {
     return {{row(shape, first, batch), row(shape, first + 1, batch), row(shape, first + 2, batch)}};
@@ -54,8 +54,8 @@ PointMotion<Lanes> unit_motion(const PointFrame& f, int dof) {
       d.H(next, j) = -f.A(last, j);
       d.H(last, j) = f.A(next, j);
       if constexpr (Blend) {
-        d.Dbar(next, j) = -f.wQ(last, j);
-        d.Dbar(last, j) = f.wQ(next, j);
+        d.Dbar(next, j) = -f.Q_weighted(last, j);
+        d.Dbar(last, j) = f.Q_weighted(next, j);
       }
     }
   } else {
@@ -75,7 +75,7 @@ inline void put_column(const PointFrame& f, const LaneMatrix& dP, const LaneMatr
   const auto moment = [&](int i, int j) {
     Lanes sum = dP(i, 0) * f.A(j, 0) + dP(i, 1) * f.A(j, 1) + dP(i, 2) * f.A(j, 2);
     if constexpr (Blend && Frame == FrameKind::rigid)
-      sum += dY(i, 0) * f.wQ(j, 0) + dY(i, 1) * f.wQ(j, 1) + dY(i, 2) * f.wQ(j, 2);
+      sum += dY(i, 0) * f.Q_weighted(j, 0) + dY(i, 1) * f.Q_weighted(j, 1) + dY(i, 2) * f.Q_weighted(j, 2);
     else if constexpr (Blend)
       sum += dY(i, j) * f.w();
     return sum;

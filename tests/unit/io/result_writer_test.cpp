@@ -3,6 +3,7 @@
 #include "core/geometry/primitives.hpp"
 #include "io/files.hpp"
 #include "io/mesh/mesh_reader.hpp"
+#include "io/result_reader.hpp"
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <vtkCellData.h>
@@ -15,6 +16,8 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 
 namespace fascia::io::result_writer_test {
@@ -86,6 +89,28 @@ TEST(WriteVtu, reads_back) {
   ASSERT_NE(part, nullptr);
   for (std::size_t c = 0; c < mesh.part.size(); ++c)
     EXPECT_EQ(part->GetComponent(static_cast<vtkIdType>(c), 0), mesh.part[c]);
+}
+
+TEST(WriteVtu, of_several_blocks_of_noise_reads_back) {
+  const TemporaryDirectory directory;
+  VisualMesh mesh = sample(40);  // 9,602 points: fields of 75 and 225 kB, compressed in blocks of 32
+  std::uint64_t state = 1;
+  for (FieldArray& field : mesh.point_fields)
+    for (double& value : field.values) {
+      state = state * 6364136223846793005U + 1442695040888963407U;
+      value = static_cast<double>(state >> 11U) * 0x1.0p-53 - 0.5;
+    }
+  const auto file = directory.path() / "a.vtu";
+  write_vtu(file, mesh);
+  EXPECT_NE(content(file).find("compressor=\"vtkZLibDataCompressor\""), std::string::npos);
+  const VisualMesh read = read_vtu(file);
+  EXPECT_EQ(read.points, mesh.points);
+  for (const FieldArray& field : mesh.point_fields) {
+    const auto same = std::find_if(read.point_fields.begin(), read.point_fields.end(),
+                                   [&](const FieldArray& f) { return f.name == field.name; });
+    ASSERT_NE(same, read.point_fields.end());
+    EXPECT_EQ(same->values, field.values);
+  }
 }
 
 TEST(WriteVtu, is_deterministic) {
