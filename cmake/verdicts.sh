@@ -1,15 +1,21 @@
 # shellcheck shell=bash
 # What passed is not run again as it is: the memory of ./check, in the user's cache directory, for every clone. Sourced,
-# and called in the folder of the project. An empty file stands for each program that passed; its name is a digest
-# of all that decides what the program comes to.
+# and called in the folder of the project. An empty file stands for each program that passed; its name is a digest of
+# what the program comes to: itself, the libraries of the system that it loads, meshes beside the checkout, and what
+# callers add.
 
 verdicts=${XDG_CACHE_HOME:-${HOME:-/tmp}/.cache}/fascia/passed
 
-# The digest for program $1, with the libraries of the system that it loads, and what its callers say in $2 and further.
+# Lines that tell the system's libraries that programs load.
+system_libraries() {
+  ldd "$@" 2>/dev/null | awk '$3 ~ /^\// { print $3 }' | sort -u | xargs -r stat -L --printf '%n %s %Y\n'
+}
+
+# The digest for program $1, with what is said in $2 and further.
 verdict_key() {
   { sha256sum <"$1"
     find -L ../shared/meshes -type f -printf '%f %s %T@\n' 2>/dev/null | sort
-    ldd "$1" | awk '$3 ~ /^\// { print $3 }' | xargs -r stat -L --printf '%n %s %Y\n'
+    system_libraries "$1"
     echo "${@:2}"; } | sha256sum | cut -d' ' -f1
 }
 
@@ -23,62 +29,108 @@ remember_passed() {
 
 forget_passed() { rm -rf "$verdicts"; }
 
-# The digest of the project's files that are no C++: of all of them, or of those that the patterns of grep name. C++ is
-# in the programs; only architecture_test reads it, which is never remembered.
-inputs_key() {
-  { git ls-files -co --exclude-standard 2>/dev/null || find -- * .[!.]* -path build -prune -o -type f -print; } | grep -vE '\.([ch]pp|cuh?)$' | grep -E -- "${1:-.}" | LC_ALL=C sort |
-    xargs -d '\n' sha256sum 2>/dev/null | sha256sum | cut -d' ' -f1
+# The project's files that are no C++. C++ is in the programs; only architecture_test reads it, which is never remembered.
+input_files() {
+  { if [ -e .git ] && command -v git >/dev/null; then
+      git -c core.quotePath=false ls-files -co --exclude-standard
+    else
+      find -- * .[!.]* -path build -prune -o -type f -print
+    fi; } | grep -vE '\.([ch]pp|cuh?)$' | LC_ALL=C sort
 }
 
-# Lines "NUMBER NAME PROGRAM" of the tests of the project's build/$1 that are not slow; PROGRAM is "-" where no test program of the
-# build runs them.
+# The digest of those of them whose names the pattern $1 is found in.
+inputs_key() { input_files | grep -E -- "$1" | xargs -d '\n' sha256sum 2>/dev/null | sha256sum | cut -d' ' -f1; }
+
+# What tests depend on beside files: the machine, programs that some call, variables that change how they run.
+surroundings() {
+  nproc
+  grep -m 1 '^model name' /proc/cpuinfo
+  nvidia-smi --query-gpu=uuid,driver_version --format=csv
+  type -P valgrind nm xvfb-run xauth
+  env | grep -E '^(FASCIA|GTEST|OMP|OPENBLAS|CUDA|DISPLAY)' | LC_ALL=C sort
+} 2>/dev/null
+
+# Lines "NUMBER LABEL PROGRAM" of all tests of build/$1; PROGRAM is "-" where no test program of the build runs them.
+# Fails where ctest does, or tells of more tests.
 listed_tests() {
-  ctest --test-dir "build/$1" -LE slow -N -V 2>/dev/null | awk -v folder="$PWD/build/$1/" '
-    / Test command: / { program = $4; if (!sub("^" folder, "", program) || $0 !~ /--gtest_filter=/) program = "-" }
-    /^ +Test +#[0-9]+: / { sub(/^ +Test +#/, ""); number = $1; sub(/:$/, "", number); print number, $2, program }'
+  local text
+  text=$(ctest --test-dir "build/$1" -N -V 2>/dev/null) || return 1
+  FOLDER="$PWD/build/$1/" awk '
+    / Test command: / {
+      program = "-"
+      start = index($0, ENVIRON["FOLDER"])
+      if (start && / "--gtest_filter=/) { program = substr($0, start + length(ENVIRON["FOLDER"])); sub(/ "--gtest_filter=.*/, "", program) }
+      gsub(/[" ]/, "_", program)
+      label = "-"
+    }
+    /^Labels: / { label = $2 }
+    /^ +Test +#[0-9]+: / { sub(/^ +Test +#/, ""); sub(/:.*/, ""); print $0, label, program; ++tests }
+    /^Total Tests: / { total = $3 }
+    END { exit tests == total && tests > 0 ? 0 : 1 }' <<<"$text"
 }
 
-# Lines "PROGRAM KEY" for the test programs among the lines of listed_tests in file $2. Those that start fascia (a list
-# of the build) depend on it and on what it loads.
+# Lines "PROGRAM KEY" for the test programs among the lines of listed_tests in file $2. One that
+# starts others, as a text of tests/support/run_program.hpp in it tells, depends on fascia and on what that loads.
 test_keys() {
-  local build=build/$1 program machine started all few inputs
-  machine="$(nproc) $(nvidia-smi -L 2>/dev/null)"
-  started=$(cd "$build" && cat fascia fascia.bash fascia-picture fascia-*.so libfascia*.so 2>/dev/null | sha256sum)
-  all=$(inputs_key) few=$(inputs_key '^(check|tests/.*CMakeLists\.txt)$')
-  awk '$3 != "-" { print $3 }' "$2" | sort -u | grep -vx architecture_test | while read -r program; do
+  local build=build/$1 program here started all few inputs
+  here=$(surroundings)
+  started=$(cd "$build" && { cat fascia fascia.bash fascia-picture fascia-*.so libfascia*.so
+    system_libraries fascia fascia-picture ./*.so; } 2>/dev/null | sha256sum)
+  all=$(inputs_key .) few=$(inputs_key '^(check|cmake/verdicts\.sh|tests/.*CMakeLists\.txt)$')
+  awk '$3 != "-" { print $3 }' "$2" | LC_ALL=C sort -u | grep -vx architecture_test | while read -r program; do
     inputs=$few
     if grep -q FASCIA_SOURCE_DIR "$build/$program"; then inputs=$all; fi
-    if grep -qx "$program" "$build/tests/starting.txt"; then inputs="$all $started"; fi
-    echo "$program $(verdict_key "$build/$program" "$inputs" "$machine")"
+    if grep -q 'run_program: cannot start' "$build/$program"; then inputs="$all $started"; fi
+    if grep -q FASCIA_DEVICE_MODULE "$build/$program"; then inputs+=$(cat "$build"/fascia-cuda*.so 2>/dev/null | sha256sum); fi
+    echo "$program $(verdict_key "$build/$program" "$inputs" "$here")"
   done
 }
 
-# Programs of the lines of listed_tests in file $1 all of whose tests passed, or were skipped, as ctest's log $2 tells.
-passed_programs() {
-  awk 'FILENAME == ARGV[1] { if (/ Test +#[0-9]+: / && / (Passed|\*\*\*Skipped) +[0-9.]+ sec$/) { sub(/.* Test +#[0-9]+: /, ""); passed[$1] = 1 } next }
-    $3 != "-" { ran[$3] = 1; if (!($2 in passed)) failed[$3] = 1 }
-    END { for (program in ran) if (!(program in failed)) print program }' "$2" "$1"
-}
-
 # Writes to $2/chosen, for ctest's option -I, the numbers of the tests of build/$1 that are to be run, and says how many
-# passed before.
+# passed before. Fails where that is not known.
 choose_tests() {
   local program key
-  listed_tests "$1" >"$2/listed"
+  listed_tests "$1" >"$2/listed" || return 1
   test_keys "$1" "$2/listed" >"$2/keys"
   while read -r program key; do
     if passed_before "$key"; then echo "$program"; fi
   done <"$2/keys" >"$2/before"
-  awk 'FILENAME == ARGV[1] { before[$1] = 1; next } !($3 in before) { text = text (text == "" ? $1 "," $1 ",1," : ",") $1 } END { print text }' \
-    "$2/before" "$2/listed" >"$2/chosen"
-  awk 'FILENAME == ARGV[1] { before[$1] = 1; ++programs; next } $3 in before { ++tests }
+  awk 'FILENAME == ARGV[1] { before[$1] = 1; next }
+    $2 != "slow" && !($3 in before) { text = text (text == "" ? $1 "," $1 ",1," : ",") $1 }
+    END { if (text == "") exit 1; print text }' "$2/before" "$2/listed" >"$2/chosen" || return 1
+  awk 'FILENAME == ARGV[1] { before[$1] = 1; ++programs; next } $2 != "slow" && $3 in before { ++tests }
     END { if (tests) printf "check: %d tests of %d programs passed before as they are (--all runs them)\n", tests, programs }' \
     "$2/before" "$2/listed"
 }
 
-# Remembers the programs all of whose tests passed in the run that choose_tests prepared.
+# Programs of the file $1/listed by what ctest's log $1/tests.log says of their tests that are not slow: $2 "passed",
+# all of them, where tests that found no GPU or no mesh may be skipped; or "failed", any of all.
+programs_that() {
+  WANTED=$2 awk 'FILENAME == ARGV[1] {
+      if (match($0, /^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: /)) {
+        number = substr($0, 1, RLENGTH); sub(/.*#/, "", number); sub(/:.*/, "", number)
+        state[number] = / Passed +[0-9.]+ sec *$/ || /\*\*\*Skipped +[0-9.]+ sec *$/ ? "passed" : "failed"
+      }
+      next
+    }
+    $3 != "-" && ($2 != "slow" || $1 in state) { met[$3] = 1; if (state[$1] != "passed") other[$3] = 1; if (state[$1] == "failed") failed[$3] = 1 }
+    END { for (program in met) if (ENVIRON["WANTED"] == "passed" ? !(program in other) : program in failed) print program }' \
+    "$1/tests.log" "$1/listed" | LC_ALL=C sort
+}
+
+# Remembers the programs all of whose tests passed in the run that choose_tests prepared, as they are still.
 remember_tests() {
   local keys
-  mapfile -t keys < <(join <(passed_programs "$1/listed" "$1/tests.log" | sort) <(sort "$1/keys") | cut -d' ' -f2)
+  test_keys "$1" "$2/listed" >"$2/keys.after"
+  mapfile -t keys < <(LC_ALL=C join <(programs_that "$2" passed) <(LC_ALL=C sort "$2/keys") | grep -xFf - "$2/keys.after" | cut -d' ' -f2)
   remember_passed "${keys[@]}"
+}
+
+# Forgets the programs of which tests failed in a run of which nothing is remembered.
+forget_failed() {
+  local key
+  listed_tests "$1" >"$2/listed" || return 0
+  test_keys "$1" "$2/listed" >"$2/keys"
+  LC_ALL=C join <(programs_that "$2" failed) <(LC_ALL=C sort "$2/keys") | cut -d' ' -f2 |
+    while read -r key; do rm -f "$verdicts/$key"; done
 }

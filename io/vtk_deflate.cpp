@@ -16,14 +16,16 @@ constexpr int kFastest = 1;
 VtkDeflate* VtkDeflate::New() {
   auto* made = new VtkDeflate;
   made->InitializeObjectBase();
+  if (!made->compressor_) {
+    made->Delete();
+    throw std::bad_alloc();
+  }
   return made;
 }
 
 void VtkDeflate::Free::operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
 
-VtkDeflate::VtkDeflate() : compressor_(libdeflate_alloc_compressor(kFastest)) {
-  if (!compressor_) throw std::bad_alloc();
-}
+VtkDeflate::VtkDeflate() : compressor_(libdeflate_alloc_compressor(kFastest)) {}
 
 VtkDeflate::~VtkDeflate() = default;
 

@@ -12,6 +12,7 @@ namespace fascia::io {
 /// VTK's own class, and are read as if that had made them.
 class VtkDeflate : public vtkZLibDataCompressor {
  public:
+  /// @throws std::bad_alloc
   static VtkDeflate* New();  // NOLINT(readability-identifier-naming): VTK's name for it
 
   std::size_t GetMaximumCompressionSpace(std::size_t size) override;

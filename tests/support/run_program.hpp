@@ -99,7 +99,7 @@ inline pid_t start(std::vector<std::string> args, const ProgramOptions& options,
   const int error =
       posix_spawnp(&child, args[0].c_str(), &actions, nullptr, pointers(args).data(), pointers(environment).data());
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error("cannot start " + args[0] + ": " + std::strerror(error));
+  if (error != 0) throw std::runtime_error("run_program: cannot start " + args[0] + ": " + std::strerror(error));
   return child;
 }
 
