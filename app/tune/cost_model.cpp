@@ -57,7 +57,7 @@ double faster(const std::vector<CostSample>& samples, const CostSample& many) {
 void fit_threads_and_steps(const std::vector<CostSample>& samples, const std::string& kind, KindCost& cost) {
   double ratio = 0, count = 0;
   for (const CostSample& s : samples) {
-    if (s.kind != kind) continue;
+    if (s.kind != kind || s.explicit_steps > 0) continue;
     if (s.threads > 1 && !s.dynamics) (s.factorised ? cost.faster_factor : cost.faster_cg) = faster(samples, s);
     if (!s.dynamics || s.threads > 1) continue;
     const LinearMethod method = s.factorised ? LinearMethod::cholesky : LinearMethod::cg;
@@ -75,6 +75,8 @@ std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::s
   int still = 0, waves = 0;
   for (const CostSample& s : samples) {
     if (s.kind != kind || s.threads > 1) continue;
+    if (s.explicit_steps > 0) cost.explicit_point = s.solve / (s.explicit_steps * s.points);
+    if (s.explicit_steps > 0) continue;
     const double n = s.linear / std::max(1.0, s.newton);
     if (!s.factorised) cg.push_back({s.points, s.unknowns * n, iteration_of(s)});
     if (!s.dynamics) setup.push_back({1, s.points, s.setup});
@@ -106,11 +108,17 @@ std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::s
 
 /// Keys of a kind's costs with what they hold.
 std::vector<std::pair<const char*, double KindCost::*>> members() {
-  return {{"point", &KindCost::point},        {"factor", &KindCost::factor},
-          {"exponent", &KindCost::exponent},  {"product", &KindCost::product},
-          {"spread", &KindCost::spread},      {"wave", &KindCost::wave},
-          {"start", &KindCost::start},        {"setup_point", &KindCost::setup_point},
-          {"step", &KindCost::step},          {"faster_factor", &KindCost::faster_factor},
+  return {{"point", &KindCost::point},
+          {"factor", &KindCost::factor},
+          {"exponent", &KindCost::exponent},
+          {"product", &KindCost::product},
+          {"spread", &KindCost::spread},
+          {"wave", &KindCost::wave},
+          {"explicit_point", &KindCost::explicit_point},
+          {"start", &KindCost::start},
+          {"setup_point", &KindCost::setup_point},
+          {"step", &KindCost::step},
+          {"faster_factor", &KindCost::faster_factor},
           {"faster_cg", &KindCost::faster_cg}};
 }
 
@@ -118,7 +126,8 @@ std::vector<std::pair<const char*, double KindCost::*>> members() {
 
 std::string cost_kind(const Body& body) {
   if (is_shell(body)) return "shell";
-  if (body.model == BodyModel::meshless) return body.affine ? "affine" : "frames";
+  if (body.model == BodyModel::meshless)
+    return body.affine ? "affine" : std::holds_alternative<GridFrames>(body.frames) ? "frames" : "scattered";
   return std::string(body.model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra") + (body.order == 2 ? "-2" : "");
 }
 
@@ -194,6 +203,7 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   if (solver.kind == SolverKind::modes || solver.control != StaticControl::load) return std::nullopt;
   const double unknowns = s.model.free_dof_count();
   const bool many = available_processors() > 1 && solver.threads != 1;
+  const bool is_explicit = solver.kind == SolverKind::central_differences;
   double points = 0, setup = 0, most = -1;
   const KindCost* main = nullptr;
   bool linear = true;
@@ -201,16 +211,16 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
     const Body& body = s.scene.bodies[b];
     if (is_carrier(body)) continue;
     const auto cost = costs.kinds.find(cost_kind(body));
-    if (cost == costs.kinds.end()) return std::nullopt;
+    if (cost == costs.kinds.end() || (is_explicit && cost->second.explicit_point == 0)) return std::nullopt;
     const auto count = static_cast<double>(s.bodies[b].body->points().size());
-    points += cost->second.point * count;
+    points += (is_explicit ? cost->second.explicit_point : cost->second.point) * count;
     setup += cost->second.start * (main ? 0 : 1) + cost->second.setup_point * count;
     linear = linear && body.formulation == Formulation::linear;
     if (s.bodies[b].body->node_count() > most) main = &cost->second, most = s.bodies[b].body->node_count();
   }
   if (!main) return std::nullopt;
   TimeForecast forecast;
-  if (solver.kind == SolverKind::central_differences) {
+  if (is_explicit) {
     forecast.iterations = solver.steps;
     forecast.seconds = setup + forecast.iterations * points / (many ? main->faster_cg : 1);
     return forecast;

@@ -13,13 +13,15 @@ namespace fascia::app {
 
 /// A timed run of one body.
 struct CostSample {
-  std::string kind;         ///< "frames", "affine", "tetrahedra", "tetrahedra-2", "hexahedra", "hexahedra-2", "shell"
+  std::string kind;         ///< "frames" of a grid, "scattered", "affine", "tetrahedra", "tetrahedra-2", "hexahedra",
+                            ///< "hexahedra-2", "shell"
   bool factorised = false;  ///< by Cholesky; else conjugate gradients
   bool dynamics = false;
   int threads = 1;
   double points = 0, unknowns = 0;
   double newton = 0, linear = 0;  ///< iterations of the run; linear: of conjugate gradients
-  double courant = 0;             ///< of its steps, as LinearUse has it
+  double courant = 0;             ///< of its implicit steps, as LinearUse has it
+  double explicit_steps = 0;      ///< 0: others
   double setup = 0, solve = 0;    ///< [s]
 };
 
@@ -28,12 +30,13 @@ struct CostSample {
 ///   Newton iteration = point P + { factor U^exponent | product U n },   set-up = start + setup_point P
 ///
 /// with P integration points, U unknowns and n iterations of conjugate gradients: spread U^(1/d) in dimension d; of an
-/// implicit step at Courant number C the fewer of these and of 2 + wave C.
+/// implicit step at Courant number C the fewer of these and of 2 + wave C. An explicit step takes explicit_point P.
 struct KindCost {
   double point = 0;                         ///< [s]
   double factor = 0, exponent = 1.5;        ///< [s], [-]
   double product = 0, spread = 10;          ///< [s], [-]
   double wave = 8;                          ///< [-]
+  double explicit_point = 0;                ///< [s]
   double start = 0, setup_point = 0;        ///< [s]
   double step = 1;                          ///< an iteration of an implicit step over what its parts take
   double faster_factor = 1, faster_cg = 1;  ///< on all threads

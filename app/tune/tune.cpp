@@ -35,6 +35,7 @@ std::optional<CostSample> timed(const TuneCase& c, const fs::path& folder, const
   CostSample s{c.kind, c.factorised, c.dynamics, j.at("threads").get<int>()};
   for (const auto& body : j.at("bodies")) s.points += body.at("points").get<double>();
   s.unknowns = j.at("dofs").get<double>();
+  s.explicit_steps = c.explicit_steps ? j.at("steps").get<double>() : 0;
   s.newton = j.at("newton_iterations").get<double>();
   s.linear = j.at("linear_iterations").get<double>();
   s.courant = courant_of(c);

@@ -14,7 +14,8 @@ struct Sizes {
   const char* kind;
   int small, large;  ///< cells across: some 700 and 4,000 unknowns
 };
-constexpr std::array<Sizes, 7> kSizes{{{"frames", 3, 6},
+constexpr std::array<Sizes, 8> kSizes{{{"frames", 3, 6},
+                                       {"scattered", 4, 7},
                                        {"affine", 2, 4},
                                        {"hexahedra", 4, 8},
                                        {"hexahedra-2", 2, 4},
@@ -38,9 +39,29 @@ std::string body_of(const TuneCase& c) {
         "model = \"meshless\"\ndomain = {{ box = {{ {} }} }}\nframes = {{ grid = [{}, {}, {}], kind = "
         "\"{}\" }}\n",
         box, 2 * n + 1, n + 1, n + 1, c.kind == "affine" ? "affine" : "rigid");
+  if (c.kind == "scattered")
+    return fmt::format("model = \"meshless\"\ndomain = {{ box = {{ {} }} }}\nframes = {{ poisson_disk = {} }}\n", box,
+                       1.0 / c.size);
   const bool quadratic = c.kind.ends_with("-2");
   return fmt::format("model = \"{}\"\norder = {}\ndomain = {{ box = {{ {}, cells = [{}, {}, {}] }} }}\n",
                      c.kind.substr(0, c.kind.find('-')), quadratic ? 2 : 1, box, 2 * n, n, n);
+}
+
+double wave_speed() {
+  const Lame lame = Lame::from_young(kYoung, kPoisson);
+  return std::sqrt((lame.lambda + 2 * lame.mu) / kDensity);
+}
+
+/// Distance of nodes.
+double spacing_of(const TuneCase& c) { return 1.0 / (c.kind.ends_with("-2") ? 2 * c.size : c.size); }
+
+std::string solver_of(const TuneCase& c) {
+  // A stable step lasts a tenth to a half of the time that a wave takes from node to node.
+  if (c.explicit_steps)
+    return fmt::format("kind = \"explicit\"\ntime_step = \"auto\"\nduration = {}\n", 60 * spacing_of(c) / wave_speed());
+  return (c.dynamics ? fmt::format("kind = \"newmark\"\ntime_step = {}\nsteps = 10\n", kStep)
+                     : "kind = \"static\"\nload_steps = 3\n") +
+         fmt::format("linear = {{ kind = \"{}\" }}\n", c.factorised ? "cholesky" : "cg");
 }
 
 }  // namespace
@@ -50,6 +71,7 @@ std::vector<TuneCase> tune_cases(bool quick, int threads) {
   for (const Sizes& s : kSizes)
     for (const int size : {s.small, s.large})
       for (const bool factorised : {true, false}) cases.push_back({s.kind, size, factorised});
+  for (const Sizes& s : kSizes) cases.push_back({s.kind, s.large, false, false, 1, true});
   if (quick) return cases;
   for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, true, true});
   for (const Sizes& s : kSizes) cases.push_back({s.kind, s.small, false, true});
@@ -61,20 +83,13 @@ std::vector<TuneCase> tune_cases(bool quick, int threads) {
 }
 
 std::string tune_scene(const TuneCase& c) {
-  const std::string solver = c.dynamics ? fmt::format("kind = \"newmark\"\ntime_step = {}\nsteps = 10\n", kStep)
-                                        : "kind = \"static\"\nload_steps = 3\n";
   return fmt::format(
       "[world]\ngravity = [0, 0, -1]\n\n[bodies.body]\n{}density = {}\nmaterial = {{ young = {}, poisson = {} "
       "}}\n\n[[constraints]]\nbody = \"body\"\nwhere = {{ box = {{ min = [-1e-6, -1, -1], max = [1e-6, 2, 2] }} "
-      "}}\nfix = \"all\"\n\n[solver]\n{}linear = {{ kind = \"{}\" }}\n\n[output]\nfields = [\"displacement\"]\n",
-      body_of(c), kDensity, kYoung, kPoisson, solver, c.factorised ? "cholesky" : "cg");
+      "}}\nfix = \"all\"\n\n[solver]\n{}\n[output]\nfields = [\"displacement\"]\n",
+      body_of(c), kDensity, kYoung, kPoisson, solver_of(c));
 }
 
-double courant_of(const TuneCase& c) {
-  if (!c.dynamics) return 0;
-  const Lame lame = Lame::from_young(kYoung, kPoisson);
-  const double spacing = 1.0 / (c.kind.ends_with("-2") ? 2 * c.size : c.size);
-  return std::sqrt((lame.lambda + 2 * lame.mu) / kDensity) * kStep / spacing;
-}
+double courant_of(const TuneCase& c) { return c.dynamics ? wave_speed() * kStep / spacing_of(c) : 0; }
 
 }  // namespace fascia::app

@@ -17,7 +17,8 @@ namespace {
 using test::parse;
 using test::parse_beam;
 
-constexpr double kPoint = 2e-6, kFactor = 3e-7, kExponent = 1.3, kProduct = 1e-9, kSpread = 9, kWave = 7;
+constexpr double kPoint = 2e-6, kFactor = 3e-7, kExponent = 1.3, kProduct = 1e-9, kSpread = 9, kWave = 7,
+                 kExplicitPoint = 5e-8;
 
 double iterations(double unknowns, double courant) {
   const double still = kSpread * std::cbrt(unknowns);
@@ -39,9 +40,19 @@ CostSample sample(double unknowns, bool factorised, double courant = 0) {
   return s;
 }
 
+CostSample explicit_sample() {
+  CostSample s{"frames"};
+  s.explicit_steps = 300;
+  s.points = 1200;
+  s.unknowns = 600;
+  s.setup = 1;
+  s.solve = s.explicit_steps * s.points * kExplicitPoint;
+  return s;
+}
+
 KindCost fitted() {
   return fitted_costs({sample(600, true), sample(600, false), sample(3500, true), sample(3500, false),
-                       sample(600, true, 0.5), sample(600, false, 0.5)})
+                       sample(600, true, 0.5), sample(600, false, 0.5), explicit_sample()})
       .kinds.at("frames");
 }
 
@@ -54,6 +65,7 @@ TEST(CostModel, FindsTheLawThatItsSamplesKeep) {
   EXPECT_NEAR(cost.spread, kSpread, 1e-9);
   EXPECT_NEAR(cost.wave, kWave, 1e-9);
   EXPECT_NEAR(cost.step, 1, 1e-9);
+  EXPECT_NEAR(cost.explicit_point, kExplicitPoint, 1e-9 * kExplicitPoint);
 }
 
 /// Statics take a factor up to 10,000 unknowns, and dynamics up to 500. Beyond, steps take conjugate gradients as long
@@ -109,6 +121,21 @@ TEST(CostModel, ForetellsARunOfImplicitSteps) {
   EXPECT_EQ(found->iterations, 60);
   EXPECT_NEAR(found->seconds, 1e-3 + 1e-5 * points + 60 * iteration, 1e-6 * found->seconds);
   EXPECT_FALSE(forecast_time(s, {}).has_value());
+}
+
+/// An explicit step costs its points' forces, no more.
+TEST(CostModel, ForetellsARunOfExplicitSteps) {
+  CostModel costs;
+  costs.kinds["frames"] = fitted();
+  const Simulation s =
+      build_simulation(parse_beam("[solver]\nkind = \"explicit\"\ntime_step = \"1 us\"\nsteps = 40\nthreads = 1\n"));
+  const auto points = static_cast<double>(s.bodies[0].body->points().size());
+  const std::optional<TimeForecast> found = forecast_time(s, costs);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->iterations, 40);
+  EXPECT_NEAR(found->seconds, 1e-3 + 1e-5 * points + 40 * kExplicitPoint * points, 1e-6 * found->seconds);
+  costs.kinds["frames"].explicit_point = 0;  // not timed
+  EXPECT_FALSE(forecast_time(s, costs).has_value());
 }
 
 /// Speed of pressure waves × step over the distance of frames: a metre.
