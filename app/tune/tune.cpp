@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// No further run is begun after this [s].
-constexpr double kMostSeconds = 18;
+constexpr double kMostSeconds = 25;
 
 std::optional<CostSample> timed(const TuneCase& c, const fs::path& folder, const std::function<bool()>& stop) {
   const fs::path scene = folder / "tune.toml";

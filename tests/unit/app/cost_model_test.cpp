@@ -150,7 +150,8 @@ TEST(CostModel, KnowsHowFarWavesRunInAStep) {
 TEST(CostModel, ScenesThatAreTimedHaveTheCourantNumberThatTheySay) {
   for (const TuneCase& c : tune_cases(false, 1)) {
     const Simulation simulation = build_simulation(parse(tune_scene(c)));
-    EXPECT_NEAR(courant_of(c), courant_of(simulation), 0.01 * courant_of(simulation)) << c.kind;
+    const double spread = c.kind == "scattered" ? 0.02 : 0.01;  // Poisson-disk samples are not equally dense
+    EXPECT_NEAR(courant_of(c), courant_of(simulation), spread * courant_of(simulation)) << c.kind;
     EXPECT_EQ(courant_of(c) > 0, c.dynamics);
   }
 }
