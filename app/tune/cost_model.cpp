@@ -11,6 +11,8 @@ namespace fascia::app {
 namespace {
 
 constexpr double kUsualIterations = 5, kStepIterations = 2;
+/// An explicit step whose length is found on the way, over one of a given length.
+constexpr double kFound = 1.75;
 /// Iterations of conjugate gradients of a step so short that there is inertia alone.
 constexpr double kLeastIterations = 2;
 /// The least part of an iteration that the linear solver can have: timing spreads more.
@@ -48,7 +50,7 @@ double iteration_of(const CostSample& s) { return s.solve / std::max(1.0, s.newt
 double faster(const std::vector<CostSample>& samples, const CostSample& many) {
   for (const CostSample& s : samples)
     if (s.kind == many.kind && s.factorised == many.factorised && s.dynamics == many.dynamics && s.threads == 1 &&
-        s.unknowns == many.unknowns)
+        s.unknowns == many.unknowns && s.explicit_steps == 0)
       return std::clamp(iteration_of(s) / iteration_of(many), 0.5, 1.0 * many.threads);
   return 1;
 }
@@ -126,8 +128,9 @@ std::vector<std::pair<const char*, double KindCost::*>> members() {
 
 std::string cost_kind(const Body& body) {
   if (is_shell(body)) return "shell";
-  if (body.model == BodyModel::meshless)
-    return body.affine ? "affine" : std::holds_alternative<GridFrames>(body.frames) ? "frames" : "scattered";
+  if (body.model == BodyModel::meshless && !std::holds_alternative<GridFrames>(body.frames))
+    return body.affine ? "scattered-affine" : "scattered";
+  if (body.model == BodyModel::meshless) return body.affine ? "affine" : "frames";
   return std::string(body.model == BodyModel::tetrahedra ? "tetrahedra" : "hexahedra") + (body.order == 2 ? "-2" : "");
 }
 
@@ -222,7 +225,8 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   TimeForecast forecast;
   if (is_explicit) {
     forecast.iterations = solver.steps;
-    forecast.seconds = setup + forecast.iterations * points / (many ? main->faster_cg : 1);
+    const double step = points * (solver.time_step_automatic ? kFound : 1);
+    forecast.seconds = setup + forecast.iterations * step / (many ? main->faster_cg : 1);
     return forecast;
   }
   const bool dynamics = is_dynamic(solver.kind);

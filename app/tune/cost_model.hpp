@@ -30,7 +30,8 @@ struct CostSample {
 ///   Newton iteration = point P + { factor U^exponent | product U n },   set-up = start + setup_point P
 ///
 /// with P integration points, U unknowns and n iterations of conjugate gradients: spread U^(1/d) in dimension d; of an
-/// implicit step at Courant number C the fewer of these and of 2 + wave C. An explicit step takes explicit_point P.
+/// implicit step at Courant number C the fewer of these and of 2 + wave C. An explicit step of a given length takes
+/// explicit_point P.
 struct KindCost {
   double point = 0;                         ///< [s]
   double factor = 0, exponent = 1.5;        ///< [s], [-]
@@ -53,7 +54,7 @@ struct CostModel {
 /// Fits every kind that has runs of two sizes by both linear solvers.
 CostModel fitted_costs(const std::vector<CostSample>& samples);
 
-/// The kind of costs that a body has: "hexahedra-2".
+/// The kind of costs that a body has: "hexahedra-2". Nobody times "scattered-affine".
 std::string cost_kind(const Body& body);
 
 /// How tangents of a run are solved.

@@ -17,8 +17,8 @@ struct TuneCase {
 /// From those without which nothing can be fitted to those that refine. @param quick  the first ones alone
 std::vector<TuneCase> tune_cases(bool quick, int threads);
 
-/// A block, or for shells a plate, twice as long as wide, held at one end, under its weight: three load steps, ten
-/// implicit steps, or some hundreds of explicit ones.
+/// A block, or for shells a plate, twice as long as wide, held at one end, under its weight: load steps, ten
+/// implicit steps, or 300 explicit ones.
 std::string tune_scene(const TuneCase& c);
 
 /// Courant number of its implicit steps, as LinearUse has it; else 0.
