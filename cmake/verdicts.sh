@@ -132,6 +132,7 @@ programs_that() {
     "$1/tests.log" "$1/listed" | LC_ALL=C sort
 }
 
+# Programs of $2/listed, of build/$1, that may be remembered.
 ended_well() {
   local program
   { programs_that "$2" passed

@@ -11,7 +11,8 @@ namespace fascia::app {
 namespace {
 
 constexpr double kUsualIterations = 5, kStepIterations = 2;
-/// An explicit step whose length is found on the way, over one of a given length.
+/// An explicit step whose length is found on the way, over one of a given length: 1.74 to 1.9 of frames, hexahedra and
+/// tetrahedra.
 constexpr double kFound = 1.75;
 /// Iterations of conjugate gradients of a step so short that there is inertia alone.
 constexpr double kLeastIterations = 2;
@@ -77,8 +78,10 @@ std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::s
   int still = 0, waves = 0;
   for (const CostSample& s : samples) {
     if (s.kind != kind || s.threads > 1) continue;
-    if (s.explicit_steps > 0) cost.explicit_point = s.solve / (s.explicit_steps * s.points);
-    if (s.explicit_steps > 0) continue;
+    if (s.explicit_steps > 0) {
+      cost.explicit_point = s.solve / (s.explicit_steps * s.points);
+      continue;
+    }
     const double n = s.linear / std::max(1.0, s.newton);
     if (!s.factorised) cg.push_back({s.points, s.unknowns * n, iteration_of(s)});
     if (!s.dynamics) setup.push_back({1, s.points, s.setup});
