@@ -198,12 +198,24 @@ class Setup {
     linear.expect_inertia(blocks_serve_);
     factorizes_ = linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
                   (statics && linear.gives_way_to_factor(guessed_iterations())) ||
-                  (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations()));
+                  (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations())) ||
+                  takes_kept_factor(linear);
     if (!factorizes_) return of_levels(matrix);
     if (solver.precision == "mixed" && !linear.direct()) to_come_.keep(rounded_bytes(matrix));
     take(linear.factor().cholesky(), matrix);
     if (!load || !s_.model.loads_are_conservative())
       beyond_ = bytes_of(BlockCholesky(matrix, system_->filter(), Pivots::any, &linear.factor().order()), matrix);
+  }
+
+  /// With inertia blocks take few iterations, however many their statics would.
+  bool takes_kept_factor(TangentSolver& linear) const {
+    if (s_.scene.solver.kind == SolverKind::statics || !s_.model.loads_are_conservative()) return false;
+    linear.expect_inertia(true);
+    linear.keep_factors(true);
+    const bool takes =
+        linear.gives_way_to_kept_factor(std::min<long>(guessed_iterations(), BlocksOrLevels({}).patience()));
+    linear.expect_inertia(blocks_serve_);
+    return takes;
   }
 
   /// Levels of rigid frames, where blocks would take too many iterations: a prolongator, and what it is made from.

@@ -22,6 +22,8 @@ std::string preconditioned_by(const SolverChoice& choice) {
 std::string told(const SolverChoice& choice) {
   std::string text = "linear solver: ";
   text += choice.direct ? "Cholesky" : "conjugate gradients " + preconditioned_by(choice);
+  if (choice.old > 0)
+    text += fmt::format("; {} factors, which {} more solves took as preconditioner", choice.factors, choice.old);
   if (choice.flops == 0) return text;
   return text +
          fmt::format(

@@ -56,18 +56,20 @@ double faster(const std::vector<CostSample>& samples, const CostSample& many) {
   return 1;
 }
 
-/// An iteration of an implicit step over what its parts take.
+/// An iteration of an implicit step over what its parts take; runs with a factor keep it from solve to solve.
 void fit_threads_and_steps(const std::vector<CostSample>& samples, const std::string& kind, KindCost& cost) {
-  double ratio = 0, count = 0;
+  double ratio[2] = {}, count[2] = {};
   for (const CostSample& s : samples) {
     if (s.kind != kind || s.explicit_steps > 0) continue;
     if (s.threads > 1 && !s.dynamics) (s.factorised ? cost.faster_factor : cost.faster_cg) = faster(samples, s);
     if (!s.dynamics || s.threads > 1) continue;
     const LinearMethod method = s.factorised ? LinearMethod::cholesky : LinearMethod::cg;
     const LinearUse use{method, dimension_of(kind), s.courant, false};
-    ratio += iteration_of(s) / (cost.point * s.points + linear_cost(cost, s.unknowns, use).seconds), count += 1;
+    ratio[s.factorised] += iteration_of(s) / (cost.point * s.points + linear_cost(cost, s.unknowns, use).seconds);
+    count[s.factorised] += 1;
   }
-  if (count > 0) cost.step = std::clamp(ratio / count, 0.2, 5.0);
+  if (count[0] > 0) cost.step = std::clamp(ratio[0] / count[0], 0.2, 5.0);
+  if (count[1] > 0) cost.kept = std::clamp(ratio[1] / count[1], 0.02, 5.0);
 }
 
 std::optional<KindCost> fit(const std::vector<CostSample>& samples, const std::string& kind) {
@@ -123,6 +125,7 @@ std::vector<std::pair<const char*, double KindCost::*>> members() {
           {"start", &KindCost::start},
           {"setup_point", &KindCost::setup_point},
           {"step", &KindCost::step},
+          {"kept", &KindCost::kept},
           {"faster_factor", &KindCost::faster_factor},
           {"faster_cg", &KindCost::faster_cg}};
 }
@@ -237,10 +240,12 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
                                  : std::max(1, solver.load_steps) * (linear ? 1 : kUsualIterations);
   const bool shell = std::all_of(s.scene.bodies.begin(), s.scene.bodies.end(),
                                  [](const Body& b) { return is_carrier(b) || is_shell(b); });
-  const LinearCost solve =
-      linear_cost(*main, unknowns, linear_use(solver, shell ? 2 : 3, courant_of(s), s.model.loads_are_conservative()));
+  const LinearUse use = linear_use(solver, shell ? 2 : 3, courant_of(s), s.model.loads_are_conservative());
+  const LinearCost solve = linear_cost(*main, unknowns, use);
   const double speed = many ? (solve.factorised ? main->faster_factor : main->faster_cg) : 1;
-  forecast.seconds = setup + forecast.iterations * (points + solve.seconds) * (dynamics ? main->step : 1) / speed;
+  const bool keeps = use.blocks_first && unknowns > TangentSolver::kDirectDofsWithInertia;
+  const double share = !dynamics ? 1 : solve.factorised && keeps ? main->kept : main->step;
+  forecast.seconds = setup + forecast.iterations * (points + solve.seconds) * share / speed;
   return forecast;
 }
 

@@ -40,6 +40,7 @@ struct KindCost {
   double explicit_point = 0;                ///< [s]
   double start = 0, setup_point = 0;        ///< [s]
   double step = 1;                          ///< an iteration of an implicit step over what its parts take
+  double kept = 1;                          ///< the same, where a factor is kept from solve to solve
   double faster_factor = 1, faster_cg = 1;  ///< on all threads
 };
 
@@ -62,7 +63,8 @@ struct LinearUse {
   LinearMethod method = LinearMethod::automatic;
   int dimension = 3;          ///< of the body
   double courant = 0;         ///< of implicit steps: speed of pressure waves × step / distance of nodes; 0: statics
-  bool blocks_first = false;  ///< the choice is the program's, and inertia lets it try conjugate gradients first
+  bool blocks_first = false;  ///< the choice is the program's, and inertia lets it try conjugate gradients first, and
+                              ///< keep a factor from solve to solve
 };
 /// @param conservative  loads have a potential
 LinearUse linear_use(const Solver& solver, int dimension, double courant, bool conservative);

@@ -64,7 +64,8 @@ std::string solver_of(const TuneCase& c) {
     return fmt::format("kind = \"explicit\"\ntime_step = {}\nsteps = 300\n", spacing_of(c) / wave_speed() / 500);
   return (c.dynamics ? fmt::format("kind = \"newmark\"\ntime_step = {}\nsteps = 10\n", kStep)
                      : fmt::format("kind = \"static\"\nload_steps = {}\n", c.kind == "scattered" ? 1 : 3)) +
-         fmt::format("linear = {{ kind = \"{}\" }}\n", c.factorised ? "cholesky" : "cg");
+         fmt::format("linear = {{ kind = \"{}\", preconditioner = \"{}\" }}\n",
+                     c.factorised && !c.dynamics ? "cholesky" : "cg", c.factorised && c.dynamics ? "cholesky" : "auto");
 }
 
 }  // namespace

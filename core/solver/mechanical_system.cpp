@@ -17,6 +17,10 @@ namespace {
 /// What conjugate gradients leave, in their norm, of a residual that is to fall to Newton's tolerance at once: in its
 /// own norm it may be a hundred times as much.
 constexpr double kOfTolerance = 0.003;
+/// A smaller part of the tolerance counts as this.
+constexpr double kLeastRelative = 1e-6;
+/// A smaller tolerance is less than what rounding of products may leave.
+constexpr double kLeastTolerance = 1e-12;
 
 }  // namespace
 
@@ -230,7 +234,9 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
   Linearization fallback;
   tangent_.expect_inertia(form_.h > 0 && conservative_);
   tangent_.limit_iterations(most_iterations);
-  tangent_.aim_at(linear_ ? kOfTolerance * settings_.tolerance / std::max(relative_, settings_.tolerance) : 0);
+  const double left = kOfTolerance * settings_.tolerance / std::max(relative_, kLeastRelative * settings_.tolerance);
+  tangent_.aim_at(left, linear_);
+  tangent_.keep_factors(settings_.tolerance >= kLeastTolerance);
   const TangentReport solved = tangent_.solve(
       lin_, prescribed, rhs, direction_, [&](TamerTangent kind) -> auto& {
         const bool material = kind == TamerTangent::material;

@@ -106,6 +106,7 @@ void MechanicalSystem::forget_steps(std::span<const double> factors, const std::
   middles_ = {};
   static_cast<StepConstants&>(form_) = {};
   surfaces_.begin_afresh(pressures);
+  tangent_.forget_kept_factor();
 }
 
 void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& end) {

@@ -129,8 +129,19 @@ LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, con
     options.timed = true;
   }
   Vector found;
-  const CgReport cg = solve_as_asked(Vector(b.begin(), b.end()), found, options);
-  left_ -= cg.iterations;
+  LinearReport report = report_of(solve_as_asked(Vector(b.begin(), b.end()), found, options), found, x);
+  left_ -= report.iterations;
+  report.seconds = seconds_since(start);
+  return report;
+}
+
+LinearReport CgSolver::solve_by(Preconditioner& M, std::span<const double> b, std::span<double> x,
+                                const CgOptions& asked) {
+  Vector found;
+  return report_of(iterate(M, Vector(b.begin(), b.end()), found, asked, false), found, x);
+}
+
+LinearReport CgSolver::report_of(const CgReport& cg, const Vector& found, std::span<double> x) const {
   std::copy(found.begin(), found.end(), x.begin());
   LinearReport report;
   report.iterations = cg.iterations;
@@ -140,7 +151,6 @@ LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, con
   if (!report.usable) report.trouble = found.empty() ? one_->trouble() : "CG met a number that is not finite";
   report.unsolved = cg.status == CgStatus::limit;
   report.residual = cg.relative_norm;
-  report.seconds = seconds_since(start);
   return report;
 }
 

@@ -31,16 +31,18 @@ class CgSolver final : public LinearSolver {
   /// @param factor  of K, for the preconditioner that asks for one
   CgSolver(TangentOperator& K, const LinearSettings& settings, FactorSolver& factor);
 
-  /// Preconditioners are made where a solve asks for them. Those that are kept take products with K all the same,
-  /// before the first iteration does: its matrix is assembled here.
+  /// Preconditioners are made where a solve asks for them. But for a factor those that are kept take products with K
+  /// all the same, before the first iteration does: its matrix is assembled here.
   bool prepare() override {
     if (pattern_ != K_.pattern_revision()) begin_afresh();
     one_is_ready_ = false;
-    K_.matrix();
+    if (settings_.preconditioner != PreconditionerKind::cholesky) K_.matrix();
     return true;
   }
   LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
   LinearReport solve(std::span<const double> b, std::span<double> x, const CgOptions& asked);
+  /// Solves with a preconditioner of the caller's, which is ready, as far as `asked` says alone.
+  LinearReport solve_by(Preconditioner& M, std::span<const double> b, std::span<double> x, const CgOptions& asked);
   bool iterates() const override { return true; }
   /// Sets a limit to the iterations of all solves to come, beside that of the settings for each: that of the time which
   /// a step has. What a solve does not reach because of it says nothing of preconditioners.
@@ -84,6 +86,7 @@ class CgSolver final : public LinearSolver {
   CgReport solve_by_levels(const Vector& b, Vector& x, const CgOptions& options);
   CgReport solve_by_either(const Vector& b, Vector& x, const CgOptions& options);
 
+  LinearReport report_of(const CgReport& cg, const Vector& found, std::span<double> x) const;
   void choose_one();
   bool factor_takes_less(double iterations);
 

@@ -101,13 +101,18 @@ bool FactorSolver::prepare_shifted() {
   return false;
 }
 
-void FactorSolver::solve_with_factor(std::span<const double> b, std::span<double> x) {
+bool FactorSolver::preconditions() {
+  follow_pattern();
+  return definite_ && cholesky_ && factor_ == &*cholesky_;
+}
+
+void FactorSolver::apply_inverse(std::span<const double> b, std::span<double> x) {
   factor_->solve(b, x);
   K_.beside().correct(b, x);
 }
 
 LinearReport FactorSolver::solve(std::span<const double> b, std::span<double> x, double /*rough*/) {
-  solve_with_factor(b, x);
+  apply_inverse(b, x);
   if (shifted_) finish_shifted(b, x);
   LinearReport report;
   report.negative = negative_;
@@ -126,7 +131,7 @@ void FactorSolver::finish_shifted(std::span<const double> b, std::span<double> x
   const CgReport cg = conjugate_gradients(
       vectors, [&](const auto& p, auto& Ap) { K_.apply_free(p, Ap); },
       [&](const auto& r, auto& z) {
-        solve_with_factor(r, z);
+        apply_inverse(r, z);
         return vectors.dot(r, z);
       },
       CpuVectors::Vector(b.begin(), b.end()), result, kOptions, NegativeCurvature::reflected);
@@ -139,10 +144,10 @@ bool FactorSolver::solve_refined(std::span<const double> b, std::span<double> x)
   constexpr double kSpoilt = 1e-2;
   rest_.assign(b.begin(), b.end());
   correction_.resize(b.size());
-  solve_with_factor(rest_, x);
+  apply_inverse(rest_, x);
   K_.apply_free(x, correction_);
   for (std::size_t i = 0; i < b.size(); ++i) rest_[i] -= correction_[i];
-  solve_with_factor(rest_, correction_);
+  apply_inverse(rest_, correction_);
   double squared = 0, change = 0;
   for (std::size_t i = 0; i < b.size(); ++i) {
     squared += x[i] * x[i];

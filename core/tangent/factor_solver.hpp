@@ -29,6 +29,10 @@ class FactorSolver final : public LinearSolver {
 
   /// Takes the terms beside K as they are now, with the factor of a K as good as the same.
   void renew_terms() { take(*factor_, negative_pivots_); }
+  /// The factor is L Lᵀ of a tangent that was positive definite, that of K as it is now or one met before.
+  bool preconditions();
+  /// x = M⁻¹ b with the factor as it is, and the terms beside K that were taken last.
+  void apply_inverse(std::span<const double> b, std::span<double> x);
 
   /// After a shift: a direction of descent.
   LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
@@ -62,7 +66,6 @@ class FactorSolver final : public LinearSolver {
   bool factorize_any();
   void take(BlockCholesky& factor, int negative_pivots);
   void finish_shifted(std::span<const double> b, std::span<double> x);
-  void solve_with_factor(std::span<const double> b, std::span<double> x);
 
   TangentOperator& K_;
   std::optional<EliminationOrder> order_;

@@ -4,6 +4,8 @@
 #include "core/tangent/linear_settings.hpp"
 #include "core/tangent/tangent_operator.hpp"
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -35,6 +37,25 @@ class Preconditioner {
 /// None for kinds that are more than one: automatic, multigrid.
 std::unique_ptr<Preconditioner> preconditioner_of(PreconditionerKind kind, TangentOperator& K, FactorSolver& factor);
 
+/// Looks at the products r · M⁻¹ r of a solve: a definite M gives none below zero. Where nothing but rounding is left
+/// the sign says nothing.
+class DefiniteProducts {
+ public:
+  void begin() { start_ = 0; }
+  /// @param left  left(): r is not zero
+  /// @return      rz; what is not a number where M is indefinite
+  template <class Left>
+  double take(double rz, const Left& left) {
+    const bool first = start_ == 0;
+    if (first) start_ = std::abs(rz);
+    const bool indefinite = first ? rz < 0 || (rz == 0 && left()) : rz < -kCycleRounding * start_;
+    return indefinite ? std::numeric_limits<double>::quiet_NaN() : rz;
+  }
+
+ private:
+  double start_ = 0;  ///< |r · z| where the solve began; 0: nowhere yet
+};
+
 class NoPreconditioner final : public Preconditioner {
  public:
   explicit NoPreconditioner(const TangentOperator& K) : K_(K) {}
@@ -59,19 +80,31 @@ class DiagonalBlocks final : public Preconditioner {
   std::vector<double> inverse_, chunk_sums_;
 };
 
-/// A factor of a tangent met before, kept while few iterations are needed with it.
+/// A factor of a tangent met before, with the terms beside K as they are now, kept while few iterations are needed with
+/// it.
 class OldFactor final : public Preconditioner {
  public:
+  /// A factor that leaves more iterations is out of date.
+  static constexpr int kMostIterations = 15;
+
   OldFactor(TangentOperator& K, FactorSolver& factor) : K_(K), factor_(factor) {}
   bool prepare() override;
   double apply(std::span<const double> r, std::span<double> z) override;
+  void begin() override { products_.begin(); }
   bool took(int iterations) override;
+  /// One is at hand, so that prepare() makes none.
+  bool is_kept() { return ready_ && factor_.preconditions(); }
+  /// The factor was made of K as it is now.
+  void renewed();
+  void forget() { ready_ = false; }
   std::string trouble() const override { return "the tangent is not positive definite: no Cholesky preconditioner"; }
 
  private:
   TangentOperator& K_;
   FactorSolver& factor_;
+  DefiniteProducts products_;
   bool ready_ = false;
+  int first_ = 0, more_ = 0;  ///< iterations of the first solve after it was made; those of later ones beyond as many
 };
 
 /// A cycle over levels of rigid frames, of quadratic elements with one of their corners, of K or of its material part.
@@ -81,7 +114,7 @@ class LevelsOfFrames final : public Preconditioner {
   LevelsOfFrames(TangentOperator& K, bool material) : K_(K), material_(material) {}
   bool prepare() override;
   double apply(std::span<const double> r, std::span<double> z) override;
-  void begin() override { start_ = 0; }
+  void begin() override { products_.begin(); }
   void forget() { levels_.reset(); }
   /// Those made from now on have no level of corners.
   /// @return  they had
@@ -97,7 +130,7 @@ class LevelsOfFrames final : public Preconditioner {
   bool material_, corners_ = true;
   std::optional<Multigrid> levels_;
   std::vector<double> inverse_;
-  double start_ = 0;  ///< |r · z| where the solve began; 0: nowhere yet
+  DefiniteProducts products_;
 };
 
 }  // namespace fascia

@@ -9,6 +9,13 @@
 
 namespace fascia {
 
+namespace {
+
+/// Products by blocks of a tangent. An assembly takes as long as 6 of shells or tetrahedra and 10 to 50 of points.
+constexpr int kWorthAssembling = 20;
+
+}  // namespace
+
 TangentOperator::TangentOperator(const Model& model, CpuExecutor& executor, const DofFilter& filter)
     : model_(model),
       executor_(executor),
@@ -21,6 +28,7 @@ void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
   at_ = &lin;
   tamer_ = tamer;
   assembled_ = rounded_ = tamed_ = false;
+  by_blocks_ = 0;
   if (pattern_ != executor_.pattern()) {
     pattern_ = executor_.pattern();
     matrix_.reset();
@@ -71,8 +79,9 @@ void TangentOperator::apply_in_world(const Multiply& multiply, std::span<const d
 }
 
 void TangentOperator::apply(std::span<const double> x, std::span<double> y) {
-  const BlockMatrix& K = matrix();
-  apply_in_world([&](auto from, auto to) { K.multiply(pool(), from, to); }, x, y);
+  if (!assembled_ && ++by_blocks_ <= kWorthAssembling) return apply_by_blocks(x, y, false);
+  matrix();
+  apply_in_world([&](auto from, auto to) { matrix_->multiply(pool(), from, to); }, x, y);
   beside_.add_product(x, y);
 }
 
@@ -99,12 +108,15 @@ void TangentOperator::apply_free_rounded(bool material, std::span<const double> 
   filter_.clear_fixed(y);
 }
 
-void TangentOperator::apply_whole(std::span<const double> x, std::span<double> y) {
-  work_.assign(x.begin(), x.end());
+void TangentOperator::apply_whole(std::span<const double> x, std::span<double> y) { apply_by_blocks(x, y, true); }
+
+/// y = K x without a matrix. @param whole  with what loads without a potential add
+void TangentOperator::apply_by_blocks(std::span<const double> x, std::span<double> y, bool whole) {
+  copy_parallel(pool(), x, std::span(work_));
   filter_.to_global(work_);
   dependents_.expand(work_);
   executor_.multiply(*at_, work_, y);
-  add_unsymmetric_product(*at_, model_.points.dofs, work_, y);
+  if (whole) add_unsymmetric_product(*at_, model_.points.dofs, work_, y);
   dependents_.transfer(y);
   filter_.to_local(y);
 }

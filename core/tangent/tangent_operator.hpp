@@ -22,7 +22,8 @@ using Relinearize = std::function<const Linearization&(TamerTangent)>;
 
 /// The tangent of a model at a state, as linear solvers see it: a symmetric part K, and what loads without a potential
 /// add to it. Vectors are in constraint axes, one number for each degree of freedom; what depends on other nodes is
-/// condensed onto these. The matrix is assembled when it is first asked for.
+/// condensed onto these. The matrix is assembled when it is first asked for. Products before that go from block to
+/// block of the model, of which up to some tens take less time than assembling; it is assembled after as many.
 class TangentOperator {
  public:
   TangentOperator(const Model& model, CpuExecutor& executor, const DofFilter& filter);
@@ -86,6 +87,7 @@ class TangentOperator {
  private:
   void assemble(const Linearization& at, BlockMatrix& out, Entries entries);
   const BlockMatrix& rounded(bool material);
+  void apply_by_blocks(std::span<const double> x, std::span<double> y, bool whole);
   template <class Multiply>
   void apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y);
 
@@ -97,6 +99,7 @@ class TangentOperator {
   const Linearization* at_ = nullptr;
   const Relinearize* tamer_ = nullptr;
   std::optional<BlockMatrix> matrix_, material_;
+  int by_blocks_ = 0;  ///< products without the matrix
   bool assembled_ = false, rounded_ = false, material_rounded_ = false, tamed_ = false;
   long pattern_ = 0;  ///< CpuExecutor::pattern() of the matrices
   LowRank beside_;

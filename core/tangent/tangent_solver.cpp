@@ -41,12 +41,15 @@ TangentSolver::TangentSolver(const Model& model, CpuExecutor& executor, const Do
       K_(model, executor, filter),
       factor_(K_),
       cg_(K_, settings, factor_),
+      kept_factor_(K_, factor_, cg_),
       own_(settings.own ? settings.own(K_) : nullptr) {}
 
 void TangentSolver::begin_afresh() {
   direct_.reset();
   unstable_ = 0;
   factor_.begin_afresh();
+  kept_factor_.begin_afresh();
+  kept_by_cost_.reset();
   cg_.begin_afresh();
   if (own_) own_ = settings_.own(K_);
 }
@@ -55,7 +58,19 @@ void TangentSolver::expect_inertia(bool expected) {
   if (inertia_ == expected) return;
   inertia_ = expected;
   direct_.reset();
+  kept_factor_.begin_afresh();
+  kept_by_cost_.reset();
   cg_.begin_afresh();
+}
+
+/// In dynamics, where tangents change little from step to step. Where Newton's method asks for all digits a factor of
+/// the tangent itself gives them.
+bool TangentSolver::keeps_factor() const {
+  return guessed() && inertia_ && keeps_ && settings_.precision == Precision::full;
+}
+
+bool TangentSolver::gives_way_to_kept_factor(double iterations) {
+  return keeps_factor() && blocks_go_first() && kept_factor_.takes_less_than_blocks(iterations);
 }
 
 /// What the user said of preconditioners or iterations is not for them to overrule.
@@ -68,11 +83,12 @@ bool TangentSolver::direct() {
   if (cg_.hands_over()) direct_ = true;
   if (direct_) return *direct_;
   if (own_ || blocks_go_first())
-    direct_ = false;
+    direct_ = !kept_by_cost_ && gives_way_to_kept_factor(0);  // where assembling alone takes longer
   else if (!guessed())
     direct_ = settings_.linear == LinearMethod::cholesky;
   else
     direct_ = filter_.free_count() <= kDirectDofs || factor_is_small();
+  if (*direct_ && blocks_go_first()) kept_by_cost_ = true;
   return *direct_;
 }
 
@@ -85,6 +101,8 @@ SolverChoice TangentSolver::choice() {
   made.direct = direct_.value_or(true);
   made.preconditioner = cg_.preconditioner();
   if (cg_.levels() != nullptr) made.levels = cg_.levels()->level_sizes();
+  made.factors = kept_factor_.factors();
+  made.old = kept_factor_.solves();
   const EliminationOrder* order = factor_.known_order();
   if (order == nullptr) return made;
   made.flops = order->flops;
@@ -115,6 +133,14 @@ void TangentSolver::set_right_side(std::span<const double> prescribed, std::span
     for (std::size_t i = 0; i < b.size(); ++i) rhs_[i] -= product_[i];
   }
   filter_.clear_fixed(rhs_);
+  of_gradient_ = 1;
+  if (prescribed.empty()) return;
+  double gradient = 0, right_side = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    if (!filter_.is_fixed(i)) gradient += b[i] * b[i];
+    right_side += rhs_[i] * rhs_[i];
+  }
+  if (right_side > 0) of_gradient_ = std::sqrt(gradient / right_side);
 }
 
 void TangentSolver::take_prescribed(std::span<const double> prescribed, std::span<double> x) const {
@@ -125,6 +151,7 @@ void TangentSolver::take_prescribed(std::span<const double> prescribed, std::spa
 TangentReport TangentSolver::solve(const Linearization& lin, std::span<const double> prescribed,
                                    std::span<const double> b, std::span<double> x, const Relinearize& relinearize) {
   K_.take(lin, &relinearize);
+  factor_is_current_ = false;
   const struct Lent {
     TangentOperator& K;
     ~Lent() { K.forget_tamer(); }
@@ -154,7 +181,8 @@ TangentReport TangentSolver::solve(const Linearization& lin, std::span<const dou
 
 /// Takes K as it is, or where it is indefinite as near to it as a direction of descent needs.
 TangentReport TangentSolver::descend(std::span<double> x) {
-  if (direct()) return descend_by_factor(x);
+  if (direct()) return descend_by_kept_factor(x);
+  const PreconditionerKind taken = cg_.preconditioner();
   const auto solve = [&]() -> std::optional<TangentReport> {
     LinearSolver& solver = iterative();
     if (!solver.prepare()) return std::nullopt;
@@ -179,7 +207,14 @@ TangentReport TangentSolver::descend(std::span<double> x) {
   const bool bends_down = report->negative > 0 && guessed() && settings_.cg.max_iterations >= kEnoughForBulk &&
                           (filter_.free_count() <= kShiftedDofs || (blocks_go_first() && factor_is_small()));
   const bool ends = report->unsolved && (cg_.hands_over() || gives_way_to_factor(report->iterations));
-  if (!bends_down && !ends) return *report;
+  if (!bends_down && !ends) {
+    const double cost = taken == PreconditionerKind::multigrid ? kCycle : 1;
+    if (!kept_by_cost_ && cg_.preconditioner() == taken && gives_way_to_kept_factor(cost * report->iterations)) {
+      kept_by_cost_ = direct_ = true;
+      kept_factor_.begin_afresh();
+    }
+    return *report;
+  }
   if (ends) direct_ = true;
   const std::vector<double> truncated(x.begin(), x.end());
   TangentReport by_factor = descend_by_factor(x);
@@ -187,8 +222,22 @@ TangentReport TangentSolver::descend(std::span<double> x) {
     std::copy(truncated.begin(), truncated.end(), x.begin());
     return *report;
   }
-  by_factor.iterations = report->iterations;
+  by_factor.iterations += report->iterations;
   return by_factor;
+}
+
+/// A tangent that is indefinite shows where conjugate gradients meet it, and where the factor is made anew. A factor of
+/// a few hundred unknowns tells for certain, and costs next to nothing where assembling does.
+TangentReport TangentSolver::descend_by_kept_factor(std::span<double> x) {
+  const bool small = filter_.free_count() <= kDirectDofsWithInertia;
+  if (!keeps_factor() || (small && !kept_factor_.takes_less_than_blocks(0))) return descend_by_factor(x);
+  TangentReport by_old{kept_factor_.solve(rhs_, x, std::max(left_ * of_gradient_, settings_.cg.tolerance))};
+  if (by_old.usable) return by_old;
+  const bool ends = kept_by_cost_.value_or(false) && kept_factor_.rests();
+  if (ends) kept_by_cost_ = direct_ = false;
+  TangentReport report = ends ? descend(x) : descend_by_factor(x);
+  report.iterations += by_old.iterations;
+  return report;
 }
 
 TangentReport TangentSolver::descend_by_factor(std::span<double> x) {
@@ -206,6 +255,8 @@ TangentReport TangentSolver::descend_by_factor(std::span<double> x) {
   }
   report.usable = ready;
   if (ready) factor_.solve(rhs_, x);
+  kept_factor_.renewed();
+  factor_is_current_ = true;
   return report;
 }
 
@@ -236,7 +287,8 @@ std::optional<TangentReport> TangentSolver::solve_unsymmetric(std::span<double> 
     if (guessed()) direct_ = true;
   }
   report.indefinite = false;
-  if (!factor_.prepare_any() || !solve(factor_, kDirectTolerance)) return std::nullopt;
+  factor_is_current_ = factor_.prepare_any();
+  if (!factor_is_current_ || !solve(factor_, kDirectTolerance)) return std::nullopt;
   return report;
 }
 
@@ -268,7 +320,7 @@ SoftestDirection TangentSolver::softest(const Linearization& lin, long made, boo
     CgSolver& cg;
     ~Lent() { cg.take_exact_products(false); }
   } lent{cg_};
-  const bool reusable = current && direct_.value_or(false) && factor_.definite() && !K_.tamed();
+  const bool reusable = current && direct_.value_or(false) && factor_.definite() && factor_is_current_ && !K_.tamed();
   K_.take(lin);
   const bool factor_first = reusable || direct() || (!own_ && factor_is_cheap(made));
   const bool by_factor = factor_first || !iterative().prepare();

@@ -2,6 +2,7 @@
 
 #include "core/tangent/cg_solver.hpp"
 #include "core/tangent/factor_solver.hpp"
+#include "core/tangent/kept_factor.hpp"
 #include "core/tangent/linear_settings.hpp"
 #include "core/tangent/linear_solver.hpp"
 #include "core/tangent/stability.hpp"
@@ -26,6 +27,7 @@ struct SolverChoice {
   double flops = 0, numbers = 0;                                      ///< of a factor; 0: nobody asked
   double flops_per_number = 0;                                        ///< of the matrix
   std::vector<int> levels;                                            ///< nodes of each, the finest first
+  int factors = 0, old = 0;  ///< solves with a factor of their own tangent, and of another one
 };
 
 /// Chooses among linear solvers for the tangents of a run, and sees to it that Newton's method gets a descent direction
@@ -57,8 +59,18 @@ class TangentSolver {
   /// they take long.
   void expect_inertia(bool expected);
 
-  /// As CgSolver::aim_at().
-  void aim_at(double tolerance) { cg_.aim_at(tolerance); }
+  /// Solves to come may leave this part of the gradient, in the norm of conjugate gradients, for Newton's method to end
+  /// with them, if a tangent were all that there is to the equations.
+  /// @param linear  it is: conjugate gradients go on to that
+  void aim_at(double left, bool linear) {
+    left_ = left;
+    cg_.aim_at(linear ? left : 0);
+  }
+
+  /// Lets a factor serve the tangents of other steps too, in dynamics, or not: at first it does not.
+  void keep_factors(bool keep) { keeps_ = keep; }
+  /// The next tangents are of other steps than those before: the factor of these goes.
+  void forget_kept_factor() { kept_factor_.forget(); }
 
   /// Factorises K as it is, indefinite or not, and counts the directions in which the equilibrium is unstable. None
   /// where a pivot vanishes.
@@ -96,15 +108,19 @@ class TangentSolver {
   /// A factor that fits into memory takes over where CG, which was only a guess, needs so many iterations for a solve
   /// (a slender body).
   bool gives_way_to_factor(long iterations);
+  /// A factor that is kept over many steps takes the place of blocks that need so many iterations for a solve.
+  bool gives_way_to_kept_factor(double iterations);
 
  private:
   bool blocks_go_first() const;
+  bool keeps_factor() const;
   bool factor_is_small();
   bool guessed() const { return settings_.linear == LinearMethod::automatic && !own_; }
   LinearSolver& iterative() { return own_ ? *own_ : cg_; }
   void set_right_side(std::span<const double> prescribed, std::span<const double> b, bool whole);
   void take_prescribed(std::span<const double> prescribed, std::span<double> x) const;
   TangentReport descend(std::span<double> x);
+  TangentReport descend_by_kept_factor(std::span<double> x);
   TangentReport descend_by_factor(std::span<double> x);
   std::optional<TangentReport> solve_unsymmetric(std::span<double> x);
 
@@ -113,10 +129,16 @@ class TangentSolver {
   TangentOperator K_;
   FactorSolver factor_;
   CgSolver cg_;
+  KeptFactor kept_factor_;
   std::unique_ptr<LinearSolver> own_;
   std::optional<bool> direct_;
   bool inertia_ = false;
-  int unstable_ = 0;  ///< negative directions that factorize_as_is() met last
+  std::optional<bool> kept_by_cost_;  ///< a factor took the place of blocks, to be kept; false: it disappointed
+  bool keeps_ = false;                ///< as keep_factors() was told
+  bool factor_is_current_ = false;    ///< the last solve made its factor
+  double left_ = 0;                   ///< as aim_at() was told
+  double of_gradient_ = 1;            ///< the gradient over the right-hand side, where a boundary moves
+  int unstable_ = 0;                  ///< negative directions that factorize_as_is() met last
   std::vector<double> rhs_, product_;
 };
 

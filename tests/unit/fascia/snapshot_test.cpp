@@ -35,7 +35,8 @@ Scene with_solver(Scene scene, LinearMethod method, PreconditionerKind precondit
 TEST(Snapshots, WhatFollowsIsTheSameBitForBit) {
   for (const SolverKind kind :
        {SolverKind::implicit_euler, SolverKind::bdf2, SolverKind::newmark, SolverKind::midpoint, SolverKind::statics})
-    for (const auto& [method, preconditioner] : {std::pair{LinearMethod::cholesky, PreconditionerKind::automatic},
+    for (const auto& [method, preconditioner] : {std::pair{LinearMethod::automatic, PreconditionerKind::automatic},
+                                                 {LinearMethod::cholesky, PreconditionerKind::automatic},
                                                  {LinearMethod::cg, PreconditionerKind::block_jacobi},
                                                  {LinearMethod::cg, PreconditionerKind::multigrid},
                                                  {LinearMethod::cg, PreconditionerKind::cholesky}}) {
