@@ -12,12 +12,12 @@ constexpr double kMostLeft = 1e-2;
 
 /// What a kept factor is taken to do where nothing is known yet: solves for each, and iterations for each solve. Of
 /// shells, tissues and what ties them, swinging or breathing in steps of 1 to 20 ms, one served 10 to 110 solves of 2
-/// to 6 iterations; of what spins by 0.1 rad in a step 8 to 15.
+/// to 6 iterations; of what spins by 0.1 rad in a step 7 to 15.
 constexpr double kServed = 15, kIterations = 5;
 
-/// What a tangent takes on one core: about the nanoseconds that an EPYC took, of which only ratios count.
+/// Nanoseconds that the blocks of a tangent take on one core, about, as an EPYC did.
 struct Times {
-  double assembly = 0, product = 0;  ///< of blocks
+  double assembly = 0, product = 0;
 };
 Times times_of(const PointSet& set) {
   Times sum;
@@ -37,9 +37,8 @@ Times times_of(const PointSet& set) {
   }
   return sum;
 }
-constexpr double kOfMatrixNumber = 0.1;  ///< in a product with an assembled matrix
-constexpr double kOfFactorOperation = 1. / 15;
-constexpr double kOfFactorNumber = 1.5;  ///< in a solve
+/// Others of these: of a number of an assembled matrix in a product, of a factor's operation, of its number in a solve.
+constexpr double kOfMatrixNumber = 0.1, kOfFactorOperation = 1. / 15, kOfFactorNumber = 1.5;
 
 }  // namespace
 
@@ -57,7 +56,7 @@ LinearReport KeptFactor::solve(std::span<const double> b, std::span<double> x, d
   report = cg_.solve_by(old_, b, x, options);
   report.usable = report.usable && report.negative == 0 && !report.unsolved;
   if (!report.usable) {
-    forget();
+    old_.forget();
     return report;
   }
   old_.took(report.iterations);
@@ -81,7 +80,6 @@ bool KeptFactor::takes_less_than_blocks(double iterations) {
 }
 
 void KeptFactor::renewed() {
-  // More than the factors that the warm-up of a run in real time makes and forgets.
   constexpr int kFew = 8, kMany = 16, kWorthIt = 3, kRest = 30;
   ++factors_;
   old_.renewed();

@@ -26,10 +26,9 @@ class KeptFactor {
 
   /// The factor was made of K as it is.
   void renewed();
-  void forget() { old_.forget(); }
-  /// Forgets how many solves factors served, too.
+  /// Forgets the factor, and how many solves factors served.
   void begin_afresh() {
-    forget();
+    old_.forget();
     rest_ = recent_factors_ = recent_solves_ = 0;
   }
 
@@ -37,7 +36,8 @@ class KeptFactor {
   int factors() const { return factors_; }
   int solves() const { return solves_; }
 
-  /// A kept factor is likely to be clearly cheaper than so many iterations with blocks and the assembly before them.
+  /// A kept factor is likely to be clearly cheaper than so many iterations with blocks and the assembly before them,
+  /// which takes a millisecond at least.
   bool takes_less_than_blocks(double iterations);
   /// Factors served so few solves that none is kept for a while.
   bool rests() const { return rest_ > 0; }

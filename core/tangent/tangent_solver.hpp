@@ -69,8 +69,8 @@ class TangentSolver {
 
   /// Lets a factor serve the tangents of other steps too, in dynamics, or not: at first it does not.
   void keep_factors(bool keep) { keeps_ = keep; }
-  /// The next tangents are of other steps than those before: the factor of these goes.
-  void forget_kept_factor() { kept_factor_.forget(); }
+  /// The next tangents are of other steps than those before: the factor of these goes, and what was seen of it.
+  void forget_kept_factor() { kept_factor_.begin_afresh(); }
 
   /// Factorises K as it is, indefinite or not, and counts the directions in which the equilibrium is unstable. None
   /// where a pivot vanishes.

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -17,15 +18,26 @@ namespace {
 
 using namespace test;
 
-BuiltModel falling_block() {
-  BlockOptions o;
-  o.grid = {5, 2, 2};
-  o.size = {{3, 1, 1}};
-  o.young = 1e4;
-  BuiltModel built = block(o);
-  hold_face(built.model);
+/// Nodes up to there along x are held.
+BuiltModel held_and_falling(BuiltModel built, double x = 0) {
+  Model& model = built.model;
+  for (int node = 0; node < model.node_count(); ++node) {
+    if (model.rest_position[static_cast<std::size_t>(node)][0] > x + 1e-9) continue;
+    FrameConstraint held;
+    held.node = node;
+    held.translations = held.rotations = 3;
+    model.constraints.push_back(held);
+  }
   add_gravity(built.model, {{0, -2, 0.3}});
   return built;
+}
+
+BuiltModel falling_block(std::array<int, 3> grid = {5, 2, 2}, double young = 1e4) {
+  BlockOptions o;
+  o.grid = grid;
+  o.size = {{3, 1, 1}};
+  o.young = young;
+  return held_and_falling(block(o));
 }
 
 /// Tangents of states that go from one to another, each with a term beside its matrix.
@@ -204,10 +216,7 @@ BuiltModel falling_cloud() {
   BlockOptions o;
   o.size = {{1, 1, 1}};
   o.young = 1e4;
-  BuiltModel built = build_cloud(scattered_spec(o, 0.25, 3));
-  hold_face(built.model, 0.1);
-  add_gravity(built.model, {{0, -2, 0.3}});
-  return built;
+  return held_and_falling(build_cloud(scattered_spec(o, 0.25, 3)), 0.1);
 }
 
 /// Kept factors take the place of blocks; Newton's method takes as many iterations, and the end is the same.
@@ -231,12 +240,7 @@ TEST(KeptFactor, ServesManySolvesOfScatteredFrames) {
 
 /// Such factors cost next to nothing, and tell whether a tangent is definite.
 TEST(KeptFactor, IsNotTakenForFewUnknownsThatAreSoonAssembled) {
-  BlockOptions o;
-  o.grid = {3, 2, 2};
-  o.young = 1e5;
-  BuiltModel built = block(o);
-  hold_face(built.model);
-  add_gravity(built.model, {{0, -2, 0.3}});
+  const BuiltModel built = falling_block({3, 2, 2}, 1e5);
   ASSERT_LE(built.model.free_dof_count(), TangentSolver::kDirectDofsWithInertia);
   const Fallen small = fallen(built.model, TimeScheme::newmark, LinearMethod::automatic, 20);
   EXPECT_TRUE(small.choice.direct);
@@ -247,12 +251,7 @@ TEST(KeptFactor, IsNotTakenForFewUnknownsThatAreSoonAssembled) {
 /// Statics, where a load step changes the tangent more, take a factor for each: the end of a limit point is judged by
 /// it.
 TEST(OldFactor, IsNotTakenInStatics) {
-  BlockOptions o;
-  o.grid = {9, 4, 4};
-  o.size = {{3, 1, 1}};
-  BuiltModel built = block(o);
-  hold_face(built.model);
-  add_gravity(built.model, {{0, -2, 0.3}});
+  const BuiltModel built = falling_block({9, 4, 4}, 1e5);
   ASSERT_GT(built.model.free_dof_count(), TangentSolver::kDirectDofsWithInertia);
   ThreadPool pool(2);
   MechanicalSystem system(built.model, pool, {});
