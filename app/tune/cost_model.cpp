@@ -14,6 +14,8 @@ constexpr double kUsualIterations = 5, kStepIterations = 2;
 /// An explicit step whose length is found on the way, over one of a given length: 1.74 to 1.9 of frames, hexahedra and
 /// tetrahedra.
 constexpr double kFound = 1.75;
+/// Where points take longer in an iteration, a factor of few unknowns is kept too [s].
+constexpr double kWorthKeeping = 1e-3;
 /// Iterations of conjugate gradients of a step so short that there is inertia alone.
 constexpr double kLeastIterations = 2;
 /// The least part of an iteration that the linear solver can have: timing spreads more.
@@ -213,7 +215,7 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   const double unknowns = s.model.free_dof_count();
   const bool many = available_processors() > 1 && solver.threads != 1;
   const bool is_explicit = solver.kind == SolverKind::central_differences;
-  double points = 0, setup = 0, most = -1;
+  double points = 0, kept = 0, setup = 0, most = -1;  // kept: what points cost where a factor is kept
   const KindCost* main = nullptr;
   bool linear = true;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
@@ -223,6 +225,7 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
     if (cost == costs.kinds.end() || (is_explicit && cost->second.explicit_point == 0)) return std::nullopt;
     const auto count = static_cast<double>(s.bodies[b].body->points().size());
     points += (is_explicit ? cost->second.explicit_point : cost->second.point) * count;
+    kept += cost->second.point * cost->second.kept * count;
     setup += cost->second.start * (main ? 0 : 1) + cost->second.setup_point * count;
     linear = linear && body.formulation == Formulation::linear;
     if (s.bodies[b].body->node_count() > most) main = &cost->second, most = s.bodies[b].body->node_count();
@@ -243,9 +246,12 @@ std::optional<TimeForecast> forecast_time(const Simulation& s, const CostModel& 
   const LinearUse use = linear_use(solver, shell ? 2 : 3, courant_of(s), s.model.loads_are_conservative());
   const LinearCost solve = linear_cost(*main, unknowns, use);
   const double speed = many ? (solve.factorised ? main->faster_factor : main->faster_cg) : 1;
-  const bool keeps = use.blocks_first && unknowns > TangentSolver::kDirectDofsWithInertia;
-  const double share = !dynamics ? 1 : solve.factorised && keeps ? main->kept : main->step;
-  forecast.seconds = setup + forecast.iterations * (points + solve.seconds) * share / speed;
+  double iteration = (points + solve.seconds) * (dynamics ? main->step : 1) / speed;
+  if (use.blocks_first && (unknowns > TangentSolver::kDirectDofsWithInertia || points > kWorthKeeping)) {
+    const double factor = main->factor * std::pow(unknowns, main->exponent);  // takes the place of slower blocks
+    iteration = std::min(iteration, (kept + factor * main->kept) / (many ? main->faster_factor : 1));
+  }
+  forecast.seconds = setup + forecast.iterations * iteration;
   return forecast;
 }
 
