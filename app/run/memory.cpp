@@ -212,8 +212,8 @@ class Setup {
     if (s_.scene.solver.kind == SolverKind::statics || !s_.model.loads_are_conservative()) return false;
     linear.expect_inertia(true);
     linear.keep_factors(true);
-    const bool takes =
-        linear.gives_way_to_kept_factor(std::min<long>(guessed_iterations(), BlocksOrLevels({}).patience()));
+    const bool takes = linear.gives_way_to_kept_factor(
+        static_cast<double>(std::min<long>(guessed_iterations(), BlocksOrLevels({}).patience())));
     linear.expect_inertia(blocks_serve_);
     return takes;
   }

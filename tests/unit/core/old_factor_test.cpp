@@ -223,19 +223,17 @@ BuiltModel falling_cloud() {
 TEST(KeptFactor, ServesManySolvesOfScatteredFrames) {
   const BuiltModel built = falling_cloud();
   ASSERT_GT(built.model.free_dof_count(), TangentSolver::kDirectDofsWithInertia);
-  for (const TimeScheme scheme : {TimeScheme::bdf2, TimeScheme::midpoint}) {
-    const Fallen exact = fallen(built.model, scheme, LinearMethod::cholesky, 8),
-                 kept = fallen(built.model, scheme, LinearMethod::automatic, 8);
-    std::printf("%d unknowns: %d factors, %d solves with old ones, Newton's iterations %d and %d\n",
-                built.model.free_dof_count(), kept.choice.factors, kept.choice.old, kept.report.newton_iterations,
-                exact.report.newton_iterations);
-    EXPECT_EQ(exact.choice.old, 0);
-    EXPECT_EQ(exact.report.linear_iterations, 0);
-    EXPECT_TRUE(kept.choice.direct);
-    EXPECT_GT(kept.choice.old, 3 * kept.choice.factors);
-    EXPECT_LE(kept.report.newton_iterations, exact.report.newton_iterations + 2);
-    expect_near(kept.end, exact.end, 1e-6);
-  }
+  const Fallen exact = fallen(built.model, TimeScheme::bdf2, LinearMethod::cholesky, 5),
+               kept = fallen(built.model, TimeScheme::bdf2, LinearMethod::automatic, 5);
+  std::printf("%d unknowns: %d factors, %d solves with old ones, Newton's iterations %d and %d\n",
+              built.model.free_dof_count(), kept.choice.factors, kept.choice.old, kept.report.newton_iterations,
+              exact.report.newton_iterations);
+  EXPECT_EQ(exact.choice.old, 0);
+  EXPECT_EQ(exact.report.linear_iterations, 0);
+  EXPECT_TRUE(kept.choice.direct);
+  EXPECT_GT(kept.choice.old, 3 * kept.choice.factors);
+  EXPECT_LE(kept.report.newton_iterations, exact.report.newton_iterations + 2);
+  expect_near(kept.end, exact.end, 1e-6);
 }
 
 /// Such factors cost next to nothing, and tell whether a tangent is definite.
