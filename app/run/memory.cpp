@@ -209,7 +209,7 @@ class Setup {
 
   /// With inertia blocks take few iterations, however many their statics would.
   bool takes_kept_factor(TangentSolver& linear) const {
-    if (s_.scene.solver.kind == SolverKind::statics || !s_.model.loads_are_conservative()) return false;
+    if (!is_implicit_dynamics(s_.scene.solver.kind) || !s_.model.loads_are_conservative()) return false;
     linear.expect_inertia(true);
     linear.keep_factors(true);
     const bool takes = linear.gives_way_to_kept_factor(

@@ -125,7 +125,8 @@ TEST(CostModel, ForetellsARunOfImplicitSteps) {
   EXPECT_FALSE(forecast_time(s, {}).has_value());
 }
 
-/// A factor that the program chose is kept, and one that was asked for is not; nor is one of a few hundred unknowns.
+/// A factor that the program chose is kept, and one that was asked for is not; nor is one of a few hundred unknowns,
+/// but where points take long. It takes the place of slower blocks.
 TEST(CostModel, ForetellsWhatAKeptFactorSaves) {
   CostModel costs;
   KindCost& cost = costs.kinds["frames"] = fitted();
@@ -135,7 +136,7 @@ TEST(CostModel, ForetellsWhatAKeptFactorSaves) {
     const auto points = static_cast<double>(s.bodies[0].body->points().size());
     const double unknowns = s.model.free_dof_count(), iterations = 2.0 * scene.solver.steps;
     return (forecast_time(s, costs)->seconds - 1e-3 - 1e-5 * points) /
-           (iterations * (kPoint * points + kFactor * std::pow(unknowns, kExponent)));
+           (iterations * (cost.point * points + kFactor * std::pow(unknowns, kExponent)));
   };
   Scene block = parse(tune_scene({"frames", 3, true, true}));
   block.solver.threads = 1;
@@ -144,8 +145,37 @@ TEST(CostModel, ForetellsWhatAKeptFactorSaves) {
   EXPECT_NEAR(share(block), kKept, 1e-6);
   block.solver.linear = LinearMethod::cholesky;
   EXPECT_NEAR(share(block), 1, 1e-6);
-  EXPECT_NEAR(share(parse_beam("[solver]\nkind = \"newmark\"\ntime_step = \"2 ms\"\nsteps = 30\nthreads = 1\n")), 1,
-              1e-6);
+  const Scene small = parse_beam("[solver]\nkind = \"newmark\"\ntime_step = \"2 ms\"\nsteps = 30\nthreads = 1\n");
+  EXPECT_NEAR(share(small), 1, 1e-6);
+  cost.point = 1;
+  EXPECT_NEAR(share(small), kKept, 1e-6);
+  cost = fitted();
+  cost.product = 1;  // few iterations that take long
+  block.solver.linear = LinearMethod::automatic;
+  EXPECT_NEAR(share(block), kKept, 1e-6);
+}
+
+/// Beside a kept factor the points of each body cost their own kind's share.
+TEST(CostModel, ForetellsKeptFactorsOfTwoKindsOfBodies) {
+  CostModel costs;
+  costs.kinds["frames"] = costs.kinds["tetrahedra"] = fitted();
+  costs.kinds["frames"].product = costs.kinds["tetrahedra"].product = 1;
+  costs.kinds["tetrahedra"].kept = 0.1 * kKept;
+  Scene scene = parse(tune_scene({"frames", 3, true, true}));
+  Body second = parse(tune_scene({"tetrahedra", 1, true, true})).bodies[0];
+  second.name = "second";
+  scene.bodies.push_back(second);
+  scene.solver.threads = 1;
+  scene.solver.preconditioner = PreconditionerKind::automatic;
+  scene.solver.linear = LinearMethod::automatic;
+  const Simulation s = build_simulation(scene);
+  ASSERT_GT(s.bodies[0].body->node_count(), s.bodies[1].body->node_count());
+  const auto first = static_cast<double>(s.bodies[0].body->points().size()),
+             other = static_cast<double>(s.bodies[1].body->points().size());
+  const double factor = kFactor * std::pow(s.model.free_dof_count(), kExponent);
+  const double setup = 1e-3 + 1e-5 * (first + other), iteration = kKept * (kPoint * (first + 0.1 * other) + factor);
+  const double found = forecast_time(s, costs)->seconds;
+  EXPECT_NEAR(found, setup + 2.0 * scene.solver.steps * iteration, 1e-6 * found);
 }
 
 /// An explicit step costs its points' forces, no more.

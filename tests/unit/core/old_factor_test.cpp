@@ -209,6 +209,14 @@ TEST(KeptFactor, RestsWhereFactorsServeNothing) {
     for (int solve = 0; solve < 5; ++solve) ASSERT_TRUE(kept.solve(b, x, 1e-6).usable);
   }
   EXPECT_FALSE(kept.rests());
+  for (int k = 0; k < 16; ++k) kept.renewed();
+  EXPECT_TRUE(kept.rests());
+  kept.begin_afresh();  // what was seen before counts no longer
+  for (int k = 0; k < 7; ++k) {
+    EXPECT_FALSE(kept.rests());
+    kept.renewed();
+  }
+  EXPECT_FALSE(kept.rests());
 }
 
 /// Scattered frames: most of a step would go into assembling them.
