@@ -26,14 +26,8 @@ int points_of(const ElementBlock& block) {
 template <int N>
 inline void gather(const ElementBlock& block, int batch, int half, const Vec3d* patch, Vec3<Lanes>* out) {
   const std::uint16_t* local = block.local_of(batch) + half * kBatchWidth;
-  for (int a = 0; a < nodes_of<N>(block); ++a) {
-    alignas(64) double rows[3][kBatchWidth];
-    for (int lane = 0; lane < kBatchWidth; ++lane) {
-      const Vec3d& x = patch[local[a * kElementLanes + lane]];
-      for (int k = 0; k < 3; ++k) rows[k][lane] = x[k];
-    }
-    for (int k = 0; k < 3; ++k) out[a][k] = Lanes::load(rows[k]);
-  }
+  for (int a = 0; a < nodes_of<N>(block); ++a, local += kElementLanes)
+    for (int k = 0; k < 3; ++k) out[a][k] = lanes_of([&](int lane) { return patch[local[lane]][k]; });
 }
 
 /// Adds vectors of the nodes of a batch to those of its patch.

@@ -5,6 +5,7 @@
 #include "core/math/lane_rows.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 /// Loops of PointFrames.
 namespace fascia {
@@ -97,7 +98,7 @@ void PointFrames::for_each_group(const std::array<Rows, N>& motions, bool sums, 
     for (std::size_t m = 0; m < N; ++m) {
       rows[m] = near[m];
       for (std::size_t k = 0; k < nodes.size(); ++k)
-        std::copy_n(motions[m] + at(nodes[k]) * kNumbers, kNumbers, near[m] + k * kNumbers);
+        std::memcpy(near[m] + k * kNumbers, motions[m] + at(nodes[k]) * kNumbers, kNumbers * sizeof(double));
     }
     if (sums) std::fill_n(sums_of(patch_place_[at(patch)]), nodes.size() * kNumbers, 0.0);
     for (const int group : lanes_.groups(patch)) act(group, rows);

@@ -3,6 +3,7 @@
 #include "core/base/errors.hpp"
 #include "core/executor/group_kernels.hpp"
 #include "core/linear/block_matrix.hpp"
+#include "core/math/lane_rows.hpp"
 #include "core/physics/shell_triangle.hpp"
 
 #include <algorithm>
@@ -14,12 +15,15 @@ using namespace kernels;
 
 namespace {
 
-constexpr int kGrain = 16, kCornerDofs = 6, kElementDofs = 18, kPairs = 6;
+constexpr int kGrain = 16, kCornerDofs = 6, kElementDofs = 18, kPairs = 6, kBlock = kCornerDofs * kCornerDofs;
 
 constexpr int pair_number(int a, int b) { return a * (a + 1) / 2 + b; }
 
-Vec3<Lanes> load_vector(const double (*rows)[kBatchWidth]) {
-  return {{Lanes::load(rows[0]), Lanes::load(rows[1]), Lanes::load(rows[2])}};
+/// Three numbers of each lane. @param from  from(lane) is where a lane has them
+template <class From>
+Vec3<Lanes> gather_vector(const From& from) {
+  const auto component = [&](int i) { return lanes_of([&](int lane) { return from(lane)[i]; }); };
+  return {{component(0), component(1), component(2)}};
 }
 
 /// Constants of a batch, and its frames at a state in rest axes.
@@ -47,18 +51,10 @@ struct ShellBatch {
     axes = matrix(rows, ShellBlock::kAxes, half);
     viscosity = row(rows, ShellBlock::kDamping, half) * Lanes(state.inverse_step);
     for (int a = 0; a < 3; ++a) {
-      alignas(64) double rows_of_frame[12][kBatchWidth];
-      for (int lane = 0; lane < kBatchWidth; ++lane) {
-        const Vec3d& x = state.u[at(node_of(a, lane))];
-        const Mat3d& turn = state.D[at(node_of(a, lane))];
-        for (int i = 0; i < 3; ++i) {
-          rows_of_frame[i][lane] = x[i];
-          for (int j = 0; j < 3; ++j) rows_of_frame[3 + 3 * i + j][lane] = turn(i, j);
-        }
-      }
       Mat3<Lanes> turn;
-      for (int k = 0; k < 9; ++k) turn(k / 3, k % 3) = Lanes::load(rows_of_frame[3 + k]);
-      u[a] = transpose(axes) * load_vector(rows_of_frame);
+      for (int k = 0; k < 9; ++k)
+        turn(k / 3, k % 3) = lanes_of([&](int lane) { return state.D[at(node_of(a, lane))](k / 3, k % 3); });
+      u[a] = transpose(axes) * gather_vector([&](int lane) { return state.u[at(node_of(a, lane))].v; });
       D[a] = transpose_times(axes, turn * axes);
     }
   }
@@ -135,14 +131,15 @@ namespace {
 
 /// Forces and torques in world axes, by triangle.
 void store_corners(const Mat3<Lanes>& axes, const ShellNodes<Lanes>& f, double* out) {
+  LaneArray<kElementDofs> corners;
   for (int a = 0; a < 3; ++a) {
     const Vec3<Lanes> force = axes * f.x[a], torque = axes * f.r[a];
-    for (int lane = 0; lane < kBatchWidth; ++lane)
-      for (int i = 0; i < 3; ++i) {
-        out[lane * kElementDofs + kCornerDofs * a + i] = force[i].v[lane];
-        out[lane * kElementDofs + kCornerDofs * a + 3 + i] = torque[i].v[lane];
-      }
+    for (int i = 0; i < 3; ++i) {
+      corners.set(kCornerDofs * a + i, force[i]);
+      corners.set(kCornerDofs * a + 3 + i, torque[i]);
+    }
   }
+  store_rows<kElementDofs>(corners, [&](int lane) { return out + lane * kElementDofs; });
 }
 
 }  // namespace
@@ -244,20 +241,16 @@ ShellNodes<Lanes> motion_in(const Mat3<Lanes>& axes, const ShellBatch& shell, co
                             std::span<const double> d) {
   ShellNodes<Lanes> motion;
   for (int a = 0; a < 3; ++a) {
-    alignas(64) double rows[kCornerDofs][kBatchWidth];
-    for (int lane = 0; lane < kBatchWidth; ++lane) {
-      const double* from = d.data() + dofs.begin(shell.node_of(a, lane));
-      for (int i = 0; i < kCornerDofs; ++i) rows[i][lane] = from[i];
-    }
-    motion.x[a] = transpose(axes) * load_vector(rows);
-    motion.r[a] = transpose(axes) * load_vector(rows + 3);
+    const auto from = [&](int lane) { return d.data() + dofs.begin(shell.node_of(a, lane)); };
+    motion.x[a] = transpose(axes) * gather_vector(from);
+    motion.r[a] = transpose(axes) * gather_vector([&](int lane) { return from(lane) + 3; });
   }
   return motion;
 }
 
 }  // namespace
 
-void ShellExecutor::product_of_batch(const BlockState& state, int batch, std::span<const double> d) {
+[[gnu::flatten]] void ShellExecutor::product_of_batch(const BlockState& state, int batch, std::span<const double> d) {
   for (int half = 0; half < kBatches; ++half) {
     const BatchProducts products(block_, batch, half, state);
     const ShellNodes<Lanes> motion = motion_in(products.axes, products.shell, set_.dofs, d);
@@ -289,13 +282,13 @@ void ShellExecutor::compute_product(const BlockState& state, const BlockDirectio
   });
 }
 
-void ShellExecutor::assemble_batch(const BlockState& state, int batch, BlockMatrix& matrix) const {
+[[gnu::flatten]] void ShellExecutor::assemble_batch(const BlockState& state, int batch, BlockMatrix& matrix) const {
   for (int half = 0; half < kBatches; ++half) {
     const BatchProducts products(block_, batch, half, state);
     const auto place = [upper = matrix.fills_upper()](int i, int k) {
       return upper ? kCornerDofs * k + i : kCornerDofs * i + k;
     };
-    Lanes K[kPairs][kCornerDofs * kCornerDofs];
+    LaneArray<kBlock> K[kPairs];
     for (int b = 0; b < 3; ++b) {
       for (int k = 0; k < kCornerDofs; ++k) {
         ShellNodes<Lanes> motion;
@@ -304,18 +297,15 @@ void ShellExecutor::assemble_batch(const BlockState& state, int batch, BlockMatr
         for (int a = b; a < 3; ++a) {
           const Vec3<Lanes> force = products.axes * f.x[a], torque = products.axes * f.r[a];
           for (int i = 0; i < 3; ++i) {
-            K[pair_number(a, b)][place(i, k)] = force[i];
-            K[pair_number(a, b)][place(3 + i, k)] = torque[i];
+            K[pair_number(a, b)].set(place(i, k), force[i]);
+            K[pair_number(a, b)].set(place(3 + i, k), torque[i]);
           }
         }
       }
     }
     const std::uint32_t* slot = pair_slot_.data() + at(batch * kPairs) * kElementLanes + half * kBatchWidth;
     for (int pair = 0; pair < kPairs; ++pair)
-      for (int lane = 0; lane < kBatchWidth; ++lane) {
-        double* out = matrix.values() + slot[pair * kElementLanes + lane];
-        for (int k = 0; k < kCornerDofs * kCornerDofs; ++k) out[k] += K[pair][k].v[lane];
-      }
+      add_to_rows<kBlock>(K[pair], [&](int lane) { return matrix.values() + slot[pair * kElementLanes + lane]; });
   }
 }
 

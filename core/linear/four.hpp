@@ -14,11 +14,8 @@ inline Four load_four(const double* p) {
   std::memcpy(&r, p, sizeof r);
   return r;
 }
-inline Four load_four(const float* p) {
-  float r __attribute__((vector_size(16)));
-  std::memcpy(&r, p, sizeof r);
-  return __builtin_convertvector(r, Four);
-}
+/// One instruction this way; GCC 12 makes five of __builtin_convertvector.
+inline Four load_four(const float* p) { return Four{p[0], p[1], p[2], p[3]}; }
 inline void store_four(const Four& value, double* to) { std::memcpy(to, &value, sizeof value); }
 
 }  // namespace fascia

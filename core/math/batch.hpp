@@ -2,8 +2,10 @@
 
 #include "core/base/portability.hpp"
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace fascia {
 
@@ -84,9 +86,30 @@ FASCIA_HD double for_each(double a, const Function& f) {
   return f(a);
 }
 
+/// ln(1 + a) to 2 ulp, of lanes together: 1 + a = 2ᵏ m with m between √½ and √2, ln m = 2 artanh((m − 1)/(m + 1)),
+/// whose series is cut where it is below rounding; what rounding takes from 1 + a is added to first order. Not a number
+/// where a is below −1.
 template <int W>
 Batch<W> log1p(const Batch<W>& a) {
-  return for_each(a, [](double x) { return std::log1p(x); });
+  using Register = typename Batch<W>::Register;
+  using Bits = decltype(Register{} < Register{});
+  constexpr long long kRootHalf = 0x3fe6a09e667f3bcd, kMantissa = 0x000fffffffffffff;
+  constexpr double kLn2High = 0x1.62e42feep-1, kLn2Low = 0x1.a39ef35793c76p-33, kHuge = 1e300;
+  for (int i = 0; i < W; ++i)
+    if (!(a.v[i] > -1 && a.v[i] < kHuge)) return for_each(a, [](double x) { return std::log1p(x); });
+  const Register sum = a.v + 1.0;
+  const Bits shifted = std::bit_cast<Bits>(sum) - kRootHalf;   // its exponent is k
+  const Bits exponent = shifted >> 52, whole = exponent == 0;  // 1 + a is between √½ and √2 itself
+  const Bits mantissa = (shifted & kMantissa) + kRootHalf;
+  const Register lost = (sum > 2.0 ? 1.0 - (sum - a.v) : a.v - (sum - 1.0)) / sum;
+  const Register f = whole ? a.v : std::bit_cast<Register>(mantissa) - 1.0;
+  const Register k = __builtin_convertvector(exponent, Register);
+  const Register s = f / (f + 2.0), z = s * s;
+  Register series = Register{} + 2.0 / 21;
+  for (int n = 19; n >= 3; n -= 2) series = series * z + 2.0 / n;
+  // ln(1 + f) = f − f s + s z series: f is exact, and the rest is small beside it.
+  const Register small = k * kLn2Low + (whole ? Register{} : lost);
+  return Batch<W>::of(k * kLn2High + (f - (f * s - (s * z * series + small))));
 }
 
 template <int W>
@@ -119,12 +142,11 @@ double lane_sum(const Batch<W>& a) {
   if constexpr (W == 2) {
     return a.v[0] + a.v[1];
   } else {
-    Batch<W / 2> low, high;
-    for (int i = 0; i < W / 2; ++i) {
-      low.v[i] = a.v[i];
-      high.v[i] = a.v[i + W / 2];
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return lane_sum(Batch<W / 2>::of(__builtin_shufflevector(a.v, a.v, I...)) +
+                      Batch<W / 2>::of(__builtin_shufflevector(a.v, a.v, (W / 2 + I)...)));
     }
-    return lane_sum(low + high);
+    (std::make_integer_sequence<int, W / 2>{});
   }
 }
 
@@ -138,5 +160,12 @@ inline constexpr int kBatchWidth = 2;
 
 /// The batch that this processor computes fastest.
 using Lanes = Batch<kBatchWidth>;
+
+/// The batch of value(lane), which goes through no memory.
+template <class Value>
+Lanes lanes_of(const Value& value) {
+  return [&]<int... Lane>(std::integer_sequence<int, Lane...>) { return Lanes::of(Lanes::Register{value(Lane)...}); }
+  (std::make_integer_sequence<int, kBatchWidth>{});
+}
 
 }  // namespace fascia

@@ -30,6 +30,20 @@ inline void gather_rows(const Row& row, Lanes (&out)[N]) {
   }
 }
 
+/// Stores N batches to the rows of their lanes.
+template <int N, class Row>
+inline void store_rows(const LaneArray<N>& in, const Row& row) {
+  constexpr int W = kBatchWidth;
+  static_assert(N >= W);
+  for (int first = 0; first < N; first += W) {
+    const int begin = std::min(first, N - W);
+    Lanes part[W];
+    for (int k = 0; k < W; ++k) part[k] = in[begin + k];
+    transpose_lanes(part);
+    for (int lane = 0; lane < W; ++lane) store_anywhere(row(lane) + begin, part[lane]);
+  }
+}
+
 /// Adds N batches to the rows of their lanes, which may be the same ones, a lane after the other.
 template <int N, class Row>
 inline void add_to_rows(const LaneArray<N>& in, const Row& row) {
