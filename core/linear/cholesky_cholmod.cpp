@@ -1,6 +1,8 @@
+#include "core/base/index.hpp"
 #include "core/linear/blas.hpp"
 #include "core/linear/cholesky.hpp"
 #include "core/linear/free_matrix.hpp"
+#include "core/linear/supernodes.hpp"
 
 #include <cholmod.h>
 
@@ -72,7 +74,11 @@ struct BlockCholesky::Impl {
   cholmod_common common{};
   cholmod_sparse sparse{};
   cholmod_factor* factor = nullptr;
-  // Reused by every solve.
+  // Reused by every solve: of supernodes
+  std::vector<int> place;  ///< of each degree of freedom in the factor's order, −1 where prescribed
+  std::vector<double> ordered, work;
+  std::vector<float> rounded;  ///< numbers of the factor; empty before one asks for them
+  // and of single columns.
   cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
   Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* known)
@@ -95,7 +101,39 @@ struct BlockCholesky::Impl {
     factor = cholmod_analyze_p(&sparse, permutation.data(), nullptr, 0, &common);
     rhs = cholmod_zeros(n, 1, CHOLMOD_REAL, &common);
     if (factor == nullptr || rhs == nullptr) throw std::bad_alloc();
-    if (factor->is_super != 0) take_blas_buffer();
+    if (factor->is_super == 0) return;
+    take_blas_buffer();
+    std::vector<int> place_of(n);
+    for (std::size_t k = 0; k < n; ++k) place_of[at(static_cast<const int*>(factor->Perm)[k])] = static_cast<int>(k);
+    for (const int number : matrix.number) place.push_back(number < 0 ? -1 : place_of[at(number)]);
+    ordered.resize(n);
+    work.resize(at(supernodes(numbers()).most_rows()));
+  }
+  std::span<const double> numbers() const { return {static_cast<const double*>(factor->x), factor->xsize}; }
+  template <class T>
+  Supernodes<T> supernodes(std::span<const T> values) const {
+    const std::size_t count = factor->nsuper;
+    const auto ints = [](const void* p, std::size_t n) { return std::span(static_cast<const int*>(p), n); };
+    return {ints(factor->super, count + 1), ints(factor->pi, count + 1), ints(factor->px, count + 1),
+            ints(factor->s, factor->ssize), values};
+  }
+  /// False where memory does not hold both.
+  bool round() {
+    if (!rounded.empty()) return true;
+    try {
+      rounded.reserve(numbers().size());
+    } catch (const std::bad_alloc&) {
+      return false;
+    }
+    for (const double number : numbers()) rounded.push_back(static_cast<float>(number));
+    return true;
+  }
+  template <class T>
+  void solve(std::span<const T> values, std::span<const double> b, std::span<double> x) {
+    for (std::size_t i = 0; i < b.size(); ++i)
+      if (place[i] >= 0) ordered[at(place[i])] = b[i];
+    fascia::solve(supernodes(values), std::span(ordered), std::span(work));
+    for (std::size_t i = 0; i < b.size(); ++i) x[i] = place[i] >= 0 ? ordered[at(place[i])] : 0.0;
   }
   ~Impl() {
     cholmod_free_dense(&rhs, &common);
@@ -135,6 +173,7 @@ double BlockCholesky::factor_bytes() const {
 bool BlockCholesky::factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
   Impl& m = *impl_;
   m.matrix.fill(matrix, m.filter, shift, shift_from);
+  m.rounded.clear();
   cholmod_factorize(&m.sparse, m.factor, &m.common);
   if (m.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   return m.common.status == CHOLMOD_OK && m.factor->minor == m.factor->n;
@@ -152,6 +191,7 @@ int BlockCholesky::negative_pivots() const {
 
 void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const {
   Impl& m = *impl_;
+  if (m.factor->is_super != 0) return m.solve(m.numbers(), b, x);
   auto* rhs = static_cast<double*>(m.rhs->x);
   for (std::size_t i = 0; i < b.size(); ++i)
     if (m.matrix.number[i] >= 0) rhs[m.matrix.number[i]] = b[i];
@@ -159,6 +199,16 @@ void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const 
     throw std::bad_alloc();
   const auto* solution = static_cast<const double*>(m.solution->x);
   for (std::size_t i = 0; i < b.size(); ++i) x[i] = m.matrix.number[i] >= 0 ? solution[m.matrix.number[i]] : 0.0;
+}
+
+void BlockCholesky::precondition(std::span<const double> b, std::span<double> x) {
+  Impl& m = *impl_;
+  if (m.factor->is_super == 0 || !m.round()) return solve(b, x);
+  m.solve(std::span<const float>(m.rounded), b, x);
+}
+
+double BlockCholesky::rounded_bytes() const {
+  return impl_->factor->is_super == 0 ? 0.0 : sizeof(float) * static_cast<double>(impl_->factor->xsize);
 }
 
 }  // namespace fascia

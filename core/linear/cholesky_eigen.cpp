@@ -110,4 +110,8 @@ void BlockCholesky::solve(std::span<const double> b, std::span<double> x) const 
   for (std::size_t i = 0; i < b.size(); ++i) x[i] = m.matrix.number[i] >= 0 ? solution[m.matrix.number[i]] : 0.0;
 }
 
+void BlockCholesky::precondition(std::span<const double> b, std::span<double> x) { solve(b, x); }
+
+double BlockCholesky::rounded_bytes() const { return 0; }
+
 }  // namespace fascia

@@ -106,6 +106,15 @@ bool FactorSolver::preconditions() {
   return definite_ && cholesky_ && factor_ == &*cholesky_;
 }
 
+void FactorSolver::renew_terms_of_preconditioner() {
+  K_.beside().prepare([&](std::span<const double> g, std::span<double> z) { factor_->precondition(g, z); });
+}
+
+void FactorSolver::precondition(std::span<const double> b, std::span<double> x) {
+  factor_->precondition(b, x);
+  K_.beside().correct(b, x);
+}
+
 void FactorSolver::apply_inverse(std::span<const double> b, std::span<double> x) {
   factor_->solve(b, x);
   K_.beside().correct(b, x);

@@ -29,10 +29,14 @@ class FactorSolver final : public LinearSolver {
 
   /// Takes the terms beside K as they are now, with the factor of a K as good as the same.
   void renew_terms() { take(*factor_, negative_pivots_); }
+  /// The same for precondition(), with the factor of a K met before.
+  void renew_terms_of_preconditioner();
   /// The factor is L Lᵀ of a tangent that was positive definite, that of K as it is now or one met before.
   bool preconditions();
   /// x = M⁻¹ b with the factor as it is, and the terms beside K that were taken last.
   void apply_inverse(std::span<const double> b, std::span<double> x);
+  /// About the same, for conjugate gradients: BlockCholesky::precondition().
+  void precondition(std::span<const double> b, std::span<double> x);
 
   /// After a shift: a direction of descent.
   LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;

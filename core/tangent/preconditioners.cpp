@@ -83,8 +83,9 @@ void OldFactor::renewed() {
 }
 
 bool OldFactor::prepare() {
-  if (is_kept()) {
-    factor_.renew_terms();
+  exact_ = !is_kept();
+  if (!exact_) {
+    factor_.renew_terms_of_preconditioner();
     return true;
   }
   const bool definite = factor_.prepare();
@@ -94,7 +95,10 @@ bool OldFactor::prepare() {
 
 /// Terms that are not those of the factor's own tangent could make it indefinite.
 double OldFactor::apply(std::span<const double> r, std::span<double> z) {
-  factor_.apply_inverse(r, z);
+  if (exact_)
+    factor_.apply_inverse(r, z);
+  else
+    factor_.precondition(r, z);
   return products_.take(K_.vectors().dot(r, z), [] { return false; });
 }
 

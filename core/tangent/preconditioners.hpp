@@ -104,6 +104,7 @@ class OldFactor final : public Preconditioner {
   FactorSolver& factor_;
   DefiniteProducts products_;
   bool ready_ = false;
+  bool exact_ = true;         ///< of K itself: no more than rounding is left; what an old one leaves hides 32 bits
   int first_ = 0, more_ = 0;  ///< iterations of the first solve after it was made; those of later ones beyond as many
 };
 
