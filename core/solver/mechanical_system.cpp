@@ -120,13 +120,13 @@ void MechanicalSystem::place_dependents_of_step() {
   dependents_.turn(state_.D);
 }
 
-/// Energy of the step where it starts. The strain energy of vertices is what the step before left.
+/// Energy of the step where it starts. The strain energy is what the step before left; nothing has flowed yet.
 double MechanicalSystem::energy_at_start() {
-  const bool same = reached_ && !model_.has_frames() && !model_.points.damped && memory_.empty() &&
-                    model_.tethers.empty() && reached_->first == start_.u;
+  const bool same = reached_ && form_.scheme == TimeScheme::implicit_euler && reached_->u == start_.u &&
+                    std::ranges::equal(reached_->D.values(), start_.D.values());
   if (!same) return evaluate().energy;
   add_loads_and_inertia();
-  return reached_->second + load_energy_ + inertia_energy_;
+  return reached_->energy + load_energy_ + inertia_energy_;
 }
 
 void MechanicalSystem::start_from_prediction() {

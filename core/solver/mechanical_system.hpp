@@ -256,8 +256,13 @@ class MechanicalSystem {
   std::vector<double> prescribed_;   ///< what is still to go, in constraint axes
   std::vector<PoseMotion> before_;   ///< motion in the step before
   std::vector<double> kept_loads_;   ///< by part, see keep_loads(); empty: none [N²]
-  /// Displacements at the end of the last step, and the internal energy there; of implicit Euler on vertices [J].
-  std::optional<std::pair<std::vector<Vec3d>, double>> reached_;
+  /// Where the last step of implicit Euler ended, and the energy there of what does not fade [J].
+  struct Reached {
+    std::vector<Vec3d> u;
+    FrameMatrices D;
+    double energy = 0;
+  };
+  std::optional<Reached> reached_;
   std::optional<Evaluation> known_;  ///< of the present state, where evaluate() would repeat itself
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0;

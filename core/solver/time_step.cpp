@@ -113,7 +113,6 @@ void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& e
   reached_factors_ = factors_;
   surfaces_.finish_step();
   reached_.reset();
-  if (form_.scheme == TimeScheme::implicit_euler && !model_.has_frames()) reached_ = {state_.u, internal_.total()};
   const std::size_t n = start_.u.size();
   end = state_;
   end.turned = increment_.turned;
@@ -142,6 +141,9 @@ void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& e
                       .before = remembers && same_step ? before_.data() : nullptr});
   place_dependents(model_.points, end);
   place_dependent_rates(model_.points, end);
+  // Tethers have been led elsewhere when the next step starts, and memory has faded.
+  if (form_.h > 0 && form_.scheme == TimeScheme::implicit_euler && memory_.empty() && model_.tethers.empty())
+    reached_ = {end.u, end.D, internal_.elastic + internal_.stabilization};
   if (!memory_.empty()) {
     memory_.prepare(Fading::over(form_.step));
     keep_memory(end);

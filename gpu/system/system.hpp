@@ -262,7 +262,7 @@ class System {
   std::uint64_t operator_count_ = 0;  ///< operators that differed from the one before
 
   std::optional<Evaluation> known_;
-  std::optional<std::pair<long, double>> reached_;  ///< a state reached, and its internal energy
+  std::optional<std::pair<long, double>> reached_;  ///< a state reached, and the energy of what does not fade
   InternalEnergy internal_;
   double load_energy_ = 0, inertia_energy_ = 0;
   bool prescribed_left_ = false;

@@ -152,10 +152,11 @@ void System<Space>::place_tethers() {
   blocks_.points().targets().upload(targets);
 }
 
-/// The strain energy of vertices is what the step before left.
+/// The strain energy is what the step before left; nothing has flowed yet.
 template <class Space>
 double System<Space>::energy_at_start() {
-  const bool same = reached_ && memory_.empty() && start_.step != 0 && reached_->first == start_.step;
+  const bool same = reached_ && step_.scheme == TimeScheme::implicit_euler && memory_.empty() && start_.step != 0 &&
+                    reached_->first == start_.step;
   if (!same) return evaluate().energy;
   evaluate_loads();
   return reached_->second + load_energy_ + inertia_energy_;
@@ -244,8 +245,8 @@ void System<Space>::finish_step(double end_time, Memory& memory, Pose& end) {
     keep_memory(end);
   }
   reached_.reset();
-  if (step_.scheme == TimeScheme::implicit_euler && !turning_ && !damped_ && model_.tethers.empty())
-    reached_ = {end.step, internal_.total()};
+  if (step_.scheme == TimeScheme::implicit_euler && model_.tethers.empty())
+    reached_ = {end.step, internal_.elastic + internal_.stabilization};
   if (!remembers) return;
   memory.step = step_.step;
   if (damped_) memory.E.copy_from(start_E_);

@@ -1,4 +1,5 @@
 #include "core/run/drivers.hpp"
+#include "core/run/implicit_stepper.hpp"
 #include "core/run/modes.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "core/structure/inertia.hpp"
@@ -227,6 +228,39 @@ TEST(ImplicitEuler, FreeFallIsExactForTheScheme) {
     const double expected = -9.81 * h * h * n * (n + 1) / 2;
     for (const Vec3d& u : state.u) EXPECT_NEAR(u[2], expected, 1e-12 * std::abs(expected));
     EXPECT_LT(system.internal_energy().elastic, 1e-20 * 1e4);
+  }
+}
+
+/// A step starts where the one before it ended, whose elastic energy is known: a system that forgot it evaluates once
+/// more, and ends at the same.
+TEST(ImplicitEuler, EvaluatesNoStateTwice) {
+  BlockOptions o;
+  o.stiffness_damping = 0.01;
+  for (const bool affine : {false, true}) {
+    o.affine = affine;
+    BuiltModel built = block(o);
+    add_gravity(built.model, {{0, 3, -9.81}});
+    FrameConstraint held;
+    held.translations = held.rotations = 3;
+    held.whole = affine;
+    built.model.constraints.push_back(held);
+    ThreadPool pool(2);
+    const SolverSettings settings;
+    MechanicalSystem system(built.model, pool, settings), anew(built.model, pool, settings);
+    State state = State::at_rest(built.model), other = state;
+    ImplicitStepper stepper(system, settings, TimeScheme::implicit_euler);
+    for (int step = 1; step <= 6; ++step) {
+      RunReport run, run_anew;
+      const long before = CpuExecutor::evaluations();
+      stepper.step(state, kAlways, 0.01 * step, 0.01, run);
+      const long between = CpuExecutor::evaluations();
+      ASSERT_EQ(run.status, RunStatus::converged) << run.message;
+      anew.forget_steps(anew.reached_factors(), anew.reached_pressures());
+      ImplicitStepper(anew, settings, TimeScheme::implicit_euler).step(other, kAlways, 0.01 * step, 0.01, run_anew);
+      EXPECT_EQ(between - before, CpuExecutor::evaluations() - between - (step == 1 ? 0 : 1)) << "step " << step;
+      EXPECT_EQ(run.newton_iterations, run_anew.newton_iterations);
+      for (std::size_t i = 0; i < state.u.size(); ++i) EXPECT_EQ(state.u[i], other.u[i]) << "node " << i;
+    }
   }
 }
 
