@@ -17,9 +17,10 @@ enum class Pivots { positive, any };
 class BlockCholesky {
  public:
   /// @param order  of elimination where it is known; null: is found
+  /// @param pool   for solves; null: one thread
   /// @throws InputError  a factor too large for its indices
   BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots = Pivots::positive,
-                const EliminationOrder* order = nullptr);
+                const EliminationOrder* order = nullptr, ThreadPool* pool = nullptr);
   ~BlockCholesky();
   BlockCholesky(BlockCholesky&&) noexcept;
   BlockCholesky& operator=(BlockCholesky&&) noexcept;

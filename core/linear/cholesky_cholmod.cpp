@@ -76,13 +76,16 @@ struct BlockCholesky::Impl {
   cholmod_factor* factor = nullptr;
   // Reused by every solve: of supernodes
   std::vector<int> place;  ///< of each degree of freedom in the factor's order, −1 where prescribed
-  std::vector<double> ordered, work;
+  std::vector<double> ordered;
+  SupernodeSolver solver;
+  ThreadPool* pool;
   std::vector<float> rounded;  ///< numbers of the factor; empty before one asks for them
   // and of single columns.
   cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
-  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* known)
-      : order(known != nullptr ? *known : EliminationOrder::of(pattern, f)), filter(f) {
+  Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* known,
+       ThreadPool* threads)
+      : order(known != nullptr ? *known : EliminationOrder::of(pattern, f)), filter(f), pool(threads) {
     order.expect_to_fit();
     matrix = FreeMatrix(pattern, f);
     hold_blas_to_one_thread();
@@ -107,7 +110,7 @@ struct BlockCholesky::Impl {
     for (std::size_t k = 0; k < n; ++k) place_of[at(static_cast<const int*>(factor->Perm)[k])] = static_cast<int>(k);
     for (const int number : matrix.number) place.push_back(number < 0 ? -1 : place_of[at(number)]);
     ordered.resize(n);
-    work.resize(at(supernodes(numbers()).most_rows()));
+    solver = SupernodeSolver(supernodes(numbers()));
   }
   std::span<const double> numbers() const { return {static_cast<const double*>(factor->x), factor->xsize}; }
   template <class T>
@@ -132,7 +135,7 @@ struct BlockCholesky::Impl {
   void solve(std::span<const T> values, std::span<const double> b, std::span<double> x) {
     for (std::size_t i = 0; i < b.size(); ++i)
       if (place[i] >= 0) ordered[at(place[i])] = b[i];
-    fascia::solve(supernodes(values), std::span(ordered), std::span(work));
+    solver.solve(supernodes(values), pool, ordered);
     for (std::size_t i = 0; i < b.size(); ++i) x[i] = place[i] >= 0 ? ordered[at(place[i])] : 0.0;
   }
   ~Impl() {
@@ -148,8 +151,8 @@ struct BlockCholesky::Impl {
 };
 
 BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots,
-                             const EliminationOrder* order)
-    : impl_(std::make_unique<Impl>(pattern, filter, pivots, order)) {}
+                             const EliminationOrder* order, ThreadPool* pool)
+    : impl_(std::make_unique<Impl>(pattern, filter, pivots, order, pool)) {}
 BlockCholesky::~BlockCholesky() = default;
 BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;
 BlockCholesky& BlockCholesky::operator=(BlockCholesky&&) noexcept = default;

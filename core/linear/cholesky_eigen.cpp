@@ -68,7 +68,7 @@ struct BlockCholesky::Impl {
 };
 
 BlockCholesky::BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots,
-                             const EliminationOrder* order)
+                             const EliminationOrder* order, ThreadPool* /*pool*/)
     : impl_(std::make_unique<Impl>(pattern, filter, pivots, order)) {}
 BlockCholesky::~BlockCholesky() = default;
 BlockCholesky::BlockCholesky(BlockCholesky&&) noexcept = default;

@@ -79,14 +79,16 @@ struct Supernode {
     return {value + at(j) * at(rows) + at(j), rows - j, at(rows)};
   }
 
-  void forward(double* x, double* w) const {
+  /// @param add  add(row, number) takes what the rows below get
+  template <class Add>
+  void forward(double* x, double* w, const Add& add) const {
     std::copy_n(x + first, columns, w);
     std::fill(w + columns, w + rows, 0.0);
     int j = 0;
     for (; j + kColumns <= columns; j += kColumns) from<kColumns>(j).forward(w + j);
     for (; j < columns; ++j) from<1>(j).forward(w + j);
     std::copy_n(w, columns, x + first);
-    for (int i = columns; i < rows; ++i) x[below[i - columns]] += w[i];
+    for (int i = columns; i < rows; ++i) add(below[i - columns], w[i]);
   }
 
   void backward(double* x, double* w) const {
@@ -101,13 +103,111 @@ struct Supernode {
 
 }  // namespace
 
-template <class T>
-void solve(const Supernodes<T>& L, std::span<double> x, std::span<double> work) {
-  for (int s = 0; s < L.count(); ++s) Supernode(L, s).forward(x.data(), work.data());
-  for (int s = L.count(); s-- > 0;) Supernode(L, s).backward(x.data(), work.data());
+/// The largest subtrees are taken apart until each is a small part of the whole. Columns are in postorder, so that a
+/// subtree is a run of supernodes; where one is not, it stays on top.
+void SupernodeSolver::find_subtrees(std::span<const int> first_column, std::span<const int> row_begin,
+                                    std::span<const int> value_begin, std::span<const int> row) {
+  constexpr int kParts = 12;
+  constexpr double kWorthThreads = 1e5;  ///< numbers of L: some 50 µs
+  const std::size_t count = first_column.size() - 1;
+  std::vector<int> supernode_of(at(first_column.back())), first(count), size(count, 1);
+  for (std::size_t s = 0; s < count; ++s) {
+    most_rows_ = std::max(most_rows_, at(row_begin[s + 1] - row_begin[s]));
+    std::fill(supernode_of.begin() + first_column[s], supernode_of.begin() + first_column[s + 1], static_cast<int>(s));
+    first[s] = static_cast<int>(s);
+  }
+  std::vector<std::vector<int>> children(count);
+  std::vector<int> roots;
+  for (std::size_t s = 0; s < count; ++s) {  // children come before their parents
+    const int own = first_column[s + 1] - first_column[s], begin = row_begin[s] + own;
+    if (begin == row_begin[s + 1]) {
+      roots.push_back(static_cast<int>(s));
+      continue;
+    }
+    const std::size_t parent = at(supernode_of[at(row[at(begin)])]);
+    children[parent].push_back(static_cast<int>(s));
+    first[parent] = std::min(first[parent], first[s]);
+    size[parent] += size[s];
+  }
+  const auto numbers = [&](int s) { return double(value_begin[at(s + 1)]) - value_begin[at(first[at(s)])]; };
+  const auto smaller = [&](int a, int b) { return numbers(a) < numbers(b); };
+  const double all = count == 0 ? 0.0 : value_begin[count];
+  std::vector<char> on_top(count, 1);
+  if (all >= kWorthThreads) {
+    std::make_heap(roots.begin(), roots.end(), smaller);
+    while (!roots.empty()) {
+      std::pop_heap(roots.begin(), roots.end(), smaller);
+      const int root = roots.back();
+      roots.pop_back();
+      const bool run = size[at(root)] == root + 1 - first[at(root)];
+      if (run && (numbers(root) * kParts <= all || children[at(root)].empty())) {
+        subtree_.push_back({first[at(root)], root + 1, first_column[at(root) + 1]});
+        std::fill(on_top.begin() + first[at(root)], on_top.begin() + root + 1, char{0});
+        continue;
+      }
+      for (const int child : children[at(root)]) {
+        roots.push_back(child);
+        std::push_heap(roots.begin(), roots.end(), smaller);
+      }
+    }
+  }
+  join_small(value_begin, all / (2 * kParts));
+  place_.assign(supernode_of.size(), -1);
+  for (std::size_t s = 0; s < count; ++s) {
+    if (on_top[s] == 0) continue;
+    top_.push_back(static_cast<int>(s));
+    for (int column = first_column[s]; column < first_column[s + 1]; ++column) {
+      place_[at(column)] = static_cast<int>(top_column_.size());
+      top_column_.push_back(column);
+    }
+  }
+  work_.resize((subtree_.size() + 1) * most_rows_);
+  sums_.resize(subtree_.size() * top_column_.size());
 }
 
-template void solve(const Supernodes<double>&, std::span<double>, std::span<double>);
-template void solve(const Supernodes<float>&, std::span<double>, std::span<double>);
+/// Neighbours become one where they are small: each has sums for all of the top.
+void SupernodeSolver::join_small(std::span<const int> value_begin, double most) {
+  std::sort(subtree_.begin(), subtree_.end(), [](const Subtree& a, const Subtree& b) { return a.begin < b.begin; });
+  std::vector<Subtree> joined;
+  for (const Subtree& next : subtree_) {
+    const bool follows = !joined.empty() && joined.back().end == next.begin;
+    if (follows && value_begin[at(next.end)] - value_begin[at(joined.back().begin)] <= most)
+      joined.back() = {joined.back().begin, next.end, next.end_column};
+    else
+      joined.push_back(next);
+  }
+  subtree_ = std::move(joined);
+}
+
+template <class T>
+void SupernodeSolver::solve(const Supernodes<T>& L, ThreadPool* pool, std::span<double> x) {
+  const std::size_t top = top_column_.size();
+  const auto for_subtrees = [&](const auto& act) {
+    const auto of = [&](int k) { act(subtree_[at(k)], work_.data() + at(k) * most_rows_, sums_.data() + at(k) * top); };
+    if (pool != nullptr)
+      pool->for_chunks(subtrees(), of);
+    else
+      for (int k = 0; k < subtrees(); ++k) of(k);
+  };
+  for_subtrees([&](const Subtree& part, double* work, double* sums) {
+    std::fill_n(sums, top, 0.0);
+    for (int s = part.begin; s < part.end; ++s)
+      Supernode(L, s).forward(x.data(), work, [&](int row, double number) {
+        (row < part.end_column ? x[at(row)] : sums[place_[at(row)]]) += number;
+      });
+  });
+  for (int k = 0; k < subtrees(); ++k)
+    for (std::size_t i = 0; i < top; ++i) x[at(top_column_[i])] += sums_[at(k) * top + i];
+  double* work = work_.data() + subtree_.size() * most_rows_;
+  for (const int s : top_)
+    Supernode(L, s).forward(x.data(), work, [&](int row, double number) { x[at(row)] += number; });
+  for (std::size_t k = top_.size(); k-- > 0;) Supernode(L, top_[k]).backward(x.data(), work);
+  for_subtrees([&](const Subtree& part, double* own, double*) {
+    for (int s = part.end; s-- > part.begin;) Supernode(L, s).backward(x.data(), own);
+  });
+}
+
+template void SupernodeSolver::solve(const Supernodes<double>&, ThreadPool*, std::span<double>);
+template void SupernodeSolver::solve(const Supernodes<float>&, ThreadPool*, std::span<double>);
 
 }  // namespace fascia

@@ -1,8 +1,10 @@
 #pragma once
 
-#include <algorithm>
+#include "core/base/thread_pool.hpp"
+
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace fascia {
 
@@ -17,18 +19,42 @@ struct Supernodes {
   std::span<const T> value;
 
   int count() const { return static_cast<int>(first_column.size()) - 1; }
-  int most_rows() const {
-    int most = 0;
-    for (std::size_t s = 1; s < row_begin.size(); ++s) most = std::max(most, row_begin[s] - row_begin[s - 1]);
-    return most;
-  }
 };
 
-/// L Lᵀ x = b in place. Each number of L is read once for each triangle, four columns together: a direct solve with one
-/// right-hand side waits for memory, not for multiplications.
-/// @tparam T    numbers of L: double, or float, which is half as much to read; they are multiplied and added in 64 bits
-/// @param work  for most_rows() numbers
-template <class T>
-void solve(const Supernodes<T>& L, std::span<double> x, std::span<double> work);
+/// Solves with a factor of one pattern: L Lᵀ x = b in place. Each number of L is read once for each triangle, four
+/// columns together: a direct solve with one right-hand side waits for memory, not for multiplications. Subtrees of the
+/// elimination tree, which need nothing of one another, go to threads; what stands on top of them follows. Which they
+/// are depends on the pattern alone, so that results do not depend on the number of threads.
+class SupernodeSolver {
+ public:
+  SupernodeSolver() = default;
+  template <class T>
+  explicit SupernodeSolver(const Supernodes<T>& pattern) {
+    find_subtrees(pattern.first_column, pattern.row_begin, pattern.value_begin, pattern.row);
+  }
+
+  /// @tparam T  numbers of L: double, or float, which is half as much to read; they are multiplied and added in 64 bits
+  template <class T>
+  void solve(const Supernodes<T>& L, ThreadPool* pool, std::span<double> x);
+
+  int subtrees() const { return static_cast<int>(subtree_.size()); }
+
+ private:
+  /// Supernodes [begin, end), of columns that end there.
+  struct Subtree {
+    int begin, end, end_column;
+  };
+  void find_subtrees(std::span<const int> first_column, std::span<const int> row_begin,
+                     std::span<const int> value_begin, std::span<const int> row);
+  void join_small(std::span<const int> value_begin, double most);
+
+  std::vector<Subtree> subtree_;  ///< ascending
+  std::vector<int> top_;          ///< supernodes of none of them, ascending
+  std::vector<int> top_column_;   ///< their columns
+  std::vector<int> place_;        ///< of each column among these
+  std::size_t most_rows_ = 0;
+  std::vector<double> work_;  ///< (subtrees + 1) × most_rows
+  std::vector<double> sums_;  ///< (subtrees × top columns) what they have for these
+};
 
 }  // namespace fascia

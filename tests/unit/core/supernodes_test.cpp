@@ -12,19 +12,25 @@
 namespace fascia::supernodes_test {
 namespace {
 
-/// A factor with supernodes of these many columns, each above some rows of those that follow.
+/// A factor whose elimination tree is a binary one, in postorder. Each supernode has rows in those above it.
 struct RandomFactor {
   std::vector<int> first_column{0}, row_begin{0}, value_begin{0}, row;
   std::vector<double> value;
 
-  RandomFactor(const std::vector<int>& columns, std::mt19937& random) {
+  /// @param widest  columns of a supernode, 1 to this
+  RandomFactor(int levels, int widest, std::mt19937& random) {
+    std::vector<int> parent;
+    add(levels, parent);
+    for (std::size_t s = 0; s < parent.size(); ++s)
+      first_column.push_back(first_column.back() + 1 + static_cast<int>(random() % at(widest)));
     std::uniform_real_distribution<double> entry(-1, 1);
-    for (const int n : columns) first_column.push_back(first_column.back() + n);
-    for (std::size_t s = 0; s < columns.size(); ++s) {
-      for (int r = first_column[s]; r < first_column.back(); ++r)
-        if (r < first_column[s + 1] || random() % 3 == 0) row.push_back(r);
-      const int rows = static_cast<int>(row.size()) - row_begin.back();
-      for (int j = 0; j < columns[s]; ++j)
+    for (std::size_t s = 0; s < parent.size(); ++s) {
+      for (int r = first_column[s]; r < first_column[s + 1]; ++r) row.push_back(r);
+      for (int p = parent[s]; p >= 0; p = parent[at(p)])
+        for (int r = first_column[at(p)]; r < first_column[at(p + 1)]; ++r)
+          if (r == first_column[at(parent[s])] || random() % 2 == 0) row.push_back(r);
+      const int columns = first_column[s + 1] - first_column[s], rows = static_cast<int>(row.size()) - row_begin.back();
+      for (int j = 0; j < columns; ++j)
         for (int i = 0; i < rows; ++i)
           value.push_back(i < j ? std::nan("") : i == j ? 3 + entry(random) : entry(random) / rows);
       row_begin.push_back(static_cast<int>(row.size()));
@@ -36,6 +42,22 @@ struct RandomFactor {
     return {first_column, row_begin, value_begin, row, numbers};
   }
 
+  /// L Lᵀ x
+  std::vector<double> product(const std::vector<double>& x) const {
+    std::vector<double> turned(x.size()), out(x.size());
+    for_each([&](std::size_t i, std::size_t j, double L) { turned[j] += L * x[i]; });
+    for_each([&](std::size_t i, std::size_t j, double L) { out[i] += L * turned[j]; });
+    return out;
+  }
+
+ private:
+  static int add(int levels, std::vector<int>& parent) {
+    const int left = levels > 1 ? add(levels - 1, parent) : -1, right = levels > 1 ? add(levels - 1, parent) : -1;
+    const int own = static_cast<int>(parent.size());
+    parent.push_back(-1);
+    if (left >= 0) parent[at(left)] = parent[at(right)] = own;
+    return own;
+  }
   /// Calls act(i, j, L_ij).
   template <class Act>
   void for_each(const Act& act) const {
@@ -48,26 +70,48 @@ struct RandomFactor {
   }
 };
 
+std::vector<double> random_numbers(int count, std::mt19937& random) {
+  std::vector<double> x(at(count));
+  for (double& number : x) number = std::uniform_real_distribution<double>(-1, 1)(random);
+  return x;
+}
+
+template <class T>
+std::vector<double> solved(const RandomFactor& factor, const std::vector<T>& numbers, std::vector<double> b,
+                           int threads, int most_subtrees) {
+  ThreadPool pool(threads);
+  SupernodeSolver solver(factor.view(numbers));
+  EXPECT_EQ(solver.subtrees() > 1, most_subtrees > 1);
+  EXPECT_LE(solver.subtrees(), most_subtrees);
+  solver.solve(factor.view(numbers), threads > 1 ? &pool : nullptr, b);
+  return b;
+}
+
+void expect_near(const std::vector<double>& x, const std::vector<double>& wanted, double tolerance) {
+  for (std::size_t i = 0; i < x.size(); ++i)
+    EXPECT_NEAR(x[i], wanted[i], tolerance) << "row " << i << " of " << x.size();
+}
+
 TEST(Supernodes, SolveWhatTheirFactorTimesItsTransposeMakes) {
   std::mt19937 random(7);
-  const std::vector<std::vector<int>> all{{1}, {4}, {7}, {1, 1, 1}, {5, 1, 9, 2, 12, 40}, {3, 8, 33, 4, 1, 17, 64}};
-  for (const std::vector<int>& columns : all) {
-    const RandomFactor factor(columns, random);
-    const auto n = at(factor.first_column.back());
-    std::vector<double> wanted(n), turned(n), b(n), work(at(factor.view(factor.value).most_rows()), std::nan(""));
-    for (double& x : wanted) x = std::uniform_real_distribution<double>(-1, 1)(random);
-    factor.for_each([&](std::size_t i, std::size_t j, double L) { turned[j] += L * wanted[i]; });
-    factor.for_each([&](std::size_t i, std::size_t j, double L) { b[i] += L * turned[j]; });
-    std::vector<double> x = b;
-    solve(factor.view(factor.value), std::span(x), std::span(work));
-    for (std::size_t i = 0; i < n; ++i)
-      EXPECT_NEAR(x[i], wanted[i], 1e-13) << columns.size() << " supernodes, row " << i;
+  struct Size {
+    int levels, widest, most_subtrees;
+  };
+  for (const Size size : {Size{1, 1, 0}, Size{1, 40, 0}, Size{2, 5, 0}, Size{4, 17, 0}, Size{7, 40, 100}}) {
+    const RandomFactor factor(size.levels, size.widest, random);
+    const std::vector<double> wanted = random_numbers(factor.first_column.back(), random), b = factor.product(wanted);
+    expect_near(solved(factor, factor.value, b, 1, size.most_subtrees), wanted, 1e-12);
     const std::vector<float> rounded(factor.value.begin(), factor.value.end());
-    x = b;
-    solve(factor.view(rounded), std::span(x), std::span(work));
-    for (std::size_t i = 0; i < n; ++i)
-      EXPECT_NEAR(x[i], wanted[i], 1e-5) << columns.size() << " supernodes, row " << i;
+    expect_near(solved(factor, rounded, b, 1, size.most_subtrees), wanted, 1e-4);
   }
+}
+
+TEST(Supernodes, AreSolvedAlikeByAnyNumberOfThreads) {
+  std::mt19937 random(5);
+  const RandomFactor factor(7, 40, random);
+  const std::vector<double> b = random_numbers(factor.first_column.back(), random);
+  const std::vector<double> alone = solved(factor, factor.value, b, 1, 100);
+  for (const int threads : {2, 3, 7}) EXPECT_EQ(solved(factor, factor.value, b, threads, 100), alone);
 }
 
 }  // namespace
