@@ -132,7 +132,6 @@ void SupernodeSolver::find_subtrees(std::span<const int> first_column, std::span
   const auto numbers = [&](int s) { return double(value_begin[at(s + 1)]) - value_begin[at(first[at(s)])]; };
   const auto smaller = [&](int a, int b) { return numbers(a) < numbers(b); };
   const double all = count == 0 ? 0.0 : value_begin[count];
-  std::vector<char> on_top(count, 1);
   if (all >= kWorthThreads) {
     std::make_heap(roots.begin(), roots.end(), smaller);
     while (!roots.empty()) {
@@ -142,7 +141,6 @@ void SupernodeSolver::find_subtrees(std::span<const int> first_column, std::span
       const bool run = size[at(root)] == root + 1 - first[at(root)];
       if (run && (numbers(root) * kParts <= all || children[at(root)].empty())) {
         subtree_.push_back({first[at(root)], root + 1, first_column[at(root) + 1]});
-        std::fill(on_top.begin() + first[at(root)], on_top.begin() + root + 1, char{0});
         continue;
       }
       for (const int child : children[at(root)]) {
@@ -151,7 +149,9 @@ void SupernodeSolver::find_subtrees(std::span<const int> first_column, std::span
       }
     }
   }
-  join_small(value_begin, all / (2 * kParts));
+  keep_large(value_begin, all / kParts);
+  std::vector<char> on_top(count, 1);
+  for (const Subtree& part : subtree_) std::fill(on_top.begin() + part.begin, on_top.begin() + part.end, char{0});
   place_.assign(supernode_of.size(), -1);
   for (std::size_t s = 0; s < count; ++s) {
     if (on_top[s] == 0) continue;
@@ -165,17 +165,24 @@ void SupernodeSolver::find_subtrees(std::span<const int> first_column, std::span
   sums_.resize(subtree_.size() * top_column_.size());
 }
 
-/// Neighbours become one where they are small: each has sums for all of the top.
-void SupernodeSolver::join_small(std::span<const int> value_begin, double most) {
+/// Neighbours become one up to so many numbers. Those that stay small go on top, for each has sums for all of it; so do
+/// all where they are but a small part of the whole.
+void SupernodeSolver::keep_large(std::span<const int> value_begin, double most) {
+  constexpr double kSmall = 0.4, kFew = 4;  // of what a subtree may have at most
+  const auto numbers = [&](const Subtree& part) { return value_begin[at(part.end)] - value_begin[at(part.begin)]; };
   std::sort(subtree_.begin(), subtree_.end(), [](const Subtree& a, const Subtree& b) { return a.begin < b.begin; });
   std::vector<Subtree> joined;
   for (const Subtree& next : subtree_) {
     const bool follows = !joined.empty() && joined.back().end == next.begin;
-    if (follows && value_begin[at(next.end)] - value_begin[at(joined.back().begin)] <= most)
+    if (follows && numbers(joined.back()) + numbers(next) <= most)
       joined.back() = {joined.back().begin, next.end, next.end_column};
     else
       joined.push_back(next);
   }
+  std::erase_if(joined, [&](const Subtree& part) { return numbers(part) < kSmall * most; });
+  double all = 0;
+  for (const Subtree& part : joined) all += numbers(part);
+  if (all < kFew * most) joined.clear();
   subtree_ = std::move(joined);
 }
 

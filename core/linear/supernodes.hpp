@@ -46,7 +46,7 @@ class SupernodeSolver {
   };
   void find_subtrees(std::span<const int> first_column, std::span<const int> row_begin,
                      std::span<const int> value_begin, std::span<const int> row);
-  void join_small(std::span<const int> value_begin, double most);
+  void keep_large(std::span<const int> value_begin, double most);
 
   std::vector<Subtree> subtree_;  ///< ascending
   std::vector<int> top_;          ///< supernodes of none of them, ascending

@@ -12,15 +12,38 @@
 namespace fascia::supernodes_test {
 namespace {
 
-/// A factor whose elimination tree is a binary one, in postorder. Each supernode has rows in those above it.
+/// Adds a binary elimination tree in postorder, by the parents of its supernodes. @return  its root
+int add_binary(int levels, std::vector<int>& parent) {
+  const int left = levels > 1 ? add_binary(levels - 1, parent) : -1,
+            right = levels > 1 ? add_binary(levels - 1, parent) : -1;
+  const int own = static_cast<int>(parent.size());
+  parent.push_back(-1);
+  if (left >= 0) parent[at(left)] = parent[at(right)] = own;
+  return own;
+}
+std::vector<int> binary(int levels) {
+  std::vector<int> parent;
+  add_binary(levels, parent);
+  return parent;
+}
+
+/// A chain, each link of which has one more child.
+std::vector<int> chain(int links) {
+  std::vector<int> parent;
+  for (int link = 0; link < links; ++link) {
+    parent.push_back(2 * link + 1);
+    parent.push_back(link + 1 < links ? 2 * link + 3 : -1);
+  }
+  return parent;
+}
+
+/// A factor with this elimination tree. Each supernode has rows in those above it.
 struct RandomFactor {
   std::vector<int> first_column{0}, row_begin{0}, value_begin{0}, row;
   std::vector<double> value;
 
   /// @param widest  columns of a supernode, 1 to this
-  RandomFactor(int levels, int widest, std::mt19937& random) {
-    std::vector<int> parent;
-    add(levels, parent);
+  RandomFactor(const std::vector<int>& parent, int widest, std::mt19937& random) {
     for (std::size_t s = 0; s < parent.size(); ++s)
       first_column.push_back(first_column.back() + 1 + static_cast<int>(random() % at(widest)));
     std::uniform_real_distribution<double> entry(-1, 1);
@@ -51,13 +74,6 @@ struct RandomFactor {
   }
 
  private:
-  static int add(int levels, std::vector<int>& parent) {
-    const int left = levels > 1 ? add(levels - 1, parent) : -1, right = levels > 1 ? add(levels - 1, parent) : -1;
-    const int own = static_cast<int>(parent.size());
-    parent.push_back(-1);
-    if (left >= 0) parent[at(left)] = parent[at(right)] = own;
-    return own;
-  }
   /// Calls act(i, j, L_ij).
   template <class Act>
   void for_each(const Act& act) const {
@@ -98,7 +114,7 @@ TEST(Supernodes, SolveWhatTheirFactorTimesItsTransposeMakes) {
     int levels, widest, most_subtrees;
   };
   for (const Size size : {Size{1, 1, 0}, Size{1, 40, 0}, Size{2, 5, 0}, Size{4, 17, 0}, Size{7, 40, 100}}) {
-    const RandomFactor factor(size.levels, size.widest, random);
+    const RandomFactor factor(binary(size.levels), size.widest, random);
     const std::vector<double> wanted = random_numbers(factor.first_column.back(), random), b = factor.product(wanted);
     expect_near(solved(factor, factor.value, b, 1, size.most_subtrees), wanted, 1e-12);
     const std::vector<float> rounded(factor.value.begin(), factor.value.end());
@@ -106,9 +122,18 @@ TEST(Supernodes, SolveWhatTheirFactorTimesItsTransposeMakes) {
   }
 }
 
+/// Such a subtree would have sums for all of the chain.
+TEST(Supernodes, LeaveSmallSubtreesOfALongChainOnTop) {
+  std::mt19937 random(3);
+  const RandomFactor factor(chain(60), 20, random);
+  const std::vector<double> wanted = random_numbers(factor.first_column.back(), random);
+  ASSERT_GT(factor.value.size(), 100000U);
+  expect_near(solved(factor, factor.value, factor.product(wanted), 1, 0), wanted, 1e-12);
+}
+
 TEST(Supernodes, AreSolvedAlikeByAnyNumberOfThreads) {
   std::mt19937 random(5);
-  const RandomFactor factor(7, 40, random);
+  const RandomFactor factor(binary(7), 40, random);
   const std::vector<double> b = random_numbers(factor.first_column.back(), random);
   const std::vector<double> alone = solved(factor, factor.value, b, 1, 100);
   for (const int threads : {2, 3, 7}) EXPECT_EQ(solved(factor, factor.value, b, threads, 100), alone);
