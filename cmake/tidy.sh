@@ -87,8 +87,12 @@ cut -f2 "$work/includes" | sort -u >"$work/files"
 { grep -v '^/' "$work/files" | grep -v '^build/' | xargs -d '\n' sha256sum 2>/dev/null | sed -E 's/^([^ ]+)  (.*)/\2\t\1/'
   grep '^/' "$work/files" | xargs -d '\n' stat -L --printf '%n\t%s-%Y\n' 2>/dev/null; } >"$work/digests"
 
-# How each source is compiled, those of batches by themselves.
-awk '
+# How each source is compiled, those of batches by themselves; without what g++ knows of the processor and clang does not.
+mapfile -t processor_flags < <(grep -oE -- ' -m[a-z0-9=.-]+' build/release/compile_commands.json | sort -u | tr -d ' ')
+unknown=$(clang++ "${processor_flags[@]}" -fsyntax-only -x c++ /dev/null 2>&1 |
+  sed -nE "s/.*unknown argument:? '([^']+)'.*/\1/p" | tr '\n' ' ')
+awk -v unknown="$unknown" '
+  BEGIN { flags = split(unknown, flag, " ") }
   /^ *"command": / { command = $0 }
   /^ *"directory": / { folder = $0 }
   /^ *"file": / {
@@ -102,6 +106,7 @@ awk '
     } else sources[++n] = file
     for (i = 1; i <= n; ++i) {
       own = command
+      for (f = 1; f <= flags; ++f) if (k = index(own, " " flag[f] " ")) own = substr(own, 1, k) substr(own, k + length(flag[f]) + 2)
       sub(/ -o .*$/, " -c " sources[i] "\",", own)
       printf "%s{\n%s\n%s\n  \"file\": \"%s\"\n}", entries++ ? ",\n" : "[\n", folder, own, sources[i]
     }

@@ -40,7 +40,7 @@ class BlockCholesky {
   /// About what solve() gives, with the numbers of the factor rounded to 32 bits where they are many: half as much to
   /// read, as a preconditioner. It is symmetric and definite.
   void precondition(std::span<const double> b, std::span<double> x);
-  /// What precondition() keeps beside the factor.
+  /// Bytes that precondition() keeps beside the factor.
   double rounded_bytes() const;
 
  private:

@@ -29,7 +29,7 @@ class FactorSolver final : public LinearSolver {
 
   /// Takes the terms beside K as they are now, with the factor of a K as good as the same.
   void renew_terms() { take(*factor_, negative_pivots_); }
-  /// The same for precondition(), with the factor of a K met before.
+  /// Takes them for precondition(), with the factor of a K met before.
   void renew_terms_of_preconditioner();
   /// The factor is L Lᵀ of a tangent that was positive definite, that of K as it is now or one met before.
   bool preconditions();
