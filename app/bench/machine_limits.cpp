@@ -3,7 +3,7 @@
 #include "app/run/process_memory.hpp"
 #include "core/base/aligned.hpp"
 #include "core/base/clock.hpp"
-#include "core/math/batch.hpp"
+#include "core/math/across_lanes.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/executor/block_executor.hpp"
+#include "core/math/across_lanes.hpp"
 #include "core/math/lane_array.hpp"
 #include "core/physics/element_law.hpp"
 

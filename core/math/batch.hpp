@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 namespace fascia {
 
@@ -136,20 +135,6 @@ double largest(const Batch<W>& a) {
 }
 FASCIA_HD inline double largest(double a) { return a; }
 
-/// Sum over the lanes, always in the same order.
-template <int W>
-double lane_sum(const Batch<W>& a) {
-  if constexpr (W == 2) {
-    return a.v[0] + a.v[1];
-  } else {
-    return [&]<int... I>(std::integer_sequence<int, I...>) {
-      return lane_sum(Batch<W / 2>::of(__builtin_shufflevector(a.v, a.v, I...)) +
-                      Batch<W / 2>::of(__builtin_shufflevector(a.v, a.v, (W / 2 + I)...)));
-    }
-    (std::make_integer_sequence<int, W / 2>{});
-  }
-}
-
 #if defined(__AVX512F__)
 inline constexpr int kBatchWidth = 8;
 #elif defined(__AVX__)
@@ -160,12 +145,5 @@ inline constexpr int kBatchWidth = 2;
 
 /// The batch that this processor computes fastest.
 using Lanes = Batch<kBatchWidth>;
-
-/// The batch of value(lane), which goes through no memory.
-template <class Value>
-Lanes lanes_of(const Value& value) {
-  return [&]<int... Lane>(std::integer_sequence<int, Lane...>) { return Lanes::of(Lanes::Register{value(Lane)...}); }
-  (std::make_integer_sequence<int, kBatchWidth>{});
-}
 
 }  // namespace fascia

@@ -1,4 +1,4 @@
-#include "core/math/batch.hpp"
+#include "core/math/across_lanes.hpp"
 
 #include <gtest/gtest.h>
 
