@@ -203,7 +203,8 @@ class Setup {
     if (!factorizes_) return of_levels(matrix);
     if (solver.precision == "mixed" && !linear.direct()) to_come_.keep(rounded_bytes(matrix));
     take(linear.factor().cholesky(), matrix);
-    if (!statics || solver.preconditioner == PreconditionerKind::cholesky)
+    const bool keeps = !statics && solver.linear == LinearMethod::automatic;
+    if (keeps || solver.preconditioner == PreconditionerKind::cholesky)
       to_come_.keep(linear.factor().cholesky().rounded_bytes());
     if (!load || !s_.model.loads_are_conservative())
       beyond_ = bytes_of(BlockCholesky(matrix, system_->filter(), Pivots::any, &linear.factor().order()), matrix);

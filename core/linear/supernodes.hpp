@@ -17,8 +17,6 @@ struct Supernodes {
   std::span<const int> value_begin;   ///< of each in `value`, and of the end
   std::span<const int> row;           ///< of L, ascending in each
   std::span<const T> value;
-
-  int count() const { return static_cast<int>(first_column.size()) - 1; }
 };
 
 /// Solves with a factor of one pattern: L Lᵀ x = b in place. Each number of L is read once for each triangle, four

@@ -63,7 +63,7 @@ void FactorSolver::take(BlockCholesky& factor, int negative_pivots) {
 
 bool FactorSolver::factorize_any() {
   follow_pattern();
-  if (!indefinite_) indefinite_.emplace(K_.pattern(), K_.filter(), Pivots::any, &order(), &K_.pool());
+  if (!indefinite_) indefinite_.emplace(K_.pattern(), K_.filter(), Pivots::any, &order());
   if (!indefinite_->factorize(K_.matrix())) return false;
   take(*indefinite_, indefinite_->negative_pivots());
   return true;
