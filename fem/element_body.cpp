@@ -137,6 +137,7 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
       point.volume = v;
       point.law = m.law;
       point.cell = static_cast<int>(e);
+      if (m.active) point.active = spec.material(p.X, point.cell).active;
       points_.push_back(point);
       volume_ += v;
     }
@@ -147,6 +148,7 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
 void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& builder) {
   const std::vector<QuadraturePoint>& rule = quadrature(mesh().shape);
   const double length = mean_edge(mesh());
+  const bool acts = std::any_of(points_.begin(), points_.end(), [](const BodyPoint& p) { return p.active != nullptr; });
   std::map<Law, std::vector<std::size_t>> by_law;
   for (std::size_t e = 0; e < mesh().size(); ++e) by_law[law(static_cast<int>(e))].push_back(e);
   for (const auto& [law, chosen] : by_law) {
@@ -171,6 +173,8 @@ void ElementBody::add_elements(const ElementBodySpec& spec, PointSetBuilder& bui
       const PointMaterialSpec& m = material_[e];
       block.material.push_back({m, m.stiffness_damping, spec.penalty});
       block.source.push_back(static_cast<int>(e));
+      for (std::size_t q = e * rule.size(); acts && q < (e + 1) * rule.size(); ++q)
+        block.active.push_back(points_[q].active);
     }
     builder.add_elements(make_element_block(block));
   }

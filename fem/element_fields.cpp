@@ -113,7 +113,7 @@ std::vector<ElementBody::Averaged> ElementBody::averages(const State& state) con
   return result;
 }
 
-/// @param past  what the point remembers, added to what never fades
+/// @param past  what the point remembers, or makes by itself, added to what never fades
 PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const RememberedStress& past,
                                      const Strained& element, const std::optional<Averaged>& averaged) const {
   const LawConstants p = lasting_constants(points_[point]), relaxing = relaxing_constants(points_[point]);
@@ -123,26 +123,28 @@ PointTensors ElementBody::tensors_of(std::size_t point, const Mat3d& H, const Re
   PointTensors t;
   t.strain = green_strain(H);
   if (formulation_ == ElementFormulation::linear) {
-    t.stress = law.second_piola(sym(H)) + past.at(fading.second_piola(sym(H)));
+    t.stress = law.second_piola(sym(H)) + past.at(fading.second_piola(sym(H))) + past.active;
     t.energy_density = law.energy_density(sym(H));
   } else if (formulation_ == ElementFormulation::corotational) {
     const Mat3d R = Mat3d::identity() + element.turn;
     const Mat3d strain = sym(transpose(element.turn) + H + transpose_times(element.turn, H));
-    t.stress = times_transpose(R * (law.second_piola(strain) + past.at(fading.second_piola(strain))), R);
+    t.stress = times_transpose(R * (law.second_piola(strain) + past.at(fading.second_piola(strain)) + past.active), R);
     t.energy_density = law.energy_density(strain);
   } else {
     const Mat3d F = Mat3d::identity() + H;
-    const Mat3d S = with_solid_law(points_[point].law, [&]<Law L>() {
-      using Solid = SolidLaw<L, double>;
-      const auto solid = make_law<Solid>(p);
-      t.energy_density = averaged ? solid.shear_energy(H) + averaged->energy_density : energy_density(solid, H);
-      const double pressure = averaged ? averaged->pressure : solid.volumetric_modulus() * Solid::volumetric_strain(H);
-      const Mat3d lasts = solid.second_piola(typename Solid::At(H), t.strain, pressure);
-      if (p.viscosity == nullptr) return lasts;
-      // Averages fade in all of their stress.
-      return lasts +
-             past.at(averaged ? lasts * (1 / p.viscosity->long_term()) : second_piola(make_law<Solid>(relaxing), H));
-    });
+    const Mat3d S = past.active + with_solid_law(points_[point].law, [&]<Law L>() {
+                      using Solid = SolidLaw<L, double>;
+                      const auto solid = make_law<Solid>(p);
+                      t.energy_density =
+                          averaged ? solid.shear_energy(H) + averaged->energy_density : energy_density(solid, H);
+                      const double pressure =
+                          averaged ? averaged->pressure : solid.volumetric_modulus() * Solid::volumetric_strain(H);
+                      const Mat3d lasts = solid.second_piola(typename Solid::At(H), t.strain, pressure);
+                      if (p.viscosity == nullptr) return lasts;
+                      // Averages fade in all of their stress.
+                      return lasts + past.at(averaged ? lasts * (1 / p.viscosity->long_term())
+                                                      : second_piola(make_law<Solid>(relaxing), H));
+                    });
     t.stress = times_transpose(F * S, F) * (1 / determinant(F));
   }
   t.stress += Mat3d::diagonal(pull);

@@ -41,6 +41,18 @@ CloudBody::CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& point
   describe(spec, weights);
 }
 
+namespace {
+
+/// The part of an active stress that a thin law bears: of fibres' share within the sheet, or along the line.
+/// @param T  columns, tangents first
+ActiveStress within(const ActiveStress& active, const Mat3d& T, Law law) {
+  Mat3d P;
+  for (int k = 0; k < (law == Law::line ? 1 : 2); ++k) P += outer(T.column(k), T.column(k));
+  return {P * active.S * P, active.schedule};
+}
+
+}  // namespace
+
 /// Offsets through the thickness (Gauss points) or across the section (four points with the second moments of a disc),
 /// each with its part of the volume.
 void CloudBody::split_points(const CloudSpec& spec) {
@@ -52,7 +64,9 @@ void CloudBody::split_points(const CloudSpec& spec) {
       point_places_.push_back({place, offset});
       const int axes = is_thin(law) ? static_cast<int>(axes_.size()) : -1;
       points_.push_back({m, p.place.X + offset, p.volume * part, p.place.X, law, spec.affine, axes});
-      if (axes >= 0) axes_.push_back(T);
+      if (axes < 0) return;
+      axes_.push_back(T);
+      if (m.active) points_.back().active = std::make_shared<const ActiveStress>(within(*m.active, T, law));
     };
     if (p.place.dimension == 3 || spec.through == 1) {
       add({}, 1, m.law);

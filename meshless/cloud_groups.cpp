@@ -104,7 +104,7 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
     const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine) || !point_places_[q].stabilized;
     const double stabilization = none ? 0.0 : spec.stabilization * p.mu;
-    PointSample s{{thin_lame(p.law, p), p.own, p.viscosity},
+    PointSample s{{thin_lame(p.law, p), p.own, p.viscosity, p.active},
                   p.X,
                   p.volume,
                   stabilization,

@@ -293,6 +293,11 @@ std::vector<NamedSchedule> schedules_of(const Scene& scene) {
     all.push_back({fmt::format("loads[{}]", i), &scene.loads[i].schedule});
   for (const Body& b : scene.bodies)
     if (b.fluid) all.push_back({"bodies." + b.name + ".fluid", &b.fluid->schedule});
+  std::set<std::string> seen;
+  for (const Body& b : scene.bodies)
+    for (const MaterialUse& use : b.materials)
+      if (const auto& active = use.material.activation; active && seen.insert(active->place.key).second)
+        all.push_back({active->place.key, &active->schedule});
   return all;
 }
 

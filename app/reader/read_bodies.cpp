@@ -243,6 +243,7 @@ Material read_material(const TableReader& table) {
   material.mass_damping = damping.number("mass").value_or(0);
   material.stiffness_damping = damping.number("stiffness").value_or(0);
   material.viscosity = read_viscosity(table);
+  read_muscle(table, material);
   return material;
 }
 

@@ -88,6 +88,7 @@ void read_shell(const TableReader& table, Body& body) {
   if (!table.has("thickness"))
     table.error("thickness", "is missing for model = \"shell\"; must be a length in m above 0, or a list by region");
   refuse_shear_relaxation(table, body, "shells");
+  refuse_activation(table, body, "shells");
   for (std::size_t i = 0; i < body.materials.size(); ++i)
     if (const Law law = body.materials[i].material.law; needs_large_strain(law))
       table.diagnostics().add(place_of_material(table, i),

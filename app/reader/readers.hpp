@@ -82,6 +82,10 @@ void check_around(const TableReader& shape, std::size_t index);
 
 /// Where a body names the material of one of its uses, which were read.
 Place place_of_material(const TableReader& body, std::size_t use);
+/// Reports each material of a body that acts by itself.
+void refuse_activation(const TableReader& body, const Body& read, const char* who);
+/// Reads fibres, and the active stress along them.
+void read_muscle(const TableReader& table, Material& material);
 /// Reports each material of a body that relaxes in shear alone.
 void refuse_shear_relaxation(const TableReader& body, const Body& read, const char* who);
 

@@ -116,6 +116,27 @@ Shape body_material_schema() {
 
 namespace {
 
+/// Fibres, and the stress that they make by themselves.
+void add_muscle_keys(std::vector<Key>& keys) {
+  const Shape wound = table(
+      {key("point", vector3("m"), "On the axis.").defaults("[0, 0, 0]"),
+       key("axis", vector3("1"), "Axis about which fibres wind.").needed(),
+       key("angle", number("rad"), "From rings about the axis towards it: \"90 deg\" runs along it.").defaults("0")});
+  keys.push_back(key("fibres",
+                     array(table({key("direction", vector3("1"), "The same for all the material, at rest."),
+                                  key("cylindrical", wound, "Fibres that wind about an axis.")},
+                                 {{{"direction", "cylindrical"}}}),
+                           1),
+                     "Families of fibres, beside `active`."));
+  keys.push_back(
+      key("active",
+          table({key("stress", number("Pa", above(0)), "Along the fibres at a factor of 1 (second Piola-Kirchhoff).")
+                     .needed(),
+                 key("direction", integer(at_least(0)), "Number of the family of fibres, from 0.").defaults("0"),
+                 over_key(), profile_key(), dial_key()}),
+          "Muscle: its fibres pull by themselves. Not for shells, nor with explicit steps."));
+}
+
 /// Young's modulus, Lamé's parameters or what a law has of its own.
 Shape make_material_schema() {
   std::vector<Choice> laws;
@@ -161,6 +182,7 @@ Shape make_material_schema() {
           choice({{"long-term", "All that fades has done so."}, {"instantaneous", "Nothing has faded yet."}}),
           "How a static solve takes `viscosity`.")
           .defaults("\"long-term\""));
+  add_muscle_keys(keys);
   return table(std::move(keys), {one});
 }
 

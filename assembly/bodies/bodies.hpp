@@ -32,8 +32,8 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build);
 /// The same for finite elements.
 std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, PointSetBuilder& points);
 
-/// What a material is at a point.
-PointMaterialSpec point_material(const Material& material);
+/// What a material is at a rest position. @throws SceneError  as fibre_direction()
+PointMaterialSpec point_material(const Material& material, const Vec3d& X);
 
 /// How much a body will be, roughly, before anything is allocated.
 struct SampleEstimate {

@@ -90,7 +90,7 @@ std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body
       const MaterialUse& use = body.materials[i];
       if (!chosen[i][static_cast<std::size_t>(element)]) continue;
       used[i] = true;
-      return point_material(use.material);
+      return point_material(use.material, X);
     }
     throw SceneError({{body.materials.back().where.place,
                        fmt::format("no material at ({:.6g}, {:.6g}, {:.6g}); let the last entry of material "

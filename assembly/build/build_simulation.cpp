@@ -150,12 +150,27 @@ SimulatedBody built_body(Simulation& s, const Body& body, PointSetBuilder& point
   }
 }
 
+/// Registers the schedules of muscles, before bodies are built with their numbers.
+void add_activations(Simulation& s) {
+  for (Body& body : s.scene.bodies)
+    for (MaterialUse& use : body.materials) {
+      if (!use.material.activation) continue;
+      Activation& activation = *use.material.activation;
+      if (s.scene.solver.kind == SolverKind::central_differences)
+        throw SceneError({{activation.place,
+                           "is not computed by explicit steps, which do not count its work; use an implicit solver, "
+                           "such as kind = \"implicit-euler\""}});
+      activation.factor = new_schedule(s, activation.schedule, activation.place);
+    }
+}
+
 }  // namespace
 
 Simulation build_simulation(Scene scene, const SampleStore* store) {
   Simulation s;
   s.scene = std::move(scene);
   s.warnings = Warnings(s.scene.silenced);
+  add_activations(s);
   PointSetBuilder points;
   s.bodies.resize(s.scene.bodies.size());
   for (const std::size_t index : build_order(s.scene)) {
@@ -190,10 +205,13 @@ Simulation build_simulation(Scene scene, const SampleStore* store) {
                        "nothing in the scene is elastic, so that nothing vibrates; add springs or a body of another "
                        "model, or use kind = \"implicit-euler\""}});
   add_loads(s);
+  if (set.memory.acts()) s.initial.factors = s.factors(0);
   if (s.scene.solver.kind == SolverKind::statics) check_support(s);
   if (s.scene.solver.kind == SolverKind::modes &&
-      !(s.model.loads.empty() && s.model.followers.empty() && s.model.surfaces.empty()))
-    s.warnings.add("no-effect", "modes are those of the unloaded rest state: gravity, loads and fluids are not used");
+      !(s.model.loads.empty() && s.model.followers.empty() && s.model.surfaces.empty() && !set.memory.acts()))
+    s.warnings.add("no-effect",
+                   "modes are those of the unloaded rest state: gravity, loads, fluids and active stresses are not "
+                   "used");
   resolve_probes(s);
   resolve_controlled(s);
   return s;

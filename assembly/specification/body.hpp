@@ -1,6 +1,7 @@
 #pragma once
 
 #include "assembly/specification/domain.hpp"
+#include "assembly/specification/fibres.hpp"
 #include "assembly/specification/region.hpp"
 #include "assembly/specification/schedule.hpp"
 #include "core/geometry/point_table.hpp"
@@ -34,6 +35,8 @@ struct Material : LawConstants {
   std::string name{};  ///< empty for an inline table
   Law law = Law::st_venant_kirchhoff;
   double mass_damping = 0, stiffness_damping = 0;  ///< [1/s], [s]
+  std::vector<Fibres> fibres{};
+  std::optional<Activation> activation{};  ///< its fibres pull by themselves
 };
 /// A material by Young's modulus [Pa] and Poisson's ratio, between −1 and ½.
 inline Material elastic(double young, double poisson) {

@@ -140,6 +140,8 @@ class Check {
     for (const MaterialUse& use : b.materials) {
       parts_.region(use.where, use.material.place);
       parts_.material(use.material, thin || (is_mesh_model(b) && small));
+      if (is_shell(b) && use.material.activation)
+        parts_.wrong(use.material.activation->place, "is not for shells; take a meshless sheet, or elements");
     }
     for (const ThicknessUse& use : b.thickness) {
       parts_.positive(use.value, b.thickness_place, "thickness");

@@ -97,6 +97,24 @@ void CheckParts::material(const Material& m, bool small) {
   if (static_cast<int>(m.own.size()) != own_constant_count(m.law))
     wrong(m.place, fmt::format("has {} constants of its own; its law has {}", m.own.size(), own_constant_count(m.law)));
   for (const double constant : m.own) finite(constant, m.place);
+  fibres(m);
+}
+
+void CheckParts::fibres(const Material& m) {
+  for (const Fibres& f : m.fibres) {
+    if (const auto* straight = std::get_if<StraightFibres>(&f.field)) unit(straight->direction, f.place, "direction");
+    const auto* wound = std::get_if<WoundFibres>(&f.field);
+    if (wound == nullptr) continue;
+    unit(wound->axis, f.place, "axis");
+    finite(wound->point, f.place);
+    finite(wound->angle, f.place);
+  }
+  if (!m.activation) return;
+  const Activation& a = *m.activation;
+  positive(a.stress, a.place, "stress");
+  schedule(a.schedule, a.place);
+  if (a.fibres >= m.fibres.size())
+    wrong(a.place, fmt::format("acts along family {} of fibres; the material has {}", a.fibres, m.fibres.size()));
 }
 
 void CheckParts::fluid(const Fluid& f) {

@@ -31,6 +31,8 @@ class CheckParts {
   /// @param small  the body takes laws of small strain, or St Venant-Kirchhoff, alone
   void material(const Material& material, bool small);
   void fluid(const Fluid& fluid);
+  /// Fibres of a material, and the stress along them.
+  void fibres(const Material& material);
   /// The numbers of a domain, and the transform.
   void domain(const Body& body);
   void solver(const Solver& solver);

@@ -25,7 +25,7 @@ ThinMaterial<double> stress_material(const BodyPoint& p, const Mat3d& axes) {
 Mat3d cauchy(const Mat3d& F, const Mat3d& S) { return times_transpose(F * S, F) * (1 / determinant(F)); }
 
 /// @param Hv  where the volumetric strain is taken; H without selective integration
-/// @param past, past_v  what the point remembers, and of its volumetric strain
+/// @param past, past_v  what the point remembers or makes by itself, and remembers of its volumetric strain
 PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, const Mat3d& H, const Mat3d& Hv,
                         const RememberedStress& past, const RememberedStress& past_v, bool selective) {
   const Mat3d E = green_strain(H), F = Mat3d::identity() + H, Fv = Mat3d::identity() + Hv;
@@ -33,7 +33,7 @@ PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, cons
     const ThinMaterial<double> m = stress_material(p, axes[at(p.axes)]);
     const Mat3d S = second_piola(m, E);
     const double lasting = p.viscosity ? p.viscosity->long_term() : 1.0;
-    return {E, cauchy(F, S + past.at(S * (1 / lasting))), energy_density(m, E)};
+    return {E, cauchy(F, S + past.at(S * (1 / lasting)) + past.active), energy_density(m, E)};
   }
   return with_solid_law(p.law, [&]<Law L>() -> PointTensors {
     LawConstants without_lambda = p, lambda_alone = p;
@@ -49,7 +49,7 @@ PointTensors tensors_of(const BodyPoint& p, const std::vector<Mat3d>& axes, cons
       S += selective ? past.at(S_e) : past.at(S_e + S_ev);
       if (selective) Sv += past_v.at(S_ev);
     }
-    return {E, cauchy(F, S) + cauchy(Fv, Sv), energy_density(shear, H) + energy_density(volume, Hv)};
+    return {E, cauchy(F, S + past.active) + cauchy(Fv, Sv), energy_density(shear, H) + energy_density(volume, Hv)};
   });
 }
 
@@ -155,6 +155,13 @@ RememberedStress ModelBody::remembered_at(const std::vector<std::size_t>& lanes,
   return past;
 }
 
+RememberedStress ModelBody::remembered(std::size_t point, const State& state) const {
+  RememberedStress past = remembered_at(memory_lane_, point, state);
+  const auto& active = points_[point].active;
+  if (active && !state.factors.empty()) past.active = active->S * state.factors[at(active->schedule)];
+  return past;
+}
+
 void ModelBody::find_memories(const PointSet& set) {
   memory_stride_ = set.memory.lanes() * 6;
   if (std::none_of(points_.begin(), points_.end(), [](const BodyPoint& p) { return p.viscosity != nullptr; })) return;
@@ -182,7 +189,7 @@ void ModelBody::find_lanes_of_elements(const PointSet& set) {
   const std::vector<std::size_t>& begin = set.memory.begin;  // of the groups of points, of elements, of shells
   for (int b = first_block; b < first_block + block_count; ++b) {
     const ElementBlock& block = set.blocks[at(b)];
-    for (int e = 0; e < block.count && !block.viscosity.empty(); ++e)
+    for (int e = 0; e < block.count && !block.beside.empty(); ++e)
       for (int q = 0; q < block.points; ++q)
         memory_lane_[at(block.source[at(e)] * block.points + q)] =
             begin[at(1 + b)] + at((e / kElementLanes * block.points + q) * kElementLanes + e % kElementLanes);

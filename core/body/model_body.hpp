@@ -23,6 +23,7 @@ struct RememberedStress {
   Mat3d fading{};    ///< S_e there at the end of the last step [Pa]
   Mat3d left{};      ///< the sum of its branches [Pa]
   double share = 0;  ///< of S_e that they take at once [-]
+  Mat3d active{};    ///< not remembered: what muscle makes by itself [Pa]
 
   /// The stress left at a place where S_e is another: the same part of the difference is left. Where S_e passes through
   /// zero at the point, that part says nothing: the correction is at most what is left there and what branches take of
@@ -173,10 +174,8 @@ class ModelBody {
   ModelBody& operator=(const ModelBody&) = default;
   ModelBody& operator=(ModelBody&&) = default;
 
-  /// The stress that is left adds to that of the law with lasting_constants().
-  RememberedStress remembered(std::size_t point, const State& state) const {
-    return remembered_at(memory_lane_, point, state);
-  }
+  /// The stress that is left, and that muscle makes, adds to that of the law with lasting_constants().
+  RememberedStress remembered(std::size_t point, const State& state) const;
   /// A triangle of a shell remembers strains: these are left in its branches, of its membrane (0 to 5)
   /// and bending (6 to 11).
   double remembered_strain(std::size_t triangle, int row, const State& state) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/base/portability.hpp"
+#include "core/physics/active_stress.hpp"
 #include "core/physics/viscosity.hpp"
 
 #include <memory>
@@ -29,9 +30,11 @@ struct Lame {
 struct LawConstants : Lame {
   std::vector<double> own{};
   std::shared_ptr<const Viscosity> viscosity{};  ///< shares of the stress that fade; null where none does
+  std::shared_ptr<const ActiveStress> active{};  ///< null where nothing acts by itself
 
   friend bool operator==(const LawConstants& a, const LawConstants& b) {
-    return static_cast<const Lame&>(a) == b && a.own == b.own && fade_alike(a.viscosity, b.viscosity);
+    return static_cast<const Lame&>(a) == b && a.own == b.own && fade_alike(a.viscosity, b.viscosity) &&
+           act_alike(a.active, b.active);
   }
 };
 

@@ -55,6 +55,9 @@ inline constexpr int kExplicitRetries = 10;
 std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double time,
                                 const ExplicitPlan& plan);
 
+/// @throws InputError  where muscle acts, whose work explicit steps do not count
+void refuse_active_stress(const Model& model);
+
 /// @throws InputError  where a free motion of a node has no inertia
 void require_inertia(const Model& model, const DofFilter& filter);
 

@@ -28,6 +28,7 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       factors_(factors.begin(), factors.end()),
       memory_(system.model().points.memory, system.space()) {
   require_inertia(model_, filter_);
+  refuse_active_stress(model_);
   const auto n = at(model_.node_count());
   state_.turned.resize(model_.constraints.size());
   held_acceleration_.resize(model_.constraints.size());
@@ -105,7 +106,7 @@ void ExplicitStepper::start_velocities() {
 /// @param fading  since the last forces; points that remember stresses then do so from here on
 void ExplicitStepper::update_forces(const Fading& fading) {
   memory_.prepare(fading);
-  if (!memory_.empty()) history_.given = {memory_.give(state_.memory.data()), memory_.given_size()};
+  if (!memory_.empty()) history_.given = {memory_.give(state_.memory.data(), factors_.data()), memory_.given_size()};
   add_forces(state_, gradient_, load_);
   if (model_.points.damped) executor_.store_strain(state_, history_);
   if (fading.of != Fading::Of::reached) keep_memory(fading);
@@ -142,7 +143,7 @@ void ExplicitStepper::add_forces(const State& state, std::vector<double>& gradie
 void ExplicitStepper::keep_strain() {
   if (memory_.empty()) return;
   memory_.prepare({Fading::Of::at_once, 0});
-  history_.given = {memory_.give(state_.memory.data()), memory_.given_size()};
+  history_.given = {memory_.give(state_.memory.data(), factors_.data()), memory_.given_size()};
 }
 
 void ExplicitStepper::gather_acting(State& pose, double inverse_step, double* out) {

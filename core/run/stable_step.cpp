@@ -169,6 +169,12 @@ LimitingMotion stable_step_of(HighestFrequency& highest, bool damped) {
 
 }  // namespace
 
+void refuse_active_stress(const Model& model) {
+  if (model.points.memory.acts())
+    throw InputError(
+        "a material makes a stress by itself, whose work explicit steps do not count; use an implicit scheme");
+}
+
 void require_inertia(const Model& model, const DofFilter& filter) {
   for (int node = 0; node < model.node_count(); ++node) {
     SmallFactor factor;

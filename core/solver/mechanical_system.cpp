@@ -58,6 +58,7 @@ std::vector<double> zero_factors(const Model& model) {
   for (const FollowerLoad& l : model.followers) schedules = std::max(schedules, l.schedule + 1);
   for (const SurfaceLoad& l : model.surfaces) schedules = std::max({schedules, l.schedule + 1, l.weight_schedule + 1});
   for (const PrescribedMotion& m : model.motions) schedules = std::max(schedules, m.schedule + 1);
+  for (const int active : model.points.memory.schedule) schedules = std::max(schedules, active + 1);
   return std::vector<double>(at(schedules), 0.0);
 }
 
@@ -88,6 +89,7 @@ void MechanicalSystem::set_factors(std::span<const double> factors) {
   factors_.assign(factors.begin(), factors.end());
   data_.set_factors(factors_);
   place_tethers(model_, factors_, executor_.targets());
+  act(factors_);
 }
 
 void MechanicalSystem::set_rest() {

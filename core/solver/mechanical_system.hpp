@@ -204,6 +204,7 @@ class MechanicalSystem {
   void add_loads_and_inertia();
   void predict_strain(const StepMemory& memory);
   void give_memory(const Fading& fading);
+  void act(std::span<const double> factors);
   void keep_memory(State& state);
   void rest_as_it_is(State& state);
   void store_strain_at(State state, StrainHistory& history);

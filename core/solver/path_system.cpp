@@ -42,13 +42,15 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   add_loads_and_inertia();
   const bool moving_tethers =
       std::any_of(model_.tethers.begin(), model_.tethers.end(), [](const Tether& t) { return t.motion >= 0; });
-  if (moving_tethers) {
+  if (moving_tethers || memory_.acts()) {
     for (const auto& [factors, sign] : {std::pair{ahead, -1.0}, std::pair{behind, 1.0}}) {
       place_tethers(model_, factors, executor_.targets());
+      act(factors);
       executor_.forces(state_, history_, other);
       for (std::size_t i = 0; i < n; ++i) rhs[i] += sign * other[i] / width;
     }
     place_tethers(model_, factors_, executor_.targets());
+    act(factors_);
   }
   dependents_.transfer(rhs);
   filter_.to_local(rhs);

@@ -37,7 +37,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
     if (model_.points.damped) predict_strain(memory);
   }
   if (!memory_.empty()) {
-    if (start_.memory.empty()) rest_as_it_is(start_);
+    if (memory_.remembers() && start_.memory.empty()) rest_as_it_is(start_);
     state_.memory = start_.memory;
     give_memory(Fading::over(form_.reach));
   }
@@ -58,11 +58,16 @@ void MechanicalSystem::keep_memory(State& state) {
   memory_.keep(state.memory.data(), fading_.data());
 }
 
-/// Gives the points that remember stresses what they add to a step, or to a state that was reached.
+/// Gives the points that remember stresses, or make them, what they add to a step, or to a state that was reached.
 void MechanicalSystem::give_memory(const Fading& fading) {
   if (memory_.empty()) return;
   memory_.prepare(fading);
-  history_.given = {memory_.give(start_.memory.data()), memory_.given_size()};
+  history_.given = {memory_.give(start_.memory.data(), factors_.data()), memory_.given_size()};
+}
+
+/// Gives them anew once a step has begun, with the factors of schedules that came after that.
+void MechanicalSystem::act(std::span<const double> factors) {
+  if (memory_.acts() && !history_.given.empty()) memory_.give(start_.memory.data(), factors.data());
 }
 
 /// Where the present velocities lead: rotations along arcs, origins of frames in the midpoint rule as their q says.
@@ -141,10 +146,11 @@ void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& e
                       .before = remembers && same_step ? before_.data() : nullptr});
   place_dependents(model_.points, end);
   place_dependent_rates(model_.points, end);
-  // Tethers have been led elsewhere when the next step starts, and memory has faded.
+  // Tethers have been led elsewhere when the next step starts, memory has faded, and muscle acts otherwise.
   if (form_.h > 0 && form_.scheme == TimeScheme::implicit_euler && memory_.empty() && model_.tethers.empty())
     reached_ = {end.u, end.D, internal_.elastic + internal_.stabilization};
-  if (!memory_.empty()) {
+  if (memory_.acts()) end.factors = factors_;
+  if (memory_.remembers()) {
     memory_.prepare(Fading::over(form_.step));
     keep_memory(end);
   }

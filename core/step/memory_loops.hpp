@@ -2,8 +2,8 @@
 
 #include "core/structure/stress_memory.hpp"
 
-/// Loops over the points that remember stresses: what they add to a step, and what they keep of it
-/// (core/physics/viscosity.hpp).
+/// Loops over the points that remember stresses, or make them by themselves: what they add to a step, and what they
+/// keep of it (core/physics/viscosity.hpp, core/physics/active_stress.hpp).
 namespace fascia::loops {
 
 /// Memories of all lanes, and the numbers of a step for each kind of viscosity.
@@ -18,20 +18,32 @@ struct MemoryView {
   FASCIA_HD const double* step_of(int lane) const { return step + viscosity[lane] * row_size(branches); }
 };
 
+/// Stresses that lanes make by themselves, and the factors of their schedules.
+struct ActiveView {
+  const int* schedule;    ///< of each lane, −1: none; null where no lane acts
+  const double* S;        ///< (lanes × 6) at a factor of 1 [Pa]
+  const double* factors;  ///< of all schedules
+
+  FASCIA_HD double stress(int lane, std::size_t place) const {
+    return schedule == nullptr || schedule[lane] < 0 ? 0 : factors[schedule[lane]] * S[place];
+  }
+};
+
 /// Writes S₀ and the factors of a step.
 struct GiveStress {
   MemoryView m;
+  ActiveView active;
   double* given;  ///< (lanes × kGivenRows)
 
   FASCIA_HD void operator()(int i) const {
     const auto lane = static_cast<std::size_t>(i);
-    if (m.viscosity[i] < 0) return;
-    const double* step = m.step_of(i);
-    for (int row = 0; row < 4; ++row) given[MemoryLayout::place(lane, kGivenRows, kGivenFactors + row)] = step[row];
+    const double* step = m.viscosity[i] < 0 ? nullptr : m.step_of(i);
+    for (int row = 0; row < 4 && step != nullptr; ++row)
+      given[MemoryLayout::place(lane, kGivenRows, kGivenFactors + row)] = step[row];
     for (int entry = 0; entry < 6; ++entry) {
       const std::size_t place = MemoryLayout::place(lane, 6, entry);
-      double S = 0;
-      for (int k = 0; k < m.branches; ++k)
+      double S = active.stress(i, place);
+      for (int k = 0; k < m.branches && step != nullptr; ++k)
         S += step[4 + 2 * k] * m.memory[static_cast<std::size_t>(1 + k) * m.stride + place] -
              step[5 + 2 * k] * m.memory[place];
       given[MemoryLayout::place(lane, kGivenRows, kGivenStress + entry)] = S;

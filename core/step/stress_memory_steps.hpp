@@ -27,8 +27,8 @@ struct Fading {
   friend bool operator==(const Fading&, const Fading&) = default;
 };
 
-/// Says what the points of a set that remember stresses add to the steps of a space, and keep of them. Their memory
-/// is a part of a state (State::memory): a step that fails leaves it as it was.
+/// Says what the points of a set that remember stresses, or make them by themselves, add to the steps of a space, and
+/// what they keep of them. Their memory is a part of a state (State::memory): a step that fails leaves it as it was.
 template <class Space>
 class StressMemory {
  public:
@@ -43,9 +43,13 @@ class StressMemory {
         relaxing[MemoryLayout::place(lane, kGivenRows, kGivenFactors + 1)] = 0;
     }
     relaxing_.upload(relaxing);
+    schedule_.upload(layout.schedule);
+    active_.upload(layout.active);
   }
 
   bool empty() const { return layout_.empty(); }
+  bool remembers() const { return layout_.remembers(); }
+  bool acts() const { return layout_.acts(); }
   std::size_t size() const { return layout_.size(); }
   /// Numbers of give(), and of S_e.
   std::size_t given_size() const { return layout_.lanes() * kGivenRows; }
@@ -61,9 +65,12 @@ class StressMemory {
     steps_.upload(steps);
     prepared_ = fading;
   }
-  /// S₀ and factors of a step, (lanes × kGivenRows). @param memory  at its start
-  const double* give(double* memory) {
-    space_.for_each(lanes(), loops::GiveStress{view(memory), given_.data()});
+  /// S₀ and factors of a step, (lanes × kGivenRows).
+  /// @param memory   at its start
+  /// @param factors  of all schedules, where it is looked at, in the space
+  const double* give(double* memory, const double* factors) {
+    const loops::ActiveView active{acts() ? schedule_.data() : nullptr, active_.data(), factors};
+    space_.for_each(lanes(), loops::GiveStress{view(memory), active, given_.data()});
     return given_.data();
   }
   /// Rows with which laws give S_e, the stress that fades.
@@ -105,8 +112,8 @@ class StressMemory {
   const MemoryLayout& layout_;
   Space space_;
   std::optional<Fading> prepared_;
-  Array<Space, int> lane_kind_;
-  Array<Space, double> steps_, given_, relaxing_;
+  Array<Space, int> lane_kind_, schedule_;
+  Array<Space, double> steps_, given_, relaxing_, active_;
 };
 
 }  // namespace fascia

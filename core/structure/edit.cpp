@@ -71,8 +71,10 @@ void check(const Edit& edit, const Model& model) {
       throw InputError("an edit leaves node " + std::to_string(l.node) + " a mass of " + std::to_string(mass) +
                        " kg; it must not be below 0");
   }
-  if (!edit.added.empty() && set.memory.size() > 0)
-    throw InputError("an edit adds points to a model that remembers stresses, whose memory would not fit; add none");
+  if (!edit.added.empty() && !set.memory.empty())
+    throw InputError(
+        "an edit adds points to a model that remembers stresses or makes them by itself, whose lanes would not fit; "
+        "add none");
   const int nodes = model.node_count() + static_cast<int>(edit.nodes.size());
   for (const AddedPoints& added : edit.added) {
     if (added.nodes.empty() || added.nodes.size() > at(kMaxSlots) || added.points.empty() || !(added.length > 0))
@@ -88,7 +90,8 @@ void check(const Edit& edit, const Model& model) {
                          std::to_string(nodes) + " with those that it adds");
     for (const PointSample& point : added.points) {
       check_own_constants(added.rule.law, point);
-      if (point.viscosity) throw InputError("an edit adds a point that remembers stresses; these cannot join");
+      if (StressBeside{point.viscosity, point.active})
+        throw InputError("an edit adds a point that remembers stresses or makes them by itself; these cannot join");
       if (point.influences.size() != added.nodes.size() || !(point.volume > 0))
         throw InputError("an edit adds a point with " + std::to_string(point.influences.size()) + " influences of " +
                          std::to_string(added.nodes.size()) + " nodes, or without volume");

@@ -75,21 +75,28 @@ void number_patch(const ElementBlockSpec& spec, int first_batch, int last_batch,
 }
 
 /// Where strains are averaged, all elements of the block must fade alike: an average has no part that fades by itself.
-void add_viscosity(const ElementBlockSpec& spec, ElementBlock& block) {
-  block.source = spec.source;
-  for (std::size_t e = 0; e < spec.material.size(); ++e) {
-    const ElementMaterialSpec& m = spec.material[e];
-    if (m.viscosity != nullptr) {
-      check_viscosity(spec.law, *m.viscosity, m.stiffness_damping);
-      block.viscosity.resize(at(block.batch_count()) * kElementLanes);
-      block.viscosity[e] = m.viscosity;
-    }
-    const auto& first = spec.material[0].viscosity;
+void check_fading(const ElementBlockSpec& spec) {
+  const auto& first = spec.material[0].viscosity;
+  for (const ElementMaterialSpec& m : spec.material) {
+    if (m.viscosity) check_viscosity(spec.law, *m.viscosity, m.stiffness_damping);
     if (spec.averaged && (!fade_alike(m.viscosity, first) || (first && first->shear_only)))
       throw InputError(
           "elements with averaged volumes must have one viscosity, of all their stiffness; give all the same, or do "
           "not average");
   }
+}
+
+void add_beside(const ElementBlockSpec& spec, ElementBlock& block) {
+  block.source = spec.source;
+  const auto points = at(spec.points);
+  for (std::size_t e = 0; e < spec.material.size(); ++e)
+    for (std::size_t q = 0; q < points; ++q) {
+      const ElementMaterialSpec& m = spec.material[e];
+      const StressBeside beside{m.viscosity, spec.active.empty() ? m.active : spec.active[e * points + q]};
+      if (!beside) continue;
+      block.beside.resize(at(block.batch_count()) * points * kElementLanes);
+      block.beside[(e / kElementLanes * points + q) * kElementLanes + e % kElementLanes] = beside;
+    }
 }
 
 }  // namespace
@@ -104,7 +111,8 @@ ElementBlock make_element_block(const ElementBlockSpec& spec) {
   block.count = static_cast<int>(spec.material.size());
   block.own_constants = own_constant_count(spec.law);
   for (const ElementMaterialSpec& m : spec.material) check_own_constants(spec.law, m);
-  add_viscosity(spec, block);
+  check_fading(spec);
+  add_beside(spec, block);
   const auto batches = at(block.batch_count());
   block.gradient.resize(batches * at(spec.points) * at(spec.nodes) * 3 * kElementLanes);
   block.volume.resize(batches * at(spec.points) * kElementLanes);
@@ -141,15 +149,6 @@ LawConstants ElementBlock::constants_of(int element) const {
   c.mu = rows[kMu * kElementLanes];
   for (int k = 0; k < own_constants; ++k) c.own.push_back(rows[(kOwnConstants + k) * kElementLanes]);
   return c;
-}
-
-std::vector<std::shared_ptr<const Viscosity>> ElementBlock::viscosity_of_points() const {
-  std::vector<std::shared_ptr<const Viscosity>> all;
-  for (std::size_t batch = 0; batch * kElementLanes < viscosity.size(); ++batch) {
-    const auto first = viscosity.begin() + static_cast<std::ptrdiff_t>(batch * kElementLanes);
-    for (int q = 0; q < points; ++q) all.insert(all.end(), first, first + kElementLanes);
-  }
-  return all;
 }
 
 void finish_element_block(ElementBlock& block, int nodes_of_model) {

@@ -4,6 +4,7 @@
 #include "core/math/mat3.hpp"
 #include "core/physics/law.hpp"
 #include "core/physics/law_constants.hpp"
+#include "core/structure/stress_memory.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -31,8 +32,10 @@ struct ElementBlockSpec {
   std::vector<Vec3d> gradient;                ///< ∇N at rest (elements × points × nodes) [1/m]
   std::vector<double> volume;                 ///< (elements × points) [m³]
   std::vector<ElementMaterialSpec> material;  ///< (elements)
-  std::vector<int> source{};                  ///< (elements): which one of its body it is, where stresses fade
-  double length = 1;                          ///< mean length of the edges [m]
+  std::vector<int> source{};                  ///< (elements): which one of its body it is
+  /// (elements × points) what each point makes by itself, in the place of its element's; empty: as the elements do.
+  std::vector<std::shared_ptr<const ActiveStress>> active{};
+  double length = 1;  ///< mean length of the edges [m]
 };
 
 /// Elements of one kind in batches of eight (array of structures of arrays). Unused lanes repeat the last element with
@@ -52,8 +55,8 @@ struct ElementBlock {
   enum Row { kLambda, kMu, kStiffnessDamping, kPenalty, kOwnConstants };
   AlignedVector<double> material;  ///< (batches × material_rows() × 8)
 
-  /// (batches × 8) what fades of the stress of each element; empty where nothing does
-  std::vector<std::shared_ptr<const Viscosity>> viscosity;
+  /// (batches × points × 8) what each point has beside its law's stress; empty where none has anything
+  std::vector<StressBeside> beside;
   std::vector<int> source;  ///< as in ElementBlockSpec
 
   std::vector<int> patch_batch{0};               ///< (patches + 1)
@@ -91,8 +94,6 @@ struct ElementBlock {
            static_cast<std::size_t>(batch) * static_cast<std::size_t>(material_rows()) * kElementLanes;
   }
   LawConstants constants_of(int element) const;
-  /// (batches × points × 8) of each point, likewise.
-  std::vector<std::shared_ptr<const Viscosity>> viscosity_of_points() const;
   Lame lame_of(int element) const {
     const double* m = material_of(element / kElementLanes) + element % kElementLanes;
     return {m[kLambda * kElementLanes], m[kMu * kElementLanes]};

@@ -151,6 +151,7 @@ struct State {
   std::vector<std::array<double, 3>> turned;  ///< of each constraint: rotation done about its axes [rad]
   double time = 0;                            ///< [s]; in statics the load factor
   AlignedVector<double> memory{};             ///< of points that remember stresses (MemoryLayout); empty: at rest
+  std::vector<double> factors{};              ///< of all schedules, where muscle acts; empty: none, or at rest
 
   static State at_rest(const Model& model);
 };

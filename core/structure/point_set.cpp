@@ -75,7 +75,7 @@ void PointSetBuilder::add_group(std::span<const int> nodes, std::span<const Poin
     set_.lane_point.push_back(used ? set_.point_count++ : -1);
   }
   add_rule(points, length, rule);
-  add_viscosity(points, rule);
+  add_beside(points, rule);
   set_.slot_node.insert(set_.slot_node.end(), nodes.begin(), nodes.end());
   set_.slot_begin.push_back(set_.slot_count());
 }
@@ -112,15 +112,16 @@ void PointSetBuilder::add_own_constants(std::span<const PointSample> points, Gro
   }
 }
 
-void PointSetBuilder::add_viscosity(std::span<const PointSample> points, const PointRule& rule) {
+void PointSetBuilder::add_beside(std::span<const PointSample> points, const PointRule& rule) {
   const std::size_t end = set_.rule.size() * kGroupSize, first = end - kGroupSize;
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
     const PointSample& p = points[lane];
-    if (p.viscosity == nullptr) continue;
-    check_viscosity(rule.law, *p.viscosity, p.stiffness_damping);
-    set_.viscosity.resize(end);
+    const StressBeside beside{p.viscosity, p.active};
+    if (!beside) continue;
+    if (p.viscosity) check_viscosity(rule.law, *p.viscosity, p.stiffness_damping);
+    set_.beside.resize(end);
     set_.source.resize(end, PointSample::kNoSource);
-    set_.viscosity[first + lane] = p.viscosity;
+    set_.beside[first + lane] = beside;
     set_.source[first + lane] = p.source;
   }
 }
@@ -163,13 +164,13 @@ void find_lanes_of_slots(PointSet& set) {
 
 /// In the order in which CpuExecutor has the blocks.
 void lay_out_memory(PointSet& set) {
-  if (!set.viscosity.empty()) {
-    set.viscosity.resize(at(set.group_count()) * kGroupSize);
-    set.source.resize(set.viscosity.size(), PointSample::kNoSource);
+  if (!set.beside.empty()) {
+    set.beside.resize(at(set.group_count()) * kGroupSize);
+    set.source.resize(set.beside.size(), PointSample::kNoSource);
   }
-  set.memory.add_block(set.viscosity);
-  for (const ElementBlock& block : set.blocks) set.memory.add_block(block.viscosity_of_points());
-  for (const ShellBlock& shell : set.shells) set.memory.add_block(shell.viscosity_of_lanes());
+  set.memory.add_block(set.beside);
+  for (const ElementBlock& block : set.blocks) set.memory.add_block(block.beside);
+  for (const ShellBlock& shell : set.shells) set.memory.add_block(shell.beside_of_lanes());
   for (std::size_t others = set.user_blocks.size(); others > 0; --others) set.memory.add_block({});
 }
 

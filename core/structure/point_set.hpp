@@ -42,7 +42,7 @@ struct PointSample : LawConstants {
   double stiffness_damping = 0;       ///< β [s]
   std::vector<Influence> influences;  ///< one for each node of its group
   Mat3d axes{};                       ///< of a thin law: tangents first; of a tether: its stiffness [N/m]
-  int source = kNoSource;             ///< which point of its body it is, where stresses fade
+  int source = kNoSource;             ///< which point of its body it is, where it has a stress beside its law's
 
   static constexpr int kNoSource = -1;
   /// A point that stands for the volumetric part of all sources before it, back to the last such one.
@@ -71,8 +71,8 @@ struct PointSet {
   std::vector<GroupRule> rule;           ///< (groups)
   AlignedVector<double> axes;            ///< (groups that need them × 9 × 8): PointSample::axes by rows
   AlignedVector<double> own;             ///< (rows × 8): constants that a group's law has of its own
-  /// (groups × 8) what fades of the stress of each lane, and PointSample::source; empty where nothing does
-  std::vector<std::shared_ptr<const Viscosity>> viscosity;
+  /// (groups × 8) what each lane has beside its law's stress, and PointSample::source; empty where none has anything
+  std::vector<StressBeside> beside;
   std::vector<int> source;
   MemoryLayout memory;  ///< of all blocks
 
@@ -166,7 +166,7 @@ class PointSetBuilder {
   void add_group(std::span<const int> nodes, std::span<const PointSample> points, double length, const PointRule& rule);
   void add_rule(std::span<const PointSample> points, double length, PointRule rule);
   void add_own_constants(std::span<const PointSample> points, GroupRule& group);
-  void add_viscosity(std::span<const PointSample> points, const PointRule& rule);
+  void add_beside(std::span<const PointSample> points, const PointRule& rule);
   PointSet set_;
   std::vector<double> group_length_;  ///< spacing of the frames [m]
   std::vector<Joint> joints_;

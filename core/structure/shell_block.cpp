@@ -79,11 +79,11 @@ ShellBlock make_shell_block(std::span<const ShellElementSpec> elements, double l
   return block;
 }
 
-std::vector<std::shared_ptr<const Viscosity>> ShellBlock::viscosity_of_lanes() const {
-  std::vector<std::shared_ptr<const Viscosity>> all;
+std::vector<StressBeside> ShellBlock::beside_of_lanes() const {
+  std::vector<StressBeside> all;
   for (std::size_t first = 0; first < viscosity.size(); first += kElementLanes) {
-    const auto batch = viscosity.begin() + static_cast<std::ptrdiff_t>(first);
-    for (int part = 0; part < 2; ++part) all.insert(all.end(), batch, batch + kElementLanes);
+    for (int part = 0; part < 2; ++part)
+      for (std::size_t lane = first; lane < first + kElementLanes; ++lane) all.push_back({viscosity[lane], {}});
   }
   return all;
 }

@@ -5,6 +5,7 @@
 #include "core/physics/shell_constants.hpp"
 #include "core/physics/viscosity.hpp"
 #include "core/structure/element_block.hpp"
+#include "core/structure/stress_memory.hpp"
 
 #include <array>
 #include <memory>
@@ -45,7 +46,7 @@ struct ShellBlock {
 
   /// A triangle remembers twelve strains, in two lanes: those of its membrane, and eight lanes on those of its bending.
   /// Its stress is linear in them, so that what fades is strain as well.
-  std::vector<std::shared_ptr<const Viscosity>> viscosity_of_lanes() const;
+  std::vector<StressBeside> beside_of_lanes() const;
   static std::size_t memory_lane(int triangle) {
     const auto t = static_cast<std::size_t>(triangle);
     return t / kElementLanes * 2 * kElementLanes + t % kElementLanes;

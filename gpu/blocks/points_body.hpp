@@ -11,7 +11,7 @@ namespace fascia::gpu {
 
 template <class Space>
 Points<Space>::Points(const PointSet& set, Precision precision)
-    : is_narrow_(precision != Precision::full), remembers_(!set.viscosity.empty()) {
+    : is_narrow_(precision != Precision::full), remembers_(!set.beside.empty()) {
   slot_begin_.upload(set.slot_begin);
   slot_node_.upload(set.slot_node);
   node_slot_begin_.upload(set.node_slot_begin);

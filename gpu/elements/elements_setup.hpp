@@ -19,7 +19,7 @@ Elements<Space>::Elements(const PointSet& set, Precision precision)
     blocks_.push_back(make_block(block, nodes_, is_narrow_));
     blocks_.back().strain_begin = strain_size_;
     blocks_.back().memory_begin = set.memory.begin[blocks_.size()];
-    blocks_.back().remembers = !block.viscosity.empty();
+    blocks_.back().remembers = !block.beside.empty();
     const auto count = at(block.batch_count()) * kElementLanes;
     strain_size_ += count * at(block.points) * 6;
     corners += count * at(block.nodes) * 3;

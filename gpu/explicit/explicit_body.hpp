@@ -30,6 +30,7 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, co
       schedules_(static_cast<int>(zero_factors(model).size())),
       memory_(model.points.memory) {
   require_inertia(model, filter_);
+  refuse_active_stress(model);
   upload_nodes();
   const auto n = at(model.node_count()), dofs = at(model.dof_count());
   if (pose_.turned.size() != 3 * model.constraints.size()) {  // a state made before the constraints has none
@@ -158,7 +159,7 @@ void ExplicitSystem<Space>::start_velocities() {
 /// Finds what points that remember stresses add at the present state; null where nothing fades.
 template <class Space>
 const double* ExplicitSystem<Space>::give_memory(Array<Space, double>& memory) {
-  return memory_.empty() ? nullptr : memory_.give(memory.data());
+  return memory_.empty() ? nullptr : memory_.give(memory.data(), nullptr);
 }
 
 /// @param memory  from before the present state; it becomes that of the state

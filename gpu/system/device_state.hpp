@@ -5,6 +5,7 @@
 #include "core/structure/model.hpp"
 
 #include <array>
+#include <vector>
 
 namespace fascia::gpu {
 
@@ -15,6 +16,7 @@ struct DeviceState {
   Array<Space, Mat3d> D, Q_dot;
   Array<Space, double> turned;  ///< (constraints × 3)
   Array<Space, double> memory;  ///< as State has it
+  std::vector<double> factors;  ///< likewise
   double time = 0;
   long step = 0;  ///< of the system that reached it; 0: another
 
@@ -32,6 +34,7 @@ struct DeviceState {
     Q_dot.copy_from(other.Q_dot);
     turned.copy_from(other.turned);
     memory.copy_from(other.memory);
+    factors = other.factors;
     time = other.time;
     step = other.step;
     return *this;
@@ -44,6 +47,7 @@ struct DeviceState {
     Q_dot.upload(state.Q_dot.values());
     turned.upload(std::span(state.turned.empty() ? nullptr : state.turned[0].data(), 3 * state.turned.size()));
     memory.upload(state.memory);
+    factors = state.factors;
     time = state.time;
     step = 0;
   }
@@ -57,6 +61,7 @@ struct DeviceState {
     if (!turned.empty()) turned.download(std::span(state.turned[0].data(), turned.size()));
     state.memory.resize(memory.size());
     memory.download(state.memory);
+    state.factors = factors;
     state.time = time;
   }
   /// Room for what points remember. @return false where the state had it

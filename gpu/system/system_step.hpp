@@ -36,7 +36,7 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
     w_.set_zero();
   }
   if (!memory_.empty()) {
-    if (start_.begin_memory(memory_.size())) {  // as it is for ever
+    if (memory_.remembers() && start_.begin_memory(memory_.size())) {  // as it is for ever
       memory_.prepare({});
       keep_memory(start_);
     }
@@ -46,12 +46,12 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
   node_parts_.template sum<0, 1>(loops::NodeMotion{data_.view().nodes, pose()}, start_motion_.data());
 }
 
-/// Gives the points that remember stresses what they add to a step, or to a state that was reached.
+/// Gives the points that remember stresses, or make them, what they add to a step, or to a state that was reached.
 template <class Space>
 void System<Space>::give_memory(const Fading& fading) {
   if (memory_.empty()) return;
   memory_.prepare(fading);
-  given_ = memory_.give(start_.memory.data());
+  given_ = memory_.give(start_.memory.data(), data_.view().factors);
 }
 
 /// Has points that remember stresses keep a state, as the fading says that was prepared.
@@ -134,6 +134,7 @@ void System<Space>::set_factors(std::span<const double> factors) {
   factors_are_placed_ = true;
   data_.set_factors(factors_);
   place_tethers();
+  if (memory_.acts() && given_ != nullptr) memory_.give(start_.memory.data(), data_.view().factors);
 }
 
 template <class Space>
@@ -239,7 +240,8 @@ void System<Space>::finish_step(double end_time, Memory& memory, Pose& end) {
     dependents_.place(end.u.data(), end.D.data());
     dependents_.place_rates(end.v.data(), end.Q_dot.data());
   }
-  if (!memory_.empty()) {
+  if (memory_.acts()) end.factors = factors_;
+  if (memory_.remembers()) {
     end.memory.copy_from(start_.memory);
     memory_.prepare(Fading::over(step_.step));
     keep_memory(end);

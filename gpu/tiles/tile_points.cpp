@@ -69,7 +69,7 @@ bool fits(const Lane& l, double c, const Vec3d& d) {
 std::string not_for_tiles(const PointSet& set) {
   if (!set.blocks.empty() || !set.shells.empty() || !set.user_blocks.empty())
     return "the model has finite elements, shells or user blocks";
-  if (!set.memory.empty()) return "the model has materials with a viscosity";
+  if (!set.memory.empty()) return "the model has materials with a viscosity or an active stress";
   if (!set.dependents.empty()) return "the model has nodes that depend on others";
   for (int node = 0; node < set.node_count(); ++node)
     if (set.dofs.kind(node) != FrameKind::rigid) return "the model has nodes that are not rigid frames";

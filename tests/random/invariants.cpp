@@ -168,7 +168,8 @@ std::optional<std::string> falling_energy(const RandomScene& scene, const Outcom
       return std::nullopt;  // what pumps it works
   const auto fades = [](const Json& material) {
     const auto has = [](const Json& part) {
-      return part.contains("viscosity") || part.value("use", Json()).contains("viscosity");
+      const Json use = part.value("use", Json());
+      return part.contains("viscosity") || use.contains("viscosity") || part.contains("active");
     };
     return material.is_array() ? std::any_of(material.begin(), material.end(), has) : has(material);
   };
@@ -176,7 +177,7 @@ std::optional<std::string> falling_energy(const RandomScene& scene, const Outcom
     const Json table = scene.tree.value(where, Json::object());
     for (const auto& [name, entry] : table.items())
       if (fades(entry) || (entry.contains("material") && fades(entry["material"])))
-        return std::nullopt;  // what branches hold is not told
+        return std::nullopt;  // what branches hold is not told, nor the work of muscle
   }
   const std::vector<std::vector<double>>& rows = run.probes.at("total_energy").rows;
   const double most = run.largest("J");

@@ -15,6 +15,9 @@ constexpr std::uint64_t kMore = 0xb4;
 /// Sets apart the draws of stresses that fade; none of the named seeds is of these either.
 constexpr std::uint64_t kFading = 0x10d;
 
+/// Sets apart the draws of muscles; likewise.
+constexpr std::uint64_t kMuscle = 0x1aa;
+
 struct Additions {
   explicit Additions(Draws& draws) {
     if (!draws.chance(0.2)) return;
@@ -58,6 +61,18 @@ void add_viscosity(Draws& draws, const Scales& scales, Json& scene) {
   }
 }
 
+/// One scene in ten has a body of muscle, whose fibres pull with a part of its stiffness.
+void add_muscle(Draws& draws, Json& scene) {
+  if (!draws.chance(0.1) || scene["solver"].value("kind", "") == "central-differences") return;
+  for (auto& [name, body] : scene["bodies"].items()) {
+    Json& material = body.contains("material") ? body["material"] : body;
+    if (body.value("model", "") == "shell" || !material.is_object() || !material.contains("young")) continue;
+    material["fibres"] = Json::array({Json{{"direction", draws.directed(1)}}});
+    material["active"] = Json{{"stress", material["young"].get<double>() * draws.decades(-6, -1)}};
+    return;
+  }
+}
+
 }  // namespace
 
 RandomScene random_scene(std::uint64_t seed) {
@@ -87,6 +102,8 @@ RandomScene random_scene(std::uint64_t seed) {
   if (with.fluid) add_fluid(more, flies, row, scene);
   Draws fading(seed ^ kFading);
   add_viscosity(fading, scales, scene.tree);
+  Draws pulling(seed ^ kMuscle);
+  add_muscle(pulling, scene.tree);
   add_probes(scales, row, scene.tree);
   if (draws.chance(0.125) && scene.wrong.empty()) spoil(draws, scene);
   return scene;

@@ -30,6 +30,7 @@ struct BlockOptions {
   Vec3d translation{};
   Law law = Law::st_venant_kirchhoff;
   std::shared_ptr<const Viscosity> viscosity{};
+  std::shared_ptr<const ActiveStress> active{};
 };
 
 inline GridSpec block_spec(const BlockOptions& o) {
@@ -48,7 +49,7 @@ inline GridSpec block_spec(const BlockOptions& o) {
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d&) {
     return PointMaterialSpec{
-        {lame, own_constants(o.law, lame.mu), o.viscosity}, o.mass_damping, o.stiffness_damping, o.law};
+        {lame, own_constants(o.law, lame.mu), o.viscosity, o.active}, o.mass_damping, o.stiffness_damping, o.law};
   };
   return spec;
 }

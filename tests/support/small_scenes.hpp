@@ -21,6 +21,7 @@ inline Simulation small_scene(const std::string& scene, const std::vector<std::s
   static const std::map<std::string, std::vector<std::string>> smaller{
       {"affine_cantilever", {"bodies.beam.frames.grid=[9,3,3]"}},
       {"bone_plate", {"bodies.bone.domain.cylinder.cells=[8,10]", "bodies.cushion.frames.poisson_disk=0.013"}},
+      {"contracting_muscle", {"bodies.muscle.frames.grid=[7,3,3]", "solver.duration=0.4"}},
       {"free_fall", {"bodies.beam.frames.grid=[6,3,3]"}},
       {"relaxing_ligament", {"bodies.ligament.domain.box.cells=[4,2,1]", "solver.duration=0.3"}},
       {"riding_surface", {"bodies.skin.domain.ellipsoid.cells=[40]", "bodies.organ.frames.poisson_disk=0.03"}},

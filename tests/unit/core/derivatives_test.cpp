@@ -113,9 +113,11 @@ std::vector<Case> cases() {
     return o;
   };
   BlockOptions turned = plain, affine_viscous = affine, fading = plain, fading_affine = affine,
-               fading_selective = selective;
+               fading_selective = selective, acting = plain, acting_affine = affine, acting_fading = plain;
   fading.viscosity = fading_affine.viscosity = two_branches();
   fading_selective.viscosity = two_branches(true);
+  acting.active = acting_affine.active = acting_fading.active = askew_muscle(3e3);
+  acting_fading.viscosity = two_branches();
   turned.rotation = rotation_about(normalized(Vec3d{{1, 2, 3}}), 0.7);
   affine_viscous.stiffness_damping = 0.02;
   const auto solid = [](const BlockOptions& o) { return [o] { return block(o); }; };
@@ -146,6 +148,12 @@ std::vector<Case> cases() {
           {"fading affine", solid(fading_affine)},
           {"fading sheet", thin({4, 3}, fading)},
           {"fading line", thin({5}, fading)},
+          {"acting", solid(acting)},
+          {"acting neo hookean", solid(of_law(Law::neo_hookean, acting))},
+          {"acting and fading", solid(acting_fading)},
+          {"acting affine", solid(acting_affine)},
+          {"acting sheet", thin({4, 3}, acting)},
+          {"acting line", thin({5}, acting)},
           {"mixture", mixture},
           {"bonded", [] { return bonded(false); }},
           {"bonded to affine", [] { return bonded(true); }}};

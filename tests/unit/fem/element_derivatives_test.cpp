@@ -59,6 +59,16 @@ std::vector<Case> cases() {
       o.viscosity = two_branches(true);
     });
   }
+  add("svk_acting_tet4", tet4, [](ElementOptions& o) { o.active = askew_muscle(3e3); });
+  add("mooney_rivlin_acting_hex20", hex20, [](ElementOptions& o) {
+    o.law = Law::mooney_rivlin;
+    o.active = askew_muscle(3e3);
+  });
+  add("corotational_acting_and_fading_hex8", hex8, [](ElementOptions& o) {
+    o.formulation = corotational;
+    o.active = askew_muscle(3e3);
+    o.viscosity = two_branches();
+  });
   add("svk_fading_tet4", tet4, [](ElementOptions& o) { o.viscosity = two_branches(); });
   add("neo_hookean_fading_hex8", hex8, [](ElementOptions& o) {
     o.law = Law::neo_hookean;

@@ -18,6 +18,7 @@ struct ElementOptions {
   std::array<int, 3> cells{2, 2, 1};
   double distortion = 0.05;  ///< of inner and outer nodes alike [m]
   std::shared_ptr<const Viscosity> viscosity{};
+  std::shared_ptr<const ActiveStress> active{};
 };
 
 /// A slab of 1 × 0.8 × 0.5 m whose nodes are moved at random.
@@ -52,7 +53,7 @@ inline ElementModel element_model(const ElementOptions& o, ElementMesh mesh) {
   const Lame lame = Lame::from_young(o.young, o.poisson);
   spec.material = [=](const Vec3d&, int) {
     return PointMaterialSpec{
-        {lame, own_constants(o.law, lame.mu), o.viscosity}, o.mass_damping, o.stiffness_damping, o.law};
+        {lame, own_constants(o.law, lame.mu), o.viscosity, o.active}, o.mass_damping, o.stiffness_damping, o.law};
   };
   return element_model(std::move(spec));
 }

@@ -39,7 +39,7 @@ std::vector<Case> cases() {
     for (const auto& [shape, shape_name] : shapes)
       for (const bool averaged : {false, true})
         for (const bool penalised : {false, true})
-          for (const char* past : {"", "_damped", "_fading"}) {
+          for (const char* past : {"", "_damped", "_fading", "_acting"}) {
             const bool damped = past == std::string("_damped"), fading = past == std::string("_fading");
             if (averaged && (shape != tet4 || law.formulation != ElementFormulation::large_strain)) continue;
             ElementOptions o;
@@ -50,6 +50,7 @@ std::vector<Case> cases() {
             if (penalised) o.penalty = 1e5;
             if (damped) o.stiffness_damping = 0.02;
             if (fading) o.viscosity = two_branches(!averaged && penalised);
+            if (past == std::string("_acting")) o.active = askew_muscle(3e3);
             if (order_of(shape) == 2) o.cells = {1, 1, 1};
             if (shape == tet4) o.cells = {3, 2, 1};  // lanes are left over
             all.push_back({std::string(law.name) + "_" + shape_name + (averaged ? "_averaged" : "") +
