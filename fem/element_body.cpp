@@ -137,7 +137,7 @@ void ElementBody::add_points(const ElementBodySpec& spec) {
       point.volume = v;
       point.law = m.law;
       point.cell = static_cast<int>(e);
-      if (m.active) point.active = spec.material(p.X, point.cell).active;
+      if (spec.active) point.active = spec.active(p.X, point.cell);
       points_.push_back(point);
       volume_ += v;
     }

@@ -22,6 +22,9 @@ struct ElementBodySpec {
   double density = 0;  ///< [kg/m³]
   /// By the middle of an element and its number.
   std::function<PointMaterialSpec(const Vec3d&, int)> material;
+  /// What muscle makes at an integration point, by its place and element, in the place of what the material says; none:
+  /// as it says.
+  std::function<std::shared_ptr<const ActiveStress>(const Vec3d&, int)> active{};
 };
 
 /// The groups of a mesh as a body has them.

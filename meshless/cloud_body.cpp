@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace fascia {
@@ -56,6 +57,8 @@ ActiveStress within(const ActiveStress& active, const Mat3d& T, Law law) {
 /// Offsets through the thickness (Gauss points) or across the section (four points with the second moments of a disc),
 /// each with its part of the volume.
 void CloudBody::split_points(const CloudSpec& spec) {
+  constexpr double kHardly = 1e-3;
+  std::optional<double> borne;  // the largest part of an active stress that a thin law bears
   for (std::size_t place = 0; place < spec.points.size(); ++place) {
     const CloudPoint& p = spec.points[place];
     const Mat3d& T = p.place.axes;
@@ -66,7 +69,9 @@ void CloudBody::split_points(const CloudSpec& spec) {
       points_.push_back({m, p.place.X + offset, p.volume * part, p.place.X, law, spec.affine, axes});
       if (axes < 0) return;
       axes_.push_back(T);
-      if (m.active) points_.back().active = std::make_shared<const ActiveStress>(within(*m.active, T, law));
+      if (!m.active) return;
+      points_.back().active = std::make_shared<const ActiveStress>(within(*m.active, T, law));
+      borne = std::max(borne.value_or(0), norm(points_.back().active->S) / norm(m.active->S));
     };
     if (p.place.dimension == 3 || spec.through == 1) {
       add({}, 1, m.law);
@@ -79,6 +84,10 @@ void CloudBody::split_points(const CloudSpec& spec) {
         add(T.column(1) * (k % 2 == 0 ? r : -r) + T.column(2) * (k < 2 ? r : -r), 0.25, Law::line);
     }
   }
+  if (borne && *borne < kHardly)
+    messages_.push_back(
+        "has fibres across the sheet or line, which bears a stress within it alone: they do nothing; give fibres a "
+        "direction along it");
 }
 
 void CloudBody::number_frames(const CloudSpec& spec, Model& model) {

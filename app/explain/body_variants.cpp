@@ -142,6 +142,7 @@ class BodyVariants {
     const auto large = [](const MaterialUse& use) { return needs_large_strain(use.material.law); };
     if (std::none_of(body_.materials.begin(), body_.materials.end(), large) || body_.materials.size() != 1) return {};
     const Material& m = body_.materials[0].material;
+    if (m.activation) return {};
     std::string text = fmt::format("{}.material={{ young = {}, poisson = {}", path_, m.young(), m.poisson());
     if (m.mass_damping > 0 || m.stiffness_damping > 0)
       text += fmt::format(", damping = {{ mass = {}, stiffness = {} }}", m.mass_damping, m.stiffness_damping);

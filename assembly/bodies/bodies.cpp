@@ -26,12 +26,12 @@ constexpr double kDrilling = 0.1, kAffineStabilization = 0.003;
 
 }  // namespace
 
-PointMaterialSpec point_material(const Material& m, const Vec3d& X) {
-  PointMaterialSpec at_point{m, m.mass_damping, m.stiffness_damping, m.law};
-  if (m.activation)
-    at_point.active = std::make_shared<const ActiveStress>(ActiveStress::along(
-        fibre_direction(m.fibres[m.activation->fibres], X), m.activation->stress, m.activation->factor));
-  return at_point;
+PointMaterialSpec point_material(const Material& m) { return {m, m.mass_damping, m.stiffness_damping, m.law}; }
+
+std::shared_ptr<const ActiveStress> active_stress(const Material& m, const Vec3d& X) {
+  if (!m.activation) return nullptr;
+  const Vec3d along = fibre_direction(m.fibres[m.activation->fibres], X);
+  return std::make_shared<const ActiveStress>(ActiveStress::along(along, m.activation->stress, m.activation->factor));
 }
 
 namespace {
@@ -40,7 +40,11 @@ namespace {
 std::function<PointMaterialSpec(const Vec3d&)> material_of(const Body& body, double size) {
   return [&body, size](const Vec3d& X) {
     for (const MaterialUse& use : body.materials)
-      if (contains(use.where, X, size)) return point_material(use.material, X);
+      if (contains(use.where, X, size)) {
+        PointMaterialSpec at_point = point_material(use.material);
+        at_point.active = active_stress(use.material, X);
+        return at_point;
+      }
     throw SceneError(
         {{body.place,
           fmt::format("no material at ({}, {}, {}); let the last entry of material have no where", X[0], X[1], X[2])}});
@@ -166,7 +170,7 @@ std::unique_ptr<ModelBody> build_shell(const Body& body, BodyBuild& build) {
   spec.thickness = shell_thickness(body, spec.mesh);
   build.messages = thickness_warnings(spec.mesh, spec.thickness);
   for (const MaterialUse* use : shell_materials(body, spec.mesh))
-    spec.material.push_back(point_material(use->material, {}));
+    spec.material.push_back(point_material(use->material));
   double volume = 0;
   for (std::size_t t = 0; t < spec.thickness.size(); ++t) volume += spec.thickness[t] * area(spec.mesh, t);
   spec.density = body.density ? *body.density : *body.mass / volume;

@@ -32,8 +32,11 @@ std::unique_ptr<ModelBody> build_body(const Body& body, BodyBuild& build);
 /// The same for finite elements.
 std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, PointSetBuilder& points);
 
-/// What a material is at a rest position. @throws SceneError  as fibre_direction()
-PointMaterialSpec point_material(const Material& material, const Vec3d& X);
+/// What a material is anywhere, but for what its muscle makes.
+PointMaterialSpec point_material(const Material& material);
+
+/// What its muscle makes at a rest position, or null. @throws SceneError  as fibre_direction()
+std::shared_ptr<const ActiveStress> active_stress(const Material& material, const Vec3d& X);
 
 /// How much a body will be, roughly, before anything is allocated.
 struct SampleEstimate {

@@ -69,9 +69,9 @@ void place(const Transform& transform, ElementMesh& mesh) {
 }
 
 /// The first entry that selects an element, by its middle or its groups.
-std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body, const ElementMesh& mesh,
-                                                                const std::vector<BodyGroup>& groups,
-                                                                std::vector<bool>& used) {
+std::function<const Material&(const Vec3d&, int)> material_of(const Body& body, const ElementMesh& mesh,
+                                                              const std::vector<BodyGroup>& groups,
+                                                              std::vector<bool>& used) {
   std::vector<Vec3d> middles;
   std::vector<int> cells;
   middles.reserve(mesh.size());
@@ -85,12 +85,12 @@ std::function<PointMaterialSpec(const Vec3d&, int)> material_of(const Body& body
     require_material(use.where);
     chosen.push_back(select(use.where, {middles, {}, &groups, cells}));
   }
-  return [&body, &used, chosen = std::move(chosen)](const Vec3d& X, int element) {
+  return [&body, &used, chosen = std::move(chosen)](const Vec3d& X, int element) -> const Material& {
     for (std::size_t i = 0; i < body.materials.size(); ++i) {
       const MaterialUse& use = body.materials[i];
       if (!chosen[i][static_cast<std::size_t>(element)]) continue;
       used[i] = true;
-      return point_material(use.material, X);
+      return use.material;
     }
     throw SceneError({{body.materials.back().where.place,
                        fmt::format("no material at ({:.6g}, {:.6g}, {:.6g}); let the last entry of material "
@@ -135,7 +135,11 @@ std::unique_ptr<ModelBody> build_element_body(const Body& body, Model& model, Po
   spec.density = body.density ? *body.density : *body.mass / volume_of(spec.mesh);
   const std::vector<BodyGroup> groups = body_groups(spec.mesh);
   std::vector<bool> used(body.materials.size());
-  spec.material = material_of(body, spec.mesh, groups, used);
+  const auto chosen = material_of(body, spec.mesh, groups, used);
+  spec.material = [chosen](const Vec3d& X, int element) { return point_material(chosen(X, element)); };
+  if (std::any_of(body.materials.begin(), body.materials.end(),
+                  [](const MaterialUse& use) { return use.material.activation.has_value(); }))
+    spec.active = [chosen](const Vec3d& X, int element) { return active_stress(chosen(X, element), X); };
   const Place& place = body.locking == Locking::automatic ? body.place : body.locking_place;
   std::unique_ptr<ModelBody> built =
       blaming(place, [&] { return std::make_unique<ElementBody>(std::move(spec), model, points); });

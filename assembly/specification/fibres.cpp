@@ -11,6 +11,8 @@ namespace fascia {
 Vec3d fibre_direction(const Fibres& fibres, const Vec3d& X) {
   if (const auto* straight = std::get_if<StraightFibres>(&fibres.field)) return straight->direction;
   const auto& wound = std::get<WoundFibres>(fibres.field);
+  constexpr double kAlong = 1e-15;  // a right angle as rounding leaves it
+  if (std::abs(std::cos(wound.angle)) < kAlong) return wound.axis * std::copysign(1.0, std::sin(wound.angle));
   const Vec3d from = X - wound.point, out = from - wound.axis * dot(from, wound.axis);
   constexpr double kOnAxis = 1e-12;  // of the distance to the point: rounding alone parts it from the axis
   if (!(norm(out) > kOnAxis * norm(from)))

@@ -46,6 +46,8 @@ void name_body(Body& b) {
   for (MaterialUse& use : b.materials) {
     name_region(use.where, key + ".material");
     name_place(use.material.place, key + ".material");
+    if (use.material.activation) name_place(use.material.activation->place, key + ".material.active");
+    for (Fibres& family : use.material.fibres) name_place(family.place, key + ".material.fibres");
   }
   for (ThicknessUse& use : b.thickness) name_region(use.where, key + ".thickness");
   if (auto* file = std::get_if<FileDomain>(&b.domain)) {

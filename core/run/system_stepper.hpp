@@ -104,6 +104,7 @@ class SystemStepper final : public ModelStepper {
     }
     grown.turned = here.state.turned;
     grown.time = here.state.time;
+    grown.factors = here.state.factors;
     if (here.state.memory.size() == model_.points.memory.size()) grown.memory = here.state.memory;
     here.state = std::move(grown);
     std::unique_ptr<System> anew = make_system_();

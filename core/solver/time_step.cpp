@@ -39,6 +39,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   if (!memory_.empty()) {
     if (memory_.remembers() && start_.memory.empty()) rest_as_it_is(start_);
     state_.memory = start_.memory;
+    if (memory_.acts()) state_.factors = factors_;
     give_memory(Fading::over(form_.reach));
   }
   rebuild_state();
@@ -67,7 +68,9 @@ void MechanicalSystem::give_memory(const Fading& fading) {
 
 /// Gives them anew once a step has begun, with the factors of schedules that came after that.
 void MechanicalSystem::act(std::span<const double> factors) {
-  if (memory_.acts() && !history_.given.empty()) memory_.give(start_.memory.data(), factors.data());
+  if (!memory_.acts()) return;
+  state_.factors.assign(factors.begin(), factors.end());
+  if (!history_.given.empty()) memory_.give(start_.memory.data(), factors.data());
 }
 
 /// Where the present velocities lead: rotations along arcs, origins of frames in the midpoint rule as their q says.

@@ -24,6 +24,27 @@ double acting_on(const PartForces& whole) {
   return loads > 0 && !whole.driven ? loads : std::max(loads, largest_root({whole.reaction, whole.tether}));
 }
 
+/// A node of each group and element whose points make a stress by themselves, which shows in reactions as a motion
+/// does.
+std::vector<int> nodes_of_muscle(const PointSet& points) {
+  const MemoryLayout& memory = points.memory;
+  std::vector<int> nodes;
+  if (!memory.acts()) return nodes;
+  for (std::size_t lane = memory.begin[0]; lane < memory.begin[1]; ++lane)
+    if (memory.schedule[lane] >= 0) nodes.push_back(points.nodes(static_cast<int>(lane / kGroupSize))[0]);
+  for (std::size_t b = 0; b < points.blocks.size(); ++b) {
+    const ElementBlock& block = points.blocks[b];
+    std::size_t e = 0;
+    block.for_each_element([&](std::span<const int> of_element) {
+      const std::size_t lane =
+          memory.begin[1 + b] + e / kElementLanes * at(block.points) * kElementLanes + e % kElementLanes;
+      if (!block.beside.empty() && memory.schedule[lane] >= 0) nodes.push_back(of_element[0]);
+      ++e;
+    });
+  }
+  return nodes;
+}
+
 }  // namespace
 
 std::vector<double> part_masses(const Model& model) {
@@ -47,6 +68,7 @@ std::vector<char> driven_parts(const Model& model) {
     for (const int motion : c.rotation_motion) drive(points.node_part[at(c.node)], motion);
   }
   for (const Tether& t : model.tethers) drive(points.part_of_group(t.group), t.motion);
+  for (const int node : nodes_of_muscle(points)) drive(points.node_part[at(node)], 0);
   for (std::size_t p = 0; p < parts.size(); ++p) parts[p] = wholes[at(points.part_whole[p])];
   return parts;
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -76,8 +77,8 @@ void number_patch(const ElementBlockSpec& spec, int first_batch, int last_batch,
 
 /// Where strains are averaged, all elements of the block must fade alike: an average has no part that fades by itself.
 void check_fading(const ElementBlockSpec& spec) {
-  const auto& first = spec.material[0].viscosity;
   for (const ElementMaterialSpec& m : spec.material) {
+    const auto& first = spec.material[0].viscosity;
     if (m.viscosity) check_viscosity(spec.law, *m.viscosity, m.stiffness_damping);
     if (spec.averaged && (!fade_alike(m.viscosity, first) || (first && first->shear_only)))
       throw InputError(
@@ -89,6 +90,9 @@ void check_fading(const ElementBlockSpec& spec) {
 void add_beside(const ElementBlockSpec& spec, ElementBlock& block) {
   block.source = spec.source;
   const auto points = at(spec.points);
+  if (!spec.active.empty() && spec.active.size() != spec.material.size() * points)
+    throw InputError("a block of elements has " + std::to_string(spec.active.size()) + " active stresses for " +
+                     std::to_string(spec.material.size() * points) + " points; give one a point, or none");
   for (std::size_t e = 0; e < spec.material.size(); ++e)
     for (std::size_t q = 0; q < points; ++q) {
       const ElementMaterialSpec& m = spec.material[e];

@@ -118,6 +118,7 @@ SnapWatch::SnapWatch(const Simulation& s) : simulation_(s), factors_(s.factors(0
 }
 
 void SnapWatch::look(double time, double energy) {
+  if (simulation_.model.points.memory.acts()) return;  // muscle may take back what a load has stretched
   const std::vector<double> factors = simulation_.factors(time);
   bool grew = true;
   for (std::size_t i = 0; i < factors.size(); ++i) grew = grew && std::abs(factors[i]) >= std::abs(factors_[i]);
@@ -208,7 +209,9 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
                       "smaller time_step",
                       run.halved_steps, run.halved_steps == 1 ? "" : "s", run.first_halved,
                       run.halved_steps == 1 ? "was" : "were"));
-  if (run.residual_floor > 1e-3 && !(s.model.loads.empty() && s.model.surfaces.empty()))
+  // A muscle that is free has no load beside which to say it.
+  if (run.residual_floor > 1e-3 && !(s.model.loads.empty() && s.model.surfaces.empty()) &&
+      !s.model.points.memory.acts())
     warnings.add("rounding",
                  fmt::format("rounding leaves {:.1e} of the loads: they are tiny beside the stiffness and the motion",
                              run.residual_floor));

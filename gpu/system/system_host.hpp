@@ -133,6 +133,7 @@ template <class Space>
 State System<Space>::state() const {
   State present = State::at_rest(model_);
   start_.download(present);
+  if (memory_.acts()) present.factors = factors_;
   u_.download(present.u);
   if (turning_) D_.download(std::span(&*present.D.begin(), D_.size()));
   return present;

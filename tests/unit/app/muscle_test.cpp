@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -78,32 +79,45 @@ TEST(Muscle, FibresWindAboutAnAxis) {
   const Fibres helix{{}, WoundFibres{{}, {{1, 0, 0}}, std::numbers::pi / 6}};
   EXPECT_NEAR(norm(fibre_direction(helix, {{5, 2, 0}}) - Vec3d{{0.5, 0, std::sqrt(0.75)}}), 0, 1e-15);
   EXPECT_THROW(fibre_direction(rings, {{1, 1, 5}}), SceneError);
+  const Fibres along{{}, WoundFibres{{}, {{0, 1, 0}}, -std::numbers::pi / 2}};
+  EXPECT_EQ(fibre_direction(along, {{0, 5, 0}}), (Vec3d{{0, -1, 0}}));
 }
 
-TEST(Muscle, ExplicitStepsRefuseIt) {
-  try {
-    built(
-        pulling_beam("{ direction = [1, 0, 0] }", "stress = 1", "kind = \"explicit\"\ntime_step = 1e-4\nsteps = 1\n"));
-    FAIL();
-  } catch (const SceneError& error) {
-    EXPECT_NE(std::string(error.what()).find("materials.soft.active: is not computed by explicit steps"),
-              std::string::npos)
-        << error.what();
+/// Directions are those at integration points: an element around the axis has none on it.
+TEST(Muscle, RingsAboutTheMiddleOfAnElement) {
+  const std::string text = R"([bodies.block]
+model = "hexahedra"
+domain = { box = { min = [-1, -1, 0], max = [1, 1, 1], cells = [3, 3, 1] } }
+order = 1
+mass = 1
+material = { young = 1, poisson = 0.3, fibres = [{ cylindrical = { axis = [0, 0, 1] } }], active = { stress = 0.1 } }
+constraints = [{ body = "block", where = { box = { min = [-9, -9, -1], max = [9, 9, 0.01] } }, fix = "all" }]
+)";
+  const Simulation s =
+      built("constraints" + text.substr(text.find(" = [{ body")) + text.substr(0, text.find("constraints")));
+  for (const BodyPoint& p : s.bodies[0].body->points()) {
+    ASSERT_TRUE(p.active);
+    EXPECT_NEAR(norm(p.active->S * Vec3d{{p.X[0], p.X[1], 0}}), 0, 1e-15);
+    EXPECT_NEAR(trace(p.active->S), 0.1, 1e-15);
   }
-  const Simulation s = built(pulling_beam("{ direction = [1, 0, 0] }", "stress = 1", "kind = \"static\"\n"));
-  EXPECT_THROW(refuse_active_stress(s.model), InputError);
 }
 
-/// A state's stress is that of the factor that it was reached with; at the start that of time 0.
-TEST(Muscle, AStateKnowsItsFactors) {
-  const Simulation at_once = built(pulling_beam("{ direction = [1, 0, 0] }", "stress = \"1 kPa\"",
-                                                "kind = \"implicit-euler\"\ntime_step = 1\nsteps = 1\n"));
-  EXPECT_EQ(at_once.initial.factors, std::vector<double>{1});
-  EXPECT_NEAR(at_once.bodies[0].body->tensors(at_once.initial)[0].stress(0, 0), 1000, 1e-9);
-  const Simulation grows =
-      built(pulling_beam("{ direction = [1, 0, 0] }", "stress = \"1 kPa\"", "kind = \"static\"\n"));
-  EXPECT_EQ(grows.initial.factors, std::vector<double>{0});
-  EXPECT_EQ(grows.bodies[0].body->tensors(grows.initial)[0].stress(0, 0), 0);
+TEST(Muscle, AcrossASheetItDoesNothing) {
+  const auto is_told = [](const std::string& direction) {
+    std::string text = thin_body(rectangle, "thickness = 0.1\nframes = { grid = [5, 3] }\n");
+    text.replace(text.find("poisson = 0.3"), 13,
+                 "poisson = 0.3\nfibres = [{ direction = " + direction + " }]\nactive = { stress = 0.1 }");
+    const Simulation s =
+        built(text +
+              "[[constraints]]\nbody = \"skin\"\nwhere = { box = { min = [-1, -1, -1], max = [0.01, 9, 9] } }\n"
+              "fix = \"all\"\n");
+    const std::vector<std::string>& messages = s.bodies[0].body->messages();
+    return std::any_of(messages.begin(), messages.end(), [](const std::string& message) {
+      return message.find("fibres across the sheet") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(is_told("[1, 0, 1]"));
+  EXPECT_TRUE(is_told("[0, 0, 1]"));
 }
 
 State solved(const Simulation& s) {
@@ -113,9 +127,11 @@ State solved(const Simulation& s) {
   MechanicalSystem system(s.model, pool, settings);
   State state = s.initial;
   const FactorFunction factors = [&](double time) { return s.factors(time); };
+  PathSettings path;
+  path.load_steps = 5;
   const RunReport report = s.scene.solver.control == StaticControl::load
                                ? run_statics(system, state, factors, settings, {.load_steps = 5}, {})
-                               : run_path(system, state, factors, settings, {.load_steps = 5}, {});
+                               : run_path(system, state, factors, settings, path, {});
   EXPECT_EQ(report.status, RunStatus::converged);
   return state;
 }
