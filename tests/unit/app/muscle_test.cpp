@@ -120,6 +120,32 @@ TEST(Muscle, AcrossASheetItDoesNothing) {
   EXPECT_TRUE(is_told("[0, 0, 1]"));
 }
 
+TEST(Muscle, ExplicitStepsRefuseIt) {
+  try {
+    built(
+        pulling_beam("{ direction = [1, 0, 0] }", "stress = 1", "kind = \"explicit\"\ntime_step = 1e-4\nsteps = 1\n"));
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("materials.soft.active: is not computed by explicit steps"),
+              std::string::npos)
+        << error.what();
+  }
+  const Simulation s = built(pulling_beam("{ direction = [1, 0, 0] }", "stress = 1", "kind = \"static\"\n"));
+  EXPECT_THROW(refuse_active_stress(s.model), InputError);
+}
+
+/// A state's stress is that of the factor that it was reached with; at the start that of time 0.
+TEST(Muscle, AStateKnowsItsFactors) {
+  const Simulation at_once = built(pulling_beam("{ direction = [1, 0, 0] }", "stress = \"1 kPa\"",
+                                                "kind = \"implicit-euler\"\ntime_step = 1\nsteps = 1\n"));
+  EXPECT_EQ(at_once.initial.factors, std::vector<double>{1});
+  EXPECT_NEAR(at_once.bodies[0].body->tensors(at_once.initial)[0].stress(0, 0), 1000, 1e-9);
+  const Simulation grows =
+      built(pulling_beam("{ direction = [1, 0, 0] }", "stress = \"1 kPa\"", "kind = \"static\"\n"));
+  EXPECT_EQ(grows.initial.factors, std::vector<double>{0});
+  EXPECT_EQ(grows.bodies[0].body->tensors(grows.initial)[0].stress(0, 0), 0);
+}
+
 State solved(const Simulation& s) {
   ThreadPool pool(1);
   SolverSettings settings = settings_of(s.scene.solver);
