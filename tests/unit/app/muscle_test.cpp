@@ -2,9 +2,11 @@
 #include "assembly/build/build_simulation.hpp"
 #include "assembly/simulation/solver_settings.hpp"
 #include "core/base/errors.hpp"
+#include "core/base/index.hpp"
 #include "core/run/drivers.hpp"
 #include "core/run/explicit_dynamics.hpp"
 #include "core/run/path_following.hpp"
+#include "core/solver/verdict.hpp"
 #include "tests/unit/app/scene_text.hpp"
 
 #include <gtest/gtest.h>
@@ -144,6 +146,26 @@ TEST(Muscle, AStateKnowsItsFactors) {
       built(pulling_beam("{ direction = [1, 0, 0] }", "stress = \"1 kPa\"", "kind = \"static\"\n"));
   EXPECT_EQ(grows.initial.factors, std::vector<double>{0});
   EXPECT_EQ(grows.bodies[0].body->tensors(grows.initial)[0].stress(0, 0), 0);
+}
+
+/// What muscle pulls with shows in reactions alone, as a boundary's motion does: these are what a residual is held
+/// against.
+TEST(Muscle, ReactionsAreItsScale) {
+  for (const char* model :
+       {"model = \"meshless\"\nframes = { grid = [5, 2, 2] }\n", "model = \"hexahedra\"\norder = 1\n"}) {
+    const bool meshed = std::string(model).find("hexahedra") != std::string::npos;
+    const auto block = [&](const std::string& name, double from, const std::string& more) {
+      return "[bodies." + name + "]\n" + model + "domain = { box = { min = [" + std::to_string(from) +
+             ", 0, 0], max = [" + std::to_string(from + 1) + ", 1, 1]" + (meshed ? ", cells = [4, 1, 1]" : "") +
+             " } }\nmass = 1\nmaterial = { young = 1, poisson = 0.3" + more + " }\n";
+    };
+    const Simulation s = built(block("passive", 0, "") +
+                               block("muscle", 5, ", fibres = [{ direction = [1, 0, 0] }], active = { stress = 0.1 }") +
+                               "[solver]\nkind = \"implicit-euler\"\ntime_step = 1\nsteps = 1\n");
+    const std::vector<char> driven = driven_parts(s.model);
+    EXPECT_EQ(driven[at(s.model.points.node_part[at(s.bodies[0].body->first_node())])], 0);
+    EXPECT_EQ(driven[at(s.model.points.node_part[at(s.bodies[1].body->first_node())])], 1);
+  }
 }
 
 State solved(const Simulation& s) {
