@@ -267,6 +267,35 @@ Place place_of_material(const Scene& scene, const Material& material, const char
   return scene.says(path) ? scene.place_of(path) : material.place;
 }
 
+/// Muscle that pushes, that ends at rest, or that presses St Venant-Kirchhoff's law flat where nothing pulls back: to
+/// √(1 − 2 σ/E) of its length.
+void warn_of_muscle(Simulation& s, const Body& body, std::set<std::string>& told) {
+  const bool statics = s.scene.solver.kind == SolverKind::statics, thin = body.radius || !body.thickness.empty();
+  for (const MaterialUse& use : body.materials) {
+    const Material& m = use.material;
+    if (!m.activation || !told.insert(m.place.key + ".active").second) continue;
+    const Schedule& schedule = m.activation->schedule;
+    const auto* table = std::get_if<TableProfile>(&schedule.profile);
+    const bool falls = table != nullptr && std::any_of(table->points.begin(), table->points.end(),
+                                                       [](const auto& row) { return row[1] < 0; });
+    if (falls || std::holds_alternative<SineProfile>(schedule.profile))
+      s.warnings.add("load", m.activation->place, "has a factor that falls below 0: the muscle pushes; muscle pulls");
+    if (statics && table != nullptr && table->points.back()[1] == 0)
+      s.warnings.add("load", m.activation->place,
+                     "ends with a factor of 0, where a static solve ends: the muscle does nothing there; end the "
+                     "table where it pulls, or use a dynamic solver");
+    const bool fades = statics && m.viscosity && !m.viscosity->instantaneous_statics;
+    const double E = fades ? lasting_constants(m).young() : m.young();
+    const double part = m.activation->stress * largest_factor(schedule) / E;
+    constexpr double kHalf = 0.5 - 1e-9;  // as Lamé's parameters round it
+    if (part >= kHalf && m.law == Law::st_venant_kirchhoff && body.formulation == Formulation::large_strain)
+      s.warnings.add("load", m.activation->place,
+                     fmt::format("reaches {:.2g} of Young's modulus: St Venant-Kirchhoff muscle is pressed flat from "
+                                 "0.5 on where nothing pulls back{}",
+                                 part, thin ? "" : "; take law = \"neo-hookean\""));
+  }
+}
+
 void warn_of_bodies(Simulation& s) {
   std::set<std::string> told;  // materials, once each
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
@@ -276,6 +305,7 @@ void warn_of_bodies(Simulation& s) {
     const bool right_density = warn_of_density(s, body, scale);
     warn_of_distance(s, body, scale, s.bodies[b].nodes);
     warn_of_inertia(s, body, *s.bodies[b].body);
+    warn_of_muscle(s, body, told);
     if (is_carrier(body) || body.materials.empty()) continue;
     warn_of_single_cell(s, body, scale);
     warn_of_thickness(s, body, scale);

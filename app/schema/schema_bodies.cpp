@@ -116,12 +116,17 @@ Shape body_material_schema() {
 
 namespace {
 
+/// With room for the rounding of degrees.
+constexpr double kRightAngle = 1.5708;
+
 /// Fibres, and the stress that they make by themselves.
 void add_muscle_keys(std::vector<Key>& keys) {
-  const Shape wound = table(
-      {key("point", vector3("m"), "On the axis.").defaults("[0, 0, 0]"),
-       key("axis", vector3("1"), "Axis about which fibres wind.").needed(),
-       key("angle", number("rad"), "From rings about the axis towards it: \"90 deg\" runs along it.").defaults("0")});
+  const Shape wound =
+      table({key("point", vector3("m"), "On the axis.").defaults("[0, 0, 0]"),
+             key("axis", vector3("1"), "Axis about which fibres wind.").needed(),
+             key("angle", number("rad", between(-kRightAngle, kRightAngle)),
+                 "From rings about the axis towards it, as a right-handed screw: \"90 deg\" runs along it.")
+                 .defaults("0")});
   keys.push_back(key("fibres",
                      array(table({key("direction", vector3("1"), "The same for all the material, at rest."),
                                   key("cylindrical", wound, "Fibres that wind about an axis.")},

@@ -158,7 +158,7 @@ void add_activations(Simulation& s) {
       Activation& activation = *use.material.activation;
       if (s.scene.solver.kind == SolverKind::central_differences)
         throw SceneError({{activation.place,
-                           "is not computed by explicit steps, which do not count its work; use an implicit solver, "
+                           "is not available with explicit steps, which do not count its work; use an implicit solver, "
                            "such as kind = \"implicit-euler\""}});
       activation.factor = new_schedule(s, activation.schedule, activation.place);
     }

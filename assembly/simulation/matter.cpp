@@ -31,14 +31,18 @@ Vec3d MatterDisplacement::mean() const {
 
 FoldedPoints folded_points(const SimulatedBody& b, const State& state) {
   FoldedPoints folded;
-  const auto turned_over = [](const Mat3d& H) { return determinant(Mat3d::identity() + H) <= 0; };
+  const auto look = [&](const Mat3d& H) {
+    const double J = determinant(Mat3d::identity() + H);
+    folded.inverted += J <= 0 ? 1 : 0;
+    folded.flat += J > 0 && J < kFlat ? 1 : 0;
+  };
   if (b.vertices) {  // nothing turns
-    for (const Mat3d& H : b.body->gradients(state)) folded.inverted += turned_over(H) ? 1 : 0;
+    for (const Mat3d& H : b.body->gradients(state)) look(H);
     return folded;
   }
   for (std::size_t q = 0; q < b.body->points().size(); ++q) {
     const FieldValue f = field_at(b.body->attach_point(q), state);
-    folded.inverted += turned_over(f.H) ? 1 : 0;
+    look(f.H);
     folded.unresolved += determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
   }
   return folded;

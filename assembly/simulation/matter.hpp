@@ -24,9 +24,13 @@ class MatterDisplacement {
 /// The least determinant of a blended rotation that frames resolve.
 inline constexpr double kResolved = 0.5;
 
+/// Matter that is pressed to less of its volume is flat: what is left of it is rounding's.
+inline constexpr double kFlat = 1e-4;
+
 /// Integration points of a body where its field has left what it can say.
 struct FoldedPoints {
   int inverted = 0;    ///< turned inside out: det F ≤ 0
+  int flat = 0;        ///< pressed flat, or nearly: 0 < det F < kFlat
   int unresolved = 0;  ///< neighbouring frames are turned against each other by more than a right angle or so
 };
 FoldedPoints folded_points(const SimulatedBody& body, const State& state);

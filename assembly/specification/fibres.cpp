@@ -18,7 +18,8 @@ Vec3d fibre_direction(const Fibres& fibres, const Vec3d& X) {
   if (!(norm(out) > kOnAxis * norm(from)))
     throw SceneError({{fibres.place,
                        fmt::format("winds fibres about an axis that passes through matter at ({:.6g}, {:.6g}, {:.6g}), "
-                                   "where rings have no direction; move the axis off the integration points",
+                                   "where rings have no direction; move the axis off the integration points, or give "
+                                   "the core another material",
                                    X[0], X[1], X[2])}});
   return normalized(cross(wound.axis, out)) * std::cos(wound.angle) + wound.axis * std::sin(wound.angle);
 }

@@ -110,6 +110,19 @@ void add_shell_warnings(const SimulatedBody& b, const State& end, bool judged, R
                     b.name, unresolved, triangles.size()));
 }
 
+/// Why matter of a body may be turned inside out or pressed flat, and what helps.
+std::string why_folded(const Body& body) {
+  if (body.formulation == Formulation::corotational)
+    return "co-rotational elements do not resist that; the result is no physical state (a material of large strain "
+           "with law = \"neo-hookean\" would resist)";
+  const auto resists = [](const MaterialUse& use) { return use.material.law != Law::st_venant_kirchhoff; };
+  if (std::all_of(body.materials.begin(), body.materials.end(), resists))
+    return "a step passed through what its law does not bear; the result is no physical state (take smaller steps)";
+  const bool thin = body.radius || !body.thickness.empty();
+  return std::string("St Venant-Kirchhoff materials do not resist that; the result is no physical state") +
+         (thin ? "" : " (law = \"neo-hookean\" would resist)");
+}
+
 }  // namespace
 
 SnapWatch::SnapWatch(const Simulation& s) : simulation_(s), factors_(s.factors(0)) {
@@ -234,12 +247,11 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
                                "too large for small-strain elasticity; use formulation = \"corotational\" or leave "
                                "it out",
                                b.name, inverted, b.body->points().size()));
-    else if (inverted > 0)
-      inside_out.push_back(fmt::format(
-          "body \"{}\" is turned inside out at {} of {} integration points: {} do not resist that; the "
-          "result is no physical state (law = \"neo-hookean\" would resist)",
-          b.name, inverted, b.body->points().size(),
-          formulation == Formulation::corotational ? "co-rotational elements" : "St Venant-Kirchhoff materials"));
+    else if (inverted + folded.flat > 0)
+      inside_out.push_back(fmt::format("body \"{}\" is {} at {} of {} integration points: {}", b.name,
+                                       inverted > 0 ? "turned inside out" : "pressed flat",
+                                       inverted > 0 ? inverted : folded.flat, b.body->points().size(),
+                                       why_folded(s.scene.bodies[index])));
     if (unresolved > 0)
       warnings.add(
           "resolution",

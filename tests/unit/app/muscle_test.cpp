@@ -1,5 +1,6 @@
 // Fibres and active stresses: what is read, what does not go together, and what a run does with them.
 #include "assembly/build/build_simulation.hpp"
+#include "assembly/simulation/matter.hpp"
 #include "assembly/simulation/solver_settings.hpp"
 #include "core/base/errors.hpp"
 #include "core/base/index.hpp"
@@ -128,7 +129,7 @@ TEST(Muscle, ExplicitStepsRefuseIt) {
         pulling_beam("{ direction = [1, 0, 0] }", "stress = 1", "kind = \"explicit\"\ntime_step = 1e-4\nsteps = 1\n"));
     FAIL();
   } catch (const SceneError& error) {
-    EXPECT_NE(std::string(error.what()).find("materials.soft.active: is not computed by explicit steps"),
+    EXPECT_NE(std::string(error.what()).find("materials.soft.active: is not available with explicit steps"),
               std::string::npos)
         << error.what();
   }
@@ -166,6 +167,26 @@ TEST(Muscle, ReactionsAreItsScale) {
     EXPECT_EQ(driven[at(s.model.points.node_part[at(s.bodies[0].body->first_node())])], 0);
     EXPECT_EQ(driven[at(s.model.points.node_part[at(s.bodies[1].body->first_node())])], 1);
   }
+}
+
+/// St Venant-Kirchhoff's law bears less than half of Young's modulus where nothing pulls back: what is left then is no
+/// body, whatever the residual says.
+TEST(Muscle, FlatMatterIsCounted) {
+  const Simulation s = built(pulling_beam("{ direction = [1, 0, 0] }", "stress = 1", "kind = \"static\"\n"));
+  const auto folded_at = [&](double J) {
+    State state = s.initial;
+    for (std::size_t i = 0; i < state.u.size(); ++i) {
+      state.u[i] = {{(J - 1) * s.model.rest_position[i][0], 0, 0}};
+      state.D[i] = {};
+    }
+    return folded_points(s.bodies[0], state);
+  };
+  const int points = static_cast<int>(s.bodies[0].body->points().size());
+  EXPECT_EQ(folded_at(2e-4).flat, 0);
+  EXPECT_EQ(folded_at(5e-5).flat, points);
+  EXPECT_EQ(folded_at(5e-5).inverted, 0);
+  EXPECT_EQ(folded_at(-0.1).inverted, points);
+  EXPECT_EQ(folded_at(-0.1).flat, 0);
 }
 
 State solved(const Simulation& s) {

@@ -151,6 +151,20 @@ TEST(Plausible, RelaxationThatStepsSee) {
       "materials.liver.young", "sag");
 }
 
+TEST(Plausible, MusclePulls) {
+  const auto muscle = [](const std::string& stress, const std::string& more) {
+    return "fibres = [{ direction = [1, 0, 0] }]\nactive = { stress = " + stress + more + " }";
+  };
+  Words words{.young = "1e4", .material = muscle("4.9e3", ""), .solver = "kind = \"static\""};
+  EXPECT_EQ(warnings_of(words), std::vector<std::string>{});
+  words.material = muscle("5e3", "");
+  expect_one(words, "materials.liver.active", "load");
+  words.material = muscle("2.5e3", ", profile = [[0, 0], [1, 1], [2, 0]]");
+  expect_one(words, "materials.liver.active", "load");
+  words.material = muscle("2.5e3", ", profile = [[0, 0], [1, -1]]");
+  expect_one(words, "materials.liver.active", "load");
+}
+
 TEST(Plausible, KeysThatDoNothing) {
   const std::string load = "[[loads]]\nbody = \"organ\"\nat = [0.16, 0.1, 0.08]\nforce = [0.1, 0, 0]\nover = 1\n";
   expect_one({.solver = "kind = \"static\"", .rest = load}, "loads[0].over", "no-effect");
