@@ -24,8 +24,8 @@ class MatterDisplacement {
 /// The least determinant of a blended rotation that frames resolve.
 inline constexpr double kResolved = 0.5;
 
-/// Matter that is pressed to less of its volume is flat: what is left of it is rounding's.
-inline constexpr double kFlat = 1e-4;
+/// Matter that is pressed to less of its volume is flat: what is left of it is rounding's and the tolerance's.
+inline constexpr double kFlat = 1e-6;
 
 /// Integration points of a body where its field has left what it can say.
 struct FoldedPoints {

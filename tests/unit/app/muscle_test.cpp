@@ -188,9 +188,9 @@ TEST(Muscle, FlatMatterIsCounted) {
     return folded_points(s.bodies[0], state);
   };
   const int points = static_cast<int>(s.bodies[0].body->points().size());
-  EXPECT_EQ(folded_at(2e-4).flat, 0);
-  EXPECT_EQ(folded_at(5e-5).flat, points);
-  EXPECT_EQ(folded_at(5e-5).inverted, 0);
+  EXPECT_EQ(folded_at(2e-6).flat, 0);
+  EXPECT_EQ(folded_at(5e-7).flat, points);
+  EXPECT_EQ(folded_at(5e-7).inverted, 0);
   EXPECT_EQ(folded_at(-0.1).inverted, points);
   EXPECT_EQ(folded_at(-0.1).flat, 0);
 }
