@@ -46,7 +46,7 @@ set(FASCIA_PUBLIC_HEADERS
   core/base/errors.hpp core/base/portability.hpp
   core/geometry/mesh.hpp core/geometry/mid_nodes.hpp core/geometry/point_table.hpp
   core/linear/cg.hpp core/math/mat3.hpp core/math/vec3.hpp core/math/wrench.hpp
-  core/physics/law.hpp core/physics/active_stress.hpp core/physics/law_constants.hpp core/physics/viscosity.hpp core/run/run_status.hpp core/tangent/linear_settings.hpp)
+  core/physics/active_stress.hpp core/physics/law.hpp core/physics/law_constants.hpp core/physics/viscosity.hpp core/run/run_status.hpp core/tangent/linear_settings.hpp)
 foreach(header IN LISTS FASCIA_PUBLIC_HEADERS)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${CMAKE_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fascia/${folder} COMPONENT dev)
