@@ -1,7 +1,7 @@
 #include "app/machine.hpp"
 
 #include "app/version.hpp"
-#include "core/base/thread_pool.hpp"
+#include "core/base/processors.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/base/index.hpp"
+#include "core/base/processors.hpp"
 #include "core/linear/vectors.hpp"
 #include "core/math/rotation.hpp"
 

@@ -19,6 +19,7 @@
 #include "app/study/tables.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
+#include "core/base/processors.hpp"
 #include "io/directory_lock.hpp"
 #include "io/files.hpp"
 
@@ -27,7 +28,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
 
 namespace fascia::app {
 namespace {
@@ -174,7 +174,7 @@ class Explainer {
     facts.iterative = e_.base.linear > 0;
     facts.backend = e_.base.backend;
     facts.threads = e_.base.threads;
-    facts.processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    facts.processors = available_processors();
     for (const BodyProfile& b : e_.bodies) facts.body_mass[b.name] = b.mass;
     return facts;
   }

@@ -8,7 +8,7 @@
 #include "app/run/run_scene.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
-#include "core/base/thread_pool.hpp"
+#include "core/base/processors.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

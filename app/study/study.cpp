@@ -8,6 +8,7 @@
 #include "app/study/tables.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
+#include "core/base/processors.hpp"
 #include "io/directory_lock.hpp"
 #include "io/files.hpp"
 
@@ -143,10 +144,7 @@ class StudyDriver {
   }
 
   void run_all() {
-    const int parallel =
-        result_.study.timed
-            ? 1
-            : options_.jobs.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+    const int parallel = result_.study.timed ? 1 : options_.jobs.value_or(available_processors());
     std::atomic<std::size_t> next{0};
     std::exception_ptr error;
     const auto work = [&] {

@@ -1,6 +1,6 @@
 #include "app/tune/cost_model.hpp"
 
-#include "core/base/thread_pool.hpp"
+#include "core/base/processors.hpp"
 #include "core/levels/blocks_or_levels.hpp"
 #include "core/tangent/tangent_solver.hpp"
 

@@ -6,7 +6,7 @@
 #include "app/verify/verify.hpp"
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
-#include "core/base/thread_pool.hpp"
+#include "core/base/processors.hpp"
 #include "fascia/stepper.hpp"
 #include "gpu/space/device.hpp"
 #include "io/files.hpp"

@@ -6,3 +6,16 @@
 #else
 #define FASCIA_HD
 #endif
+
+namespace fascia {
+
+/// Tells the processor that this thread looks at memory until another one writes there.
+inline void wait_a_moment() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("isb");
+#endif
+}
+
+}  // namespace fascia

@@ -1,19 +1,11 @@
 #include "core/base/thread_pool.hpp"
 
-#include <sched.h>
+#include "core/base/portability.hpp"
+#include "core/base/processors.hpp"
 
-#include <algorithm>
 #include <chrono>
 
 namespace fascia {
-
-int available_processors() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  // Fails where the machine has more processors than the set: then all count.
-  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
 
 namespace {
 
@@ -27,19 +19,24 @@ bool look(const Found& found) {
   constexpr int kLooksBetweenTurns = 64;
   const auto end = std::chrono::steady_clock::now() + kLook;
   do {
-    for (int i = 0; i < kLooksBetweenTurns; ++i)
+    for (int i = 0; i < kLooksBetweenTurns; ++i) {
       if (found()) return true;
+      wait_a_moment();
+    }
     std::this_thread::yield();
   } while (std::chrono::steady_clock::now() < end);
   return false;
 }
 
+constexpr int left(std::uint64_t open) { return static_cast<int>(static_cast<std::uint32_t>(open)); }
+
 }  // namespace
 
-ThreadPool::ThreadPool(int threads) {
-  const int count = threads > 0 ? threads : available_processors();
+ThreadPool::ThreadPool(int threads)
+    : size_(threads > 0 ? threads : available_processors()),
+      shares_(std::make_unique<Share[]>(static_cast<std::size_t>(size_))) {
   try {
-    for (int i = 1; i < count; ++i) workers_.emplace_back([this] { worker_loop(); });
+    for (int i = 1; i < size_; ++i) workers_.emplace_back([this, i] { worker_loop(i); });
   } catch (...) {  // no memory for another stack, or no thread left (std::system_error): those that run must end first
     end_workers();
     throw;
@@ -60,35 +57,46 @@ void ThreadPool::run(int chunks, const void* work, Call call) {
   call_ = call;
   chunks_ = chunks;
   done_.store(0, std::memory_order_relaxed);
-  const std::uint64_t loop = (open_.load(std::memory_order_relaxed) >> 32U) + 1;
-  open_.store(loop << 32U | static_cast<std::uint32_t>(chunks), std::memory_order_release);
+  const std::uint64_t loop = calls_.load(std::memory_order_relaxed) + std::uint64_t{1};
+  int begin = 0;
+  for (int s = 0; s < size_; ++s) {
+    const auto end = static_cast<int>(static_cast<std::int64_t>(chunks) * (s + 1) / size_);
+    shares_[s].end = end;
+    shares_[s].open.store(loop << 32U | static_cast<std::uint32_t>(end - begin), std::memory_order_release);
+    begin = end;
+  }
   ++calls_;
   calls_.notify_all();
-  while (take_chunk()) {
-  }
+  work_from(0);
   const auto all_done = [&] { return done_.load(std::memory_order_acquire) == chunks; };
   if (look(all_done)) return;
   for (int done = done_.load(std::memory_order_acquire); done != chunks; done = done_.load(std::memory_order_acquire))
     done_.wait(done, std::memory_order_acquire);
 }
 
-// The exchange succeeds only while the loop that it read still has that chunk to give, which therefore cannot end.
-bool ThreadPool::take_chunk() {
-  std::uint64_t open = open_.load(std::memory_order_acquire);
-  do {
-    if (static_cast<std::uint32_t>(open) == 0) return false;
-  } while (!open_.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel, std::memory_order_acquire));
-  const int chunks = chunks_;
-  call_(work_, chunks - static_cast<int>(static_cast<std::uint32_t>(open)));
-  if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == chunks) done_.notify_one();
-  return true;
+/// Works at chunks until none is left: first those of a share, then of those behind it, in a circle.
+void ThreadPool::work_from(int share) {
+  int did = 0, chunks = 0;
+  for (int s = 0; s < size_; ++s) {
+    Share& from = shares_[(share + s) % size_];
+    std::uint64_t open = from.open.load(std::memory_order_acquire);
+    while (left(open) > 0) {
+      // Succeeds only while the loop that it read still has that chunk to give, which therefore cannot end.
+      if (!from.open.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel, std::memory_order_acquire))
+        continue;
+      call_(work_, from.end - left(open));
+      chunks = chunks_;
+      ++did;
+      open = from.open.load(std::memory_order_acquire);
+    }
+  }
+  if (did > 0 && done_.fetch_add(did, std::memory_order_acq_rel) + did == chunks) done_.notify_one();
 }
 
-void ThreadPool::worker_loop() {
+void ThreadPool::worker_loop(int share) {
   std::uint32_t seen = 0;
   while (true) {
-    while (take_chunk()) {
-    }
+    work_from(share);
     const auto called = [&] { return calls_.load(std::memory_order_acquire) != seen; };
     if (!look(called)) calls_.wait(seen, std::memory_order_acquire);
     seen = calls_.load(std::memory_order_acquire);

@@ -2,17 +2,17 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <thread>
 #include <vector>
 
 namespace fascia {
 
-/// Processors that this process may run on: fewer than the machine has under taskset, a batch system or a container.
-int available_processors();
-
-/// Threads that share the fixed chunks of a loop. Which thread takes a chunk varies, what a chunk computes does not.
-/// A loop waits for its chunks, not for threads: one that the system keeps from running is not waited for unless it
-/// holds a chunk. Between loops threads look for work for some microseconds, then sleep.
+/// Threads that share the fixed chunks of a loop. Each begins with the same part of them in every loop, so that what it
+/// read is near when it comes again, then takes what others have left. Which thread takes a chunk varies, what a chunk
+/// computes does not. A loop waits for its chunks, not for threads: one that the system keeps from running is not
+/// waited for unless it holds a chunk, or has yet to report those that it did. Between loops threads look for work for
+/// some microseconds, then sleep.
 class ThreadPool {
  public:
   /// @param threads  0: as many as there are processors to run on
@@ -21,13 +21,13 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  int size() const { return static_cast<int>(workers_.size()) + 1; }
+  int size() const { return size_; }
 
   /// Calls work(chunk) for each chunk in [0, chunks), in any order, and returns when all are done.
   /// `work` must not throw and must not call for_chunks itself.
   template <class Work>
   void for_chunks(int chunks, const Work& work) {
-    if (chunks <= 1 || workers_.empty()) {
+    if (chunks <= 1 || size_ == 1) {
       for (int c = 0; c < chunks; ++c) work(c);
       return;
     }
@@ -45,22 +45,32 @@ class ThreadPool {
 
  private:
   using Call = void (*)(const void*, int);
-  void run(int chunks, const void* work, Call call);
-  bool take_chunk();
-  void end_workers();
-  void worker_loop();
+  static constexpr int kLine = 64;  ///< bytes that processors pass to one another at once
 
+  /// Says which consecutive chunks of the loop under way one thread begins with.
+  struct alignas(kLine) Share {
+    /// Number of the loop, above, and the share's chunks that nobody has taken, in the lower 32 bits.
+    std::atomic<std::uint64_t> open{0};
+    int end = 0;  ///< the chunk after the last one
+  };
+
+  void run(int chunks, const void* work, Call call);
+  void work_from(int share);
+  void end_workers();
+  void worker_loop(int share);
+
+  int size_;
   std::vector<std::thread> workers_;
-  // Of the loop under way. Written while no chunk is left to take and none is being worked at; read after taking one.
-  const void* work_ = nullptr;
+  std::unique_ptr<Share[]> shares_;
+  // Of the loop under way. Written while no chunk is left to take and none is being worked at; a share's end before its
+  // chunks are given. All are read after taking a chunk.
+  alignas(kLine) const void* work_ = nullptr;
   Call call_ = nullptr;
   int chunks_ = 0;
-  /// Number of the loop, above, and its chunks that nobody has taken, in the lower 32 bits.
-  std::atomic<std::uint64_t> open_{0};
-  std::atomic<int> done_{0};
   /// Counts loops, and the end: what sleeping threads wait on.
   std::atomic<std::uint32_t> calls_{0};
   std::atomic<bool> stop_{false};
+  alignas(kLine) std::atomic<int> done_{0};  ///< chunks
 };
 
 }  // namespace fascia

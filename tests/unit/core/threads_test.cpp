@@ -1,10 +1,18 @@
+#include "core/base/processors.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/run/drivers.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
 #include <vector>
 
 namespace fascia::threads_test {
@@ -21,11 +29,68 @@ TEST(ThreadPool, TakesEachChunkOnce) {
   }
 }
 
+/// Chunks of very unlike cost: whoever is done takes those of others, and each is taken once.
+TEST(ThreadPool, LeavesNoChunkToABusyThread) {
+  ThreadPool pool(4);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<std::atomic<int>> visits(37);
+    std::atomic<bool> others_done{false};
+    std::atomic<int> light{0};
+    pool.for_chunks(37, [&](int c) {
+      ++visits[static_cast<std::size_t>(c)];
+      if (c == 20) {  // holds its thread until all others are done, those of its own share too
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (!others_done && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+      } else if (++light == 36) {
+        others_done = true;
+      }
+    });
+    EXPECT_TRUE(others_done);
+    for (const auto& v : visits) EXPECT_EQ(v, 1);
+  }
+}
+
+/// Loops with fewer chunks than threads, and pools with more threads than processors.
+TEST(ThreadPool, ManyThreadsShareFewChunks) {
+  ThreadPool pool(9);
+  EXPECT_EQ(pool.size(), 9);
+  std::atomic<int> sum{0};
+  for (int round = 0; round < 300; ++round) pool.for_chunks(2 + round % 7, [&](int c) { sum += c; });
+  int expected = 0;
+  for (int round = 0; round < 300; ++round)
+    for (int c = 0; c < 2 + round % 7; ++c) expected += c;
+  EXPECT_EQ(sum, expected);
+}
+
+/// A container that is given the time of some processors sees all of the machine's.
+TEST(AvailableProcessors, AreNoMoreThanTheTimeOfAGroupAllows) {
+  const test::TemporaryFolder root;
+  const std::string top = root.path.string();
+  const auto write = [&](const std::string& folder, const std::string& file, const std::string& text) {
+    std::filesystem::create_directories(top + folder);
+    std::ofstream(top + folder + "/" + file) << text;
+  };
+  EXPECT_EQ(processors_of_quota("0::/\n", top), 0);
+  write("/job/step", "cpu.max", "250000 100000\n");
+  write("/job", "cpu.max", "max 100000\n");
+  EXPECT_EQ(processors_of_quota("0::/job/step\n", top), 3);
+  EXPECT_EQ(processors_of_quota("0::/job\n", top), 0);
+  write("/job", "cpu.max", "50000 100000\n");  // that of the group around it counts too
+  EXPECT_EQ(processors_of_quota("0::/job/step\n", top), 1);
+  write("/cpu/docker/x", "cpu.cfs_quota_us", "600000\n");
+  write("/cpu/docker/x", "cpu.cfs_period_us", "100000\n");
+  write("/cpu", "cpu.cfs_quota_us", "-1\n");
+  EXPECT_EQ(processors_of_quota("5:memory:/docker/x\n4:cpuacct,cpu:/docker/x\n0::/\n", top), 6);
+  write("/job", "cpu.max", "nonsense\n");
+  EXPECT_EQ(processors_of_quota("0::/job\nnonsense\n", top), 0);
+}
+
 /// This is the case under taskset, and in a batch job that gives a process one core of a machine.
 TEST(ThreadPool, UsesTheProcessorsThatTheProcessMayRunOn) {
   cpu_set_t before, one;
   ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
-  EXPECT_EQ(ThreadPool(0).size(), CPU_COUNT(&before));
+  EXPECT_EQ(ThreadPool(0).size(), available_processors());
+  EXPECT_LE(available_processors(), CPU_COUNT(&before));  // a quota may leave fewer
   CPU_ZERO(&one);
   for (int c = 0; c < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++c)
     if (CPU_ISSET(c, &before)) CPU_SET(c, &one);
