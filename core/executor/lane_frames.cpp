@@ -104,28 +104,29 @@ void LaneFrames::add_patch(const PointSet& set, std::span<const int> groups, std
 void LaneFrames::add_group(const PointSet& set, int group, std::span<const int> nodes) {
   Group& g = group_[at(group)];
   const std::span<const int> own = set.nodes(group);
-  g.begin = local_.size() / kGroupSize;
+  g.begin = start_.size() / kGroupSize;
   g.kind = set.dofs.kind(own[0]);
   g.has_blocks = g.kind != FrameKind::vertex &&
                  std::all_of(own.begin(), own.end(), [&](int node) { return set.dofs.kind(node) == g.kind; });
-  local_.resize(local_.size() + at(g.count) * kGroupSize);
+  start_.resize(start_.size() + at(g.count) * kGroupSize);
   g.rows = carries(set, group) ? kCarriedRows : kRows;
   g.shape = shape_.size();
   shape_.resize(shape_.size() + at(g.count * g.rows) * kGroupSize);
-  std::uint16_t* local = local_.data() + g.begin * kGroupSize;
+  std::uint16_t* start = start_.data() + g.begin * kGroupSize;
   double* shape = shape_.data() + g.shape;
-  std::vector<std::uint16_t> place;
-  place.reserve(own.size());
+  std::vector<std::uint16_t> start_of_slot;
+  start_of_slot.reserve(own.size());
   for (const int node : own)
-    place.push_back(static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()));
+    start_of_slot.push_back(
+        static_cast<std::uint16_t>((std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()) * kNumbers));
   for (int lane = 0; lane < kGroupSize; ++lane) {
     int k = 0;
-    std::uint16_t last = place[0];  // a dead lane follows some frame of the group, with nothing
+    std::uint16_t last = start_of_slot[0];  // a dead lane follows some frame of the group, with nothing
     for (std::size_t s = 0; s < own.size(); ++s) {
       const int slot = set.slot_begin[at(group)] + static_cast<int>(s);
       if ((set.slot_lanes[at(slot)] >> static_cast<unsigned>(lane) & 1U) == 0) continue;
-      last = place[s];
-      local[k * kGroupSize + lane] = last;
+      last = start_of_slot[s];
+      start[k * kGroupSize + lane] = last;
       double* row = shape + k * g.rows * kGroupSize + lane;
       const double* from = set.shape_of_slot(slot) + lane;
       for (int r = 0; r < 4; ++r) row[r * kGroupSize] = from[r * kGroupSize];
@@ -134,7 +135,7 @@ void LaneFrames::add_group(const PointSet& set, int group, std::span<const int> 
         row[r * kGroupSize] = g.rows == kCarriedRows ? about[r - 4] : from[r * kGroupSize];
       ++k;
     }
-    for (; k < g.count; ++k) local[k * kGroupSize + lane] = last;
+    for (; k < g.count; ++k) start[k * kGroupSize + lane] = last;
   }
 }
 

@@ -17,6 +17,7 @@ class LaneFrames {
  public:
   static constexpr int kPatchNodes = 256;  ///< at most
   static constexpr int kMostFrames = 16;   ///< of a point in such a group
+  static constexpr int kNumbers = 12;      ///< of a frame that a loop over a patch reads or adds to
 
   explicit LaneFrames(const PointSet& set);
 
@@ -26,9 +27,11 @@ class LaneFrames {
   bool has_blocks(int group) const { return group_[at(group)].has_blocks; }
   /// Kind of the group's frames, where it has blocks.
   FrameKind kind(int group) const { return group_[at(group)].kind; }
-  /// (count × 8) numbers in the patch of each lane's frames, in the group's order; the last again where a lane has
-  /// fewer.
-  const std::uint16_t* local(int group) const { return local_.data() + group_[at(group)].begin * kGroupSize; }
+  /// Tells (count × 8) where the numbers of each lane's frames start among those of the patch, in the group's order;
+  /// the last again where a lane has fewer.
+  const std::uint16_t* starts(int group) const { return start_.data() + group_[at(group)].begin * kGroupSize; }
+  /// The node of a group's patch whose numbers start there.
+  int node_at(int group, std::uint16_t start) const { return nodes(patch_of(group))[start / kNumbers]; }
   /// Each frame carries what is about it as a rigid body does, with a weight: ψ = w r, so that B = w I + r gᵀ with the
   /// point's place r in the frame. Weights of moving least squares are not so.
   bool carries(int group) const { return group_[at(group)].rows == kCarriedRows; }
@@ -67,7 +70,7 @@ class LaneFrames {
 
   std::vector<Group> group_;
   Coloring colors_;
-  std::vector<std::uint16_t> local_;
+  std::vector<std::uint16_t> start_;
   AlignedVector<double> shape_;
   std::vector<int> patch_group_, patch_group_begin_{0};
   std::vector<int> patch_node_, patch_node_begin_{0};

@@ -120,7 +120,7 @@ void add_lane_sums(const double* batches, int count, double* out) {
     transpose_lanes(part);
     Lanes sum = part[0];
     for (int l = 1; l < W; ++l) sum += part[l];
-    store_anywhere(out + k, load_anywhere(out + k) + sum);
+    store_anywhere(out + k, load_anywhere<Lanes::Register>(out + k) + sum.v);
   }
   for (; k < count; ++k) out[k] += lane_sum(Lanes::load(batches + k * W));
 }
@@ -153,12 +153,11 @@ void PointExecutor::find_pairs(const BlockMatrix& matrix) {
   for (int group = 0; group < set_.group_count(); ++group) {
     if (lanes.has_blocks(group)) {
       pair_begin_[at(set_.slot_begin[at(group)])] = pairs_.size();
-      const std::span<const int> nodes = lanes.nodes(lanes.patch_of(group));
-      const std::uint16_t* local = lanes.local(group);
+      const std::uint16_t* start = lanes.starts(group);
       for (int b = 0; b < lanes.count(group); ++b)
         for (int a = b; a < lanes.count(group); ++a)
           for (int lane = 0; lane < kGroupSize; ++lane)
-            add(nodes[local[b * kGroupSize + lane]], nodes[local[a * kGroupSize + lane]]);
+            add(lanes.node_at(group, start[b * kGroupSize + lane]), lanes.node_at(group, start[a * kGroupSize + lane]));
       continue;
     }
     for (int b = set_.slot_begin[at(group)]; b < set_.slot_begin[at(group + 1)]; ++b) {
@@ -188,8 +187,8 @@ template <PointKind Kind>
   LaneMatrix dP[kBatches][kMostDofs], dY[kBatches][kBlend ? kMostDofs : 1];
   for (int batch = 0; batch < kBatches; ++batch) {
     const auto m = material<Kind>(set_, group, batch, state, targets_);
-    const PointMotion<Lanes> x = kept_motion<Kind.stabilization>(state, group, batch);
-    const TangentStress<Lanes> stress = kept_stress<Kind.stabilization>(state, group, batch);
+    const PointMotion<Lanes> x = kept_motion<Kind.stabilization>(kept_of(state, group), batch);
+    const TangentStress<Lanes> stress = kept_stress<Kind.stabilization>(kept_of(state, group), batch);
     for (int k = 0; k < columns; ++k) {
       const auto d = point_stress_differential<Kind.stabilization>(x, stress, m, state.tangent,
                                                                    unit_motion<kBlend>(frames.of(batch, b), k));
@@ -244,18 +243,17 @@ template <PointKind Kind, FrameKind Frame>
   constexpr int kDofs = dof_count(Frame);
   const LaneFrames& lanes = frames_.lanes();
   const int n = lanes.count(group);
-  const std::span<const int> nodes = lanes.nodes(lanes.patch_of(group));
-  const std::uint16_t* local = lanes.local(group);
+  const std::uint16_t* starts = lanes.starts(group);
   const bool upper = matrix_out.fills_upper();
   std::array<PointFrame, LaneFrames::kMostFrames> frames;
   for (int batch = 0; batch < kBatches; ++batch) {
     const auto m = material<Kind>(set_, group, batch, state, targets_);
-    const PointMotion<Lanes> x = kept_motion<Kind.stabilization>(state, group, batch);
-    const TangentStress<Lanes> stress = kept_stress<Kind.stabilization>(state, group, batch);
+    const PointMotion<Lanes> x = kept_motion<Kind.stabilization>(kept_of(state, group), batch);
+    const TangentStress<Lanes> stress = kept_stress<Kind.stabilization>(kept_of(state, group), batch);
     for (int a = 0; a < n; ++a) {
       Lanes D[9];
-      const std::uint16_t* own = local + a * kGroupSize + batch * kBatchWidth;
-      gather_rows([&](int lane) { return &turn_of(state, nodes[own[lane]])(0, 0); }, D);
+      const std::uint16_t* own = starts + a * kGroupSize + batch * kBatchWidth;
+      gather_rows([&](int lane) { return &turn_of(state, lanes.node_at(group, own[lane]))(0, 0); }, D);
       frames[at(a)].set(Frame, lanes.shape(group) + a * lanes.shape_rows(group) * kGroupSize, lanes.carries(group),
                         batch, Mat3<Lanes>::identity() + matrix_of(D));
     }

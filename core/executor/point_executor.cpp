@@ -30,6 +30,9 @@ PointExecutor::PointExecutor(const PointSet& set, ThreadPool& pool)
       group_tether_(at(set.group_count())),
       part_tether_(at(set.part_count())),
       targets_(set.axes.size() / 3) {
+  kept_begin_.assign(1, 0);
+  for (int group = 0; group < set.group_count(); ++group)
+    kept_begin_.push_back(kept_begin_.back() + at(kept_rows(rule_of(group).stabilization) * kGroupSize));
   const Coloring& colors = frames_.shared_colors();
   if (colors.item.empty() || colors.item.size() >= kGroupsOfColor * (colors.begin.size() - 1)) return;
   group_of_slot_.resize(at(set.slot_count()));

@@ -22,8 +22,6 @@ NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, in
 class PointExecutor {
  public:
   static constexpr bool kSeesMotions = true, kSeesTranslations = false, kSeesStateAgain = false;
-  static constexpr int kRows = 27;  ///< kept of a group: H (9), Dbar (9), S (6), drilling (3), each for eight points
-
   PointExecutor(const PointSet& set, ThreadPool& pool);
 
   /// Where tethers pull to: (groups with axes × 3 × 8) [m]. Zero at first.
@@ -34,7 +32,7 @@ class PointExecutor {
   void store_strain(const BlockState& state, std::span<double> E);
   void store_stress(const BlockState& state, std::span<double> S);
   void compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion);
-  std::size_t kept_size(bool /*extrapolated*/) const { return at(set_.group_count()) * kRows * kGroupSize; }
+  std::size_t kept_size(bool /*extrapolated*/) const { return kept_begin_.back(); }
   /// Where a step led there, add_sums() gives what acts with extrapolated stresses.
   void linearize(const BlockState& now, const BlockState* start, const BlockDirection* step, std::span<double> kept);
   void compute_product(const BlockState& state, const BlockDirection& direction);
@@ -71,6 +69,8 @@ class PointExecutor {
   template <PointKind Kind>
   GroupStress stress_on_group(const BlockState& state, int group, Rows rows, bool energies,
                               std::span<const double> part_motion);
+  /// Returns the rows that are kept of a group: kernels::KeptRow in point_kernels.hpp.
+  const double* kept_of(const BlockState& state, int group) const { return state.kept.data() + kept_begin_[at(group)]; }
   template <PointKind Kind>
   void split_energy(const BlockState& state, int group, int batch, const PointMotion<Lanes>& x,
                     PointEnergy<Lanes>& energy) const;
@@ -101,7 +101,8 @@ class PointExecutor {
   const PointSet& set_;
   ThreadPool& pool_;
   PointFrames frames_;
-  AlignedVector<double> now_, start_;  ///< rows of nodes at states
+  AlignedVector<double> now_, start_;    ///< rows of nodes at states
+  std::vector<std::size_t> kept_begin_;  ///< (groups + 1) of what is kept of a state
   bool has_tethers_;
   std::uint64_t pattern_ = 0;            ///< of the matrix in which these are:
   std::vector<int> pairs_;               ///< blocks of pairs of frames of each group, or of each lane of a group

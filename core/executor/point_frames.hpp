@@ -22,7 +22,7 @@ void add_numbers(const double* s, NodeSum& sum);
 /// point_kernels.hpp.
 class PointFrames {
  public:
-  static constexpr int kNumbers = 12;
+  static constexpr int kNumbers = LaneFrames::kNumbers;
   using Rows = const double*;  ///< (frames × 12) by node, or by frame of a patch
 
   PointFrames(const PointSet& set, ThreadPool& pool);

@@ -51,34 +51,38 @@ inline void carried_sums(const CarriedShape& f, const LaneMatrix& P, const LaneM
   }
 }
 
-/// Rows that are kept of a group at a state, (27 × 8): H, Dbar, S, drilling.
-inline const double* kept_rows(const BlockState& state, int group) {
-  return state.kept.data() + at(group) * PointExecutor::kRows * kGroupSize;
+/// Rows, each for eight points, that are kept of a group at a state. No group has more of them than its stabilisation
+/// reads: a processor fetches what stands between those that it reads, too.
+enum KeptRow { kKeptH = 0, kKeptS = 9, kKeptDbar = 15, kKeptDrilling = 24, kKeptAll = 27 };
+/// Counts them.
+constexpr int kept_rows(Stabilization tie) {
+  if (tie == Stabilization::none) return kKeptDbar;
+  return tie == Stabilization::drilling ? kKeptAll : kKeptDrilling;
 }
 
-/// Blended rotations only where something asks for them.
 template <Stabilization Tie>
-inline PointMotion<Lanes> kept_motion(const BlockState& state, int group, int b) {
+inline PointMotion<Lanes> kept_motion(const double* rows, int b) {
   PointMotion<Lanes> x;
-  x.H = matrix(kept_rows(state, group), 0, b);
-  if constexpr (Tie != Stabilization::none) x.Dbar = matrix(kept_rows(state, group), 9, b);
+  x.H = matrix(rows, kKeptH, b);
+  if constexpr (Tie != Stabilization::none) x.Dbar = matrix(rows, kKeptDbar, b);
   return x;
 }
 
 template <Stabilization Tie>
-inline TangentStress<Lanes> kept_stress(const BlockState& state, int group, int b) {
-  const double* rows = kept_rows(state, group);
-  TangentStress<Lanes> stress{symmetric_matrix(rows, 18, b), {}};
+inline TangentStress<Lanes> kept_stress(const double* rows, int b) {
+  TangentStress<Lanes> stress{symmetric_matrix(rows, kKeptS, b), {}};
   if constexpr (Tie == Stabilization::drilling)
-    stress.drilling = {{row(rows, 24, b), row(rows, 25, b), row(rows, 26, b)}};
+    for (int k = 0; k < 3; ++k) stress.drilling[k] = row(rows, kKeptDrilling + k, b);
   return stress;
 }
 
+template <Stabilization Tie>
 inline void keep(const PointMotion<Lanes>& x, const TangentStress<Lanes>& stress, double* rows, int b) {
-  store_matrix(rows, 0, b, x.H);
-  store_matrix(rows, 9, b, x.Dbar);
-  store_symmetric(rows, 18, b, stress.S);
-  for (int k = 0; k < 3; ++k) store(rows, 24 + k, b, stress.drilling[k]);
+  store_matrix(rows, kKeptH, b, x.H);
+  store_symmetric(rows, kKeptS, b, stress.S);
+  if constexpr (Tie != Stabilization::none) store_matrix(rows, kKeptDbar, b, x.Dbar);
+  if constexpr (Tie == Stabilization::drilling)
+    for (int k = 0; k < 3; ++k) store(rows, kKeptDrilling + k, b, stress.drilling[k]);
 }
 
 }  // namespace kernels
@@ -122,11 +126,11 @@ PointMotion<Lanes> PointFrames::motion(int group, int batch, Rows rows) const {
   }
   const double* shape = lanes_.shape(group);
   const int stride = lanes_.shape_rows(group) * kGroupSize;
-  const std::uint16_t* local = lanes_.local(group) + batch * kBatchWidth;
+  const std::uint16_t* start = lanes_.starts(group) + batch * kBatchWidth;
   const bool carries = lanes_.carries(group);
-  for (int k = 0; k < count; ++k, shape += stride, local += kGroupSize) {
+  for (int k = 0; k < count; ++k, shape += stride, start += kGroupSize) {
     Lanes d[kNumbers];
-    gather_rows([&](int lane) { return rows + local[lane] * kNumbers; }, d);
+    gather_rows([&](int lane) { return rows + start[lane]; }, d);
     if (carries)
       add_carried(CarriedShape(shape, batch), d, x);
     else
@@ -149,10 +153,10 @@ void PointFrames::put(int group, const GroupStress& stress) {
   }
   const double* shape = lanes_.shape(group);
   const int stride = lanes_.shape_rows(group) * kGroupSize;
-  const std::uint16_t* local = lanes_.local(group);
+  const std::uint16_t* start = lanes_.starts(group);
   const bool carries = lanes_.carries(group);
   for (int k = 0; k < count; ++k, shape += stride)
-    for (int b = 0; b < kBatches; ++b, local += kBatchWidth) {
+    for (int b = 0; b < kBatches; ++b, start += kBatchWidth) {
       LaneArray<kNumbers> out;
       if (carries) carried_sums<Blend>(CarriedShape(shape, b), stress.P[b], stress.Y[b], out);
       for (int i = 0; i < 3 && !carries; ++i) {
@@ -165,7 +169,7 @@ void PointFrames::put(int group, const GroupStress& stress) {
           out.set(3 + 3 * i + j, moment);
         }
       }
-      add_to_rows<kNumbers>(out, [&](int lane) { return sums + local[lane] * kNumbers; });
+      add_to_rows<kNumbers>(out, [&](int lane) { return sums + start[lane]; });
     }
 }
 

@@ -18,7 +18,7 @@ template <PointKind Kind>
     TangentStress<Lanes> stress;
     if (!is_tether(m)) stress = tangent_stress<Kind.stabilization>(x, m, old_strain(now, group, b));
     if (!now.given.empty()) stress.S += given_stress(now, group, b);
-    keep(x, stress, kept.data() + at(group) * kRows * kGroupSize, b);
+    keep<Kind.stabilization>(x, stress, kept.data() + kept_begin_[at(group)], b);
   }
 }
 
@@ -36,7 +36,7 @@ template <PointKind Kind>
       stress = extrapolated_stress<Kind.stabilization>(frames_.motion<true>(group, b, rows[1]),
                                                        frames_.motion<true>(group, b, rows[2]), m, E_old);
     if (!now.given.empty()) stress.S += given_stress(now, group, b);
-    keep(x, stress, kept.data() + at(group) * kRows * kGroupSize, b);
+    keep<Kind.stabilization>(x, stress, kept.data() + kept_begin_[at(group)], b);
     const PointStress<Lanes> p =
         is_tether(m) ? point_stress<Kind.stabilization>(x, m, E_old) : point_stress<Kind.stabilization>(x, m, stress);
     sums.P[b].set(p.P * m.volume);
@@ -64,11 +64,12 @@ void PointExecutor::linearize(const BlockState& now, const BlockState* start, co
 template <PointKind Kind>
 [[gnu::flatten]] void PointExecutor::product_of_group(const BlockState& state, int group, Rows rows) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
+  const double* kept = kept_of(state, group);
   GroupStress sums;
   for (int b = 0; b < kBatches; ++b) {
     const auto m = material<Kind>(set_, group, b, state, targets_);
-    const auto r = point_stress_differential<Kind.stabilization>(kept_motion<Kind.stabilization>(state, group, b),
-                                                                 kept_stress<Kind.stabilization>(state, group, b), m,
+    const auto r = point_stress_differential<Kind.stabilization>(kept_motion<Kind.stabilization>(kept, b),
+                                                                 kept_stress<Kind.stabilization>(kept, b), m,
                                                                  state.tangent, frames_.motion<kBlend>(group, b, rows));
     sums.P[b].set(r.dP * m.volume);
     if constexpr (kBlend) sums.Y[b].set(r.dY * m.volume);

@@ -6,12 +6,12 @@
 namespace fascia {
 
 /// N batches that are not cleared at first.
-template <int N>
+template <int N, int W = kBatchWidth>
 struct LaneArray {
-  alignas(sizeof(Lanes)) double numbers[N * kBatchWidth];
+  alignas(sizeof(Batch<W>)) double numbers[N * W];
 
-  Lanes operator[](int k) const { return Lanes::load(numbers + k * kBatchWidth); }
-  void set(int k, const Lanes& value) { value.store(numbers + k * kBatchWidth); }
+  Batch<W> operator[](int k) const { return Batch<W>::load(numbers + k * W); }
+  void set(int k, const Batch<W>& value) { value.store(numbers + k * W); }
 };
 
 /// Likewise a matrix of batches.
