@@ -50,7 +50,7 @@ class PoolSpace : public HostMemory {
   }
 
  private:
-  static constexpr int kGrain = 1024;  ///< items that one thread takes at once
+  static constexpr int kGrain = 256;  ///< items that one thread takes at once
 
   ThreadPool* pool_ = nullptr;
   mutable std::vector<double> sums_;  ///< of chunks
