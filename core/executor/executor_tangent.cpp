@@ -20,13 +20,6 @@ void turn(ThreadPool& pool, const FrameMatrices& D, std::vector<Mat3d>& Q) {
   });
 }
 
-/// Copies an array into one that keeps its memory.
-template <class From, class To>
-void keep(ThreadPool& pool, const From& from, To& to) {
-  to.resize(from.size());
-  copy_parallel(pool, std::span(from), std::span(to));
-}
-
 }  // namespace
 
 bool Linearization::symmetric() const {
@@ -86,10 +79,10 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
     }
   });
   springs_.add_blocks(state, out.tangent, out.node_blocks);
-  keep(pool_, state.u, out.u);
-  keep(pool_, state.D.values(), out.D);
-  if (see_state_again_) keep(pool_, history.E, out.E);
-  keep(pool_, history.given, out.given);
+  copy_into(pool_, state.u, out.u);
+  copy_into(pool_, state.D.values(), out.D);
+  if (see_state_again_) copy_into(pool_, history.E, out.E);
+  copy_into(pool_, history.given, out.given);
 }
 
 /// Blocks keep what they need; where stresses are extrapolated, what they do to turning frames is kept too.

@@ -331,8 +331,8 @@ void MechanicalSystem::note_step(double step) {
   if (!has_taken_) return;
   taken_.u = state_.u;
   taken_.D = state_.D;
-  taken_.d = direction_;
-  for (double& d : taken_.d) d *= step;
+  taken_.d.resize(direction_.size());
+  space_.for_each(static_cast<int>(direction_.size()), [&](int i) { taken_.d[at(i)] = step * direction_[at(i)]; });
 }
 
 double MechanicalSystem::largest_step(double wanted) {

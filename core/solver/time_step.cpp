@@ -1,3 +1,4 @@
+#include "core/base/parallel_copy.hpp"
 #include "core/solver/mechanical_system.hpp"
 #include "core/step/boundary_loops.hpp"
 
@@ -10,25 +11,55 @@ const PoseMotion* data_or_null(const std::vector<PoseMotion>& motions) {
   return motions.empty() ? nullptr : motions.data();
 }
 
+/// Copies matrices by all threads into those that keep their memory.
+void copy_matrices(ThreadPool& pool, const FrameMatrices& from, FrameMatrices& to) {
+  if (to.size() != from.size() || (to.data() == nullptr) != (from.data() == nullptr)) {
+    to = from;
+    return;
+  }
+  copy_parallel(pool, from.values(), std::span(to.begin(), to.end()));
+}
+
+/// Makes as many zeros as there are others.
+void clear_as(ThreadPool& pool, const FrameMatrices& other, FrameMatrices& to) {
+  if (to.size() != other.size() || (to.data() == nullptr) != (other.data() == nullptr))
+    to = FrameMatrices(other.size(), other.data() != nullptr);
+  const std::span<Mat3d> all(to.begin(), to.end());
+  pool.for_ranges(static_cast<int>(all.size()), 256,
+                  [&](int begin, int end) { std::fill(all.begin() + begin, all.begin() + end, Mat3d{}); });
+}
+
+/// Copies all of a state but its velocities and what constraints turned.
+void copy_place(ThreadPool& pool, const State& from, State& to) {
+  copy_into(pool, from.u, to.u);
+  copy_matrices(pool, from.D, to.D);
+  copy_into(pool, from.memory, to.memory);
+  to.time = from.time;
+  to.factors = from.factors;
+}
+
 }  // namespace
 
 void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme scheme, const StepMemory& memory) {
   const std::size_t n = start.u.size();
-  start_ = start;
+  ThreadPool& pool = executor_.pool();
+  copy_place(pool, start, start_);
+  copy_into(pool, start.v, start_.v);
+  copy_matrices(pool, start.Q_dot, start_.Q_dot);
+  start_.turned = start.turned;
   start_.turned.resize(model_.constraints.size());  // a state made before the constraints has none
   place_dependents(model_.points, start_);
   place_dependent_rates(model_.points, start_);
-  increment_.du.assign(n, Vec3d{});
-  increment_.Ds = start_.D;
-  increment_.Ds.set_zero();
+  clear_parallel(pool, n, increment_.du);
+  clear_as(pool, start_.D, increment_.Ds);
   increment_.turned = start_.turned;
   has_taken_ = false;
   load_work_ = saved_work_ = applied_ = 0;
   surfaces_.begin_step();
   executor_.start_from(start_);
   static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);
-  form_.q.assign(n, {});
-  form_.w.assign(n, {});
+  clear_parallel(pool, n, form_.q);
+  clear_parallel(pool, n, form_.w);
   history_.inverse_step = 0;
   if (dt > 0) {
     space_.for_each(model_.node_count(),
@@ -120,14 +151,14 @@ void MechanicalSystem::forget_steps(std::span<const double> factors, const std::
 void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& end) {
   reached_factors_ = factors_;
   surfaces_.finish_step();
-  reached_.reset();
+  Reached reached = reached_ ? *std::exchange(reached_, std::nullopt) : Reached{};
   const std::size_t n = start_.u.size();
-  end = state_;
+  ThreadPool& pool = executor_.pool();
+  copy_place(pool, state_, end);
   end.turned = increment_.turned;
   end.time = end_time;
-  end.v.assign(n, Vec3d{});
-  end.Q_dot = end.D;
-  end.Q_dot.set_zero();
+  clear_parallel(pool, n, end.v);
+  clear_as(pool, end.D, end.Q_dot);
   const bool remembers = form_.h > 0 && form_.scheme != TimeScheme::implicit_euler;
   const bool same_step = StepConstants::equal(form_.step, memory.step) && memory.motion.size() == n;
   if (remembers) {
@@ -150,8 +181,12 @@ void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& e
   place_dependents(model_.points, end);
   place_dependent_rates(model_.points, end);
   // Tethers have been led elsewhere when the next step starts, memory has faded, and muscle acts otherwise.
-  if (form_.h > 0 && form_.scheme == TimeScheme::implicit_euler && memory_.empty() && model_.tethers.empty())
-    reached_ = {end.u, end.D, internal_.elastic + internal_.stabilization};
+  if (form_.h > 0 && form_.scheme == TimeScheme::implicit_euler && memory_.empty() && model_.tethers.empty()) {
+    copy_into(pool, end.u, reached.u);
+    copy_matrices(pool, end.D, reached.D);
+    reached.energy = internal_.elastic + internal_.stabilization;
+    reached_ = std::move(reached);
+  }
   if (memory_.acts()) end.factors = factors_;
   if (memory_.remembers()) {
     memory_.prepare(Fading::over(form_.step));
