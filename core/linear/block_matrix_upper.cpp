@@ -100,7 +100,7 @@ struct UpperRow<6> {
 namespace {
 
 /// Values of a chunk [bytes]: enough that a thread is worth waking for it, and that its overhang is small beside it.
-constexpr std::size_t kChunkBytes = 1 << 18;
+constexpr std::size_t kChunkBytes = 1 << 19;
 constexpr int kMostChunks = 128;
 
 }  // namespace
