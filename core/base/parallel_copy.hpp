@@ -29,13 +29,11 @@ void copy_into(ThreadPool& pool, const From& from, To& to) {
   copy_parallel(pool, std::span(from), std::span(to));
 }
 
-/// Sets all items to those of a new array, by all threads. @param size  that the array shall have
-template <class To>
-void clear_parallel(ThreadPool& pool, std::size_t size, To& to) {
-  using Item = typename To::value_type;
+/// Sets all items to those of a new array, by all threads.
+template <class Item>
+void clear_parallel(ThreadPool& pool, std::span<Item> to) {
   constexpr int kGrain = std::max<int>(1, (1 << 15) / static_cast<int>(sizeof(Item)));
-  to.resize(size);
-  pool.for_ranges(static_cast<int>(size), kGrain,
+  pool.for_ranges(static_cast<int>(to.size()), kGrain,
                   [&](int begin, int end) { std::fill(to.begin() + begin, to.begin() + end, Item{}); });
 }
 

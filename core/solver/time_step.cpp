@@ -24,24 +24,28 @@ void copy_matrices(ThreadPool& pool, const FrameMatrices& from, FrameMatrices& t
 void clear_as(ThreadPool& pool, const FrameMatrices& other, FrameMatrices& to) {
   if (to.size() != other.size() || (to.data() == nullptr) != (other.data() == nullptr))
     to = FrameMatrices(other.size(), other.data() != nullptr);
-  const std::span<Mat3d> all(to.begin(), to.end());
-  pool.for_ranges(static_cast<int>(all.size()), 256,
-                  [&](int begin, int end) { std::fill(all.begin() + begin, all.begin() + end, Mat3d{}); });
+  clear_parallel(pool, std::span(to.begin(), to.end()));
+}
+
+template <class Item>
+void clear_as(ThreadPool& pool, const std::vector<Vec3d>& other, std::vector<Item>& to) {
+  to.resize(other.size());
+  clear_parallel(pool, std::span(to));
 }
 
 /// Copies all of a state but its velocities and what constraints turned.
 void copy_place(ThreadPool& pool, const State& from, State& to) {
-  copy_into(pool, from.u, to.u);
-  copy_matrices(pool, from.D, to.D);
-  copy_into(pool, from.memory, to.memory);
-  to.time = from.time;
-  to.factors = from.factors;
+  const auto& [u, D, v, Q_dot, turned, time, memory, factors] = from;  // no member is forgotten
+  copy_into(pool, u, to.u);
+  copy_matrices(pool, D, to.D);
+  copy_into(pool, memory, to.memory);
+  to.time = time;
+  to.factors = factors;
 }
 
 }  // namespace
 
 void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme scheme, const StepMemory& memory) {
-  const std::size_t n = start.u.size();
   ThreadPool& pool = executor_.pool();
   copy_place(pool, start, start_);
   copy_into(pool, start.v, start_.v);
@@ -50,7 +54,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   start_.turned.resize(model_.constraints.size());  // a state made before the constraints has none
   place_dependents(model_.points, start_);
   place_dependent_rates(model_.points, start_);
-  clear_parallel(pool, n, increment_.du);
+  clear_as(pool, start_.u, increment_.du);
   clear_as(pool, start_.D, increment_.Ds);
   increment_.turned = start_.turned;
   has_taken_ = false;
@@ -58,8 +62,8 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   surfaces_.begin_step();
   executor_.start_from(start_);
   static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);
-  clear_parallel(pool, n, form_.q);
-  clear_parallel(pool, n, form_.w);
+  clear_as(pool, start_.u, form_.q);
+  clear_as(pool, start_.u, form_.w);
   history_.inverse_step = 0;
   if (dt > 0) {
     space_.for_each(model_.node_count(),
@@ -157,7 +161,7 @@ void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& e
   copy_place(pool, state_, end);
   end.turned = increment_.turned;
   end.time = end_time;
-  clear_parallel(pool, n, end.v);
+  clear_as(pool, end.u, end.v);
   clear_as(pool, end.D, end.Q_dot);
   const bool remembers = form_.h > 0 && form_.scheme != TimeScheme::implicit_euler;
   const bool same_step = StepConstants::equal(form_.step, memory.step) && memory.motion.size() == n;
