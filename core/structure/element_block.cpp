@@ -16,8 +16,10 @@ namespace fascia {
 
 namespace {
 
-/// Elements of a patch: its nodes' displacements and forces stay in the first cache.
-constexpr int kPatchElements = 256;
+/// Integration points of a patch, of elements that have several: a patch is worth a thread's while, its nodes'
+/// displacements and forces stay in the first cache, and patches of one colour are enough for many threads.
+constexpr int kPatchPoints = 512;
+constexpr int kFewestElements = 32, kMostElements = 256;  ///< of a patch
 
 /// Places of an element's nodes in ascending order of the nodes: blocks of pairs then all lie on one side of the
 /// diagonal.
@@ -122,7 +124,7 @@ ElementBlock make_element_block(const ElementBlockSpec& spec) {
   block.volume.resize(batches * at(spec.points) * kElementLanes);
   block.material.resize(batches * at(block.material_rows()) * kElementLanes);
   block.local.resize(batches * at(spec.nodes) * kElementLanes);
-  const int batches_a_patch = std::max(1, kPatchElements / kElementLanes);
+  const int batches_a_patch = std::clamp(kPatchPoints / spec.points, kFewestElements, kMostElements) / kElementLanes;
   for (int batch = 0; batch < block.batch_count(); ++batch) fill_batch(spec, batch, block);
   for (int batch = 0; batch < block.batch_count(); batch += batches_a_patch)
     number_patch(spec, batch, std::min(batch + batches_a_patch, block.batch_count()), block);
