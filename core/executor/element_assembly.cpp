@@ -1,6 +1,7 @@
 #include "core/base/errors.hpp"
 #include "core/executor/element_batch.hpp"
 #include "core/linear/block_matrix.hpp"
+#include "core/math/lane_rows.hpp"
 #include "core/math/transpose_lanes.hpp"
 
 #include <algorithm>
@@ -54,6 +55,9 @@ void add_blocks(const BatchTangent<L, N>& tangent, const ElementBlock& block, in
   }
 }
 
+constexpr int kVertexBlock = 9;  ///< numbers
+constexpr int kPairsAhead = 4;   ///< of pairs of nodes whose blocks are fetched before they are added to
+
 /// Adds the blocks of a batch's pair of nodes to where each lane has its own.
 /// @param transposed  above the diagonal
 void add_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, bool transposed, double* values) {
@@ -82,6 +86,12 @@ void add_wide_pair(const Mat3<Lanes>& K, const std::uint32_t* slot, const std::u
 
 }  // namespace
 
+/// Has the processor fetch the blocks of lanes from a place on.
+inline void ElementExecutor::prefetch_pair(std::size_t place, const double* values) const {
+  if (place + kBatchWidth > pair_slot_.size()) return;
+  for (int lane = 0; lane < kBatchWidth; ++lane) prefetch_to_add(values + pair_slot_[place + at(lane)], kVertexBlock);
+}
+
 /// K has room for the pairs of the largest element only where it must: a linear tetrahedron's stay in registers' reach.
 template <Law L, int N>
 [[gnu::flatten]] void ElementExecutor::assemble_patch(const BlockState& state, int patch, BlockMatrix& matrix) {
@@ -105,6 +115,7 @@ template <Law L, int N>
       const std::size_t first_pair = at(batch) * at(pairs) * kElementLanes + half * kBatchWidth;
       const std::uint32_t* slot = pair_slot_.data() + first_pair;
       for (int pair = 0; pair < pairs; ++pair) {
+        prefetch_pair(first_pair + at(pair + kPairsAhead) * kElementLanes, matrix.values());
         const std::uint8_t* stride =
             pair_stride_.empty() ? nullptr : pair_stride_.data() + first_pair + pair * kElementLanes;
         if (stride == nullptr ||

@@ -50,6 +50,7 @@ class ElementExecutor {
   void product_of_patch(const BlockState& state, int patch, std::span<const Vec3d> dx);
   template <Law L, int N>
   void assemble_patch(const BlockState& state, int patch, BlockMatrix& matrix);
+  void prefetch_pair(std::size_t place, const double* values) const;
   template <Law L, int N>
   void strain_of_patch(int patch, std::span<double> E) const;
   template <Law L, int N>

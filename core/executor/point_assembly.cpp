@@ -1,4 +1,6 @@
 #include "core/executor/point_executor.hpp"
+
+#include "core/base/errors.hpp"
 #include "core/executor/point_kernels.hpp"
 #include "core/linear/block_matrix.hpp"
 
@@ -104,12 +106,6 @@ void with_frame(FrameKind kind, const Act& act) {
   }
 }
 
-/// Has the processor fetch what will be added to: blocks of a large matrix are in no cache.
-inline void prefetch(const double* numbers, int count) {
-  constexpr int kLine = 8;
-  for (int k = 0; k < count; k += kLine) __builtin_prefetch(numbers + k, 1);
-}
-
 /// Adds the sums over lanes of so many batches.
 void add_lane_sums(const double* batches, int count, double* out) {
   constexpr int W = kBatchWidth;
@@ -145,8 +141,10 @@ struct PointExecutor::GroupOfFrames {
 void PointExecutor::find_pairs(const BlockMatrix& matrix) {
   const LaneFrames& lanes = frames_.lanes();
   const auto add = [&](int first, int second) {  // no later in a group
-    pairs_.push_back(matrix.fills_upper() ? matrix.find(first, second) : matrix.find(second, first));
+    pairs_.push_back(matrix.place(matrix.fills_upper() ? matrix.find(first, second) : matrix.find(second, first)));
   };
+  if (matrix.value_count() > BlockMatrix::kMostValues)
+    throw InputError("the matrix has more than 3.8e10 entries; use fewer points or frames");
   pattern_ = matrix.pattern();
   pairs_.clear();
   pair_begin_.assign(at(set_.slot_count()), 0);
@@ -180,10 +178,10 @@ template <PointKind Kind>
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
   const bool upper = matrix_out.fills_upper();
   const int columns = set_.dofs.size(nodes[at(b)]), end = entries == Entries::all ? n : b + 1;
-  const int* pair = pairs_.data() + pair_begin_[at(first_slot + b)];
+  const std::uint32_t* pair = pairs_.data() + pair_begin_[at(first_slot + b)];
   for (int a = b, k = 0; a < end; ++a)
     if (together(first_slot + a, first_slot + b))
-      prefetch(matrix_out.block(pair[k++]), set_.dofs.size(nodes[at(a)]) * columns);
+      prefetch_to_add(matrix_out.at_place(pair[k++]), set_.dofs.size(nodes[at(a)]) * columns);
   LaneMatrix dP[kBatches][kMostDofs], dY[kBatches][kBlend ? kMostDofs : 1];
   for (int batch = 0; batch < kBatches; ++batch) {
     const auto m = material<Kind>(set_, group, batch, state, targets_);
@@ -211,7 +209,7 @@ template <PointKind Kind>
                                     });
         }
     });
-    add_lane_sums(block.numbers, rows * columns, matrix_out.block(*pair++));
+    add_lane_sums(block.numbers, rows * columns, matrix_out.at_place(*pair++));
   }
 }
 
@@ -257,7 +255,8 @@ template <PointKind Kind, FrameKind Frame>
       frames[at(a)].set(Frame, lanes.shape(group) + a * lanes.shape_rows(group) * kGroupSize, lanes.carries(group),
                         batch, Mat3<Lanes>::identity() + matrix_of(D));
     }
-    const int* pair = pairs_.data() + pair_begin_[at(set_.slot_begin[at(group)])] + batch * kBatchWidth;
+    const std::uint32_t* pair = pairs_.data() + pair_begin_[at(set_.slot_begin[at(group)])] + batch * kBatchWidth;
+    const std::uint32_t* end = pair + n * (n + 1) / 2 * kGroupSize;
     for (int b = 0; b < n; ++b) {
       LaneMatrix dP[kDofs], dY[kBlend ? kDofs : 1];
       for (int k = 0; k < kDofs; ++k) {
@@ -268,13 +267,15 @@ template <PointKind Kind, FrameKind Frame>
       }
       for (int a = b; a < n; ++a, pair += kGroupSize) {
         if (entries == Entries::diagonal && a > b) continue;
+        for (int lane = 0; lane < kBatchWidth && pair + kGroupSize < end && entries == Entries::all; ++lane)
+          prefetch_to_add(matrix_out.at_place(pair[kGroupSize + lane]), kDofs * kDofs);
         LaneArray<kDofs * kDofs> block;
         for (int k = 0; k < kDofs; ++k) {
           put_column<kBlend, Frame>(frames[at(a)], dP[k], dY[kBlend ? k : 0], [&](int i, const Lanes& value) {
             block.set(upper ? k * kDofs + i : i * kDofs + k, value);
           });
         }
-        add_to_rows<kDofs * kDofs>(block, [&](int lane) { return matrix_out.block(pair[lane]); });
+        add_to_rows<kDofs * kDofs>(block, [&](int lane) { return matrix_out.at_place(pair[lane]); });
       }
     }
   }

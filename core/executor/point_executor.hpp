@@ -5,6 +5,7 @@
 #include "core/executor/block_executor.hpp"
 #include "core/executor/point_frames.hpp"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -106,7 +107,7 @@ class PointExecutor {
   std::vector<std::size_t> kept_begin_;  ///< (groups + 1) of what is kept of a state
   bool has_tethers_;
   std::uint64_t pattern_ = 0;            ///< of the matrix in which these are:
-  std::vector<int> pairs_;               ///< blocks of pairs of frames of each group, or of each lane of a group
+  std::vector<std::uint32_t> pairs_;     ///< places of blocks of pairs of frames of each group, or of each lane of one
   std::vector<std::size_t> pair_begin_;  ///< (slots); of lanes by the group's first slot
   std::vector<int> group_of_slot_;       ///< empty where groups are assembled by colours
   std::vector<double> group_elastic_, group_stabilization_, group_viscous_, group_rounding_, group_tether_;

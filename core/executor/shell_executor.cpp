@@ -284,6 +284,10 @@ void ShellExecutor::compute_product(const BlockState& state, const BlockDirectio
 
 [[gnu::flatten]] void ShellExecutor::assemble_batch(const BlockState& state, int batch, BlockMatrix& matrix) const {
   for (int half = 0; half < kBatches; ++half) {
+    const std::uint32_t* slot = pair_slot_.data() + at(batch * kPairs) * kElementLanes + half * kBatchWidth;
+    for (int pair = 0; pair < kPairs; ++pair)
+      for (int lane = 0; lane < kBatchWidth; ++lane)
+        prefetch_to_add(matrix.values() + slot[pair * kElementLanes + lane], kBlock);
     const BatchProducts products(block_, batch, half, state);
     const auto place = [upper = matrix.fills_upper()](int i, int k) {
       return upper ? kCornerDofs * k + i : kCornerDofs * i + k;
@@ -303,7 +307,6 @@ void ShellExecutor::compute_product(const BlockState& state, const BlockDirectio
         }
       }
     }
-    const std::uint32_t* slot = pair_slot_.data() + at(batch * kPairs) * kElementLanes + half * kBatchWidth;
     for (int pair = 0; pair < kPairs; ++pair)
       add_to_rows<kBlock>(K[pair], [&](int lane) { return matrix.values() + slot[pair * kElementLanes + lane]; });
   }

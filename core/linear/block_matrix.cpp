@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -15,6 +16,8 @@ namespace fascia {
 namespace {
 
 constexpr int kRowGrain = 64;
+static_assert(dof_count(FrameKind::vertex) % 3 == 0 && dof_count(FrameKind::rigid) % 3 == 0 &&
+              dof_count(FrameKind::affine) % 3 == 0);  // places of blocks count nines
 
 /// Elements around each node of a block.
 struct ElementsAround {
@@ -101,6 +104,8 @@ BlockMatrix::BlockMatrix(const PointSet& set, std::span<const SurfaceLoad> surfa
     size_chunks();
   else
     find_mirrors();
+  const std::size_t parts = uniform_ > 0 ? chunk_begin_.size() - 1 : at((rows() + kRowGrain - 1) / kRowGrain);
+  sums_.assign(parts, 0.0);
 }
 
 void BlockMatrix::find_mirrors() {
@@ -260,7 +265,7 @@ void add_product(const T* b, const double* x, double* y) {
 }  // namespace
 
 template <class T>
-void BlockMatrix::multiply_row(const T* values, int row, std::span<const double> x, std::span<double> y) const {
+double BlockMatrix::multiply_row(const T* values, int row, std::span<const double> x, std::span<double> y) const {
   double sum[kMostDofs] = {};
   const int n = dofs_.size(row);
   for (int k = row_begin(row); k < row_begin(row + 1); ++k) {
@@ -277,20 +282,34 @@ void BlockMatrix::multiply_row(const T* values, int row, std::span<const double>
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < m; ++j) sum[i] += static_cast<double>(b[m * i + j]) * xc[j];
   }
+  const double* own = x.data() + dofs_.begin(row);
   std::copy(sum, sum + n, y.data() + dofs_.begin(row));
+  return std::inner_product(sum, sum + n, own, 0.0);
 }
 
 template <class T>
-void BlockMatrix::multiply_by(const T* values, ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
-  if (uniform_ == 3) return multiply_upper<3>(values, pool, x, y);
-  if (uniform_ == 6) return multiply_upper<6>(values, pool, x, y);
+double BlockMatrix::multiply_by(const T* values, ThreadPool& pool, const Xpay& renew, std::span<const double> x,
+                                std::span<double> y) const {
+  if (uniform_ == 3) return multiply_upper<3>(values, pool, renew, x, y);
+  if (uniform_ == 6) return multiply_upper<6>(values, pool, renew, x, y);
+  if (renew.z != nullptr)
+    pool.for_ranges(rows(), kRowGrain,
+                    [&](int begin, int end) { renew(at(dofs_.begin(begin)), at(dofs_.begin(end))); });
   pool.for_ranges(rows(), kRowGrain, [&](int begin, int end) {
-    for (int row = begin; row < end; ++row) multiply_row(values, row, x, y);
+    double sum = 0;
+    for (int row = begin; row < end; ++row) sum += multiply_row(values, row, x, y);
+    sums_[at(begin / kRowGrain)] = sum;
   });
+  return std::accumulate(sums_.begin(), sums_.end(), 0.0);
 }
 
-void BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
-  multiply_by(values_.data(), pool, x, y);
+double BlockMatrix::multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  return multiply_by(values_.data(), pool, {}, x, y);
+}
+
+double BlockMatrix::multiply_next(ThreadPool& pool, std::span<const double> z, double s, std::span<double> x,
+                                  std::span<double> y) const {
+  return multiply_by(values_.data(), pool, {z.data(), s, x.data()}, x, y);
 }
 
 void BlockMatrix::round(ThreadPool& pool) {
@@ -298,8 +317,13 @@ void BlockMatrix::round(ThreadPool& pool) {
   copy_parallel(pool, std::span<const double>(values_), std::span(rounded_));
 }
 
-void BlockMatrix::multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
-  multiply_by(rounded_.data(), pool, x, y);
+double BlockMatrix::multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const {
+  return multiply_by(rounded_.data(), pool, {}, x, y);
+}
+
+double BlockMatrix::multiply_next_rounded(ThreadPool& pool, std::span<const double> z, double s, std::span<double> x,
+                                          std::span<double> y) const {
+  return multiply_by(rounded_.data(), pool, {z.data(), s, x.data()}, x, y);
 }
 
 }  // namespace fascia

@@ -6,6 +6,7 @@
 #include "core/structure/surface_load.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,14 @@ class BlockMatrix {
   int row_begin(int row) const { return row_begin_[static_cast<std::size_t>(row)]; }
   double* block(int index) { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
   const double* block(int index) const { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
+  /// Where the numbers of a stored block begin, for loops that meet blocks in an order of their own: in 32 bits, for
+  /// matrices of up to kMostValues, and without a list to be looked up.
+  static constexpr std::size_t kPlace = 9;  ///< every block has some times so many numbers
+  static constexpr std::size_t kMostValues = kPlace * std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t place(int index) const {
+    return static_cast<std::uint32_t>(value_begin_[static_cast<std::size_t>(index)] / kPlace);
+  }
+  double* at_place(std::uint32_t place) { return values_.data() + kPlace * place; }
   /// Equal for matrices with blocks at equal places; who keeps places in one asks for it.
   std::uint64_t pattern() const { return pattern_; }
   int find(int row, int column) const;  ///< index of a block that is in the pattern
@@ -38,13 +47,17 @@ class BlockMatrix {
   bool fills_upper() const { return uniform_ > 0; }
   /// Copies the blocks below the diagonal, transposed, above it, where those are filled.
   void mirror_lower(ThreadPool& pool);
-  /// y = K x
-  void multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  /// y = K x; returns x · y. No part of y is one of x. One product at a time: what they sum up waits in the matrix.
+  double multiply(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  /// Makes x = z + s x first, then does so.
+  double multiply_next(ThreadPool& pool, std::span<const double> z, double s, std::span<double> x,
+                       std::span<double> y) const;
   /// Keeps the entries rounded to 32 bits beside those of 64, as multiply_rounded() reads them.
   void round(ThreadPool& pool);
-  /// y = K x with the entries that the last round() found: half as much to read. They are multiplied and added in 64
-  /// bits.
-  void multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  /// Both with the entries that the last round() found: half as much to read. They are multiplied and added in 64 bits.
+  double multiply_rounded(ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  double multiply_next_rounded(ThreadPool& pool, std::span<const double> z, double s, std::span<double> x,
+                               std::span<double> y) const;
 
   std::size_t value_count() const { return value_begin_.back(); }
   double* values() { return values_.data(); }
@@ -53,15 +66,28 @@ class BlockMatrix {
  private:
   void find_pattern(const PointSet& set, std::span<const SurfaceLoad> surfaces);
   void add_blocks_of_hosts(const PointSet& set);
+  /// Makes x = z + s x of some of the numbers of x; does nothing without z.
+  struct Xpay {
+    const double* z = nullptr;
+    double s = 0;
+    double* x = nullptr;
+    void operator()(std::size_t begin, std::size_t end) const {
+      for (std::size_t i = z == nullptr ? end : begin; i < end; ++i) x[i] = z[i] + s * x[i];
+    }
+  };
   /// Products take entries of double or of float, that lie as values_ do.
   template <class T>
-  void multiply_by(const T* values, ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  double multiply_by(const T* values, ThreadPool& pool, const Xpay& renew, std::span<const double> x,
+                     std::span<double> y) const;
   template <class T>
-  void multiply_row(const T* values, int row, std::span<const double> x, std::span<double> y) const;
+  double multiply_row(const T* values, int row, std::span<const double> x, std::span<double> y) const;
   template <int N, class T>
-  void multiply_upper(const T* values, ThreadPool& pool, std::span<const double> x, std::span<double> y) const;
+  double multiply_upper(const T* values, ThreadPool& pool, const Xpay& renew, std::span<const double> x,
+                        std::span<double> y) const;
   template <int N, class T>
   void multiply_chunk(const T* values, int chunk) const;
+  template <int N>
+  double gather_chunk(int chunk, std::span<const double> x, std::span<double> y) const;
   void size_chunks();
   void find_mirrors();
 
@@ -80,7 +106,13 @@ class BlockMatrix {
   std::vector<std::size_t> overhang_begin_;  ///< (chunks + 1): what a chunk has for rows from its end on
   std::vector<int> overhang_row_;            ///< these rows, ascending in each chunk
   std::vector<int> overhang_slot_;           ///< of each block in such a column: its place in the chunk's part
+  struct Part {
+    int begin, end;  ///< of what one chunk has for rows of another
+  };
+  std::vector<Part> part_;       ///< for the rows of each chunk, by those before it
+  std::vector<int> part_begin_;  ///< (chunks + 1)
   mutable AlignedVector<double> wide_x_, wide_y_, overhang_;
+  mutable std::vector<double> sums_;  ///< x · y of each chunk, or of each range of rows
 };
 
 }  // namespace fascia

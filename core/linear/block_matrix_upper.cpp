@@ -3,6 +3,7 @@
 #include "core/linear/four.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 /// Products with matrices of vertices only or of rigid frames only, of which the upper triangle is filled.
 namespace fascia {
@@ -11,8 +12,8 @@ namespace {
 
 inline void add(const Four& value, double* to) { store_four(load_four(to) + value, to); }
 
-/// Numbers of a node in the vectors here, whole registers: x₀ x₁ x₂ 0, or x₀ … x₅ x₀ x₁. In a sum the last ones are not
-/// read.
+/// Numbers of a node in the vectors here, whole registers: x₀ x₁ x₂ 0, or x₀ … x₅ x₀ x₁. In a sum the last ones mean
+/// nothing.
 template <int N>
 constexpr int kWide = N == 3 ? 4 : 8;
 
@@ -30,7 +31,7 @@ template <int N>
 struct UpperRow;
 
 /// Rows of a block are read a register at a time; what exceeds the row, the beginning of the next, meets the zero of x,
-/// or lands in the number of y that nothing reads.
+/// or lands in the number of y that means nothing.
 template <>
 struct UpperRow<3> {
   Four sum[2][3] = {};  ///< of even and odd blocks: one addition need not wait for another
@@ -99,6 +100,15 @@ struct UpperRow<6> {
 
 namespace {
 
+/// Has the processor fetch what a product reads some lines later: of a matrix that no cache holds it fetches too few by
+/// itself.
+template <class T, int Count>
+inline void fetch_ahead(const T* b) {
+  constexpr std::size_t kAhead = 2048, kLine = 64;
+  const auto* line = reinterpret_cast<const char*>(b) + kAhead;
+  for (std::size_t k = 0; k < Count * sizeof(T); k += kLine) __builtin_prefetch(line + k);
+}
+
 /// Values of a chunk [bytes]: enough that a thread is worth waking for it, and that its overhang is small beside it.
 constexpr std::size_t kChunkBytes = 1 << 19;
 constexpr int kMostChunks = 128;
@@ -133,6 +143,19 @@ void BlockMatrix::size_chunks() {
     overhang_row_.insert(overhang_row_.end(), far.begin(), far.end());
     overhang_begin_.push_back(overhang_row_.size());
   }
+  part_begin_.push_back(0);
+  for (int c = 0; c < chunks; ++c) {
+    for (int earlier = 0; earlier < c; ++earlier) {
+      const auto begin = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier)]),
+                 end = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier + 1)]);
+      const auto first = std::lower_bound(begin, end, chunk_begin_[at(c)]),
+                 last = std::lower_bound(first, end, chunk_begin_[at(c + 1)]);
+      if (first != last)
+        part_.push_back(
+            {static_cast<int>(first - overhang_row_.begin()), static_cast<int>(last - overhang_row_.begin())});
+    }
+    part_begin_.push_back(static_cast<int>(part_.size()));
+  }
   wide_x_.resize(at(wide) * at(rows()));
   wide_y_.resize(at(wide) * at(rows()));
   overhang_.resize(at(wide) * overhang_row_.size());
@@ -157,47 +180,61 @@ void BlockMatrix::multiply_chunk(const T* values, int chunk) const {
     b += B;
     int k = first + 1;
     for (; k + 1 < last && column[k + 1] < end; k += 2, b += 2 * B) {
+      fetch_ahead<T, 2 * B>(b);
       of.template take<1>(b, x + W * column[k], y + W * column[k]);
       of.template take<0>(b + B, x + W * column[k + 1], y + W * column[k + 1]);
     }
-    for (; k < last; ++k, b += B)
+    for (; k < last; ++k, b += B) {
+      fetch_ahead<T, B>(b);
       of.template take<1>(b, x + W * column[k],
                           column[k] < end ? y + W * column[k] : beyond + W * overhang_slot_[at(k)]);
+    }
     of.add_to(y + W * row);
   }
 }
 
+/// The sums of a chunk's rows, with what those before it have for them. @return  x · y of these
+template <int N>
+double BlockMatrix::gather_chunk(int chunk, std::span<const double> x, std::span<double> y) const {
+  constexpr int W = kWide<N>;
+  for (int p = part_begin_[at(chunk)]; p < part_begin_[at(chunk + 1)]; ++p)
+    for (int k = part_[at(p)].begin; k < part_[at(p)].end; ++k) {
+      const double* sums = overhang_.data() + W * k;
+      double* to = wide_y_.data() + W * overhang_row_[at(k)];
+      for (int i = 0; i < W; i += 4) add(load_four(sums + i), to + i);
+    }
+  double products[N] = {};
+  for (int row = chunk_begin_[at(chunk)]; row < chunk_begin_[at(chunk + 1)]; ++row)
+    for (int i = 0; i < N; ++i) {
+      const double sum = wide_y_[at(W * row + i)];
+      y[at(N * row + i)] = sum;
+      products[i] += x[at(N * row + i)] * sum;
+    }
+  return std::accumulate(products, products + N, 0.0);
+}
+
 template <int N, class T>
-void BlockMatrix::multiply_upper(const T* values, ThreadPool& pool, std::span<const double> x,
-                                 std::span<double> y) const {
+double BlockMatrix::multiply_upper(const T* values, ThreadPool& pool, const Xpay& renew, std::span<const double> x,
+                                   std::span<double> y) const {
   constexpr int W = kWide<N>;
   const int chunks = static_cast<int>(chunk_begin_.size()) - 1;
   pool.for_chunks(chunks, [&](int chunk) {
+    renew(at(N * chunk_begin_[at(chunk)]), at(N * chunk_begin_[at(chunk + 1)]));
     for (int row = chunk_begin_[at(chunk)]; row < chunk_begin_[at(chunk + 1)]; ++row)
       widen<N>(x.data() + N * row, wide_x_.data() + W * row);
   });
   pool.for_chunks(chunks, [&](int chunk) { multiply_chunk<N>(values, chunk); });
-  pool.for_chunks(chunks, [&](int chunk) {
-    const int begin = chunk_begin_[at(chunk)], end = chunk_begin_[at(chunk + 1)];
-    for (int row = begin; row < end; ++row) std::copy_n(wide_y_.data() + W * row, N, y.data() + N * row);
-    for (int earlier = 0; earlier < chunk; ++earlier) {
-      const auto stop = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier + 1)]);
-      auto row = overhang_row_.begin() + static_cast<std::ptrdiff_t>(overhang_begin_[at(earlier)]);
-      row = std::lower_bound(row, stop, begin);
-      const double* sums = overhang_.data() + W * (row - overhang_row_.begin());
-      for (; row != stop && *row < end; ++row, sums += W)
-        for (int i = 0; i < N; ++i) y[at(N * *row + i)] += sums[i];
-    }
-  });
+  pool.for_chunks(chunks, [&](int chunk) { sums_[at(chunk)] = gather_chunk<N>(chunk, x, y); });
+  return std::accumulate(sums_.begin(), sums_.end(), 0.0);
 }
 
-template void BlockMatrix::multiply_upper<3>(const double*, ThreadPool&, std::span<const double>,
-                                             std::span<double>) const;
-template void BlockMatrix::multiply_upper<6>(const double*, ThreadPool&, std::span<const double>,
-                                             std::span<double>) const;
-template void BlockMatrix::multiply_upper<3>(const float*, ThreadPool&, std::span<const double>,
-                                             std::span<double>) const;
-template void BlockMatrix::multiply_upper<6>(const float*, ThreadPool&, std::span<const double>,
-                                             std::span<double>) const;
+template double BlockMatrix::multiply_upper<3>(const double*, ThreadPool&, const Xpay&, std::span<const double>,
+                                               std::span<double>) const;
+template double BlockMatrix::multiply_upper<6>(const double*, ThreadPool&, const Xpay&, std::span<const double>,
+                                               std::span<double>) const;
+template double BlockMatrix::multiply_upper<3>(const float*, ThreadPool&, const Xpay&, std::span<const double>,
+                                               std::span<double>) const;
+template double BlockMatrix::multiply_upper<6>(const float*, ThreadPool&, const Xpay&, std::span<const double>,
+                                               std::span<double>) const;
 
 }  // namespace fascia

@@ -30,41 +30,73 @@ struct CgReport {
   double relative_norm = 0;      ///< |r| / |b|
 };
 
+/// Holds the residual, M⁻¹ of it, the direction and its product: they keep their memory from solve to solve.
+template <class Vector>
+struct CgVectors {
+  Vector r, z, p, Ap;
+};
+
+/// Does to vectors what conjugate gradients ask for, each in a loop of its own. An operator that can do several things
+/// in one loop over its rows has such functions itself.
+template <class Space, class Apply, class Precondition>
+struct SeparateLoops {
+  const Space& space;
+  const Apply& apply;
+  const Precondition& precondition;
+
+  /// p = z + s p, Ap = A p; returns p · Ap
+  template <class Vector>
+  double direct(const Vector& z, double s, Vector& p, Vector& Ap) const {
+    space.xpay(z, s, p);
+    apply(p, Ap);
+    return space.dot(p, Ap);
+  }
+  /// x += s p, r −= s Ap, z = M⁻¹ r; returns r · z
+  template <class Vector>
+  double advance(double s, const Vector& p, const Vector& Ap, Vector& x, Vector& r, Vector& z) const {
+    space.advance(s, p, Ap, x, r);
+    return precondition(r, z);
+  }
+  /// z = M⁻¹ r; returns r · z
+  template <class Vector>
+  double begin(const Vector& r, Vector& z) const {
+    return precondition(r, z);
+  }
+};
+
 /// Preconditioned conjugate gradients for A x = b from x = 0.
 ///
 /// At a direction of negative curvature it stops with the x reached, which is a descent direction (truncated Newton,
 /// Steihaug 1983); at the first iteration with M⁻¹ b. Reflected, x goes along that direction too.
 ///
-/// @param apply         apply(p, Ap)
-/// @param precondition  precondition(r, z) returns r · z
-/// @param space         dot, advance, xpay and zeros, as in CpuVectors
-template <class Space, class Apply, class Precondition>
-CgReport conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
-                             const typename Space::Vector& b, typename Space::Vector& x, const CgOptions& options,
-                             NegativeCurvature negative = NegativeCurvature::stops) {
-  using Vector = typename Space::Vector;
+/// @param space  dot, copy, clear and advance, as in CpuVectors
+/// @param loops  begin, direct and advance, as in SeparateLoops
+template <class Space, class Loops>
+CgReport conjugate_gradients(const Space& space, const Loops& loops, const typename Space::Vector& b,
+                             typename Space::Vector& x, CgVectors<typename Space::Vector>& vectors,
+                             const CgOptions& options, NegativeCurvature negative = NegativeCurvature::stops) {
   // Reflected, a softer direction than this part of the preconditioner counts as one of negative curvature, so that a
   // direction without stiffness does not take all of the step.
   constexpr double kLeast = 1e-4;
   const bool reflects = negative == NegativeCurvature::reflected;
   const double goal = options.goal();
   CgReport report;
-  Vector r = b, z = space.zeros(b.size()), p = z, Ap = z;
+  typename Space::Vector &r = vectors.r, &z = vectors.z, &p = vectors.p, &Ap = vectors.Ap;
+  for (auto* v : {&r, &z, &Ap}) v->resize(b.size());
+  for (auto* v : {&p, &x}) space.clear(b.size(), *v);
+  space.copy(b, r);
   const auto stop = [&](CgStatus status, double residual) {
     report.status = status;
     report.relative_residual = residual;
     report.relative_norm = std::sqrt(space.dot(r, r) / space.dot(b, b));
     return report;
   };
-  x = z;
-  double rz = precondition(r, z);
+  double rz = loops.begin(r, z), s = 0;
   const double rz_start = rz;
   if (!std::isfinite(rz)) return {CgStatus::not_finite, 0, 0};
   if (rz <= 0) return report;
-  p = z;
   for (; report.iterations < options.max_iterations; ++report.iterations) {
-    apply(p, Ap);
-    const double curvature = space.dot(p, Ap);
+    const double curvature = loops.direct(z, s, p, Ap);
     if (!std::isfinite(curvature)) return stop(CgStatus::not_finite, std::sqrt(rz / rz_start));
     if (curvature <= (reflects ? kLeast * rz : 0.0)) {
       if (reflects)
@@ -74,8 +106,7 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
       return stop(CgStatus::negative_curvature, std::sqrt(rz / rz_start));
     }
     const double alpha = rz / curvature;
-    space.advance(alpha, p, Ap, x, r);
-    const double rz_next = precondition(r, z);
+    const double rz_next = loops.advance(alpha, p, Ap, x, r, z);
     if (rz_next <= goal * goal * rz_start) {
       ++report.iterations;
       return stop(CgStatus::converged, std::sqrt(std::max(rz_next, 0.0) / rz_start));
@@ -84,11 +115,25 @@ CgReport conjugate_gradients(const Space& space, const Apply& apply, const Preco
       ++report.iterations;
       return stop(CgStatus::limit, std::sqrt(rz_next / rz_start));
     }
-    space.xpay(z, rz_next / rz, p);
+    s = rz_next / rz;
     rz = rz_next;
   }
   const double left = std::sqrt(rz / rz_start);
   return stop(left <= options.tolerance ? CgStatus::converged : CgStatus::limit, left);
+}
+
+/// Solves likewise, where an operator and a preconditioner know no vectors but their own: by SeparateLoops.
+///
+/// @param apply         apply(p, Ap)
+/// @param precondition  precondition(r, z) returns r · z
+/// @param space         xpay besides, as in CpuVectors
+template <class Space, class Apply, class Precondition>
+CgReport conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
+                             const typename Space::Vector& b, typename Space::Vector& x, const CgOptions& options,
+                             NegativeCurvature negative = NegativeCurvature::stops) {
+  CgVectors<typename Space::Vector> vectors;
+  return conjugate_gradients(space, SeparateLoops<Space, Apply, Precondition>{space, apply, precondition}, b, x,
+                             vectors, options, negative);
 }
 
 }  // namespace fascia

@@ -1,5 +1,7 @@
 #include "core/linear/vectors.hpp"
 
+#include "core/base/parallel_copy.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -49,6 +51,11 @@ double CpuVectors::dot(std::span<const double> a, std::span<const double> b) con
   });
 }
 
+void CpuVectors::clear(std::size_t n, Vector& to) const {
+  to.resize(n);
+  clear_parallel(*pool_, std::span(to));
+}
+
 double CpuVectors::copy(std::span<const double> from, std::span<double> to) const {
   return sum_of_chunks(from.size(), [&](std::size_t begin, std::size_t end) {
     const std::span<const double> part = from.subspan(begin, end - begin);
@@ -64,6 +71,19 @@ void CpuVectors::advance(double s, std::span<const double> p, std::span<const do
       x[i] += s * p[i];
       r[i] -= s * q[i];
     }
+  });
+}
+
+double CpuVectors::advance_and_copy(double s, std::span<const double> p, std::span<const double> q, std::span<double> x,
+                                    std::span<double> r, std::span<double> z) const {
+  return sum_of_chunks(x.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      x[i] += s * p[i];
+      r[i] -= s * q[i];
+      z[i] = r[i];
+    }
+    const std::span<const double> part = std::span<const double>(r).subspan(begin, end - begin);
+    return dot_of_chunk(part, part);
   });
 }
 

@@ -104,6 +104,12 @@ inline void store_rows(const LaneArray<N, W>& in, const Row& row) {
                        [&](int lane, int begin, const auto& numbers) { store_anywhere(row(lane) + begin, numbers); });
 }
 
+/// Has the processor fetch what will be added to: blocks of a large matrix are in no cache.
+inline void prefetch_to_add(const double* numbers, int count) {
+  constexpr int kLine = 8;
+  for (int k = 0; k < count; k += kLine) __builtin_prefetch(numbers + k, 1);
+}
+
 /// Adds N batches to the rows of their lanes, which may be the same ones, a lane after the other.
 template <int N, int W, class Row>
 inline void add_to_rows(const LaneArray<N, W>& in, const Row& row) {

@@ -3,6 +3,7 @@
 #include "core/base/index.hpp"
 #include "core/node/node_force.hpp"
 #include "core/solver/part_forces.hpp"
+#include "core/solver/state_copies.hpp"
 #include "core/step/boundary_loops.hpp"
 
 #include <algorithm>
@@ -21,6 +22,15 @@ constexpr double kOfTolerance = 0.003;
 constexpr double kLeastRelative = 1e-6;
 /// A smaller tolerance is less than what rounding of products may leave.
 constexpr double kLeastTolerance = 1e-12;
+
+/// Copies what the system's increment has, by all threads.
+template <class Increment>
+void copy_increment(ThreadPool& pool, const Increment& from, Increment& to) {
+  const auto& [du, Ds, turned] = from;  // no member is forgotten
+  copy_into(pool, du, to.du);
+  copy_matrices(pool, Ds, to.Ds);
+  to.turned = turned;
+}
 
 }  // namespace
 
@@ -349,14 +359,14 @@ void MechanicalSystem::apply(double step) {
 }
 
 void MechanicalSystem::save() {
-  saved_ = increment_;
+  copy_increment(executor_.pool(), increment_, saved_);
   saved_work_ = load_work_;
   surfaces_.save();
 }
 
 void MechanicalSystem::restore() {
   has_taken_ = false;
-  increment_ = saved_;
+  copy_increment(executor_.pool(), saved_, increment_);
   load_work_ = saved_work_;
   applied_ = 0;
   surfaces_.restore();

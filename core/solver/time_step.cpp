@@ -1,5 +1,5 @@
-#include "core/base/parallel_copy.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/solver/state_copies.hpp"
 #include "core/step/boundary_loops.hpp"
 
 /// The part of MechanicalSystem in which time schemes differ.
@@ -9,38 +9,6 @@ namespace {
 
 const PoseMotion* data_or_null(const std::vector<PoseMotion>& motions) {
   return motions.empty() ? nullptr : motions.data();
-}
-
-/// Copies matrices by all threads into those that keep their memory.
-void copy_matrices(ThreadPool& pool, const FrameMatrices& from, FrameMatrices& to) {
-  if (to.size() != from.size() || (to.data() == nullptr) != (from.data() == nullptr)) {
-    to = from;
-    return;
-  }
-  copy_parallel(pool, from.values(), std::span(to.begin(), to.end()));
-}
-
-/// Makes as many zeros as there are others.
-void clear_as(ThreadPool& pool, const FrameMatrices& other, FrameMatrices& to) {
-  if (to.size() != other.size() || (to.data() == nullptr) != (other.data() == nullptr))
-    to = FrameMatrices(other.size(), other.data() != nullptr);
-  clear_parallel(pool, std::span(to.begin(), to.end()));
-}
-
-template <class Item>
-void clear_as(ThreadPool& pool, const std::vector<Vec3d>& other, std::vector<Item>& to) {
-  to.resize(other.size());
-  clear_parallel(pool, std::span(to));
-}
-
-/// Copies all of a state but its velocities and what constraints turned.
-void copy_place(ThreadPool& pool, const State& from, State& to) {
-  const auto& [u, D, v, Q_dot, turned, time, memory, factors] = from;  // no member is forgotten
-  copy_into(pool, u, to.u);
-  copy_matrices(pool, D, to.D);
-  copy_into(pool, memory, to.memory);
-  to.time = time;
-  to.factors = factors;
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "core/tangent/cg_solver.hpp"
 
 #include "core/base/clock.hpp"
-#include "core/linear/cg.hpp"
+#include "core/base/parallel_copy.hpp"
 
 #include <algorithm>
 
@@ -18,12 +18,29 @@ void CgSolver::choose_one() {
   if (!one_) one_ = std::make_unique<DiagonalBlocks>(K_, true);
 }
 
+namespace {
+
+/// Loops of conjugate gradients that each do what they can to a vector while they have it.
+struct TangentLoops {
+  TangentOperator& K;
+  Preconditioner& M;
+  bool rounded;
+  using Vector = CpuVectors::Vector;
+
+  double begin(const Vector& r, Vector& z) const { return M.apply(r, z); }
+  double direct(const Vector& z, double s, Vector& p, Vector& Ap) const {
+    return K.apply_free_next(z, s, p, Ap, rounded);
+  }
+  double advance(double s, const Vector& p, const Vector& Ap, Vector& x, Vector& r, Vector& z) const {
+    return M.advance(K.vectors(), s, p, Ap, x, r, z);
+  }
+};
+
+}  // namespace
+
 CgReport CgSolver::iterate(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options, bool rounded) {
   M.begin();
-  return conjugate_gradients(
-      K_.vectors(),
-      [this, rounded](const Vector& p, Vector& Ap) { rounded ? K_.apply_free_rounded(p, Ap) : K_.apply_free(p, Ap); },
-      [&M](const Vector& r, Vector& z) { return M.apply(r, z); }, b, x, options);
+  return conjugate_gradients(K_.vectors(), TangentLoops{K_, M, rounded}, b, x, work_, options);
 }
 
 CgReport CgSolver::solve_with(Preconditioner& M, const Vector& b, Vector& x, const CgOptions& options) {
@@ -128,8 +145,9 @@ LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, con
     options.max_iterations = std::clamp(left_, 1, options.max_iterations);
     options.timed = true;
   }
-  Vector found;
-  LinearReport report = report_of(solve_as_asked(Vector(b.begin(), b.end()), found, options), found, x);
+  found_.clear();
+  copy_into(K_.pool(), b, b_);
+  LinearReport report = report_of(solve_as_asked(b_, found_, options), x);
   left_ -= report.iterations;
   report.seconds = seconds_since(start);
   return report;
@@ -137,18 +155,19 @@ LinearReport CgSolver::solve(std::span<const double> b, std::span<double> x, con
 
 LinearReport CgSolver::solve_by(Preconditioner& M, std::span<const double> b, std::span<double> x,
                                 const CgOptions& asked) {
-  Vector found;
-  return report_of(iterate(M, Vector(b.begin(), b.end()), found, asked, false), found, x);
+  found_.clear();
+  copy_into(K_.pool(), b, b_);
+  return report_of(iterate(M, b_, found_, asked, false), x);
 }
 
-LinearReport CgSolver::report_of(const CgReport& cg, const Vector& found, std::span<double> x) const {
-  std::copy(found.begin(), found.end(), x.begin());
+LinearReport CgSolver::report_of(const CgReport& cg, std::span<double> x) const {
+  copy_parallel(K_.pool(), std::span(found_), x);
   LinearReport report;
   report.iterations = cg.iterations;
   report.negative = cg.status == CgStatus::negative_curvature ? 1 : 0;
   if (report.negative > 0) report.trouble = "CG met negative curvature";
   report.usable = cg.status != CgStatus::not_finite;
-  if (!report.usable) report.trouble = found.empty() ? one_->trouble() : "CG met a number that is not finite";
+  if (!report.usable) report.trouble = found_.empty() ? one_->trouble() : "CG met a number that is not finite";
   report.unsolved = cg.status == CgStatus::limit;
   report.residual = cg.relative_norm;
   return report;

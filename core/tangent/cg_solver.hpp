@@ -2,6 +2,7 @@
 
 #include "core/levels/blocks_or_levels.hpp"
 #include "core/levels/kept_levels.hpp"
+#include "core/linear/cg.hpp"
 #include "core/tangent/linear_settings.hpp"
 #include "core/tangent/linear_solver.hpp"
 #include "core/tangent/preconditioners.hpp"
@@ -86,11 +87,13 @@ class CgSolver final : public LinearSolver {
   CgReport solve_by_levels(const Vector& b, Vector& x, const CgOptions& options);
   CgReport solve_by_either(const Vector& b, Vector& x, const CgOptions& options);
 
-  LinearReport report_of(const CgReport& cg, const Vector& found, std::span<double> x) const;
+  LinearReport report_of(const CgReport& cg, std::span<double> x) const;
   void choose_one();
   bool factor_takes_less(double iterations);
 
   TangentOperator& K_;
+  CgVectors<Vector> work_;
+  Vector b_, found_;  ///< the right-hand side, and what a solve found; empty: nothing
   LinearSettings settings_;
   FactorSolver& factor_;
   bool limited_ = false, exact_ = false, hands_over_ = false;

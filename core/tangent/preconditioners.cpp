@@ -48,15 +48,24 @@ std::unique_ptr<Preconditioner> preconditioner_of(PreconditionerKind kind, Tange
 
 double NoPreconditioner::apply(std::span<const double> r, std::span<double> z) { return K_.vectors().copy(r, z); }
 
+double NoPreconditioner::advance(const CpuVectors& vectors, double s, std::span<const double> p,
+                                 std::span<const double> q, std::span<double> x, std::span<double> r,
+                                 std::span<double> z) {
+  return vectors.advance_and_copy(s, p, q, x, r, z);
+}
+
 bool DiagonalBlocks::prepare() {
   K_.invert_diagonal(K_.matrix(), whole_, inverse_);
   chunk_sums_.resize(at((K_.model().node_count() + kNodeChunk - 1) / kNodeChunk));
   return true;
 }
 
-double DiagonalBlocks::apply(std::span<const double> r, std::span<double> z) {
+/// z = M⁻¹ r; returns r · z. @param before  before(first, last) comes first, of the degrees of freedom of some nodes
+template <class Before>
+double DiagonalBlocks::apply_after(const Before& before, std::span<const double> r, std::span<double> z) {
   const DofLayout& dofs = K_.model().points.dofs;
   K_.pool().for_ranges(dofs.node_count(), kNodeChunk, [&](int begin, int end) {
+    before(at(dofs.begin(begin)), at(dofs.begin(end)));
     double sum = 0;
     for (int node = begin; node < end; ++node) {
       const double* inverse = inverse_.data() + dofs.block_begin(node);
@@ -75,6 +84,22 @@ double DiagonalBlocks::apply(std::span<const double> r, std::span<double> z) {
     chunk_sums_[at(begin / kNodeChunk)] = sum;
   });
   return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
+}
+
+double DiagonalBlocks::apply(std::span<const double> r, std::span<double> z) {
+  return apply_after([](std::size_t, std::size_t) {}, r, z);
+}
+
+double DiagonalBlocks::advance(const CpuVectors& /*vectors*/, double s, std::span<const double> p,
+                               std::span<const double> q, std::span<double> x, std::span<double> r,
+                               std::span<double> z) {
+  const auto move = [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      x[i] += s * p[i];
+      r[i] -= s * q[i];
+    }
+  };
+  return apply_after(move, r, z);
 }
 
 void OldFactor::renewed() {

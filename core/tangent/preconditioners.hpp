@@ -26,6 +26,12 @@ class Preconditioner {
   /// z = M⁻¹ r; returns r · z. Where it turns out to be indefinite, with which conjugate gradients mean nothing, it
   /// returns what is not a number.
   virtual double apply(std::span<const double> r, std::span<double> z) = 0;
+  /// Makes x += s p and r −= s q first, then does so.
+  virtual double advance(const CpuVectors& vectors, double s, std::span<const double> p, std::span<const double> q,
+                         std::span<double> x, std::span<double> r, std::span<double> z) {
+    vectors.advance(s, p, q, x, r);
+    return apply(r, z);
+  }
   /// A solve begins.
   virtual void begin() {}
   /// A solve took so many iterations. @return  false where it must be made again for the next one
@@ -61,6 +67,8 @@ class NoPreconditioner final : public Preconditioner {
   explicit NoPreconditioner(const TangentOperator& K) : K_(K) {}
   bool prepare() override { return true; }
   double apply(std::span<const double> r, std::span<double> z) override;
+  double advance(const CpuVectors& vectors, double s, std::span<const double> p, std::span<const double> q,
+                 std::span<double> x, std::span<double> r, std::span<double> z) override;
 
  private:
   const TangentOperator& K_;
@@ -73,8 +81,13 @@ class DiagonalBlocks final : public Preconditioner {
   DiagonalBlocks(TangentOperator& K, bool whole) : K_(K), whole_(whole) {}
   bool prepare() override;
   double apply(std::span<const double> r, std::span<double> z) override;
+  double advance(const CpuVectors& vectors, double s, std::span<const double> p, std::span<const double> q,
+                 std::span<double> x, std::span<double> r, std::span<double> z) override;
 
  private:
+  template <class Before>
+  double apply_after(const Before& before, std::span<const double> r, std::span<double> z);
+
   TangentOperator& K_;
   bool whole_;
   std::vector<double> inverse_, chunk_sums_;

@@ -68,25 +68,38 @@ const BlockMatrix& TangentOperator::material_part(Entries entries) {
   return *material_;
 }
 
-/// y = K x, where multiply(x, y) does so in the axes of the world.
+/// y = K x, where multiply(x, y) does so in the axes of the world and returns x · y. Where constraints have axes of
+/// their own, x · y is summed in these: reactions have no part in it there, as large as they may be, but rounding in
+/// others.
 template <class Multiply>
-void TangentOperator::apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y) {
+double TangentOperator::apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y) {
   if (!filter_.turns()) return multiply(x, y);
   copy_parallel(pool(), x, std::span(work_));
   filter_.to_global(work_);
-  multiply(work_, y);
+  multiply(std::span<const double>(work_), y);
   filter_.to_local(y);
+  return vectors_.dot(x, y);
 }
 
-void TangentOperator::apply(std::span<const double> x, std::span<double> y) {
-  if (!assembled_ && ++by_blocks_ <= kWorthAssembling) return apply_by_blocks(x, y, false);
-  matrix();
-  apply_in_world([&](auto from, auto to) { matrix_->multiply(pool(), from, to); }, x, y);
+/// Adds the terms beside a matrix to y. @return  x · y, which was `product` without
+double TangentOperator::add_beside(double product, std::span<const double> x, std::span<double> y) const {
+  if (beside_.empty()) return product;
   beside_.add_product(x, y);
+  return vectors_.dot(x, y);
+}
+
+double TangentOperator::apply(std::span<const double> x, std::span<double> y) {
+  if (!assembled_ && ++by_blocks_ <= kWorthAssembling) {
+    apply_by_blocks(x, y, false);
+    return vectors_.dot(x, y);
+  }
+  matrix();
+  return add_beside(apply_in_world([&](auto from, auto to) { return matrix_->multiply(pool(), from, to); }, x, y), x,
+                    y);
 }
 
 /// The matrix as it is, with its rounded entries beside the others.
-const BlockMatrix& TangentOperator::rounded(bool material) {
+const BlockMatrix& TangentOperator::rounded_matrix(bool material) {
   if (!material) matrix();
   BlockMatrix& K = material ? *material_ : *matrix_;
   bool& made = material ? material_rounded_ : rounded_;
@@ -95,16 +108,31 @@ const BlockMatrix& TangentOperator::rounded(bool material) {
   return K;
 }
 
-void TangentOperator::apply_free_rounded(std::span<const double> x, std::span<double> y) {
-  const BlockMatrix& K = rounded(false);
-  apply_in_world([&](auto from, auto to) { K.multiply_rounded(pool(), from, to); }, x, y);
-  beside_.add_product(x, y);
+double TangentOperator::apply_free_next(std::span<const double> z, double s, std::span<double> x, std::span<double> y,
+                                        bool rounded) {
+  if (!rounded && !assembled_) {
+    vectors_.xpay(z, s, x);
+    return apply_free(x, y);
+  }
+  const BlockMatrix& K = rounded ? rounded_matrix(false) : *matrix_;
+  const auto multiply = [&](auto from, auto to) {
+    return rounded ? K.multiply_rounded(pool(), from, to) : K.multiply(pool(), from, to);
+  };
+  double product = 0;
+  if (filter_.turns()) {
+    vectors_.xpay(z, s, x);
+    product = apply_in_world(multiply, x, y);
+  } else {
+    product = rounded ? K.multiply_next_rounded(pool(), z, s, x, y) : K.multiply_next(pool(), z, s, x, y);
+  }
+  product = add_beside(product, x, y);
   filter_.clear_fixed(y);
+  return product;
 }
 
 void TangentOperator::apply_free_rounded(bool material, std::span<const double> x, std::span<double> y) {
-  const BlockMatrix& K = rounded(material);
-  apply_in_world([&](auto from, auto to) { K.multiply_rounded(pool(), from, to); }, x, y);
+  const BlockMatrix& K = rounded_matrix(material);
+  apply_in_world([&](auto from, auto to) { return K.multiply_rounded(pool(), from, to); }, x, y);
   filter_.clear_fixed(y);
 }
 

@@ -51,16 +51,17 @@ class TangentOperator {
   ThreadPool& pool() const { return executor_.pool(); }
   int free_count() const { return filter_.free_count(); }
 
-  /// y = K x, of held degrees of freedom too.
-  void apply(std::span<const double> x, std::span<double> y);
-  /// y = K x on the free degrees of freedom; the others become 0.
-  void apply_free(std::span<const double> x, std::span<double> y) {
-    apply(x, y);
+  /// y = K x, of held degrees of freedom too; returns x · y.
+  double apply(std::span<const double> x, std::span<double> y);
+  /// y = K x on the free degrees of freedom; the others become 0. Returns x · y, of an x that is 0 where it is held.
+  double apply_free(std::span<const double> x, std::span<double> y) {
+    const double product = apply(x, y);
     filter_.clear_fixed(y);
+    return product;
   }
-  /// Does so with the entries of matrix() rounded to 32 bits.
-  void apply_free_rounded(std::span<const double> x, std::span<double> y);
-  /// Does so with matrix() or material_part() alone, rounded likewise.
+  /// Makes x = z + s x first, then does so. @param rounded  with the entries of matrix() rounded to 32 bits
+  double apply_free_next(std::span<const double> z, double s, std::span<double> x, std::span<double> y, bool rounded);
+  /// y = K x on the free degrees of freedom with matrix() or material_part() alone, rounded to 32 bits.
   void apply_free_rounded(bool material, std::span<const double> x, std::span<double> y);
   /// y = K x with all that the tangent has, of held degrees of freedom too.
   void apply_whole(std::span<const double> x, std::span<double> y);
@@ -86,10 +87,11 @@ class TangentOperator {
 
  private:
   void assemble(const Linearization& at, BlockMatrix& out, Entries entries);
-  const BlockMatrix& rounded(bool material);
+  const BlockMatrix& rounded_matrix(bool material);
   void apply_by_blocks(std::span<const double> x, std::span<double> y, bool whole);
   template <class Multiply>
-  void apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y);
+  double apply_in_world(const Multiply& multiply, std::span<const double> x, std::span<double> y);
+  double add_beside(double product, std::span<const double> x, std::span<double> y) const;
 
   const Model& model_;
   CpuExecutor& executor_;

@@ -1,5 +1,6 @@
 #include "core/tangent/tangent_solver.hpp"
 
+#include "core/base/parallel_copy.hpp"
 #include "core/tangent/whole_tangent.hpp"
 
 #include <algorithm>
@@ -126,10 +127,13 @@ bool TangentSolver::factor_is_cheap(long made) {
 
 /// @param whole  with what is beside the symmetric part
 void TangentSolver::set_right_side(std::span<const double> prescribed, std::span<const double> b, bool whole) {
-  rhs_.assign(b.begin(), b.end());
+  copy_into(K_.pool(), b, rhs_);
   if (!prescribed.empty()) {
     product_.resize(b.size());
-    whole ? K_.apply_whole(prescribed, product_) : K_.apply(prescribed, product_);
+    if (whole)
+      K_.apply_whole(prescribed, product_);
+    else
+      K_.apply(prescribed, product_);
     for (std::size_t i = 0; i < b.size(); ++i) rhs_[i] -= product_[i];
   }
   filter_.clear_fixed(rhs_);

@@ -1,7 +1,9 @@
 // A linear solver of the caller's own takes the place of conjugate gradients and of Cholesky's factor: in Newton's
 // method, beside loads without a potential, and where stability is asked for.
+#include "core/linear/cg.hpp"
 #include "core/run/drivers.hpp"
 #include "core/tangent/cg_solver.hpp"
+#include "core/tangent/preconditioners.hpp"
 #include "core/tangent/stability.hpp"
 #include "core/tangent/tangent_operator.hpp"
 #include "tests/support/statics.hpp"
@@ -161,6 +163,62 @@ TEST(LinearSolver, KeptLevelsTakeProductsWithThePresentTangent) {
     EXPECT_NE(solver.levels(), nullptr);
   }
   EXPECT_EQ(found[0], found[1]);
+}
+
+/// Held in axes of the world, or in others; with a term beside the matrix, or without.
+TEST(LinearSolver, LoopsThatDoSeveralThingsSolveAsLoopsOfTheirOwn) {
+  for (const bool turned : {false, true}) {
+    BuiltModel built = held_block();
+    if (turned) {
+      FrameConstraint& first = built.model.constraints.front();
+      first.translation_axes = rotation_about(normalized(Vec3d{{1, 1, 2}}), 0.9);
+      first.translations = 2;
+    }
+    ThreadPool pool(2);
+    CpuExecutor executor(built.model.points, pool);
+    const DofFilter filter(built.model);
+    ASSERT_EQ(filter.turns(), turned);
+    Linearization tangent;
+    std::vector<double> b(static_cast<std::size_t>(built.model.dof_count()));
+    executor.gradient(random_state(built.model, 1e-3, 0.01), {}, b);
+    executor.linearize(random_state(built.model, 1e-3, 0.01), {}, Tangent::material, tangent);
+    filter.clear_fixed(b);
+    for (const bool beside : {false, true}) {
+      if (beside) tangent.low_rank.push_back({10 / dot(b, b), b});
+      TangentOperator K(built.model, executor, filter);
+      FactorSolver factor(K);
+      K.take(tangent);
+      std::vector<double> next = b, rounded(b.size()), product(b.size());
+      const double power = K.apply_free_next(b, -0.5, next, rounded, true);
+      K.apply_free(next, product);
+      EXPECT_NEAR(power, dot(next, rounded), 1e-13 * norm(next) * norm(rounded));
+      for (std::size_t i = 0; i < b.size(); ++i) {
+        EXPECT_EQ(next[i], b[i] - 0.5 * b[i]);
+        rounded[i] -= product[i];
+      }
+      EXPECT_LT(norm(rounded), 1e-6 * norm(product));
+      for (const PreconditionerKind kind :
+           {PreconditionerKind::none, PreconditionerKind::jacobi, PreconditionerKind::block_jacobi}) {
+        LinearSettings settings;
+        settings.preconditioner = kind;
+        settings.cg = {2000, 1e-10};
+        CgSolver solver(K, settings, factor);
+        solver.prepare();
+        std::vector<double> x(b.size()), expected(b.size());
+        const LinearReport found = solver.solve(b, x);
+        const auto M = preconditioner_of(kind, K, factor);
+        ASSERT_TRUE(M->prepare());
+        const CgReport report = conjugate_gradients(
+            K.vectors(), [&](const auto& p, auto& Ap) { K.apply_free(p, Ap); },
+            [&](const auto& r, auto& z) { return M->apply(r, z); }, b, expected, settings.cg);
+        EXPECT_EQ(report.status, CgStatus::converged);
+        EXPECT_FALSE(found.unsolved);
+        EXPECT_NEAR(found.iterations, report.iterations, 2 + 0.02 * report.iterations);
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] -= expected[i];
+        EXPECT_LT(norm(x), 1e-8 * norm(expected)) << turned << beside;
+      }
+    }
+  }
 }
 
 double largest_difference(const State& a, const State& b) {

@@ -1,6 +1,7 @@
 // Tangents and their matrices on several threads, of nodes of one kind and of several.
 #include "core/linear/block_matrix.hpp"
 #include "core/executor/executor.hpp"
+#include "core/linear/vectors.hpp"
 #include "tests/unit/meshless/shared_models.hpp"
 
 #include <gtest/gtest.h>
@@ -44,6 +45,7 @@ class BlockMatrixOf : public testing::TestWithParam<Nodes> {
   struct Found {
     Linearization lin;
     std::vector<double> values, product, rounded;
+    double power = 0;  ///< x · K x
   };
   /// The last tangent is written over another one.
   Found found(int threads) {
@@ -60,7 +62,7 @@ class BlockMatrixOf : public testing::TestWithParam<Nodes> {
     }
     f.values.assign(matrix.values(), matrix.values() + matrix.value_count());
     f.product.resize(x.size());
-    matrix.multiply(pool, x, f.product);
+    f.power = matrix.multiply(pool, x, f.product);
     f.rounded.resize(x.size());
     matrix.round(pool);
     matrix.multiply_rounded(pool, x, f.rounded);
@@ -87,6 +89,7 @@ TEST_P(BlockMatrixOf, TangentEntriesAndProductsDoNotDependOnThreads) {
     EXPECT_EQ(more.lin.kept, one.lin.kept);
     EXPECT_EQ(more.values, one.values);
     EXPECT_EQ(more.product, one.product);
+    EXPECT_EQ(more.power, one.power);
     EXPECT_EQ(more.rounded, one.rounded);
   }
 }
@@ -100,6 +103,40 @@ TEST_P(BlockMatrixOf, ProductsWithRoundedEntriesMissByThatRounding) {
   std::printf("%-9s rounded entries: %.1e\n", name_of(GetParam()).c_str(), error);
   EXPECT_LT(error, 1e-7);
   EXPECT_GT(error, 1e-10);
+}
+
+/// Directions of conjugate gradients are renewed, multiplied and judged in the loops of the product.
+TEST_P(BlockMatrixOf, ProductsOfTheNextDirectionAreThoseOfLoopsOfTheirOwn) {
+  ThreadPool pool(3);
+  CpuExecutor executor(model_.points, pool);
+  const CpuVectors vectors(pool);
+  BlockMatrix matrix(model_.points);
+  Linearization lin;
+  executor.linearize(state_, {}, Tangent::full, lin);
+  executor.assemble(lin, matrix);
+  matrix.round(pool);
+  const std::vector<double> z = random_direction(model_);
+  for (const bool rounded : {false, true}) {
+    std::vector<double> x(z.size(), 0.0), next = x, y = x, product = x;
+    for (const double s : {0.0, 0.7, -1e3}) {  // from nothing on, as a solve begins
+      vectors.xpay(z, s, x);
+      const double power = rounded ? matrix.multiply_rounded(pool, x, y) : matrix.multiply(pool, x, y);
+      const double same = rounded ? matrix.multiply_next_rounded(pool, z, s, next, product)
+                                  : matrix.multiply_next(pool, z, s, next, product);
+      EXPECT_EQ(next, x) << s;
+      EXPECT_EQ(product, y) << s;
+      EXPECT_EQ(same, power) << s;
+      EXPECT_NEAR(power, vectors.dot(x, y), 1e-13 * norm(x) * norm(y)) << s;
+    }
+  }
+}
+
+TEST_P(BlockMatrixOf, BlocksLieAtTheirPlaces) {
+  BlockMatrix matrix(model_.points);
+  for (int row = 0; row < matrix.rows(); ++row)
+    for (int k = matrix.fills_upper() ? matrix.diagonal(row) : matrix.row_begin(row); k < matrix.row_begin(row + 1);
+         ++k)
+      ASSERT_EQ(matrix.at_place(matrix.place(k)), matrix.block(k));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BlockMatrixOf, testing::Values(Nodes::vertices, Nodes::rigid, Nodes::several),
