@@ -29,10 +29,10 @@ class BlockMatrix {
   int row_begin(int row) const { return row_begin_[static_cast<std::size_t>(row)]; }
   double* block(int index) { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
   const double* block(int index) const { return values_.data() + value_begin_[static_cast<std::size_t>(index)]; }
-  /// Where the numbers of a stored block begin, for loops that meet blocks in an order of their own: in 32 bits, for
-  /// matrices of up to kMostValues, and without a list to be looked up.
   static constexpr std::size_t kPlace = 9;  ///< every block has some times so many numbers
   static constexpr std::size_t kMostValues = kPlace * std::numeric_limits<std::uint32_t>::max();
+  /// Where the numbers of a stored block begin, for loops that meet blocks in an order of their own: in 32 bits, for
+  /// matrices of up to kMostValues, and without a list to be looked up.
   std::uint32_t place(int index) const {
     return static_cast<std::uint32_t>(value_begin_[static_cast<std::size_t>(index)] / kPlace);
   }

@@ -1,6 +1,7 @@
 #include "core/linear/vectors.hpp"
 
 #include "core/base/parallel_copy.hpp"
+#include "core/linear/vector_ranges.hpp"
 
 #include <algorithm>
 #include <array>
@@ -67,22 +68,16 @@ double CpuVectors::copy(std::span<const double> from, std::span<double> to) cons
 void CpuVectors::advance(double s, std::span<const double> p, std::span<const double> q, std::span<double> x,
                          std::span<double> r) const {
   pool_->for_ranges(static_cast<int>(x.size()), kChunk, [&](int begin, int end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      x[i] += s * p[i];
-      r[i] -= s * q[i];
-    }
+    advance_range(s, p, q, x, r, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
   });
 }
 
 double CpuVectors::advance_and_copy(double s, std::span<const double> p, std::span<const double> q, std::span<double> x,
                                     std::span<double> r, std::span<double> z) const {
   return sum_of_chunks(x.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      x[i] += s * p[i];
-      r[i] -= s * q[i];
-      z[i] = r[i];
-    }
+    advance_range(s, p, q, x, r, begin, end);
     const std::span<const double> part = std::span<const double>(r).subspan(begin, end - begin);
+    std::copy(part.begin(), part.end(), z.data() + begin);
     return dot_of_chunk(part, part);
   });
 }

@@ -1,6 +1,7 @@
 #include "core/tangent/preconditioners.hpp"
 
 #include "core/base/index.hpp"
+#include "core/linear/vector_ranges.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -93,12 +94,7 @@ double DiagonalBlocks::apply(std::span<const double> r, std::span<double> z) {
 double DiagonalBlocks::advance(const CpuVectors& /*vectors*/, double s, std::span<const double> p,
                                std::span<const double> q, std::span<double> x, std::span<double> r,
                                std::span<double> z) {
-  const auto move = [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      x[i] += s * p[i];
-      r[i] -= s * q[i];
-    }
-  };
+  const auto move = [&](std::size_t begin, std::size_t end) { advance_range(s, p, q, x, r, begin, end); };
   return apply_after(move, r, z);
 }
 
