@@ -15,6 +15,7 @@ namespace fascia {
 
 CloudBody::CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& points)
     : field_(spec.field),
+      weights_(spec.weights),
       locate_(spec.locate),
       half_blend_(spec.half_blend),
       interpolates_(spec.grid),
@@ -28,18 +29,15 @@ CloudBody::CloudBody(const CloudSpec& spec, Model& model, PointSetBuilder& point
   Bounds bounds = bounds_of(surface_.points);
   for (const CloudPoint& p : spec.points) bounds.include(p.place.X);
   size_ = bounds.diagonal();
-  std::vector<ScatteredWeights> weights;
-  for (const CloudPoint& p : spec.points) {
-    places_.push_back(p.place);
-    weights.push_back(field_(p.place));
-  }
+  places_.reserve(spec.points.size());
+  for (const CloudPoint& p : spec.points) places_.push_back(p.place);
   split_points(spec);
   number_frames(spec, model);
-  check_still_nodes(weights);
+  check_still_nodes();
   check_points(spec, model);
-  add_points(spec, weights, model, points);
+  add_points(spec, model, points);
   add_inertia(spec, model);
-  describe(spec, weights);
+  describe(spec);
 }
 
 namespace {
@@ -104,22 +102,32 @@ void CloudBody::number_frames(const CloudSpec& spec, Model& model) {
   on_boundary_.insert(on_boundary_.end(), shared_.size(), 1);
 }
 
-bool CloudBody::follows_still(const ScatteredWeights& weights) const {
-  return !still_.empty() && std::any_of(weights.frame.begin(), weights.frame.end(), [&](int frame) {
+bool CloudBody::follows_still(std::span<const int> frames) const {
+  return !still_.empty() && std::any_of(frames.begin(), frames.end(), [&](int frame) {
     return frame >= node_count_ && !share_[at(frame - node_count_)].turns;
   });
 }
 
+/// Nodes that move a place, ascending.
+std::vector<int> CloudBody::nodes_at(const WeightsView& weights) const {
+  std::vector<int> nodes;
+  nodes.reserve(weights.frame.size());
+  for (const int frame : weights.frame) nodes.push_back(node_of(frame));
+  if (!share_.empty()) make_distinct(nodes);
+  return nodes;
+}
+
 /// Displacements alone must give F exactly where vertices without rotation take part.
-void CloudBody::check_still_nodes(const std::vector<ScatteredWeights>& weights) const {
+void CloudBody::check_still_nodes() const {
   constexpr double kRounding = 1e-9;
   for (std::size_t p = 0; p < places_.size(); ++p) {
-    if (!follows_still(weights[p])) continue;
+    const WeightsView weights = (*weights_)[p];
+    if (!follows_still(weights.frame)) continue;
     if (places_[p].dimension < 3)
       throw InputError("a sheet or line turns with its frames, but the matter at " + text(places_[p].X) +
                            " follows vertices without rotation; share them with rotations = true",
                        Blame::frames);
-    if (norm(weights[p].consistent - Mat3d::identity()) > kRounding)
+    if (norm(weights.consistent - Mat3d::identity()) > kRounding)
       throw InputError("the weights at " + text(places_[p].X) +
                            " do not reproduce linear fields, which vertices without rotation need; share them with "
                            "rotations = true, or use kind = \"mls\" and more frames or a larger weights.radius",
@@ -148,11 +156,12 @@ void CloudBody::check_points(const CloudSpec& spec, const Model& model) const {
                    Blame::points);
 }
 
-Attachment CloudBody::attach_place(const ScatteredPlace& place, const ScatteredWeights& weights,
-                                   const Vec3d& offset) const {
+Attachment CloudBody::attach_place(const ScatteredPlace& place, const WeightsView& weights, const Vec3d& offset) const {
   const Mat3d halved = half_blend_ ? weights.consistent : Mat3d{};
-  const bool still = follows_still(weights);
+  const bool still = follows_still(weights.frame);
   Attachment a;
+  a.nodes.reserve(weights.frame.size());
+  a.influences.reserve(weights.frame.size());
   for (std::size_t k = 0; k < weights.frame.size(); ++k) {
     const int frame = weights.frame[k];
     a.nodes.push_back(node_of(frame));
@@ -172,20 +181,20 @@ Attachment CloudBody::attach(const Vec3d& X) const {
 
 Attachment CloudBody::attach_point(std::size_t point) const {
   const PointPlace& p = point_places_[point];
-  return attach_place(places_[p.place], field_(places_[p.place]), p.offset);
+  return attach_place(places_[p.place], (*weights_)[p.place], p.offset);
 }
 
 /// Any partition of unity gives a rigid motion its exact kinetic energy, since each frame takes the full lever; one
 /// that is never negative gives every frame a positive mass.
 void CloudBody::add_inertia(const CloudSpec& spec, Model& model) {
   model.inertia.resize(model.rest_position.size());
-  std::vector<ScatteredWeights> share;
-  for (const ScatteredPlace& place : places_) share.push_back(spec.share(place));
+  const KeptWeights& share = spec.share ? *spec.share : *weights_;
+  std::vector<MassShare> masses;
   for (std::size_t q = 0; q < points_.size(); ++q) {
     const double mass_damping = spec.material(points_[q].middle).mass_damping;
     if (mass_damping > 0) model.mass_damping.resize(model.rest_position.size());
-    const ScatteredWeights& w = share[point_places_[q].place];
-    std::vector<MassShare> masses;
+    const WeightsView w = share[point_places_[q].place];
+    masses.clear();
     for (std::size_t k = 0; k < w.frame.size(); ++k) {
       const int node = node_of(w.frame[k]);
       const bool turns = w.frame[k] < node_count_ || share_[at(w.frame[k] - node_count_)].turns;
@@ -223,14 +232,15 @@ void CloudBody::warn_of_locking(const CloudSpec& spec) {
 /// Frames whose weights reach over many others hardly differ from the mean of these: motions of single frames strain
 /// next to nothing, and the stiffness is as good as singular. On a line of 54 frames Newton's method takes 2 iterations
 /// at 8 frames a point, 18 at 16, and finds no end at 24.
-void CloudBody::warn_of_overlap(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights) {
+void CloudBody::warn_of_overlap(const CloudSpec& spec) {
   constexpr double kFar = 5;  // spacings
   double reach = 0, count = 0;
-  for (std::size_t p = 0; p < weights.size(); ++p) {
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    const std::span<const int> frames = (*weights_)[p].frame;
     double farthest = 0;
-    for (const int f : weights[p].frame) farthest = std::max(farthest, norm(frame_position_[at(f)] - places_[p].X));
-    reach += farthest / static_cast<double>(weights.size());
-    count += static_cast<double>(weights[p].frame.size()) / static_cast<double>(weights.size());
+    for (const int f : frames) farthest = std::max(farthest, norm(frame_position_[at(f)] - places_[p].X));
+    reach += farthest / static_cast<double>(places_.size());
+    count += static_cast<double>(frames.size()) / static_cast<double>(places_.size());
   }
   reach /= spec.spacing;
   if (reach <= kFar) return;
@@ -243,11 +253,12 @@ void CloudBody::warn_of_overlap(const CloudSpec& spec, const std::vector<Scatter
   messages_.push_back(out.str());
 }
 
-void CloudBody::describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights) {
+void CloudBody::describe(const CloudSpec& spec) {
+  const KeptWeights& weights = *weights_;
   warn_of_locking(spec);
   if (spec.grid && !share_.empty()) choices_.push_back(replaced_by_shares(share_.size()));
   if (spec.grid) return;
-  warn_of_overlap(spec, weights);
+  warn_of_overlap(spec);
   std::size_t least = frame_position_.size(), most = 0, lowered = 0, first_lowered = 0, narrowest = 0;
   for (std::size_t p = 0; p < weights.size(); ++p) {
     least = std::min(least, weights[p].frame.size());
@@ -255,7 +266,7 @@ void CloudBody::describe(const CloudSpec& spec, const std::vector<ScatteredWeigh
     if (weights[p].spread < weights[narrowest].spread) narrowest = p;
     if (weights[p].lowered && lowered++ == 0) first_lowered = p;
   }
-  const bool consistent = trace(weights.front().consistent) > 0;
+  const bool consistent = trace(weights[0].consistent) > 0;
   const Consistency c = consistency(weights, frame_position_, places_, spec.spacing);
   std::ostringstream out;
   out.precision(2);

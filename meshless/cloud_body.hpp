@@ -3,16 +3,9 @@
 #include "meshless/body.hpp"
 #include "meshless/frame_field.hpp"
 #include "meshless/influences.hpp"
+#include "meshless/scattered/kept_weights.hpp"
 
 namespace fascia {
-
-/// A place where matter is integrated: on a sheet or line it stands for the points through the thickness or across the
-/// section.
-struct CloudPoint {
-  ScatteredPlace place;
-  double volume = 0;  ///< [m³]
-  double extent = 0;  ///< thickness of a sheet, radius of a line [m]
-};
 
 /// Where a rest position lies in a body.
 struct Location {
@@ -26,8 +19,10 @@ struct CloudSpec : BodyMatter {
   std::vector<CloudFrame> frames;   ///< its own
   std::vector<SharedFrame> shared;  ///< of other bodies; in the fields behind its own
   std::vector<CloudPoint> points;
-  FrameField field;    ///< weights
-  FrameField share;    ///< weights that are never negative, for the inertia
+  FrameField field;                            ///< weights
+  std::shared_ptr<const KeptWeights> weights;  ///< of the points
+  /// Weights of the points that are never negative, for the inertia; none: the others are so.
+  std::shared_ptr<const KeptWeights> share;
   bool grid = false;   ///< frames of a regular grid, whose weights interpolate
   int through = 0;     ///< points through a sheet's thickness, 0: 2; 1 on sheets and lines: the 2014 paper's rule
   double spacing = 0;  ///< mean distance of frames [m]
@@ -58,30 +53,31 @@ class CloudBody final : public ModelBody {
     bool stabilized = true;  ///< false: too few of its frames turn
   };
 
-  Attachment attach_place(const ScatteredPlace& place, const ScatteredWeights& weights, const Vec3d& offset) const;
+  Attachment attach_place(const ScatteredPlace& place, const WeightsView& weights, const Vec3d& offset) const;
+  Attachment attach_for_mechanics(std::size_t point) const;
   void split_points(const CloudSpec& spec);
   void number_frames(const CloudSpec& spec, Model& model);
-  void check_still_nodes(const std::vector<ScatteredWeights>& weights) const;
+  void check_still_nodes() const;
   void check_points(const CloudSpec& spec, const Model& model) const;
-  void take_turning_weights(const CloudSpec& spec, const Model& model, std::vector<Attachment>& attachments);
-  void add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights, const Model& model,
-                  PointSetBuilder& points);
-  void add_group(const CloudSpec& spec, const std::vector<std::size_t>& members,
-                 const std::vector<Attachment>& attachments, PointSetBuilder& points) const;
-  void split_group(const CloudSpec& spec, std::vector<std::size_t> members, const std::vector<Attachment>& attachments,
+  static constexpr int kUnsorted = -1;
+  void find_stabilized(const CloudSpec& spec, const Model& model);
+  void add_points(const CloudSpec& spec, const Model& model, PointSetBuilder& points);
+  void add_group(const CloudSpec& spec, std::span<const std::size_t> members, PointSetBuilder& points) const;
+  void split_group(const CloudSpec& spec, std::span<std::size_t> members, int sorted_along,
                    PointSetBuilder& points) const;
-  void add_middle_ties(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights,
-                       PointSetBuilder& points) const;
+  void add_middle_ties(const CloudSpec& spec, PointSetBuilder& points) const;
   void add_inertia(const CloudSpec& spec, Model& model);
-  void describe(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights);
+  void describe(const CloudSpec& spec);
   void warn_of_locking(const CloudSpec& spec);
-  void warn_of_overlap(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights);
+  void warn_of_overlap(const CloudSpec& spec);
   int node_of(int frame) const {
     return frame < node_count_ ? first_node_ + frame : share_[static_cast<std::size_t>(frame - node_count_)].node;
   }
-  bool follows_still(const ScatteredWeights& weights) const;
+  bool follows_still(std::span<const int> frames) const;
+  std::vector<int> nodes_at(const WeightsView& weights) const;
 
   FrameField field_;
+  std::shared_ptr<const KeptWeights> weights_;  ///< by places_
   std::function<Location(const Vec3d&)> locate_;
   bool half_blend_, interpolates_;
   std::vector<Vec3d> frame_position_;  ///< own, then shared

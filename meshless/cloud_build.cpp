@@ -256,11 +256,11 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   add_shared(choice.shared, spec.points, set);
   if (!set.shared.empty()) spacing = spacing_around(set.frames, set.own);
   set.reach = reach_of(choice, spacing);
-  widen_supports(choice.weights, spec.points, set);
-  drop_idle_frames(choice.weights, spec.points, set, messages);
+  widen_supports(choice.weights, spec.points, set, pool);
+  spec.weights = drop_idle_frames(choice.weights, spec.points, set, messages, pool);
   spec.field = scattered_field(choice.weights, set.frames, set.reach);
-  spec.share = choice.weights == ScatteredKind::mls ? scattered_field(ScatteredKind::wendland, set.frames, set.reach)
-                                                    : spec.field;
+  if (choice.weights == ScatteredKind::mls)
+    spec.share = weights_of(scattered_field(ScatteredKind::wendland, set.frames, set.reach), spec.points, pool);
   spec.shared = std::move(set.shared);
   set.frames.resize(set.own);
   spec.frames = std::move(set.frames);
@@ -317,8 +317,8 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   }
   double cells = 1;
   for (const int n : grid.count) cells *= n - 1;
+  ThreadPool pool(choice.threads);
   if (!std::holds_alternative<std::monostate>(choice.points)) {
-    ThreadPool pool(choice.threads);
     spec.points =
         points_of(parts, choice.points, rough_spacing(parts, static_cast<int>(4 * cells)), choice.store, pool);
     balance_cells(parts, grid, spec.points);
@@ -328,11 +328,12 @@ void grid_cloud(const ThinGridSpec& choice, CloudSpec& spec) {
   ThinGrid placed = grid;
   placed.origin = to_world(parts, grid.origin);
   for (Vec3d& e : placed.edge) e = parts.rotation * e;
-  spec.field = spec.share = thin_grid_field(placed);
+  spec.field = thin_grid_field(placed);
   spec.grid = true;
   const double measure = directions == 2 ? norm(cross(grid.edge[0], grid.edge[1])) : norm(grid.edge[0]);
   spec.spacing = std::pow(measure / cells, 1.0 / static_cast<double>(directions));
   share_grid_frames(choice.shared, size_of(parts), spec);
+  spec.weights = weights_of(spec.field, spec.points, pool);
   finish_cloud(parts, spec);
 }
 

@@ -5,8 +5,9 @@
 #include "core/base/index.hpp"
 
 #include <algorithm>
+#include <compare>
+#include <cstdint>
 #include <map>
-#include <set>
 
 namespace fascia {
 
@@ -14,42 +15,89 @@ namespace {
 
 constexpr std::size_t kFull = kGroupSize;
 
-std::set<int> all_nodes(const std::vector<std::size_t>& members, const std::vector<Attachment>& attachments) {
-  std::set<int> nodes;
-  for (const std::size_t q : members) nodes.insert(attachments[q].nodes.begin(), attachments[q].nodes.end());
-  return nodes;
+/// Nodes of all points, ascending for each.
+struct PointNodes {
+  std::vector<std::size_t> begin{0};
+  std::vector<int> node;
+
+  std::span<const int> of(std::size_t point) const {
+    return std::span(node).subspan(begin[point], begin[point + 1] - begin[point]);
+  }
+};
+
+/// A point with its law and, for quick comparison, its first nodes.
+struct Keyed {
+  Law law{};
+  std::uint64_t first = 0;
+  std::size_t point = 0;
+};
+
+/// By law, then by nodes, then by number.
+std::vector<Keyed> by_nodes(const std::vector<BodyPoint>& points, const PointNodes& nodes) {
+  std::vector<Keyed> keyed;
+  keyed.reserve(points.size());
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const std::span<const int> n = nodes.of(q);
+    const auto number = [&](std::size_t k) { return k < n.size() ? static_cast<std::uint64_t>(n[k]) + 1 : 0; };
+    keyed.push_back({points[q].law, number(0) << 32U | number(1), q});
+  }
+  std::sort(keyed.begin(), keyed.end(), [&](const Keyed& a, const Keyed& b) {
+    if (a.law != b.law) return a.law < b.law;
+    if (a.first != b.first) return a.first < b.first;
+    const std::span<const int> m = nodes.of(a.point), n = nodes.of(b.point);
+    const auto order = std::lexicographical_compare_three_way(m.begin(), m.end(), n.begin(), n.end());
+    return order != 0 ? order < 0 : a.point < b.point;
+  });
+  return keyed;
 }
 
 }  // namespace
 
-/// Points with the same frames make groups of their own; the others are cut into groups by halving their box, since
-/// points near one another share most frames.
-void CloudBody::add_points(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights, const Model& model,
-                           PointSetBuilder& builder) {
-  std::vector<Attachment> attachments;
-  std::map<std::pair<Law, std::vector<int>>, std::vector<std::size_t>> same;
-  for (std::size_t q = 0; q < points_.size(); ++q) {
-    const PointPlace& p = point_places_[q];
-    attachments.push_back(attach_place(places_[p.place], weights[p.place], p.offset));
-    same[{points_[q].law, attachments.back().nodes}].push_back(q);
-  }
-  if (!still_.empty()) take_turning_weights(spec, model, attachments);
-  std::map<Law, std::vector<std::size_t>> rest;
-  for (const auto& [key, members] : same) {
-    if (2 * members.size() >= kFull)
-      split_group(spec, members, attachments, builder);
-    else
-      rest[key.first].insert(rest[key.first].end(), members.begin(), members.end());
-  }
-  for (const auto& [law, members] : rest) split_group(spec, members, attachments, builder);
-  if (spec.affine) add_middle_ties(spec, weights, builder);
+/// As attach_point() says, but where a point follows nodes that do not turn: the weights of its blended rotation, among
+/// those that do.
+Attachment CloudBody::attach_for_mechanics(std::size_t point) const {
+  Attachment a = attach_point(point);
+  if (!still_.empty()) blend_turning(a.nodes, still_, a.influences);
+  return a;
 }
 
-/// Weights of the points' blended rotations, among nodes that turn.
-void CloudBody::take_turning_weights(const CloudSpec& spec, const Model& model, std::vector<Attachment>& attachments) {
+/// Points with the same frames make groups of their own; the others are cut into groups by halving their box, since
+/// points near one another share most frames.
+void CloudBody::add_points(const CloudSpec& spec, const Model& model, PointSetBuilder& builder) {
+  PointNodes nodes;
+  nodes.begin.reserve(points_.size() + 1);
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    const std::vector<int> own = nodes_at((*weights_)[point_places_[q].place]);
+    nodes.node.insert(nodes.node.end(), own.begin(), own.end());
+    nodes.begin.push_back(nodes.node.size());
+  }
+  if (!still_.empty()) find_stabilized(spec, model);
+  const std::vector<Keyed> keyed = by_nodes(points_, nodes);
+  std::map<Law, std::vector<std::size_t>> rest;
+  std::vector<std::size_t> members;
+  for (std::size_t first = 0, end = 0; first < keyed.size(); first = end) {
+    const Law law = keyed[first].law;
+    members.clear();
+    const std::span<const int> own = nodes.of(keyed[first].point);
+    const auto same = [&](const Keyed& k) {
+      const std::span<const int> n = nodes.of(k.point);
+      return k.law == law && std::equal(n.begin(), n.end(), own.begin(), own.end());
+    };
+    while (end < keyed.size() && same(keyed[end])) members.push_back(keyed[end++].point);
+    if (2 * members.size() >= kFull)
+      split_group(spec, members, kUnsorted, builder);
+    else
+      rest[law].insert(rest[law].end(), members.begin(), members.end());
+  }
+  for (auto& [law, others] : rest) split_group(spec, others, kUnsorted, builder);
+  if (spec.affine) add_middle_ties(spec, builder);
+}
+
+/// Says which points have enough frames that turn for a stabilisation.
+void CloudBody::find_stabilized(const CloudSpec& spec, const Model& model) {
   std::vector<char> held(at(model.node_count()));
-  for (std::size_t q = 0; q < attachments.size(); ++q) {
-    Attachment& a = attachments[q];
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    Attachment a = attach_point(q);
     const bool still = std::any_of(a.nodes.begin(), a.nodes.end(),
                                    [&](int node) { return std::binary_search(still_.begin(), still_.end(), node); });
     point_places_[q].stabilized = blend_turning(a.nodes, still_, a.influences);
@@ -60,11 +108,10 @@ void CloudBody::take_turning_weights(const CloudSpec& spec, const Model& model, 
 }
 
 /// Affine frames of thin matter are tied to F on its middle, where neither bending nor torsion turns it against them.
-void CloudBody::add_middle_ties(const CloudSpec& spec, const std::vector<ScatteredWeights>& weights,
-                                PointSetBuilder& builder) const {
+void CloudBody::add_middle_ties(const CloudSpec& spec, PointSetBuilder& builder) const {
   for (std::size_t p = 0; p < places_.size(); ++p) {
     if (places_[p].dimension == 3 || spec.through == 1) continue;  // tied at their points
-    const Attachment a = attach_place(places_[p], weights[p], {});
+    const Attachment a = attach_place(places_[p], (*weights_)[p], {});
     const double mu = spec.material(places_[p].X).mu;
     const PointSample tie{{}, places_[p].X, spec.points[p].volume, spec.stabilization * mu, 0, a.influences, {}};
     builder.add_points(a.nodes, std::span(&tie, 1), spec.spacing,
@@ -72,34 +119,52 @@ void CloudBody::add_middle_ties(const CloudSpec& spec, const std::vector<Scatter
   }
 }
 
-void CloudBody::split_group(const CloudSpec& spec, std::vector<std::size_t> members,
-                            const std::vector<Attachment>& attachments, PointSetBuilder& builder) const {
+/// @param members       reordered
+/// @param sorted_along  axis that a group is sorted along, as its half of a larger one; kUnsorted: it stays as it is
+void CloudBody::split_group(const CloudSpec& spec, std::span<std::size_t> members, int sorted_along,
+                            PointSetBuilder& builder) const {
+  const auto along = [this](int axis) {
+    return [this, axis](std::size_t p, std::size_t q) {
+      const double x = points_[p].X[axis], y = points_[q].X[axis];
+      return x < y || (x == y && p < q);
+    };
+  };
   const bool fits = members.size() <= kFull;
-  if (fits && all_nodes(members, attachments).size() <= at(kMaxSlots))
-    return add_group(spec, members, attachments, builder);
-  if (members.size() == 1)
-    throw InputError(std::to_string(attachments[members[0]].nodes.size()) + " frames reach one point; at most " +
-                         std::to_string(kMaxSlots) + " may: use a smaller weights.radius or fewer neighbours",
-                     Blame::weights);
+  if (fits) {
+    if (sorted_along != kUnsorted) std::sort(members.begin(), members.end(), along(sorted_along));
+    std::vector<int> nodes;
+    for (const std::size_t q : members)
+      for (const int frame : (*weights_)[point_places_[q].place].frame) nodes.push_back(node_of(frame));
+    make_distinct(nodes);
+    if (nodes.size() <= at(kMaxSlots)) return add_group(spec, members, builder);
+    if (members.size() == 1)
+      throw InputError(std::to_string(nodes.size()) + " frames reach one point; at most " + std::to_string(kMaxSlots) +
+                           " may: use a smaller weights.radius or fewer neighbours",
+                       Blame::weights);
+  }
   Bounds bounds;
   for (const std::size_t q : members) bounds.include(points_[q].X);
   const int axis = longest_axis(bounds);
-  std::sort(members.begin(), members.end(), [&](std::size_t p, std::size_t q) {
-    const double x = points_[p].X[axis], y = points_[q].X[axis];
-    return x < y || (x == y && p < q);
-  });
   // Whole groups in the first half.
   const std::size_t half = members.size() / 2;
-  const auto cut = static_cast<std::ptrdiff_t>(fits ? half : std::max(kFull, (half + kFull / 2) / kFull * kFull));
-  split_group(spec, {members.begin(), members.begin() + cut}, attachments, builder);
-  split_group(spec, {members.begin() + cut, members.end()}, attachments, builder);
+  const std::size_t cut = fits ? half : std::max(kFull, (half + kFull / 2) / kFull * kFull);
+  std::nth_element(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(cut), members.end(), along(axis));
+  split_group(spec, members.first(cut), axis, builder);
+  split_group(spec, members.subspan(cut), axis, builder);
 }
 
-void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>& members,
-                          const std::vector<Attachment>& attachments, PointSetBuilder& builder) const {
-  const std::set<int> nodes = all_nodes(members, attachments);
-  std::vector<PointSample> samples;
+void CloudBody::add_group(const CloudSpec& spec, std::span<const std::size_t> members, PointSetBuilder& builder) const {
+  std::vector<Attachment> attachments;
+  std::vector<int> nodes;
   for (const std::size_t q : members) {
+    attachments.push_back(attach_for_mechanics(q));
+    nodes.insert(nodes.end(), attachments.back().nodes.begin(), attachments.back().nodes.end());
+  }
+  make_distinct(nodes);
+  std::vector<PointSample> samples;
+  samples.reserve(members.size());
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const std::size_t q = members[m];
     const BodyPoint& p = points_[q];
     // Torsion turns material off a line's axis against the frame: drilling would resist it, and a line needs none.
     const bool none = p.law == Law::line || (p.law == Law::sheet && spec.affine) || !point_places_[q].stabilized;
@@ -109,19 +174,18 @@ void CloudBody::add_group(const CloudSpec& spec, const std::vector<std::size_t>&
                   p.volume,
                   stabilization,
                   spec.material(p.middle).stiffness_damping,
-                  {},
+                  std::vector<Influence>(nodes.size()),
                   p.axes < 0 ? Mat3d{} : axes_[at(p.axes)],
                   static_cast<int>(q)};
-    const Attachment& a = attachments[q];
-    for (const int node : nodes) {
-      const auto k = std::lower_bound(a.nodes.begin(), a.nodes.end(), node) - a.nodes.begin();
-      const bool there = at(static_cast<int>(k)) < a.nodes.size() && a.nodes[at(static_cast<int>(k))] == node;
-      s.influences.push_back(there ? a.influences[at(static_cast<int>(k))] : Influence{});
+    std::size_t slot = 0;  // both lists ascend
+    for (std::size_t k = 0; k < attachments[m].nodes.size(); ++k) {
+      while (nodes[slot] != attachments[m].nodes[k]) ++slot;
+      s.influences[slot] = attachments[m].influences[k];
     }
     samples.push_back(std::move(s));
   }
   builder.add_points(
-      std::vector<int>(nodes.begin(), nodes.end()), samples, spec.spacing,
+      nodes, samples, spec.spacing,
       {points_[members[0]].law, spec.affine ? Stabilization::affine : Stabilization::drilling, spec.affine});
 }
 

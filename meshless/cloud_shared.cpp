@@ -71,18 +71,19 @@ void reach_points(const std::vector<CloudPoint>& points, CloudFrames& set) {
 
 /// Every point that lacks frames for linear weights gets more of the nearest own and shared ones, which may lie in a
 /// plane for themselves.
-void reach_frames(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set) {
+void reach_frames(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set, ThreadPool& pool) {
   constexpr int kRounds = 4;
   const std::vector<Vec3d> positions = set.positions();
   const std::span<const Vec3d> all(positions);
   const FrameSearch own(all.first(set.own)), shared(all.subspan(set.own));
   for (int round = 1; round <= kRounds; ++round) {
-    const FrameField field = scattered_field(kind, set.frames, set.reach);
+    const auto weights = weights_of(scattered_field(kind, set.frames, set.reach), points, pool);
     bool enough = true;
-    for (const CloudPoint& p : points) {
-      const ScatteredWeights w = field(p.place);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const WeightsView w = (*weights)[n];
       if (!w.frame.empty() && !w.lowered) continue;
       enough = false;
+      const CloudPoint& p = points[n];
       const int count = (p.place.dimension + 1) * round;
       reach_to(p.place.X, positions, own.nearest(p.place.X, count), 0, set.reach.support);
       reach_to(p.place.X, positions, shared.nearest(p.place.X, count), set.own, set.reach.support);
@@ -132,26 +133,28 @@ void add_shared(std::span<const SharedFrame> shared, const std::vector<CloudPoin
   }
 }
 
-void widen_supports(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set) {
+void widen_supports(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set, ThreadPool& pool) {
   if (set.shared.empty() || set.reach.neighbours > 0) return;
   reach_points(points, set);
-  reach_frames(kind, points, set);
+  reach_frames(kind, points, set, pool);
 }
 
-void drop_idle_frames(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set,
-                      std::vector<std::string>& messages) {
+std::shared_ptr<const KeptWeights> drop_idle_frames(ScatteredKind kind, const std::vector<CloudPoint>& points,
+                                                    CloudFrames& set, std::vector<std::string>& messages,
+                                                    ThreadPool& pool) {
+  std::shared_ptr<const KeptWeights> weights;
   std::size_t dropped = 0, unshared = 0;
   for (bool all_used = false; !all_used;) {
-    const FrameField field = scattered_field(kind, set.frames, set.reach);
+    weights = weights_of(scattered_field(kind, set.frames, set.reach), points, pool);
     std::vector<char> used(set.frames.size(), 0);
-    for (const CloudPoint& p : points) {
-      const ScatteredWeights w = field(p.place);
-      if (w.frame.empty()) {
-        throw InputError("the matter at " + text(p.place.X) +
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const std::span<const int> frames = (*weights)[p].frame;
+      if (frames.empty()) {
+        throw InputError("the matter at " + text(points[p].place.X) +
                              " is out of reach of every frame; use more frames or a larger weights.radius",
                          Blame::weights);
       }
-      for (const int f : w.frame) used[at(f)] = 1;
+      for (const int f : frames) used[at(f)] = 1;
     }
     all_used = std::find(used.begin(), used.end(), 0) == used.end();
     if (all_used) break;
@@ -173,6 +176,7 @@ void drop_idle_frames(ScatteredKind kind, const std::vector<CloudPoint>& points,
   }
   if (dropped > 0) messages.push_back(std::to_string(dropped) + " frames that reach no point were dropped");
   if (unshared > 0) messages.push_back(unreached_shares(unshared));
+  return weights;
 }
 
 void share_grid_frames(std::span<const SharedFrame> shared, double size, CloudSpec& spec) {
@@ -198,7 +202,7 @@ void share_grid_frames(std::span<const SharedFrame> shared, double size, CloudSp
     if (share[f] < 0) own.push_back(spec.frames[f]);
   }
   spec.frames = std::move(own);
-  spec.field = spec.share = renumbered_field(spec.field, std::move(number));
+  spec.field = renumbered_field(spec.field, std::move(number));
 }
 
 }  // namespace fascia

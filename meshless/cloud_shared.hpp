@@ -28,11 +28,12 @@ void add_shared(std::span<const SharedFrame> shared, const std::vector<CloudPoin
 
 /// Widens supports until every frame near the matter reaches a few points, and every point enough frames; so shared
 /// frames may be far denser than own ones, or far coarser. Of nodes denser than the points some are left out.
-void widen_supports(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set);
+void widen_supports(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set, ThreadPool& pool);
 
-/// Frames that move no point would be free: they are left out.
-void drop_idle_frames(ScatteredKind kind, const std::vector<CloudPoint>& points, CloudFrames& set,
-                      std::vector<std::string>& messages);
+/// Leaves out frames that move no point, which would be free. @returns  the weights of the others at the points
+std::shared_ptr<const KeptWeights> drop_idle_frames(ScatteredKind kind, const std::vector<CloudPoint>& points,
+                                                    CloudFrames& set, std::vector<std::string>& messages,
+                                                    ThreadPool& pool);
 
 /// Replaces frames of a thin grid by the shared ones that stand there.
 void share_grid_frames(std::span<const SharedFrame> shared, double size, CloudSpec& spec);

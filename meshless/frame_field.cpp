@@ -153,6 +153,12 @@ FrameField thin_grid_field(const ThinGrid& grid) {
   };
 }
 
+std::shared_ptr<const KeptWeights> weights_of(const FrameField& field, std::span<const CloudPoint> points,
+                                              ThreadPool& pool) {
+  return std::make_shared<const KeptWeights>(
+      points.size(), [&](std::size_t p) { return field(points[p].place); }, pool);
+}
+
 FrameField renumbered_field(FrameField field, std::vector<int> number) {
   return [field = std::move(field), number = std::move(number)](const ScatteredPlace& place) {
     ScatteredWeights r = field(place);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meshless/scattered/kept_weights.hpp"
 #include "meshless/scattered/neighbours.hpp"
 #include "meshless/scattered/scattered_weights.hpp"
 
@@ -25,6 +26,14 @@ struct CloudFrame {
   bool on_boundary = false;  ///< of the matter
 };
 
+/// A place where matter is integrated: on a sheet or line it stands for the points through the thickness or across the
+/// section.
+struct CloudPoint {
+  ScatteredPlace place;
+  double volume = 0;  ///< [m³]
+  double extent = 0;  ///< thickness of a sheet, radius of a line [m]
+};
+
 /// Which frames a place follows.
 struct Reach {
   std::vector<double> support;  ///< of each frame [m]
@@ -47,6 +56,10 @@ struct ThinGrid {
 
 /// Bilinear or linear weights on a thin grid. Frame numbers run along the first direction first.
 FrameField thin_grid_field(const ThinGrid& grid);
+
+/// A field's weights at the places of points, found by all threads.
+std::shared_ptr<const KeptWeights> weights_of(const FrameField& field, std::span<const CloudPoint> points,
+                                              ThreadPool& pool);
 
 /// The same weights with other numbers of the frames. @param number  by the old one, distinct
 FrameField renumbered_field(FrameField field, std::vector<int> number);

@@ -19,12 +19,12 @@ bool contains(std::span<const int> ascending, int node) {
   return std::binary_search(ascending.begin(), ascending.end(), node);
 }
 
+}  // namespace
+
 void make_distinct(std::vector<int>& nodes) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
-
-}  // namespace
 
 void merge_nodes(Attachment& a) {
   std::vector<std::size_t> order(a.nodes.size());

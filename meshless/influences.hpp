@@ -14,6 +14,9 @@ inline Influence on_node(const Influence& i, const Vec3d& arm) {
   return {i.w, i.g, i.b + arm * i.w, i.B + outer(arm, i.g)};
 }
 
+/// Sorts nodes and keeps each once.
+void make_distinct(std::vector<int>& nodes);
+
 /// Puts the nodes in ascending order; influences of equal ones, several frames of a rigid body, are added up.
 void merge_nodes(Attachment& a);
 

@@ -217,29 +217,4 @@ ScatteredWeights ShepardWeights::at(const ScatteredPlace& place, std::span<const
   return r;
 }
 
-Consistency consistency(std::span<const ScatteredWeights> weights, std::span<const Vec3d> frame_positions,
-                        std::span<const ScatteredPlace> places, double spacing) {
-  assert(weights.size() == places.size());
-  Consistency r;
-  int count = 0;
-  for (std::size_t n = 0; n < weights.size(); ++n) {
-    const ScatteredWeights& at_place = weights[n];
-    const ScatteredPlace& place = places[n];
-    if (at_place.frame.empty()) continue;
-    ++count;
-    Vec3d position;
-    Mat3d slope;
-    for (std::size_t i = 0; i < at_place.w.size(); ++i) {
-      const Vec3d d = frame_positions[at(at_place.frame[i])] - place.X;
-      position += d * at_place.w[i];
-      slope += outer(d, at_place.gradient[i]);
-    }
-    for (int a = 0; a < place.dimension; ++a) slope -= outer(place.axes.column(a), place.axes.column(a));
-    r.position += squared_norm(position) / (spacing * spacing);
-    r.gradient += contract(slope, slope) / place.dimension;
-  }
-  if (count == 0) return r;
-  return {std::sqrt(r.position / count), std::sqrt(r.gradient / count)};
-}
-
 }  // namespace fascia

@@ -39,6 +39,27 @@ struct ScatteredWeights {
   double spread = 1;
 };
 
+/// Weights at a place that are kept elsewhere; members as of ScatteredWeights.
+struct WeightsView {
+  std::span<const int> frame;
+  std::span<const double> w;
+  std::span<const Vec3d> gradient;
+  Mat3d consistent{};
+  bool lowered = false;
+  double spread = 1;
+
+  WeightsView(std::span<const int> frames, std::span<const double> weights, std::span<const Vec3d> gradients,
+              const Mat3d& projector, bool is_lowered, double frames_spread)
+      : frame(frames),
+        w(weights),
+        gradient(gradients),
+        consistent(projector),
+        lowered(is_lowered),
+        spread(frames_spread) {}
+  /// What is seen must outlive the view.
+  WeightsView(const ScatteredWeights& r) : WeightsView(r.frame, r.w, r.gradient, r.consistent, r.lowered, r.spread) {}
+};
+
 /// What a builder needs of a weight function of scattered frames. at() gives nothing where no frame is in reach. The
 /// frames given are distinct, in any order.
 template <class W>
@@ -88,17 +109,5 @@ struct ShepardWeights {
   /// @param power  above 1, where the functions are smooth at the frames
   static ScatteredWeights at(const ScatteredPlace& place, std::span<const NearFrame> frames, int power = kPower);
 };
-
-/// How far weights are from linear consistency: root mean squares over places.
-struct Consistency {
-  double position = 0;  ///< |Σ w_i x_i − X| / spacing [-]
-  double gradient = 0;  ///< |Σ x_i ∇w_iᵀ T Tᵀ − T Tᵀ| / |T Tᵀ|: error of F relative to a uniform stretch, at R = I [-]
-};
-
-/// @param weights          of each place; places without weights are left out
-/// @param frame_positions  by the frames' numbers [m]
-/// @param spacing          of the frames [m]
-Consistency consistency(std::span<const ScatteredWeights> weights, std::span<const Vec3d> frame_positions,
-                        std::span<const ScatteredPlace> places, double spacing);
 
 }  // namespace fascia

@@ -1,4 +1,4 @@
-#include "meshless/scattered/scattered_weights.hpp"
+#include "meshless/scattered/kept_weights.hpp"
 
 #include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
@@ -375,7 +375,10 @@ TEST(Consistency, OfTheWeightFunctionsIsThatMeasured) {
       std::vector<ScatteredWeights> weights;
       for (const ScatteredPlace& place : layout.places)
         weights.push_back(weights_at(place, frames_near(layout, place.X)));
-      const Consistency c = consistency(weights, layout.frames, layout.places, 1);
+      ThreadPool pool(2);
+      const KeptWeights kept(
+          weights.size(), [&](std::size_t p) { return weights[p]; }, pool);
+      const Consistency c = consistency(kept, layout.frames, layout.places, 1);
       const Consistency& expected = jitter > 0 ? jittered : regular;
       EXPECT_NEAR(c.position, expected.position, 0.2 * expected.position + 1e-14);
       EXPECT_NEAR(c.gradient, expected.gradient, 0.2 * expected.gradient + 1e-14);
