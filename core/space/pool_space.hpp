@@ -14,10 +14,10 @@ class PoolSpace : public HostMemory {
   PoolSpace() = default;
   explicit PoolSpace(ThreadPool& pool) : pool_(&pool) {}
 
-  /// body(i) for i < count.
+  /// body(i) for i < count. All that it calls is inlined, as a node's numbers pass through memory otherwise.
   template <class Body>
   void for_each(int count, const Body& body) const {
-    const auto range = [&](int begin, int end) {
+    const auto range = [&](int begin, int end) __attribute__((flatten)) {
       for (int i = begin; i < end; ++i) body(i);
     };
     if (pool_ == nullptr)
@@ -31,7 +31,7 @@ class PoolSpace : public HostMemory {
   void sum(int count, const Body& body, const End& end) const {
     using Total = Sums<K, M>;
     const int chunks = (count + kSumChunk - 1) / kSumChunk;
-    const auto of_chunk = [&](int chunk) {
+    const auto of_chunk = [&](int chunk) __attribute__((flatten)) {
       Total part;
       const int first = chunk * kSumChunk;
       for (int i = first; i < std::min(count, first + kSumChunk); ++i) body(i, part);
