@@ -62,9 +62,13 @@ class CloudBody final : public ModelBody {
   static constexpr int kUnsorted = -1;
   void find_stabilized(const CloudSpec& spec, const Model& model);
   void add_points(const CloudSpec& spec, const Model& model, PointSetBuilder& points);
+  /// Points of a group, and the frames of all of them together.
+  struct Group {
+    std::span<const std::size_t> members;
+    std::size_t frames = 0;  ///< how many
+  };
+  void split_group(std::span<std::size_t> members, int sorted_along, std::vector<Group>& groups) const;
   void add_group(const CloudSpec& spec, std::span<const std::size_t> members, PointSetBuilder& points) const;
-  void split_group(const CloudSpec& spec, std::span<std::size_t> members, int sorted_along,
-                   PointSetBuilder& points) const;
   void add_middle_ties(const CloudSpec& spec, PointSetBuilder& points) const;
   void add_inertia(const CloudSpec& spec, Model& model);
   void describe(const CloudSpec& spec);

@@ -72,24 +72,31 @@ void CloudBody::add_points(const CloudSpec& spec, const Model& model, PointSetBu
     nodes.begin.push_back(nodes.node.size());
   }
   if (!still_.empty()) find_stabilized(spec, model);
-  const std::vector<Keyed> keyed = by_nodes(points_, nodes);
-  std::map<Law, std::vector<std::size_t>> rest;
   std::vector<std::size_t> members;
+  members.reserve(points_.size());
+  const std::vector<Keyed> keyed = by_nodes(points_, nodes);
+  for (const Keyed& k : keyed) members.push_back(k.point);
+  std::vector<Group> groups;
+  std::map<Law, std::vector<std::size_t>> rest;
   for (std::size_t first = 0, end = 0; first < keyed.size(); first = end) {
     const Law law = keyed[first].law;
-    members.clear();
     const std::span<const int> own = nodes.of(keyed[first].point);
     const auto same = [&](const Keyed& k) {
       const std::span<const int> n = nodes.of(k.point);
       return k.law == law && std::equal(n.begin(), n.end(), own.begin(), own.end());
     };
-    while (end < keyed.size() && same(keyed[end])) members.push_back(keyed[end++].point);
-    if (2 * members.size() >= kFull)
-      split_group(spec, members, kUnsorted, builder);
+    while (end < keyed.size() && same(keyed[end])) ++end;
+    const std::span<std::size_t> run = std::span(members).subspan(first, end - first);
+    if (2 * run.size() >= kFull)
+      split_group(run, kUnsorted, groups);
     else
-      rest[law].insert(rest[law].end(), members.begin(), members.end());
+      rest[law].insert(rest[law].end(), run.begin(), run.end());
   }
-  for (auto& [law, others] : rest) split_group(spec, others, kUnsorted, builder);
+  for (auto& [law, others] : rest) split_group(others, kUnsorted, groups);
+  std::size_t slots = 0;
+  for (const Group& g : groups) slots += g.frames;
+  builder.reserve(groups.size(), slots);
+  for (const Group& g : groups) add_group(spec, g.members, builder);
   if (spec.affine) add_middle_ties(spec, builder);
 }
 
@@ -120,9 +127,8 @@ void CloudBody::add_middle_ties(const CloudSpec& spec, PointSetBuilder& builder)
 }
 
 /// @param members       reordered
-/// @param sorted_along  axis that a group is sorted along, as its half of a larger one; kUnsorted: it stays as it is
-void CloudBody::split_group(const CloudSpec& spec, std::span<std::size_t> members, int sorted_along,
-                            PointSetBuilder& builder) const {
+/// @param sorted_along  axis of the cut that made it, along which a group's points are put in order; kUnsorted: no cut
+void CloudBody::split_group(std::span<std::size_t> members, int sorted_along, std::vector<Group>& groups) const {
   const auto along = [this](int axis) {
     return [this, axis](std::size_t p, std::size_t q) {
       const double x = points_[p].X[axis], y = points_[q].X[axis];
@@ -136,7 +142,10 @@ void CloudBody::split_group(const CloudSpec& spec, std::span<std::size_t> member
     for (const std::size_t q : members)
       for (const int frame : (*weights_)[point_places_[q].place].frame) nodes.push_back(node_of(frame));
     make_distinct(nodes);
-    if (nodes.size() <= at(kMaxSlots)) return add_group(spec, members, builder);
+    if (nodes.size() <= at(kMaxSlots)) {
+      groups.push_back({members, nodes.size()});
+      return;
+    }
     if (members.size() == 1)
       throw InputError(std::to_string(nodes.size()) + " frames reach one point; at most " + std::to_string(kMaxSlots) +
                            " may: use a smaller weights.radius or fewer neighbours",
@@ -149,8 +158,8 @@ void CloudBody::split_group(const CloudSpec& spec, std::span<std::size_t> member
   const std::size_t half = members.size() / 2;
   const std::size_t cut = fits ? half : std::max(kFull, (half + kFull / 2) / kFull * kFull);
   std::nth_element(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(cut), members.end(), along(axis));
-  split_group(spec, members.first(cut), axis, builder);
-  split_group(spec, members.subspan(cut), axis, builder);
+  split_group(members.first(cut), axis, groups);
+  split_group(members.subspan(cut), axis, groups);
 }
 
 void CloudBody::add_group(const CloudSpec& spec, std::span<const std::size_t> members, PointSetBuilder& builder) const {

@@ -28,6 +28,19 @@ void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const Poi
     add_group(nodes, points.subspan(first, std::min<std::size_t>(kGroupSize, points.size() - first)), length, rule);
 }
 
+void PointSetBuilder::reserve(std::size_t groups, std::size_t slots) {
+  const auto more = [](auto& values, std::size_t count) {  // what grows by little doubles by itself
+    if (count > values.size()) values.reserve(values.size() + count);
+  };
+  more(set_.shape, slots * 13 * kGroupSize);
+  more(set_.slot_node, slots);
+  more(set_.material, groups * 6 * kGroupSize);
+  more(set_.lane_point, groups * kGroupSize);
+  more(set_.slot_begin, groups);
+  more(set_.rule, groups);
+  more(group_length_, groups);
+}
+
 void PointSetBuilder::add_in_order(std::span<const int> nodes, std::span<const PointSample> points, double length,
                                    const PointRule& rule) {
   std::vector<std::size_t> order(nodes.size());

@@ -136,6 +136,9 @@ class PointSetBuilder {
   void add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
                   const PointRule& rule = {});
 
+  /// Makes room for so many more groups, and frames of all of them together.
+  void reserve(std::size_t groups, std::size_t slots);
+
   int group_count() const { return set_.group_count(); }
 
   void add_elements(ElementBlock block);
