@@ -7,6 +7,7 @@
 #include "meshless/gauss.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -114,6 +115,7 @@ std::vector<int> CloudBody::nodes_at(const WeightsView& weights) const {
   nodes.reserve(weights.frame.size());
   for (const int frame : weights.frame) nodes.push_back(node_of(frame));
   if (!share_.empty()) make_distinct(nodes);
+  assert(std::is_sorted(nodes.begin(), nodes.end()));
   return nodes;
 }
 

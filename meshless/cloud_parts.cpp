@@ -99,19 +99,16 @@ std::string text(const Vec3d& x) {
   return out.str();
 }
 
-Matter matter_of(const MatterParts& parts, double piece_size, ThreadPool& pool) {
-  Matter matter;
-  if (parts.solid) add_solid(matter, *parts.solid, piece_size, pool);
-  for (const SheetPart& s : parts.sheets) add_sheet(matter, s, piece_size);
-  for (const LinePart& l : parts.lines) add_line(matter, l, piece_size);
-  return matter;
-}
-
-Matter matter_for(const MatterParts& parts, double spacing, ThreadPool& pool) {
+Matter matter_for(const MatterParts& parts, double spacing, bool features, ThreadPool& pool) {
   constexpr int kMostPieces = 4'000'000;
   constexpr double kFinest = 6, kCoarsest = 2.5;
   const double affordable = rough_spacing(parts, kMostPieces);
-  return matter_of(parts, std::clamp(affordable, spacing / kFinest, spacing / kCoarsest), pool);
+  const double piece_size = std::clamp(affordable, spacing / kFinest, spacing / kCoarsest);
+  Matter matter;
+  if (parts.solid) add_solid(matter, *parts.solid, piece_size, features, pool);
+  for (const SheetPart& s : parts.sheets) add_sheet(matter, s, piece_size);
+  for (const LinePart& l : parts.lines) add_line(matter, l, piece_size);
+  return matter;
 }
 
 double rough_spacing(const MatterParts& parts, int count) {

@@ -145,6 +145,7 @@ std::shared_ptr<const KeptWeights> drop_idle_frames(ScatteredKind kind, const st
   std::shared_ptr<const KeptWeights> weights;
   std::size_t dropped = 0, unshared = 0;
   for (bool all_used = false; !all_used;) {
+    weights.reset();  // those of the last round go first
     weights = weights_of(scattered_field(kind, set.frames, set.reach), points, pool);
     std::vector<char> used(set.frames.size(), 0);
     for (std::size_t p = 0; p < points.size(); ++p) {

@@ -189,13 +189,13 @@ std::function<bool(const Vec3d&)> inside_test(const SolidDomain& domain) {
 
 }  // namespace
 
-void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, ThreadPool& pool) {
+void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, bool features, ThreadPool& pool) {
   check_pieces(matter, piece_size, 0);
   if (!(domain.volume > 0)) throw InputError("the domain has no volume; its surface must enclose some");
   const VoxelGrid grid(domain, piece_size);
   check_pieces(matter, piece_size, grid.expected() + expected_parts(domain.surface, piece_size));
   const std::size_t first_surface = matter.pieces.size();
-  add_faces(matter, domain.surface, piece_size);
+  if (features || domain.contains) add_faces(matter, domain.surface, piece_size);  // they cut voxels too
 
   VoxelPieces& voxels = matter.voxels;
   const std::size_t first = voxels.size();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/aligned.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/geometry/mesh.hpp"
 #include "core/math/mat3.hpp"
@@ -33,8 +34,8 @@ struct FeatureChain {
 
 /// Pieces of the insides of solids, by the million: a place and a volume each.
 struct VoxelPieces {
-  std::vector<Vec3d> x;        ///< rest positions [m]
-  std::vector<double> volume;  ///< [m³]
+  AlignedVector<Vec3d> x;        ///< rest positions [m]
+  AlignedVector<double> volume;  ///< [m³]
 
   std::size_t size() const { return x.size(); }
 };
@@ -67,8 +68,9 @@ struct LinePart {
 /// Pieces on faces, corners and sharp edges (more than 40° between the normals) come from its surface.
 ///
 /// @param piece_size  width of the pieces [m]; about a sixth of the spacing of the samples wanted
+/// @param features    false: pieces on faces, edges and corners are not asked for, and those of boxes are left out
 /// @throws InputError  a size that is not positive, above 5·10⁷ pieces, a domain in which no piece falls
-void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, ThreadPool& pool);
+void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, bool features, ThreadPool& pool);
 
 /// Cuts a sheet's triangles; volumes are area × thickness. Normals vary smoothly except across sharp edges.
 /// Edges are open, sharp or branched ones.

@@ -3,6 +3,7 @@
 #include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/math/batch.hpp"
+#include "meshless/scattered/owned_pieces.hpp"
 #include "meshless/scattered/point_grid.hpp"
 
 #include <algorithm>
@@ -15,8 +16,9 @@ namespace fascia {
 
 namespace {
 
-/// Blocks of this many spacings cost least: larger ones have longer lists, smaller ones more of them.
-constexpr double kEdge = 0.7;
+/// Blocks of so many places cost least, but no wider than some spacings: larger ones have longer lists of points,
+/// smaller ones more lists.
+constexpr double kPlaces = 40, kNarrowest = 0.7, kWidest = 1.6;
 constexpr int kGrain = 64;  // blocks
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -59,30 +61,39 @@ Vec3d BlockSearch::Cells::middle(std::size_t number) const {
   return x;
 }
 
-BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing)
-    : count_(places.size()), blocks_({}, {}, 1, 1), cells_({}, {}, 1, 1), begin_(2, 0) {
+BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPool& pool)
+    : blocks_({}, {}, 1, 1), cells_({}, {}, 1, 1), begin_(2, 0) {
   if (places.empty()) return;
   const Bounds bounds = bounds_of(places);
   const double most = std::max(1e6, 2.0 * static_cast<double>(places.size()));
-  blocks_ = Cells(bounds.low, bounds.high, kEdge * spacing, most);
+  double volume = 1;  // of the box, in spacings; thin ones have places side by side
+  for (int a = 0; a < 3; ++a) volume *= std::max(1.0, (bounds.high[a] - bounds.low[a]) / spacing);
+  const double edge = std::cbrt(kPlaces * volume / static_cast<double>(places.size()));
+  blocks_ = Cells(bounds.low, bounds.high, std::clamp(edge, kNarrowest, kWidest) * spacing, most);
   cells_ = Cells(bounds.low, bounds.high, spacing, most);
-  std::vector<int> block;
-  block.reserve(places.size());
+  RawArray<int> block(places.size());
+  constexpr int kSome = 4096;
+  pool.for_ranges(static_cast<int>(places.size()), kSome, [&](int first, int last) {
+    for (std::size_t p = at(first); p < at(last); ++p)
+      block[p] = static_cast<int>(blocks_.number(blocks_.of(places[p])));
+  });
   begin_.assign(blocks_.size() + 1, 0);
-  for (const Vec3d& x : places) {
-    block.push_back(static_cast<int>(blocks_.number(blocks_.of(x))));
-    ++begin_[at(block.back()) + 1];
-  }
+  for (const int b : block.span()) ++begin_[at(b) + 1];
   for (std::size_t b = 1; b < begin_.size(); ++b)
     begin_[b] = begin_[b - 1] + (begin_[b] + kLanes - 1) / kLanes * kLanes;
-  for (AlignedVector<double>& x : x_) x.assign(begin_.back(), 0);
-  place_.assign(begin_.back(), -1);
+  for (RawArray<double>& x : x_) x = RawArray<double>(begin_.back());
+  place_ = RawArray<int>(begin_.back());
   std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    const std::size_t n = next[at(block[p])]++;
+  OwnedPieces(block.span(), blocks_.size()).for_each(pool, [&](std::size_t p, std::size_t own) {
+    const std::size_t n = next[own]++;
     for (int a = 0; a < 3; ++a) x_[at(a)][n] = places[p][a];
     place_[n] = static_cast<int>(p);
-  }
+  });
+  for (std::size_t b = 0; b < next.size(); ++b)
+    for (std::size_t n = next[b]; n < begin_[b + 1]; ++n) {
+      for (RawArray<double>& x : x_) x[n] = 0;
+      place_[n] = -1;
+    }
 }
 
 BlockSearch::Sorted BlockSearch::sorted(std::span<const Vec3d> points) const {
@@ -99,12 +110,14 @@ BlockSearch::Sorted BlockSearch::sorted(std::span<const Vec3d> points) const {
   return out;
 }
 
-/// The distance to the nearest point.
-double BlockSearch::distance_from(const Vec3d& x, const Sorted& points) const {
-  const Cell home = cells_.of(x);
+/// No place in the block is farther than this from the point nearest to it: the distance of the farthest corner from a
+/// point near the block.
+double BlockSearch::reach_of(const Vec3d& middle, const Sorted& points) const {
+  const Cell home = cells_.of(middle);
+  const double half = 0.5 * blocks_.edge;
   double squared = kInfinity;
   const int most = *std::max_element(cells_.count.begin(), cells_.count.end());
-  for (int ring = 1; ring <= most; ++ring) {
+  for (int ring = 1; ring <= most && squared == kInfinity; ++ring) {
     Cell low{}, high{};
     for (std::size_t a = 0; a < 3; ++a) {
       low[a] = std::max(0, home[a] - ring);
@@ -112,36 +125,45 @@ double BlockSearch::distance_from(const Vec3d& x, const Sorted& points) const {
     }
     for_rows(low, high, [&](int j, int k) {
       const int end = points.begin[cells_.number({high[0], j, k}) + 1];
-      for (int n = points.begin[cells_.number({low[0], j, k})]; n < end; ++n)
-        squared = std::min(squared, squared_norm(points.x[at(n)] - x));
+      for (int n = points.begin[cells_.number({low[0], j, k})]; n < end; ++n) {
+        double sum = 0;
+        for (int a = 0; a < 3; ++a) {
+          const double farthest = std::abs(points.x[at(n)][a] - middle[a]) + half;
+          sum += farthest * farthest;
+        }
+        squared = std::min(squared, sum);
+      }
     });
-    const double covered = ring * cells_.edge;  // beyond are points of other cells
-    if (squared <= covered * covered) break;
   }
   return std::sqrt(squared);
 }
 
 void BlockSearch::list(const Vec3d& middle, const Sorted& points, Candidates& out) const {
-  // No place in the block is farther from its middle than half its diagonal.
-  const double radius = (distance_from(middle, points) + std::sqrt(3.0) * blocks_.edge) * (1 + 10 * kTie);
-  const Vec3d reach{{radius, radius, radius}};
-  const Cell low = cells_.of(middle - reach), high = cells_.of(middle + reach);
-  for (std::vector<double>& x : out.x) x.clear();
-  out.index.clear();
+  // Rounding, and equals that are so but for kTie, must not hide a point.
+  const double reach = reach_of(middle, points) * (1 + 10 * kTie), half = 0.5 * blocks_.edge * (1 + 10 * kTie);
+  const Vec3d around{{reach + half, reach + half, reach + half}};
+  const Cell low = cells_.of(middle - around), high = cells_.of(middle + around);
+  out.count = 0;
   for_rows(low, high, [&](int j, int k) {
-    const int end = points.begin[cells_.number({high[0], j, k}) + 1];
-    for (int n = points.begin[cells_.number({low[0], j, k})]; n < end; ++n) {
+    const int begin = points.begin[cells_.number({low[0], j, k})],
+              end = points.begin[cells_.number({high[0], j, k}) + 1];
+    out.make_room(at(end - begin));
+    for (int n = begin; n < end; ++n) {  // without branches that nobody can foresee
       const Vec3d& x = points.x[at(n)];
-      if (squared_norm(x - middle) > radius * radius) continue;
-      for (int a = 0; a < 3; ++a) out.x[at(a)].push_back(x[a]);
-      out.index.push_back(points.index[at(n)]);
+      double squared = 0;  // from the block
+      for (int a = 0; a < 3; ++a) {
+        const double outside = std::max(0.0, std::abs(x[a] - middle[a]) - half);
+        squared += outside * outside;
+      }
+      for (int a = 0; a < 3; ++a) out.x[at(a)][out.count] = x[a];
+      out.index[out.count] = points.index[at(n)];
+      out.count += squared <= reach * reach ? 1 : 0;
     }
   });
 }
 
-void BlockSearch::search(std::size_t first, std::size_t last, const Candidates& among,
-                         std::vector<int>& nearest) const {
-  const std::size_t count = among.index.size();
+void BlockSearch::search(std::size_t first, std::size_t last, const Candidates& among, std::span<int> nearest) const {
+  const std::size_t count = among.count;
   const Lanes infinity(kInfinity);
   for (std::size_t n = first; n < last; n += at(kBatchWidth)) {
     const Lanes x = Lanes::load(&x_[0][n]), y = Lanes::load(&x_[1][n]), z = Lanes::load(&x_[2][n]);
@@ -160,9 +182,11 @@ void BlockSearch::search(std::size_t first, std::size_t last, const Candidates& 
   }
 }
 
-std::vector<int> BlockSearch::nearest(std::span<const Vec3d> points, ThreadPool& pool) const {
-  std::vector<int> nearest(count_, -1);
-  if (points.empty()) return nearest;
+void BlockSearch::nearest(std::span<const Vec3d> points, std::span<int> nearest, ThreadPool& pool) const {
+  if (points.empty()) {
+    std::fill(nearest.begin(), nearest.end(), -1);
+    return;
+  }
   const Sorted by_cell = sorted(points);
   std::atomic<bool> out_of_memory = false;  // threads must not throw
   pool.for_ranges(static_cast<int>(blocks_.size()), kGrain, [&](int begin, int end) {
@@ -178,7 +202,6 @@ std::vector<int> BlockSearch::nearest(std::span<const Vec3d> points, ThreadPool&
     }
   });
   if (out_of_memory) throw std::bad_alloc();
-  return nearest;
 }
 
 }  // namespace fascia

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/base/aligned.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/math/vec3.hpp"
+#include "meshless/scattered/raw_array.hpp"
 
 #include <array>
 #include <cstddef>
@@ -16,11 +16,11 @@ namespace fascia {
 class BlockSearch {
  public:
   /// @param spacing  about the distance between points [m]
-  BlockSearch(std::span<const Vec3d> places, double spacing);
+  BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPool& pool);
 
-  /// The nearest point to each place, of equals (kTie of point_grid.hpp) the first; −1 where there is none. The same
-  /// for any number of threads.
-  std::vector<int> nearest(std::span<const Vec3d> points, ThreadPool& pool) const;
+  /// Finds the nearest point to each place, as many as there are places, of equals (kTie of point_grid.hpp) the first;
+  /// −1 where there is none. The same for any number of threads.
+  void nearest(std::span<const Vec3d> points, std::span<int> nearest, ThreadPool& pool) const;
 
  private:
   using Cell = std::array<int, 3>;
@@ -49,18 +49,24 @@ class BlockSearch {
   struct Candidates {
     std::array<std::vector<double>, 3> x;
     std::vector<double> index;
+    std::size_t count = 0;
+
+    void make_room(std::size_t more) {
+      if (count + more <= index.size()) return;
+      index.resize(2 * (count + more));
+      for (std::vector<double>& along : x) along.resize(index.size());
+    }
   };
 
   Sorted sorted(std::span<const Vec3d> points) const;
-  double distance_from(const Vec3d& x, const Sorted& points) const;
+  double reach_of(const Vec3d& middle, const Sorted& points) const;
   void list(const Vec3d& middle, const Sorted& points, Candidates& out) const;
-  void search(std::size_t first, std::size_t last, const Candidates& among, std::vector<int>& nearest) const;
+  void search(std::size_t first, std::size_t last, const Candidates& among, std::span<int> nearest) const;
 
-  std::size_t count_;               ///< of places
   Cells blocks_, cells_;            ///< of places, of points
   std::vector<std::size_t> begin_;  ///< of each block in the arrays of places, multiples of kLanes
-  std::array<AlignedVector<double>, 3> x_;
-  std::vector<int> place_;  ///< in the caller's order; −1: fills up the lanes
+  std::array<RawArray<double>, 3> x_;
+  RawArray<int> place_;  ///< in the caller's order; −1: fills up the lanes
 };
 
 }  // namespace fascia

@@ -3,10 +3,11 @@
 #include "core/base/index.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <new>
+#include <exception>
+#include <mutex>
+#include <utility>
 
 namespace fascia {
 
@@ -40,7 +41,8 @@ KeptWeights::KeptWeights(std::size_t count, const std::function<ScatteredWeights
                          ThreadPool& pool)
     : begin_(count + 1), consistent_(count), lowered_(count), spread_(count) {
   std::vector<Stretch> stretch((count + kGrain - 1) / kGrain);
-  std::atomic<bool> out_of_memory = false;  // threads must not throw
+  std::exception_ptr thrown;  // threads must not throw
+  std::mutex throwing;
   pool.for_chunks(static_cast<int>(stretch.size()), [&](int c) {
     try {
       const std::size_t first = at(c) * kGrain, last = std::min(count, first + kGrain);
@@ -51,11 +53,12 @@ KeptWeights::KeptWeights(std::size_t count, const std::function<ScatteredWeights
         lowered_[p] = r.lowered ? 1 : 0;
         spread_[p] = r.spread;
       }
-    } catch (const std::bad_alloc&) {
-      out_of_memory = true;
+    } catch (...) {
+      const std::lock_guard lock(throwing);
+      thrown = std::current_exception();
     }
   });
-  if (out_of_memory) throw std::bad_alloc();
+  if (thrown) std::rethrow_exception(thrown);
   std::size_t place = 0;
   for (const Stretch& s : stretch)
     for (const std::size_t n : s.count) {
@@ -66,12 +69,17 @@ KeptWeights::KeptWeights(std::size_t count, const std::function<ScatteredWeights
   w_.resize(begin_.back());
   gradient_.resize(begin_.back());
   pool.for_chunks(static_cast<int>(stretch.size()), [&](int c) {
-    const Stretch& s = stretch[at(c)];
+    const Stretch s = std::move(stretch[at(c)]);  // goes once it is put
     const std::size_t first = begin_[at(c) * kGrain];
     put(s.frame, first, frame_);
     put(s.w, first, w_);
     put(s.gradient, first, gradient_);
   });
+  const auto differs = [&](const Mat3d& m) { return m != consistent_.front(); };
+  if (std::none_of(consistent_.begin(), consistent_.end(), differs) && count > 1) {
+    consistent_.resize(1);
+    consistent_.shrink_to_fit();
+  }
 }
 
 WeightsView KeptWeights::operator[](std::size_t place) const {
@@ -79,7 +87,7 @@ WeightsView KeptWeights::operator[](std::size_t place) const {
   return {std::span(frame_).subspan(first, count),
           std::span(w_).subspan(first, count),
           std::span(gradient_).subspan(first, count),
-          consistent_[place],
+          consistent_[consistent_.size() == 1 ? 0 : place],
           lowered_[place] != 0,
           spread_[place]};
 }

@@ -13,10 +13,10 @@ namespace fascia {
 class KeptWeights {
  public:
   KeptWeights() = default;
-  /// @param weights  of a place; all threads ask for some
+  /// @param weights  of a place; all threads ask for some. What it throws ends the loop and reaches the caller
   KeptWeights(std::size_t count, const std::function<ScatteredWeights(std::size_t)>& weights, ThreadPool& pool);
 
-  std::size_t size() const { return consistent_.size(); }
+  std::size_t size() const { return spread_.size(); }
   bool empty() const { return size() == 0; }
   WeightsView operator[](std::size_t place) const;
 
@@ -25,8 +25,8 @@ class KeptWeights {
   std::vector<int> frame_;
   std::vector<double> w_;
   std::vector<Vec3d> gradient_;
-  std::vector<Mat3d> consistent_;  ///< (places), as the next two
-  std::vector<char> lowered_;
+  std::vector<Mat3d> consistent_;  ///< (places), or one that is that of all
+  std::vector<char> lowered_;      ///< (places), as the next one
   std::vector<double> spread_;
 };
 

@@ -57,6 +57,14 @@ class PointGrid {
     return false;
   }
 
+  double squared_distance(int point, const Vec3d& x) const { return squared_norm(points_[at(point)] - x); }
+  /// Whether any_within() offers a point.
+  bool is_within(int point, const Vec3d& x, double radius) const {
+    return squared_distance(point, x) <= radius * radius * (1 + kTie);
+  }
+  /// Fetches what a search around x begins with.
+  void prefetch(const Vec3d& x) const { __builtin_prefetch(&head_[slot(cell_of(x))]); }
+
   /// The nearest point that accept(index) takes, of equals the first; −1: none. Beyond `reach` one may be missed.
   template <class Accept>
   int nearest(const Vec3d& x, double reach, Accept&& accept) const {

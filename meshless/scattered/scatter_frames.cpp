@@ -15,6 +15,7 @@ constexpr double kLower = 0.77;  // between samples of different features
 constexpr double kEdge = 0.4;    // between corners, and edges that come near one another
 constexpr int kRounds = 3;       // of relaxation
 constexpr int kOccupied = -1;    // a feature below all others
+constexpr int kGrain = 4096;     // pieces
 
 /// Frames placed so far.
 class FrameSet {
@@ -45,31 +46,36 @@ class FrameSet {
   }
 
   /// Random places on pieces of a feature until no more fit.
-  void add_darts(const PieceList& pieces, const std::vector<Dart>& darts, double least, ThreadPool& pool) {
+  void add_darts(const PieceList& pieces, const Darts& darts, double least, ThreadPool& pool) {
     const double same = least * spacing_, lower = kLower * spacing_;
     const int feature = pieces.solid() ? 3 : 2;
-    const auto conflict = [&](std::size_t, const Vec3d& x) {
-      return grid_.any_within(x, std::max(same, lower), [&](int i, double squared) {
-        const double r = samples_[at(i)].feature == feature ? same : lower;
-        return squared < r * r * (1 - kTie);
-      });
+    const auto meets = [&](std::size_t, int i, double squared) {
+      const double r = samples_[at(i)].feature == feature ? same : lower;
+      return squared < r * r * (1 - kTie);
     };
-    throw_darts(matter_, pieces, darts, pool, conflict, [&](const SamplePlace& place) { add(place); });
+    throw_darts(matter_, pieces, darts, pool, grid_, std::max(same, lower), meets,
+                [&](const SamplePlace& place) { add(place); });
   }
 
   /// Evens out the samples of a feature among all of it and lower ones.
   void relax(const PieceList& pieces, ThreadPool& pool) {
     const int feature = pieces.solid() ? 3 : 2;
     std::optional<BlockSearch> in_solid;
-    if (pieces.solid()) in_solid.emplace(matter_.voxels.x, spacing_);
+    if (pieces.solid()) in_solid.emplace(matter_.voxels.x, spacing_, pool);
+    RawArray<int> owner(pieces.size());
     for (int round = 0; round < kRounds; ++round) {
-      std::vector<int> owner = in_solid ? in_solid->nearest(positions_of(samples_), pool) : nearest_samples(pieces);
-      for (std::size_t n = 0; n < pieces.size(); ++n) {
-        const SamplePlace& sample = samples_[at(owner[n])];
-        const bool own = sample.feature == feature && (pieces.solid() || alike(sample, pieces.thin(n)));
-        if (!own) owner[n] = -1;
-      }
-      move_to_middles(matter_, pieces, owner, samples_);
+      if (in_solid)
+        in_solid->nearest(positions_of(samples_), owner.span(), pool);
+      else
+        find_nearest_samples(pieces, owner.span(), pool);
+      pool.for_ranges(static_cast<int>(pieces.size()), kGrain, [&](int first, int last) {
+        for (std::size_t n = at(first); n < at(last); ++n) {
+          const SamplePlace& sample = samples_[at(owner[n])];
+          const bool own = sample.feature == feature && (pieces.solid() || alike(sample, pieces.thin(n)));
+          if (!own) owner[n] = -1;
+        }
+      });
+      move_to_middles(matter_, pieces, owner.span(), samples_, pool);
       grid_ = PointGrid(spacing_);
       for (const SamplePlace& s : samples_) grid_.insert(s.x);
     }
@@ -88,12 +94,11 @@ class FrameSet {
     samples_.push_back(place);
     grid_.insert(place.x);
   }
-  std::vector<int> nearest_samples(const PieceList& pieces) const {
-    std::vector<int> nearest;
-    nearest.reserve(pieces.size());
-    for (std::size_t n = 0; n < pieces.size(); ++n)
-      nearest.push_back(grid_.nearest(pieces.x(n), INFINITY, [](int) { return true; }));
-    return nearest;
+  void find_nearest_samples(const PieceList& pieces, std::span<int> nearest, ThreadPool& pool) const {
+    pool.for_ranges(static_cast<int>(pieces.size()), kGrain, [&](int first, int last) {
+      for (std::size_t n = at(first); n < at(last); ++n)
+        nearest[n] = grid_.nearest(pieces.x(n), INFINITY, [](int) { return true; });
+    });
   }
 
   const Matter& matter_;
@@ -112,8 +117,8 @@ FrameSampler::FrameSampler(const Matter& matter, int seed, std::span<const Vec3d
       faces_(PieceList::of_thin(matter, select_pieces(matter, [](const MatterPiece& p) { return p.feature == 2; }))),
       insides_(PieceList::of_solids(matter)) {
   std::mt19937 random(static_cast<std::uint32_t>(seed));
-  face_darts_ = random_darts(faces_, random);
-  inside_darts_ = random_darts(insides_, random);
+  face_darts_ = random_darts(faces_, random, pool_);
+  inside_darts_ = random_darts(insides_, random, pool_);
 }
 
 std::vector<SamplePlace> FrameSampler::places(double spacing, bool relaxed) const {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "core/base/aligned.hpp"
 #include "core/base/thread_pool.hpp"
 #include "meshless/scattered/point_grid.hpp"
+#include "meshless/scattered/raw_array.hpp"
 #include "meshless/scattered/scatter.hpp"
 
 #include <algorithm>
@@ -53,7 +55,7 @@ class PieceList {
   bool solid() const { return solid_; }
   std::size_t size() const { return solid_ ? matter_->voxels.size() : index_.size(); }
   const Vec3d& x(std::size_t n) const { return solid_ ? matter_->voxels.x[n] : thin(n).x; }
-  double measure(std::size_t n) const { return solid_ ? matter_->voxels.volume[n] : thin(n).measure; }
+  const double& measure(std::size_t n) const { return solid_ ? matter_->voxels.volume[n] : thin(n).measure; }
   /// A piece of a sheet, a line or a boundary.
   const MatterPiece& thin(std::size_t n) const { return matter_->pieces[at(index_[n])]; }
   SamplePlace place(std::size_t n) const { return solid_ ? voxel_place(x(n)) : place_of(thin(n)); }
@@ -67,42 +69,82 @@ class PieceList {
   bool solid_;
 };
 
-/// A place to try.
-struct Dart {
-  Vec3d x{};
-  int piece = 0;  ///< of the list
+/// Places to try, one for each piece.
+struct Darts {
+  AlignedVector<Vec3d> x;  ///< by piece
+  RawArray<int> order;     ///< pieces, as their darts are thrown
+  RawArray<int> turn;      ///< of each piece in that order
+
+  std::size_t size() const { return order.size(); }
 };
 
-/// The pieces in random order; inside of solids each at a random place of its voxel, which leaves no trace of the
+/// The pieces in random order; inside of solids each dart at a random place of its voxel, which leaves no trace of the
 /// voxels in the distances.
-std::vector<Dart> random_darts(const PieceList& pieces, std::mt19937& random);
+Darts random_darts(const PieceList& pieces, std::mt19937& random, ThreadPool& pool);
 
 /// Tries darts in turn, first as they are, then, where that is outside of the solid, at their pieces.
 ///
-/// Whether a dart meets a sample that is there already is asked by all threads, for many darts at once; what is left is
-/// tried in turn.
-/// @param conflict  whether a place is too near to others: conflict(piece of the list, place)
-/// @param add       takes a place
-template <class Conflict, class Add>
-void throw_darts(const Matter& matter, const PieceList& pieces, std::span<const Dart> darts, ThreadPool& pool,
-                 Conflict&& conflict, Add&& add) {
+/// Whether a dart meets a sample that is there already is asked by all threads, for many darts at once, in the order of
+/// their pieces: near darts often meet the same sample. What is left is tried in turn.
+/// @param grid     of the samples so far, by their numbers; `add` puts them there
+/// @param radius   the largest distance at which samples may meet, below a cell of the grid by kTie [m]
+/// @param meets    whether a dart of a piece meets a sample: meets(piece of the list, sample, squared distance), asked by
+///                 all threads; does not throw
+/// @param add      takes a place
+template <class Meets, class Add>
+void throw_darts(const Matter& matter, const PieceList& pieces, const Darts& darts, ThreadPool& pool,
+                 const PointGrid& grid, double radius, const Meets& meets, Add&& add) {
   constexpr std::size_t kFirst = 2048;
-  constexpr int kGrain = 1024;
-  std::vector<char> meets;
+  constexpr int kGrain = 4096;
+  constexpr std::size_t kFew = 32;  // all pieces are looked through where at least one in so many has its turn
+  // A sample that a dart meets: `last`, or another; −1: none.
+  const auto met = [&](std::size_t piece, const Vec3d& x, int last) {
+    if (last >= 0 && grid.is_within(last, x, radius) && meets(piece, last, grid.squared_distance(last, x))) return last;
+    int found = -1;
+    grid.any_within(x, radius, [&](int i, double squared) {
+      if (meets(piece, i, squared)) found = i;
+      return found >= 0;
+    });
+    return found;
+  };
+  std::vector<char> free;  // by turn
   for (std::size_t begin = 0, end = 0; begin < darts.size(); begin = end) {
     end = std::min(darts.size(), std::max(kFirst, 2 * begin));  // samples grow slower than darts are thrown
-    const std::span<const Dart> some = darts.subspan(begin, end - begin);
-    meets.resize(some.size());
-    pool.for_ranges(static_cast<int>(some.size()), kGrain, [&](int first, int last) {
-      for (std::size_t n = at(first); n < at(last); ++n) meets[n] = conflict(at(some[n].piece), some[n].x) ? 1 : 0;
-    });
-    for (std::size_t n = 0; n < some.size(); ++n) {
-      const std::size_t piece = at(some[n].piece);
-      if (meets[n] != 0 || conflict(piece, some[n].x)) continue;
+    free.assign(end - begin, 0);
+    const auto ask = [&](std::size_t piece, std::size_t turn, int& last) {
+      const int sample = met(piece, darts.x[piece], last);
+      if (sample >= 0)
+        last = sample;
+      else
+        free[turn - begin] = 1;
+    };
+    if (kFew * (end - begin) >= darts.size()) {
+      pool.for_ranges(static_cast<int>(darts.size()), kGrain, [&](int first, int after) {
+        int last = -1;
+        for (std::size_t piece = at(first); piece < at(after); ++piece)
+          if (const std::size_t turn = at(darts.turn[piece]); turn >= begin && turn < end) ask(piece, turn, last);
+      });
+    } else {
+      pool.for_ranges(static_cast<int>(end - begin), kGrain, [&](int first, int after) {
+        int last = -1;
+        for (std::size_t turn = begin + at(first); turn < begin + at(after); ++turn)
+          ask(at(darts.order[turn]), turn, last);
+      });
+    }
+    std::vector<int> left;
+    for (std::size_t turn = begin; turn < end; ++turn)
+      if (free[turn - begin] != 0) left.push_back(darts.order[turn]);
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t n = 0; n < left.size(); ++n) {
+      if (n + kAhead < left.size()) __builtin_prefetch(&darts.x[at(left[n + kAhead])]);
+      if (n + kAhead / 2 < left.size()) grid.prefetch(darts.x[at(left[n + kAhead / 2])]);
+      const std::size_t piece = at(left[n]);
+      const Vec3d& x = darts.x[piece];
+      if (met(piece, x, -1) >= 0) continue;
       SamplePlace place = pieces.place(piece);
-      if (inside(matter, some[n].x))
-        place.x = some[n].x;
-      else if (place.x != some[n].x && conflict(piece, place.x))
+      if (inside(matter, x))
+        place.x = x;
+      else if (place.x != x && met(piece, place.x, -1) >= 0)
         continue;
       add(place);
     }
@@ -120,7 +162,7 @@ std::vector<SamplePlace> places_on(const FeatureChain& chain, std::span<const do
 ///
 /// @param owner  the sample of each piece, −1: none
 void move_to_middles(const Matter& matter, const PieceList& pieces, std::span<const int> owner,
-                     std::vector<SamplePlace>& samples);
+                     std::vector<SamplePlace>& samples, ThreadPool& pool);
 
 /// The sample to which a piece of a sheet or a line belongs.
 class OwnerSearch {
@@ -158,7 +200,7 @@ class FrameSampler {
   std::span<const Vec3d> occupied_;
   ThreadPool& pool_;
   PieceList faces_, insides_;
-  std::vector<Dart> face_darts_, inside_darts_;
+  Darts face_darts_, inside_darts_;
 };
 
 std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed, ThreadPool& pool);

@@ -16,15 +16,14 @@ double wanted(double measure, int dimension, double spacing) {
   return measure > 0 ? std::max(1.0, rounded(measure / std::pow(spacing, dimension))) : 0;
 }
 
-std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces, std::span<const Dart> darts,
-                                  double least, ThreadPool& pool) {
+std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces, const Darts& darts, double least,
+                                  ThreadPool& pool) {
   std::vector<SamplePlace> samples;
-  PointGrid grid(least);
-  const auto conflict = [&](std::size_t n, const Vec3d& x) {
-    return grid.any_within(x, least,
-                           [&](int i, double) { return pieces.solid() || alike(samples[at(i)], pieces.thin(n)); });
+  PointGrid grid(least * (1 + kTie));  // what meets but for rounding is in the cells around
+  const auto meets = [&](std::size_t n, int i, double) {
+    return pieces.solid() || alike(samples[at(i)], pieces.thin(n));
   };
-  throw_darts(matter, pieces, darts, pool, conflict, [&](const SamplePlace& place) {
+  throw_darts(matter, pieces, darts, pool, grid, least, meets, [&](const SamplePlace& place) {
     samples.push_back(place);
     grid.insert(place.x);
   });
@@ -32,8 +31,8 @@ std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces,
 }
 
 /// Darts about as many as wanted: samples gather at the boundary, so the distance depends on the shape.
-std::vector<SamplePlace> throw_about(const Matter& matter, const PieceList& pieces, std::span<const Dart> darts,
-                                     double spacing, double count, ThreadPool& pool) {
+std::vector<SamplePlace> throw_about(const Matter& matter, const PieceList& pieces, const Darts& darts, double spacing,
+                                     double count, ThreadPool& pool) {
   constexpr int most_trials = 8;
   const int dimension = pieces.solid() ? 3 : 2;
   double least = spacing / kSaturated[at(dimension)];
@@ -53,16 +52,16 @@ std::vector<SamplePlace> throw_about(const Matter& matter, const PieceList& piec
 /// Evens out the distances between samples of some pieces.
 void relax(const Matter& matter, const PieceList& pieces, std::vector<SamplePlace>& samples, ThreadPool& pool) {
   std::optional<BlockSearch> in_solid;
-  if (pieces.solid()) in_solid.emplace(matter.voxels.x, spacing_in_solids(matter, samples.size()));
+  if (pieces.solid()) in_solid.emplace(matter.voxels.x, spacing_in_solids(matter, samples.size()), pool);
+  RawArray<int> owner(pieces.size());
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<int> owner;
     if (in_solid) {
-      owner = in_solid->nearest(positions_of(samples), pool);
+      in_solid->nearest(positions_of(samples), owner.span(), pool);
     } else {
       const OwnerSearch search(matter, samples);
-      for (std::size_t n = 0; n < pieces.size(); ++n) owner.push_back(search.owner(pieces.thin(n)));
+      for (std::size_t n = 0; n < pieces.size(); ++n) owner[n] = search.owner(pieces.thin(n));
     }
-    move_to_middles(matter, pieces, owner, samples);
+    move_to_middles(matter, pieces, owner.span(), samples, pool);
   }
 }
 
@@ -91,7 +90,7 @@ std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int 
   for (const PieceList& pieces :
        {PieceList::of_thin(matter, select_pieces(matter, in_sheets)), PieceList::of_solids(matter)}) {
     if (pieces.size() == 0) continue;
-    const std::vector<Dart> darts = random_darts(pieces, random);
+    const Darts darts = random_darts(pieces, random, pool);
     const int dimension = pieces.solid() ? 3 : 2;
     const double count = wanted(matter.measure[at(dimension)], dimension, spacing);
     std::vector<SamplePlace> samples = throw_about(matter, pieces, darts, spacing, count, pool);

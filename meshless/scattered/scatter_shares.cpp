@@ -1,5 +1,6 @@
 #include "core/base/errors.hpp"
 #include "meshless/scattered/block_search.hpp"
+#include "meshless/scattered/owned_pieces.hpp"
 #include "meshless/scattered/scatter_parts.hpp"
 
 #include <algorithm>
@@ -89,10 +90,11 @@ std::vector<Share> voronoi_shares(const Matter& matter, std::span<const SamplePl
     std::vector<Vec3d> places;
     places.reserve(in_solid.size());
     for (const int i : in_solid) places.push_back(samples[at(i)].x);
-    const BlockSearch search(voxels.x, spacing_in_solids(matter, in_solid.size()));
-    const std::vector<int> owner = search.nearest(places, pool);
-    for (std::size_t p = 0; p < voxels.size(); ++p)
-      give(shares[at(in_solid[at(owner[p])])], voxels.x[p], voxels.volume[p]);
+    RawArray<int> owner(voxels.size());
+    BlockSearch(voxels.x, spacing_in_solids(matter, in_solid.size()), pool).nearest(places, owner.span(), pool);
+    OwnedPieces(owner.span(), places.size()).for_each(pool, [&](std::size_t p, std::size_t own) {
+      give(shares[at(in_solid[own])], voxels.x[p], voxels.volume[p]);
+    });
   }
   const OwnerSearch search(matter, samples);
   for (const MatterPiece& piece : matter.pieces) {

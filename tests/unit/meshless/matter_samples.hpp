@@ -62,7 +62,7 @@ inline ThreadPool& one_thread() {
 }
 
 inline void add_solid(Matter& matter, const SolidDomain& domain, double piece_size) {
-  fascia::add_solid(matter, domain, piece_size, one_thread());
+  fascia::add_solid(matter, domain, piece_size, true, one_thread());
 }
 
 inline double volume_sum(const Matter& matter) {

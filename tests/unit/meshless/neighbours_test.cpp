@@ -102,8 +102,8 @@ TEST(BlockSearch, FindsTheNearestOfAll) {
         if (k % 3 == 0) x = {{std::round(2 * x[0]) / 2, std::round(2 * x[1]) / 2, std::round(2 * x[2]) / 2}};
         places.push_back(x * unit);
       }
-      const BlockSearch search(places, unit);
-      const std::vector<int> nearest = search.nearest(points, pool);
+      std::vector<int> nearest(places.size());
+      BlockSearch(places, unit, pool).nearest(points, nearest, pool);
       for (std::size_t k = 0; k < places.size(); ++k) {
         EXPECT_EQ(nearest[k], grid.nearest(places[k], INFINITY, [](int) { return true; }));
         for (const Vec3d& p : points)
@@ -116,12 +116,17 @@ TEST(BlockSearch, FindsTheNearestOfAll) {
 TEST(BlockSearch, TakesAnyPlaces) {
   ThreadPool pool(1);
   const std::vector<Vec3d> points{{{1, 0, 0}}, {{5, 0, 0}}};
-  EXPECT_TRUE(BlockSearch({}, 1).nearest(points, pool).empty());
+  const auto nearest = [&](std::span<const Vec3d> places, std::span<const Vec3d> among) {
+    std::vector<int> found(places.size(), 7);
+    BlockSearch(places, 1, pool).nearest(among, found, pool);
+    return found;
+  };
+  EXPECT_TRUE(nearest({}, points).empty());
   const std::vector<Vec3d> same(5, Vec3d{{4, 0, 0}});
-  EXPECT_EQ(BlockSearch(same, 1).nearest({}, pool), std::vector<int>(5, -1));
-  EXPECT_EQ(BlockSearch(same, 1).nearest(points, pool), std::vector<int>(5, 1));
+  EXPECT_EQ(nearest(same, {}), std::vector<int>(5, -1));
+  EXPECT_EQ(nearest(same, points), std::vector<int>(5, 1));
   const std::vector<Vec3d> far{{{0, 0, 0}}, {{1e6, 1e6, 1e6}}, {{-1e9, 0, 3}}};
-  EXPECT_EQ(BlockSearch(far, 1).nearest(points, pool), (std::vector<int>{0, 1, 0}));
+  EXPECT_EQ(nearest(far, points), (std::vector<int>{0, 1, 0}));
 }
 
 TEST(FrameSearch, OfNothingFindsNothing) {

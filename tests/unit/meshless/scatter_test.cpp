@@ -93,7 +93,7 @@ TEST(PoissonDisk, DoesNotDependOnThreads) {
   for (const int threads : {1, 2, 5}) {
     ThreadPool pool(threads);
     Matter m;
-    fascia::add_solid(m, ellipsoid_domain({{5, 3, 2}}, 16), 0.2, pool);
+    fascia::add_solid(m, ellipsoid_domain({{5, 3, 2}}, 16), 0.2, true, pool);
     add_sheet(m, rectangle({{-3, 0, 1.8}}, {{6, 0, 0}}, {{0, 0, 4}}, 0.1), 0.2);
     Sampled& all = of.emplace_back();
     for (const Vec3d& x : m.voxels.x) all.add(x);
