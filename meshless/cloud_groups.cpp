@@ -46,7 +46,7 @@ std::vector<Keyed> by_nodes(const std::vector<BodyPoint>& points, const PointNod
     if (a.first != b.first) return a.first < b.first;
     const std::span<const int> m = nodes.of(a.point), n = nodes.of(b.point);
     const auto order = std::lexicographical_compare_three_way(m.begin(), m.end(), n.begin(), n.end());
-    return order != 0 ? order < 0 : a.point < b.point;
+    return std::is_eq(order) ? a.point < b.point : std::is_lt(order);
   });
   return keyed;
 }

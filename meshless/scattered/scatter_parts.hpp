@@ -88,8 +88,8 @@ Darts random_darts(const PieceList& pieces, std::mt19937& random, ThreadPool& po
 /// their pieces: near darts often meet the same sample. What is left is tried in turn.
 /// @param grid     of the samples so far, by their numbers; `add` puts them there
 /// @param radius   the largest distance at which samples may meet, below a cell of the grid by kTie [m]
-/// @param meets    whether a dart of a piece meets a sample: meets(piece of the list, sample, squared distance), asked by
-///                 all threads; does not throw
+/// @param meets    whether a dart of a piece meets a sample: meets(piece of the list, sample, squared distance); all
+///                 threads ask, and it does not throw
 /// @param add      takes a place
 template <class Meets, class Add>
 void throw_darts(const Matter& matter, const PieceList& pieces, const Darts& darts, ThreadPool& pool,
