@@ -23,6 +23,7 @@ NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, in
 class PointExecutor {
  public:
   static constexpr bool kSeesMotions = true, kSeesTranslations = false, kSeesStateAgain = false;
+
   PointExecutor(const PointSet& set, ThreadPool& pool);
 
   /// Where tethers pull to: (groups with axes × 3 × 8) [m]. Zero at first.

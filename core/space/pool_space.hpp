@@ -9,12 +9,13 @@ namespace fascia {
 
 /// The processor's memory, and loops on the threads of a pool; without one on the thread that calls. Sums are added in
 /// the order of HostSpace: they do not depend on the number of threads. Loops over few items wake no other thread.
+/// All that the body of a loop calls is inlined: a node's numbers would pass through memory from call to call.
 class PoolSpace : public HostMemory {
  public:
   PoolSpace() = default;
   explicit PoolSpace(ThreadPool& pool) : pool_(&pool) {}
 
-  /// body(i) for i < count. All that it calls is inlined, as a node's numbers pass through memory otherwise.
+  /// body(i) for i < count.
   template <class Body>
   void for_each(int count, const Body& body) const {
     const auto range = [&](int begin, int end) __attribute__((flatten)) {

@@ -13,7 +13,7 @@ namespace fascia {
 class KeptWeights {
  public:
   KeptWeights() = default;
-  /// @param weights  of a place; all threads ask for some. What it throws ends the loop and reaches the caller
+  /// @param weights  of a place; all threads ask for some. What it throws reaches the caller
   KeptWeights(std::size_t count, const std::function<ScatteredWeights(std::size_t)>& weights, ThreadPool& pool);
 
   std::size_t size() const { return spread_.size(); }

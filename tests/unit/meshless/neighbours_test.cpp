@@ -102,8 +102,12 @@ TEST(BlockSearch, FindsTheNearestOfAll) {
         if (k % 3 == 0) x = {{std::round(2 * x[0]) / 2, std::round(2 * x[1]) / 2, std::round(2 * x[2]) / 2}};
         places.push_back(x * unit);
       }
-      std::vector<int> nearest(places.size());
+      std::vector<int> nearest(places.size()), again = nearest;
       BlockSearch(places, unit, pool).nearest(points, nearest, pool);
+      for (const double wider : {2.0, 8.0}) {  // blocks between the widest and the narrowest, then these
+        BlockSearch(places, wider * unit, pool).nearest(points, again, pool);
+        EXPECT_EQ(again, nearest) << wider;
+      }
       for (std::size_t k = 0; k < places.size(); ++k) {
         EXPECT_EQ(nearest[k], grid.nearest(places[k], INFINITY, [](int) { return true; }));
         for (const Vec3d& p : points)

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fascia::scatter_test {
@@ -111,6 +112,38 @@ TEST(PoissonDisk, DoesNotDependOnThreads) {
   EXPECT_GT(of[0].numbers.size(), 20000U);
   EXPECT_EQ(of[1].numbers, of[0].numbers);
   EXPECT_EQ(of[2].numbers, of[0].numbers);
+}
+
+/// Darts that threads sort out beforehand, in the order of their pieces, are those that meet none when they are thrown
+/// one after the other and held against all samples.
+TEST(Darts, AreTakenAsIfThrownInTurn) {
+  constexpr double least = 0.45;
+  for (const bool solid : {true, false}) {
+    const Matter m = solid ? cube(3, 0.1) : square(6, 0.05);
+    const PieceList pieces = solid
+                                 ? PieceList::of_solids(m)
+                                 : PieceList::of_thin(m, select_pieces(m, [](const auto& p) { return p.volume > 0; }));
+    ThreadPool pool(3);
+    std::mt19937 random(7);
+    const Darts darts = random_darts(pieces, random, pool);
+    std::vector<Vec3d> wanted, taken;
+    const auto meets_one = [&](const Vec3d& x) {
+      return std::any_of(wanted.begin(), wanted.end(),
+                         [&](const Vec3d& y) { return squared_norm(y - x) <= least * least * (1 + kTie); });
+    };
+    for (const int piece : darts.order.span())
+      if (!meets_one(darts.x[at(piece)])) wanted.push_back(darts.x[at(piece)]);
+    PointGrid grid(least * (1 + kTie));
+    throw_darts(
+        m, pieces, darts, pool, grid, least, [](std::size_t, int, double) { return true; },
+        [&](const SamplePlace& place) {
+          taken.push_back(place.x);
+          grid.insert(place.x);
+        });
+    EXPECT_GT(darts.size(), 10000U);
+    EXPECT_GT(wanted.size(), 80U);
+    EXPECT_EQ(taken, wanted);
+  }
 }
 
 /// A grid of the same spacing has 1331 frames: 8 corners, 108 on edges, 486 on faces, 729 inside.
