@@ -1,12 +1,11 @@
 #include "meshless/scattered/kept_weights.hpp"
 
 #include "core/base/index.hpp"
+#include "core/base/throwing_loops.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <exception>
-#include <mutex>
 #include <utility>
 
 namespace fascia {
@@ -41,24 +40,16 @@ KeptWeights::KeptWeights(std::size_t count, const std::function<ScatteredWeights
                          ThreadPool& pool)
     : begin_(count + 1), consistent_(count), lowered_(count), spread_(count) {
   std::vector<Stretch> stretch((count + kGrain - 1) / kGrain);
-  std::exception_ptr thrown;  // threads must not throw
-  std::mutex throwing;
-  pool.for_chunks(static_cast<int>(stretch.size()), [&](int c) {
-    try {
-      const std::size_t first = at(c) * kGrain, last = std::min(count, first + kGrain);
-      for (std::size_t p = first; p < last; ++p) {
-        const ScatteredWeights r = weights(p);
-        stretch[at(c)].add(r);
-        consistent_[p] = r.consistent;
-        lowered_[p] = r.lowered ? 1 : 0;
-        spread_[p] = r.spread;
-      }
-    } catch (...) {
-      const std::lock_guard lock(throwing);
-      thrown = std::current_exception();
+  for_throwing_ranges(pool, static_cast<int>(count), kGrain, [&](int begin, int end) {
+    Stretch& own = stretch[at(begin / kGrain)];
+    for (std::size_t p = at(begin); p < at(end); ++p) {
+      const ScatteredWeights r = weights(p);
+      own.add(r);
+      consistent_[p] = r.consistent;
+      lowered_[p] = r.lowered ? 1 : 0;
+      spread_[p] = r.spread;
     }
   });
-  if (thrown) std::rethrow_exception(thrown);
   std::size_t place = 0;
   for (const Stretch& s : stretch)
     for (const std::size_t n : s.count) {

@@ -1,5 +1,6 @@
 #include "core/base/processors.hpp"
 #include "core/base/thread_pool.hpp"
+#include "core/base/throwing_loops.hpp"
 #include "core/run/drivers.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,6 +48,27 @@ TEST(ThreadPool, LeavesNoChunkToABusyThread) {
       }
     });
     EXPECT_TRUE(others_done);
+    for (const auto& v : visits) EXPECT_EQ(v, 1);
+  }
+}
+
+/// Every range is gone through, and the first of those that threw is told of.
+TEST(ThrowingLoops, TellOfTheFirstRangeThatThrew) {
+  for (const int threads : {1, 4}) {
+    ThreadPool pool(threads);
+    std::vector<std::atomic<int>> visits(100);
+    const auto loop = [&] {
+      for_throwing_ranges(pool, 100, 7, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) ++visits[static_cast<std::size_t>(i)];
+        if (begin >= 21 && begin % 2 == 1) throw std::runtime_error(std::to_string(begin));
+      });
+    };
+    try {
+      loop();
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const std::runtime_error& e) {
+      EXPECT_STREQ(e.what(), "21");
+    }
     for (const auto& v : visits) EXPECT_EQ(v, 1);
   }
 }
