@@ -2,6 +2,7 @@
 
 #include "core/base/errors.hpp"
 #include "core/base/index.hpp"
+#include "core/base/throwing_loops.hpp"
 #include "meshless/matter_parts.hpp"
 #include "meshless/scattered/point_grid.hpp"
 
@@ -29,6 +30,9 @@ namespace {
 
 constexpr int kSubdivisions = 3;  // of a voxel at the surface, in each direction
 constexpr int kParts = kSubdivisions * kSubdivisions * kSubdivisions;
+
+/// Where fine test n lies along the x edge of a voxel; n / 3 and n / 9 give the places along y and z.
+constexpr double fine_place(int n) { return (n % kSubdivisions + 0.5) / kSubdivisions; }
 
 /// A whole number of equal cells a direction, so that a box is filled exactly.
 class VoxelGrid {
@@ -60,7 +64,8 @@ class VoxelGrid {
   /// Calls act(j, k) for each row of voxels, on all threads.
   template <class Act>
   void for_each_row(ThreadPool& pool, const Act& act) const {
-    pool.for_ranges(count_[1] * count_[2], 16, [&](int begin, int end) {
+    constexpr int kGrain = 4;
+    for_throwing_ranges(pool, count_[1] * count_[2], kGrain, [&](int begin, int end) {
       for (int row = begin; row < end; ++row) act(row % count_[1], row / count_[1]);
     });
   }
@@ -103,15 +108,16 @@ struct VoxelPart {
   double tests = 0;
 };
 
-VoxelPart voxel_part(const VoxelGrid& grid, int i, int j, int k, const std::function<bool(const Vec3d&)>& contains) {
+/// @param inside  of the voxel's fine tests
+VoxelPart voxel_part(const VoxelGrid& grid, int i, int j, int k, const std::array<char, kParts>& inside,
+                     const std::function<bool(const Vec3d&)>& contains) {
   std::array<Vec3d, kParts> found;
   std::size_t count = 0;
   Vec3d sum{};
   for (int n = 0; n < kParts; ++n) {
-    const auto fraction = [](int m) { return (m % kSubdivisions + 0.5) / kSubdivisions; };
-    const Vec3d x =
-        grid.place(i, j, k, fraction(n), fraction(n / kSubdivisions), fraction(n / (kSubdivisions * kSubdivisions)));
-    if (!contains(x)) continue;
+    if (inside[at(n)] == 0) continue;
+    const Vec3d x = grid.place(i, j, k, fine_place(n), fine_place(n / kSubdivisions),
+                               fine_place(n / (kSubdivisions * kSubdivisions)));
     found[count++] = x;
     sum += x;
   }
@@ -129,36 +135,76 @@ VoxelPart voxel_part(const VoxelGrid& grid, int i, int j, int k, const std::func
   return part;
 }
 
+void contains_on_line(const SolidDomain& domain, double y, double z, std::span<const double> x,
+                      std::span<char> inside) {
+  if (domain.contains_on_line) return domain.contains_on_line(y, z, x, inside);
+  for (std::size_t i = 0; i < x.size(); ++i) inside[i] = domain.contains({{x[i], y, z}}) ? 1 : 0;
+}
+
+/// Marks the voxels whose middles are inside.
+std::vector<char> inner_voxels(const VoxelGrid& grid, const SolidDomain& domain, ThreadPool& pool) {
+  std::vector<char> inside(grid.size());
+  std::vector<double> x(at(grid.count()[0]));
+  for (int i = 0; i < grid.count()[0]; ++i) x[at(i)] = grid.place(i, 0, 0)[0];
+  grid.for_each_row(pool, [&](int j, int k) {
+    const Vec3d first = grid.place(0, j, k);
+    contains_on_line(domain, first[1], first[2], x, std::span(inside).subspan(grid.number(0, j, k), x.size()));
+  });
+  return inside;
+}
+
+/// The fine tests of some voxels of a row, line by line along x.
+std::vector<std::array<char, kParts>> fine_tests(const VoxelGrid& grid, const SolidDomain& domain,
+                                                 std::span<const int> voxels, int j, int k) {
+  std::vector<std::array<char, kParts>> tests(voxels.size());
+  if (voxels.empty()) return tests;
+  std::vector<double> x;
+  for (const int i : voxels)
+    for (int n = 0; n < kSubdivisions; ++n) x.push_back(grid.place(i, j, k, fine_place(n))[0]);
+  std::vector<char> inside(x.size());
+  for (int line = 0; line < kSubdivisions * kSubdivisions; ++line) {
+    const Vec3d first = grid.place(0, j, k, 0.5, fine_place(line), fine_place(line / kSubdivisions));
+    contains_on_line(domain, first[1], first[2], x, inside);
+    for (std::size_t m = 0; m < x.size(); ++m)
+      tests[m / kSubdivisions][at(line * kSubdivisions) + m % kSubdivisions] = inside[m];
+  }
+  return tests;
+}
+
 /// The voxels of a domain that is not a box.
 void add_voxels(VoxelPieces& voxels, const VoxelGrid& grid, const SolidDomain& domain,
                 std::span<const MatterPiece> surface, ThreadPool& pool) {
-  std::vector<char> inside(grid.size());
+  const std::vector<char> inside = inner_voxels(grid, domain, pool), cut = cut_voxels(grid, inside, surface);
+  const int length = grid.count()[0];
+  std::vector<std::vector<VoxelPart>> rows(grid.size() / at(length));
   grid.for_each_row(pool, [&](int j, int k) {
-    for (int i = 0; i < grid.count()[0]; ++i)
-      inside[grid.number(i, j, k)] = domain.contains(grid.place(i, j, k)) ? 1 : 0;
-  });
-  const std::vector<char> cut = cut_voxels(grid, inside, surface);
-  std::vector<std::array<int, 3>> taken;
-  grid.for_each([&](int i, int j, int k) {
-    const std::size_t voxel = grid.number(i, j, k);
-    if (inside[voxel] != 0 || cut[voxel] != 0) taken.push_back({i, j, k});
-  });
-  constexpr int kGrain = 64;
-  std::vector<VoxelPart> parts(taken.size());
-  pool.for_ranges(static_cast<int>(taken.size()), kGrain, [&](int begin, int end) {
-    for (int n = begin; n < end; ++n) {
-      const auto& [i, j, k] = taken[at(n)];
-      const bool whole = cut[grid.number(i, j, k)] == 0;
-      parts[at(n)] = whole ? VoxelPart{grid.place(i, j, k), kParts} : voxel_part(grid, i, j, k, domain.contains);
+    const std::size_t begin = grid.number(0, j, k);
+    std::vector<int> at_surface;
+    for (int i = 0; i < length; ++i)
+      if (cut[begin + at(i)] != 0) at_surface.push_back(i);
+    const std::vector<std::array<char, kParts>> tests = fine_tests(grid, domain, at_surface, j, k);
+    std::vector<VoxelPart>& parts = rows[begin / at(length)];
+    std::size_t taken = 0;
+    for (int i = 0; i < length; ++i) taken += cut[begin + at(i)] != 0 || inside[begin + at(i)] != 0 ? 1 : 0;
+    parts.reserve(taken);
+    std::size_t next = 0;
+    for (int i = 0; i < length; ++i) {
+      if (cut[begin + at(i)] != 0)
+        parts.push_back(voxel_part(grid, i, j, k, tests[next++], domain.contains));
+      else if (inside[begin + at(i)] != 0)
+        parts.push_back({grid.place(i, j, k), kParts});
     }
   });
-  voxels.x.reserve(voxels.size() + parts.size());
-  voxels.volume.reserve(voxels.size() + parts.size());
-  for (const VoxelPart& part : parts) {
-    if (part.tests == 0) continue;
-    voxels.x.push_back(part.x);
-    voxels.volume.push_back(part.tests);
-  }
+  std::size_t count = voxels.size();
+  for (const std::vector<VoxelPart>& parts : rows) count += parts.size();
+  voxels.x.reserve(count);
+  voxels.volume.reserve(count);
+  for (const std::vector<VoxelPart>& parts : rows)
+    for (const VoxelPart& part : parts) {
+      if (part.tests == 0) continue;
+      voxels.x.push_back(part.x);
+      voxels.volume.push_back(part.tests);
+    }
 }
 
 void add_faces(Matter& matter, const TriangleMesh& surface, double piece_size) {

@@ -110,6 +110,9 @@ SolidDomain make_solid(ClosedSurface closed, double scale) {
   for (Vec3d& p : solid.surface.points) p *= scale;
   const auto test = std::make_shared<const InsideTest>(solid.surface);
   solid.contains = [test](const Vec3d& x) { return test->contains(x); };
+  solid.contains_on_line = [test](double y, double z, std::span<const double> x, std::span<char> inside) {
+    test->contains_on_line(y, z, x, inside);
+  };
   solid.distance = [test](const Vec3d& x) { return test->contains(x) ? 0.0 : test->distance(x); };
   set_bounds(solid);
   return solid;

@@ -58,40 +58,59 @@ void InsideTest::fill_bins() {
     for_each_bin(mesh_.triangles[t], [&](std::size_t b) { members_[next[b]++] = static_cast<int>(t); });
 }
 
-int InsideTest::crossing(const std::array<int, 3>& triangle, const Vec3d& x) const {
-  // Edges that span the point's z and pass it on the side of larger y; opposite directions cancel.
+/// Edges that span z and pass it on the side of larger y; opposite directions cancel. This and the place are computed
+/// by one code for points and for lines, so that both round alike.
+[[gnu::noinline]] int InsideTest::passes(const std::array<int, 3>& triangle, double y, double z) const {
   int passes = 0;
   for (std::size_t n = 0; n < 3; ++n) {
     const int from = triangle[n], to = triangle[(n + 1) % 3];
     const Vec3d& a = mesh_.points[static_cast<std::size_t>(std::min(from, to))];
     const Vec3d& b = mesh_.points[static_cast<std::size_t>(std::max(from, to))];
-    const bool a_above = a[2] > x[2], b_above = b[2] > x[2];
+    const bool a_above = a[2] > z, b_above = b[2] > z;
     if (a_above == b_above) continue;
-    const double side = (b[1] - a[1]) * (x[2] - a[2]) - (b[2] - a[2]) * (x[1] - a[1]);
+    const double side = (b[1] - a[1]) * (z - a[2]) - (b[2] - a[2]) * (y - a[1]);
     const bool beyond = b_above ? side > 0 : side < 0;
     if (beyond) passes += b_above == (from < to) ? 1 : -1;
   }
-  if (passes == 0) return 0;
+  return passes;
+}
 
+/// Within the triangle whatever the rounding; its lowest x where that leaves 0/0.
+[[gnu::noinline]] double InsideTest::place_of_crossing(const std::array<int, 3>& triangle, double y, double z) const {
   const auto corner = [&](std::size_t n) { return mesh_.points[static_cast<std::size_t>(triangle[n])]; };
   const Vec3d p = corner(0), q = corner(1), r = corner(2);
-  const auto [x_low, x_high] = std::minmax({p[0], q[0], r[0]});
-  if (x[0] < x_low) return passes;
-  if (x[0] >= x_high) return 0;
+  const auto [low, high] = std::minmax({p[0], q[0], r[0]});
   const Vec3d normal = cross(q - p, r - p);
-  const double height = ((p[1] - x[1]) * normal[1] + (p[2] - x[2]) * normal[2]) / normal[0];
-  return std::clamp(p[0] + height, x_low, x_high) > x[0] ? passes : 0;
+  const double place = p[0] + ((p[1] - y) * normal[1] + (p[2] - z) * normal[2]) / normal[0];
+  return std::isnan(place) ? low : std::clamp(place, low, high);
+}
+
+template <class Act>
+void InsideTest::for_each_crossing(double y, double z, Act&& act) const {
+  if (mesh_.triangles.empty()) return;
+  if (!(y >= bounds_.low[1] && y <= bounds_.high[1] && z >= bounds_.low[2] && z <= bounds_.high[2])) return;
+  const std::size_t b = bin_number(bin(1, y), bin(2, z));
+  for (std::size_t m = begin_[b]; m < begin_[b + 1]; ++m) {
+    const std::array<int, 3>& triangle = mesh_.triangles[static_cast<std::size_t>(members_[m])];
+    if (const int n = passes(triangle, y, z); n != 0) act(Crossing{place_of_crossing(triangle, y, z), n});
+  }
 }
 
 int InsideTest::winding_number(const Vec3d& x) const {
-  if (mesh_.triangles.empty() || !(x[0] < bounds_.high[0])) return 0;
-  for (int axis = 1; axis < 3; ++axis)
-    if (!(x[axis] >= bounds_.low[axis] && x[axis] <= bounds_.high[axis])) return 0;
-  const std::size_t b = bin_number(bin(1, x[1]), bin(2, x[2]));
   int sum = 0;
-  for (std::size_t m = begin_[b]; m < begin_[b + 1]; ++m)
-    sum += crossing(mesh_.triangles[static_cast<std::size_t>(members_[m])], x);
+  if (!(x[0] < bounds_.high[0])) return sum;  // far beyond a body most points are
+  for_each_crossing(x[1], x[2], [&](const Crossing& c) { sum += c.x > x[0] ? c.passes : 0; });
   return sum;
+}
+
+void InsideTest::contains_on_line(double y, double z, std::span<const double> x, std::span<char> inside) const {
+  std::vector<Crossing> crossings;
+  for_each_crossing(y, z, [&](const Crossing& c) { crossings.push_back(c); });
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    int sum = 0;
+    for (const Crossing& c : crossings) sum += c.x > x[i] ? c.passes : 0;
+    inside[i] = sum > 0 ? 1 : 0;
+  }
 }
 
 }  // namespace fascia

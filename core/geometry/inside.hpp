@@ -4,6 +4,8 @@
 #include "core/geometry/mesh.hpp"
 #include "core/geometry/triangle_tree.hpp"
 
+#include <span>
+
 namespace fascia {
 
 /// Which points lie in a closed surface, and how far from it.
@@ -22,6 +24,10 @@ class InsideTest {
   /// How often the surface surrounds the point: 1 inside of an outward surface, −1 inside of an inward one.
   int winding_number(const Vec3d& x) const;
 
+  /// contains() for many points of a line along x: the triangles are looked through once.
+  /// @param inside  receives 1 or 0 for each of x
+  void contains_on_line(double y, double z, std::span<const double> x, std::span<char> inside) const;
+
   /// Distance to the surface [m], not signed; `nearest` receives the surface's nearest point.
   double distance(const Vec3d& x, Vec3d* nearest = nullptr) const { return tree_.distance(x, nearest); }
 
@@ -33,7 +39,15 @@ class InsideTest {
   template <class Act>
   void for_each_bin(const std::array<int, 3>& triangle, Act&& act) const;
   void fill_bins();
-  int crossing(const std::array<int, 3>& triangle, const Vec3d& x) const;
+  /// Where a triangle meets a line along x, and how often rays from smaller x pass it outwards.
+  struct Crossing {
+    double x;
+    int passes;
+  };
+  template <class Act>
+  void for_each_crossing(double y, double z, Act&& act) const;
+  int passes(const std::array<int, 3>& triangle, double y, double z) const;
+  double place_of_crossing(const std::array<int, 3>& triangle, double y, double z) const;
 
   TriangleMesh mesh_;
   TriangleTree tree_;

@@ -44,6 +44,9 @@ void compare(const TriangleMesh& mesh, const std::vector<Vec3d>& queries, double
     const double distance = test.distance(x, &nearest);
     ASSERT_NEAR(distance, distance_by_scan(mesh, x), 1e-12);
     ASSERT_NEAR(distance, norm(nearest - x), 1e-15);
+    char on_line = 2;
+    test.contains_on_line(x[1], x[2], {&x[0], 1}, {&on_line, 1});
+    ASSERT_EQ(on_line, test.contains(x) ? 1 : 0);
     if (distance < margin) continue;
     ++compared;
     const double winding = winding_by_solid_angle(mesh, x);
@@ -123,6 +126,24 @@ TEST(InsideTest, cavity_and_inward_surface) {
   EXPECT_TRUE(test.contains({{0.5, 2, 2}}));
   EXPECT_TRUE(test.contains({{3.5, 2, 2}}));
   EXPECT_FALSE(test.contains({{4.5, 2, 2}}));
+}
+
+/// Planes of a box that hold the line, or end where a point lies, are decided alike.
+TEST(InsideTest, a_line_finds_what_its_points_find) {
+  const TriangleMesh mesh = box_surface({{0, 0, 0}}, {{4, 4, 4}}, 2, 2, 2);
+  const InsideTest test(mesh);
+  const std::vector<double> places{-1, 0, 1e-9, 1, 2, 3, 4 - 1e-9, 4, 5};
+  std::vector<char> inside(places.size());
+  int found = 0;
+  for (const double y : places)
+    for (const double z : places) {
+      test.contains_on_line(y, z, places, inside);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(inside[i], test.contains({{places[i], y, z}}) ? 1 : 0) << places[i] << " " << y << " " << z;
+        found += inside[i];
+      }
+    }
+  EXPECT_GE(found, 5 * 5 * 5);
 }
 
 TEST(InsideTest, empty_surface) {

@@ -60,6 +60,19 @@ TEST(Matter, CutsVoxelsAtACurvedSurface) {
   EXPECT_TRUE(m.chains.empty());
 }
 
+TEST(Matter, CutsByLinesAsByPoints) {
+  SolidDomain domain = ellipsoid_domain({{2, 1.5, 1}}, 12);
+  Matter by_points, by_lines;
+  add_solid(by_points, domain, 0.15);
+  domain.contains_on_line = [test = std::make_shared<InsideTest>(domain.surface)](
+                                double y, double z, std::span<const double> x, std::span<char> inside) {
+    test->contains_on_line(y, z, x, inside);
+  };
+  add_solid(by_lines, domain, 0.15);
+  EXPECT_EQ(by_lines.voxels.x, by_points.voxels.x);
+  EXPECT_EQ(by_lines.voxels.volume, by_points.voxels.volume);
+}
+
 /// A wall a third as thick as a voxel, in a layer of 100, off their centres: found through its surface.
 TEST(Matter, FindsWallsThinnerThanAVoxel) {
   SolidDomain d = box_domain({{0, 0, 0.98}}, {{2, 2, 1.05}});
