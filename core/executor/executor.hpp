@@ -127,7 +127,8 @@ class CpuExecutor {
  private:
   template <class Kind>
   using Several = std::vector<Kind>;
-  /// Kinds of blocks, in the order in which their strains and what they keep lie, and in which nodes sum them.
+  /// Kinds of blocks, in the order in which their strains and what they keep lie, and in which nodes sum them. Points,
+  /// which there are always, come first: they clear the matrix to which the others add.
   using Blocks =
       std::tuple<Several<PointExecutor>, Several<ElementExecutor>, Several<ShellExecutor>, Several<UserExecutor>>;
   template <class Kind>

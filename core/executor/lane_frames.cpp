@@ -57,6 +57,21 @@ LaneFrames::LaneFrames(const PointSet& set) : group_(at(set.group_count())) {
   }
   close();
   colors_ = color_items(patch_count(), set.node_count(), [&](int patch) { return this->nodes(patch); });
+  find_new_nodes(set.node_count());
+}
+
+void LaneFrames::find_new_nodes(int node_count) {
+  std::vector<int> first(at(node_count), -1);  // patch that has a node first
+  for (const int patch : colors_.item)
+    for (const int node : nodes(patch))
+      if (first[at(node)] < 0) first[at(node)] = patch;
+  for (int patch = 0; patch < patch_count(); ++patch) {
+    for (const int node : nodes(patch))
+      if (first[at(node)] == patch) new_node_.push_back(node);
+    new_node_begin_.push_back(static_cast<int>(new_node_.size()));
+  }
+  for (int node = 0; node < node_count; ++node)
+    if (first[at(node)] < 0) nodes_of_no_patch_.push_back(node);
 }
 
 /// Tethers are not of these: their forces are read by groups.

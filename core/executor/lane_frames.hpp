@@ -44,6 +44,9 @@ class LaneFrames {
   int patch_count() const { return static_cast<int>(patch_group_begin_.size()) - 1; }
   std::span<const int> groups(int patch) const { return part(patch_group_, patch_group_begin_, patch); }
   std::span<const int> nodes(int patch) const { return part(patch_node_, patch_node_begin_, patch); }
+  /// Its nodes that no patch of an earlier colour has; and nodes of no patch.
+  std::span<const int> new_nodes(int patch) const { return part(new_node_, new_node_begin_, patch); }
+  std::span<const int> nodes_of_no_patch() const { return nodes_of_no_patch_; }
   int patch_of(int group) const { return group_[at(group)].patch; }
   /// Number of a patch's first node among those of all patches.
   int first_node(int patch) const { return patch_node_begin_[at(patch)]; }
@@ -67,6 +70,7 @@ class LaneFrames {
   static bool carries(const PointSet& set, int group);
   void add_patch(const PointSet& set, std::span<const int> groups, std::vector<int> nodes);
   void add_group(const PointSet& set, int group, std::span<const int> nodes);
+  void find_new_nodes(int node_count);
 
   std::vector<Group> group_;
   Coloring colors_;
@@ -74,6 +78,7 @@ class LaneFrames {
   AlignedVector<double> shape_;
   std::vector<int> patch_group_, patch_group_begin_{0};
   std::vector<int> patch_node_, patch_node_begin_{0};
+  std::vector<int> new_node_, new_node_begin_{0}, nodes_of_no_patch_;
 };
 
 }  // namespace fascia

@@ -1,11 +1,14 @@
 #include "core/executor/point_executor.hpp"
 
 #include "core/base/errors.hpp"
+#include "core/executor/point_columns.hpp"
 #include "core/executor/point_kernels.hpp"
 #include "core/linear/block_matrix.hpp"
 
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <vector>
 
 /// Entries of the tangent of points.
 namespace fascia {
@@ -13,98 +16,6 @@ namespace fascia {
 using namespace kernels;
 
 namespace {
-
-/// A frame as it moves the points of a batch; nothing at first.
-struct PointFrame {
-  FrameKind kind;
-  LaneArray<22> rows;  ///< w, g (3), A (9): B of an affine frame, else Q B; w Q (9) with Q = I + D
-
-  void set(FrameKind k, const double* shape, bool carries, int batch, const Mat3<Lanes>& Q) {
-    kind = k;
-    const Vec3<Lanes> g = vector(shape, 1, batch);
-    Mat3<Lanes> A = carries ? outer(vector(shape, 4, batch), g) + Mat3<Lanes>::diagonal(row(shape, 0, batch))
-                            : kernels::matrix(shape, 4, batch);
-    if (kind != FrameKind::affine) A = Q * A;
-    rows.set(0, row(shape, 0, batch));
-    for (int i = 0; i < 3; ++i) {
-      rows.set(1 + i, g[i]);
-      for (int j = 0; j < 3; ++j) {
-        rows.set(4 + 3 * i + j, A(i, j));
-        rows.set(13 + 3 * i + j, Q(i, j) * row(shape, 0, batch));
-      }
-    }
-  }
-  Lanes w() const { return rows[0]; }
-  Lanes g(int i) const { return rows[1 + i]; }
-  Lanes A(int i, int j) const { return rows[4 + 3 * i + j]; }
-  Lanes Q_weighted(int i, int j) const { return rows[13 + 3 * i + j]; }
-
-  static Vec3<Lanes> vector(const double* shape, int first, int batch) {
-    return {{row(shape, first, batch), row(shape, first + 1, batch), row(shape, first + 2, batch)}};
-  }
-};
-
-/// The motion of a point for a unit of one degree of freedom of a frame; rigid ones turn by e × of each column.
-template <bool Blend>
-PointMotion<Lanes> unit_motion(const PointFrame& f, int dof) {
-  PointMotion<Lanes> d;
-  if (dof < 3) {
-    for (int j = 0; j < 3; ++j) d.H(dof, j) = f.g(j);
-  } else if (f.kind == FrameKind::rigid) {
-    const int next = (dof - 2) % 3, last = (dof - 1) % 3;
-    for (int j = 0; j < 3; ++j) {
-      d.H(next, j) = -f.A(last, j);
-      d.H(last, j) = f.A(next, j);
-      if constexpr (Blend) {
-        d.Dbar(next, j) = -f.Q_weighted(last, j);
-        d.Dbar(last, j) = f.Q_weighted(next, j);
-      }
-    }
-  } else {
-    const int q = (dof - 3) / 3, i = (dof - 3) % 3;
-    for (int j = 0; j < 3; ++j) d.H(i, j) = f.A(q, j);
-    if constexpr (Blend) d.Dbar(i, q) = f.w();
-  }
-  return d;
-}
-
-/// Calls put(degree of freedom, what dP and dY are on a frame of this kind there).
-template <bool Blend, FrameKind Frame, class Put>
-inline void put_column(const PointFrame& f, const LaneMatrix& dP, const LaneMatrix& dY, const Put& put) {
-  for (int i = 0; i < 3; ++i) put(i, dP(i, 0) * f.g(0) + dP(i, 1) * f.g(1) + dP(i, 2) * f.g(2));
-  if constexpr (Frame == FrameKind::vertex) return;
-  // N = dP Aᵀ + w dY, of rigid frames with w dY Qᵀ, whose torque is its axial vector.
-  const auto moment = [&](int i, int j) {
-    Lanes sum = dP(i, 0) * f.A(j, 0) + dP(i, 1) * f.A(j, 1) + dP(i, 2) * f.A(j, 2);
-    if constexpr (Blend && Frame == FrameKind::rigid)
-      sum += dY(i, 0) * f.Q_weighted(j, 0) + dY(i, 1) * f.Q_weighted(j, 1) + dY(i, 2) * f.Q_weighted(j, 2);
-    else if constexpr (Blend)
-      sum += dY(i, j) * f.w();
-    return sum;
-  };
-  if constexpr (Frame == FrameKind::rigid) {
-    put(3, moment(2, 1) - moment(1, 2));
-    put(4, moment(0, 2) - moment(2, 0));
-    put(5, moment(1, 0) - moment(0, 1));
-  }
-  if constexpr (Frame == FrameKind::affine) {
-    for (int q = 0; q < 3; ++q)
-      for (int i = 0; i < 3; ++i) put(3 + 3 * q + i, moment(i, q));
-  }
-}
-
-/// Calls act.operator()<FrameKind>().
-template <class Act>
-void with_frame(FrameKind kind, const Act& act) {
-  switch (kind) {
-    case FrameKind::vertex:
-      return act.template operator()<FrameKind::vertex>();
-    case FrameKind::rigid:
-      return act.template operator()<FrameKind::rigid>();
-    case FrameKind::affine:
-      return act.template operator()<FrameKind::affine>();
-  }
-}
 
 /// Adds the sums over lanes of so many batches.
 void add_lane_sums(const double* batches, int count, double* out) {
@@ -123,17 +34,31 @@ void add_lane_sums(const double* batches, int count, double* out) {
 
 }  // namespace
 
-/// Frames of a group that shares them, from one on.
+/// Frames of a group that shares them, and the moduli of its points, in somebody's memory.
 struct PointExecutor::GroupOfFrames {
-  std::array<PointFrame, kMaxSlots> frames[kBatches];
+  PointFrame* frames;   ///< (slots × batches)
+  PointModuli* moduli;  ///< (batches)
 
-  const PointFrame& of(int batch, int slot) const { return frames[batch][at(slot)]; }
-  void set(const PointSet& set, const BlockState& state, int group, int first) {
-    const auto nodes = set.nodes(group);
-    for (int batch = 0; batch < kBatches; ++batch)
-      for (int a = first; a < static_cast<int>(nodes.size()); ++a)
-        frames[batch][at(a)].set(set.dofs.kind(nodes[at(a)]), set.shape_of_slot(set.slot_begin[at(group)] + a), false,
-                                 batch, broadcast(Mat3d::identity() + turn_of(state, nodes[at(a)])));
+  const PointFrame& of(int batch, int slot) const { return frames[slot * kBatches + batch]; }
+};
+
+/// These of one group.
+struct PointExecutor::FramesOfOne {
+  std::array<PointFrame, at(kMaxSlots* kBatches)> frames;
+  PointModuli moduli[kBatches];
+
+  GroupOfFrames view() { return {frames.data(), moduli}; }
+};
+
+/// These of all groups, where nodes assemble: a frame of a group is asked for with each of those before it.
+struct PointExecutor::FramesOfAll {
+  std::vector<PointFrame> frames;
+  std::vector<PointModuli> moduli;
+
+  explicit FramesOfAll(const PointSet& set)
+      : frames(at(set.slot_count() * kBatches)), moduli(at(set.group_count() * kBatches)) {}
+  GroupOfFrames of(const PointSet& set, int group) {
+    return {&frames[at(set.slot_begin[at(group)] * kBatches)], &moduli[at(group * kBatches)]};
   }
 };
 
@@ -166,8 +91,23 @@ void PointExecutor::find_pairs(const BlockMatrix& matrix) {
   }
 }
 
-/// The unit motion of one degree of freedom of slot b after another gives dP and dY, and these the forces on slots a ≥
-/// b of the group, which go into blocks of that pair of nodes alone.
+template <PointKind Kind>
+[[gnu::flatten]] void PointExecutor::set_frames(const BlockState& state, int group, const GroupOfFrames& frames) const {
+  const auto nodes = set_.nodes(group);
+  for (int a = 0; a < static_cast<int>(nodes.size()); ++a) {
+    const Mat3<Lanes> Q = broadcast(Mat3d::identity() + turn_of(state, nodes[at(a)]));
+    const double* shape = set_.shape_of_slot(set_.slot_begin[at(group)] + a);
+    for (int batch = 0; batch < kBatches; ++batch)
+      frames.frames[a * kBatches + batch].set(set_.dofs.kind(nodes[at(a)]), shape, false, batch, Q);
+  }
+  const double* kept = kept_of(state, group);
+  for (int batch = 0; batch < kBatches; ++batch)
+    frames.moduli[batch].set(matrix(kept, kKeptH, batch), symmetric_matrix(kept, kKeptS, batch),
+                             material<Kind>(set_, group, batch, state, targets_), state.tangent);
+}
+
+/// The degrees of freedom of slot b give dP and dY, and these the forces on slots a ≥ b of the group, which go into
+/// blocks of that pair of nodes alone.
 /// All that it calls is inlined: matrices of lanes that are passed by memory take as long as what is done with them.
 template <PointKind Kind>
 [[gnu::flatten]] void PointExecutor::assemble_slot(const BlockState& state, int group, int b,
@@ -183,17 +123,14 @@ template <PointKind Kind>
     if (together(first_slot + a, first_slot + b))
       prefetch_to_add(matrix_out.at_place(pair[k++]), set_.dofs.size(nodes[at(a)]) * columns);
   LaneMatrix dP[kBatches][kMostDofs], dY[kBatches][kBlend ? kMostDofs : 1];
-  for (int batch = 0; batch < kBatches; ++batch) {
-    const auto m = material<Kind>(set_, group, batch, state, targets_);
-    const PointMotion<Lanes> x = kept_motion<Kind.stabilization>(kept_of(state, group), batch);
-    const TangentStress<Lanes> stress = kept_stress<Kind.stabilization>(kept_of(state, group), batch);
-    for (int k = 0; k < columns; ++k) {
-      const auto d = point_stress_differential<Kind.stabilization>(x, stress, m, state.tangent,
-                                                                   unit_motion<kBlend>(frames.of(batch, b), k));
-      dP[batch][k].set(d.dP * m.volume);
-      if constexpr (kBlend) dY[batch][k].set(d.dY * m.volume);
-    }
-  }
+  with_frame(set_.dofs.kind(nodes[at(b)]), [&]<FrameKind Frame>() {
+    for (int batch = 0; batch < kBatches; ++batch)
+      stress_columns<Kind.stabilization, Frame>(frames.moduli[batch],
+                                                kept_motion<Kind.stabilization>(kept_of(state, group), batch),
+                                                kept_stress<Kind.stabilization>(kept_of(state, group), batch),
+                                                material<Kind>(set_, group, batch, state, targets_), state.tangent,
+                                                frames.of(batch, b), dP[batch], dY[batch]);
+  });
   for (int a = b; a < end; ++a) {
     if (!together(first_slot + a, first_slot + b)) continue;
     const int rows = set_.dofs.size(nodes[at(a)]), stride = (upper ? 1 : columns) * kBatchWidth;
@@ -215,21 +152,20 @@ template <PointKind Kind>
 
 template <PointKind Kind>
 void PointExecutor::assemble_group(const BlockState& state, int group, Entries entries, BlockMatrix& matrix_out) const {
-  GroupOfFrames frames;
-  frames.set(set_, state, group, 0);
+  FramesOfOne own;
+  set_frames<Kind>(state, group, own.view());
   const int n = static_cast<int>(set_.nodes(group).size());
-  for (int b = 0; b < n; ++b) assemble_slot<Kind>(state, group, b, frames, entries, matrix_out);
+  for (int b = 0; b < n; ++b) assemble_slot<Kind>(state, group, b, own.view(), entries, matrix_out);
 }
 
 /// Fills all blocks of which a node is the first.
 void PointExecutor::assemble_node(const BlockState& state, int node, Entries entries, BlockMatrix& matrix_out) const {
-  GroupOfFrames frames;
   for (int k = set_.node_slot_begin[at(node)]; k < set_.node_slot_begin[at(node + 1)]; ++k) {
     const int slot = set_.node_slot[at(k)], group = group_of_slot_[at(slot)], b = slot - set_.slot_begin[at(group)];
     if (frames_.lanes().count(group) > 0) continue;
-    frames.set(set_, state, group, b);
-    with_kind(rule_of(group),
-              [&]<PointKind Kind>() { assemble_slot<Kind>(state, group, b, frames, entries, matrix_out); });
+    with_kind(rule_of(group), [&]<PointKind Kind>() {
+      assemble_slot<Kind>(state, group, b, frames_of_all_->of(set_, group), entries, matrix_out);
+    });
   }
 }
 
@@ -244,6 +180,7 @@ template <PointKind Kind, FrameKind Frame>
   const std::uint16_t* starts = lanes.starts(group);
   const bool upper = matrix_out.fills_upper();
   std::array<PointFrame, LaneFrames::kMostFrames> frames;
+  PointModuli moduli;
   for (int batch = 0; batch < kBatches; ++batch) {
     const auto m = material<Kind>(set_, group, batch, state, targets_);
     const PointMotion<Lanes> x = kept_motion<Kind.stabilization>(kept_of(state, group), batch);
@@ -255,16 +192,12 @@ template <PointKind Kind, FrameKind Frame>
       frames[at(a)].set(Frame, lanes.shape(group) + a * lanes.shape_rows(group) * kGroupSize, lanes.carries(group),
                         batch, Mat3<Lanes>::identity() + matrix_of(D));
     }
+    moduli.set(x.H, stress.S, m, state.tangent);
     const std::uint32_t* pair = pairs_.data() + pair_begin_[at(set_.slot_begin[at(group)])] + batch * kBatchWidth;
     const std::uint32_t* end = pair + n * (n + 1) / 2 * kGroupSize;
     for (int b = 0; b < n; ++b) {
       LaneMatrix dP[kDofs], dY[kBlend ? kDofs : 1];
-      for (int k = 0; k < kDofs; ++k) {
-        const auto d = point_stress_differential<Kind.stabilization>(x, stress, m, state.tangent,
-                                                                     unit_motion<kBlend>(frames[at(b)], k));
-        dP[k].set(d.dP * m.volume);
-        if constexpr (kBlend) dY[k].set(d.dY * m.volume);
-      }
+      stress_columns<Kind.stabilization, Frame>(moduli, x, stress, m, state.tangent, frames[at(b)], dP, dY);
       for (int a = b; a < n; ++a, pair += kGroupSize) {
         if (entries == Entries::diagonal && a > b) continue;
         for (int lane = 0; lane < kBatchWidth && pair + kGroupSize < end && entries == Entries::all; ++lane)
@@ -291,7 +224,19 @@ void PointExecutor::assemble_one(const BlockState& state, int group, Entries ent
     assemble_lanes<Kind, FrameKind::affine>(state, group, entries, matrix_out);
 }
 
-/// Groups of one colour, or patches of one, at the same time; nodes, where colours have few groups.
+/// All blocks by nodes, of groups whose colours are small.
+void PointExecutor::assemble_by_nodes(const BlockState& state, Entries entries, BlockMatrix& matrix_out) {
+  if (frames_of_all_ == nullptr) frames_of_all_ = std::make_shared<FramesOfAll>(set_);
+  pool_.for_ranges(set_.group_count(), 1, [&](int group, int) {
+    if (frames_.lanes().count(group) > 0) return;
+    with_kind(rule_of(group),
+              [&]<PointKind Kind>() { set_frames<Kind>(state, group, frames_of_all_->of(set_, group)); });
+  });
+  pool_.for_ranges(set_.node_count(), 1, [&](int node, int) { assemble_node(state, node, entries, matrix_out); });
+}
+
+/// Patches of one colour at the same time, then groups of one; nodes, where colours have few groups. A patch clears the
+/// rows that it is the first to add to, which then are near: cleared all at once they would go to memory and back.
 void PointExecutor::assemble(const BlockState& state, BlockMatrix& matrix_out, Entries entries) {
   const LaneFrames& lanes = frames_.lanes();
   if (pattern_ != matrix_out.pattern()) find_pairs(matrix_out);
@@ -299,19 +244,26 @@ void PointExecutor::assemble(const BlockState& state, BlockMatrix& matrix_out, E
     for (const int group : groups)
       with_kind(rule_of(group), [&]<PointKind Kind>() { assemble_one<Kind>(state, group, entries, matrix_out); });
   };
+  constexpr int kRowGrain = 64;
+  const std::span<const int> others = lanes.nodes_of_no_patch();
+  pool_.for_ranges(static_cast<int>(others.size()), kRowGrain, [&](int begin, int end) {
+    for (const int node : others.subspan(at(begin), at(end - begin))) matrix_out.clear_row(node);
+  });
+  const Coloring& patches = lanes.colors();
+  for (std::size_t c = 0; c + 1 < patches.begin.size(); ++c)
+    pool_.for_chunks(patches.begin[c + 1] - patches.begin[c], [&](int i) {
+      const int patch = patches.item[at(patches.begin[c] + i)];
+      for (const int node : lanes.new_nodes(patch)) matrix_out.clear_row(node);
+      assemble_groups(lanes.groups(patch));
+    });
   const Coloring& shared = frames_.shared_colors();
-  if (!group_of_slot_.empty())
-    pool_.for_ranges(set_.node_count(), 1, [&](int node, int) { assemble_node(state, node, entries, matrix_out); });
-  for (std::size_t c = 0; group_of_slot_.empty() && c + 1 < shared.begin.size(); ++c) {
+  if (!group_of_slot_.empty()) return assemble_by_nodes(state, entries, matrix_out);
+  for (std::size_t c = 0; c + 1 < shared.begin.size(); ++c) {
     const std::span<const int> groups =
         std::span(shared.item).subspan(at(shared.begin[c]), at(shared.begin[c + 1] - shared.begin[c]));
     pool_.for_ranges(static_cast<int>(groups.size()), 8,
                      [&](int begin, int end) { assemble_groups(groups.subspan(at(begin), at(end - begin))); });
   }
-  const Coloring& patches = lanes.colors();
-  for (std::size_t c = 0; c + 1 < patches.begin.size(); ++c)
-    pool_.for_chunks(patches.begin[c + 1] - patches.begin[c],
-                     [&](int i) { assemble_groups(lanes.groups(patches.item[at(patches.begin[c] + i)])); });
 }
 
 }  // namespace fascia

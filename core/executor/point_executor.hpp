@@ -6,6 +6,7 @@
 #include "core/executor/point_frames.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,7 @@ class PointExecutor {
   /// Where a step led there, add_sums() gives what acts with extrapolated stresses.
   void linearize(const BlockState& now, const BlockState* start, const BlockDirection* step, std::span<double> kept);
   void compute_product(const BlockState& state, const BlockDirection& direction);
+  /// Clears the matrix before: the blocks of other executors are added after these.
   void assemble(const BlockState& state, BlockMatrix& matrix, Entries entries);
   void add_sums(int node, NodeSum& sum) const { frames_.add_sums(node, false, sum); }
   InternalEnergy energy() const;
@@ -85,10 +87,15 @@ class PointExecutor {
   template <PointKind Kind>
   void product_of_group(const BlockState& state, int group, Rows rows);
   struct GroupOfFrames;
+  struct FramesOfOne;
+  struct FramesOfAll;
+  template <PointKind Kind>
+  void set_frames(const BlockState& state, int group, const GroupOfFrames& frames) const;
   template <PointKind Kind>
   void assemble_slot(const BlockState& state, int group, int slot, const GroupOfFrames& frames, Entries entries,
                      BlockMatrix& matrix) const;
   void assemble_node(const BlockState& state, int node, Entries entries, BlockMatrix& matrix) const;
+  void assemble_by_nodes(const BlockState& state, Entries entries, BlockMatrix& matrix);
   template <PointKind Kind>
   void assemble_group(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
   template <PointKind Kind>
@@ -110,6 +117,7 @@ class PointExecutor {
   std::vector<std::uint32_t> pairs_;     ///< places of blocks of pairs of frames of each group, or of each lane of one
   std::vector<std::size_t> pair_begin_;  ///< (slots); of lanes by the group's first slot
   std::vector<int> group_of_slot_;       ///< empty where groups are assembled by colours
+  std::shared_ptr<FramesOfAll> frames_of_all_;  ///< where nodes assemble, from the first time on
   std::vector<double> group_elastic_, group_stabilization_, group_viscous_, group_rounding_, group_tether_;
   std::vector<double> part_tether_;
   AlignedVector<double> targets_;

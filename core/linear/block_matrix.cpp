@@ -230,11 +230,9 @@ int BlockMatrix::find(int row, int column) const {
   return static_cast<int>(std::lower_bound(begin, end, column) - column_.begin());
 }
 
-void BlockMatrix::set_zero(ThreadPool& pool) {
-  pool.for_ranges(rows(), kRowGrain, [&](int begin, int end) {
-    std::fill(values_.data() + value_begin_[at(row_begin(begin))], values_.data() + value_begin_[at(row_begin(end))],
-              0.0);
-  });
+void BlockMatrix::clear_row(int row) {
+  std::fill(values_.data() + value_begin_[at(row_begin(row))], values_.data() + value_begin_[at(row_begin(row + 1))],
+            0.0);
 }
 
 /// Each block below the diagonal has a mirror of its own, so that rows write at different places.

@@ -42,7 +42,8 @@ class BlockMatrix {
   int find(int row, int column) const;  ///< index of a block that is in the pattern
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
 
-  void set_zero(ThreadPool& pool);
+  /// Sets the blocks of a row to zero.
+  void clear_row(int row);
   /// Only blocks on and above the diagonal are stored; otherwise those on and below are filled, then mirrored.
   bool fills_upper() const { return uniform_ > 0; }
   /// Copies the blocks below the diagonal, transposed, above it, where those are filled.

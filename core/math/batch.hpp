@@ -31,7 +31,8 @@ struct Batch {
   Register v{};
 
   Batch() = default;
-  Batch(double s) : v(Register{} + s) {}  // NOLINT: a batch of equal numbers reads like the number
+  /// Less zero is the number itself, −0 too, so that no instruction is spent on it; plus zero is not.
+  Batch(double s) : v(s - Register{}) {}  // NOLINT: a batch of equal numbers reads like the number
   static Batch of(const Register& r) {
     Batch b;
     b.v = r;

@@ -116,8 +116,16 @@ struct ElasticPoint {
   }
 };
 
-/// Components of a symmetric matrix, and the matrix that has one of them.
+/// Components of a symmetric matrix, where each entry is among them, and the matrix that has a one in one of them.
 inline constexpr int kSymmetricPlaces[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+inline constexpr int kSymmetricPlaceOf[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+template <class T>
+FASCIA_HD Mat3<T> symmetric_unit(int component) {
+  Mat3<T> m;
+  const int i = kSymmetricPlaces[component][0], j = kSymmetricPlaces[component][1];
+  m(i, j) = m(j, i) = T(1);
+  return m;
+}
 
 /// Stiffness blocks of a point: what of them depends on one node only is computed once a node. Of any law, by its dS of
 /// the six unit strains; laws whose blocks have a closed form say so below.
@@ -136,8 +144,7 @@ class ElementStiffness {
     const SolidLaw<L, T> law = m.law();
     const StVenantKirchhoff<T> viscous{m.lambda * m.viscosity, m.mu * m.viscosity};
     for (int c = 0; c < 6; ++c) {
-      Mat3<T> dE;
-      dE(kSymmetricPlaces[c][0], kSymmetricPlaces[c][1]) = dE(kSymmetricPlaces[c][1], kSymmetricPlaces[c][0]) = T(1);
+      const Mat3<T> dE = symmetric_unit<T>(c);
       dS_[c] = law.second_piola_differential(point.at, point.p, k, dE, full) + viscous.second_piola(dE);
     }
     if (full) S_ = point.S + point.S_viscous;

@@ -173,6 +173,27 @@ struct PointStressDifferential {
   Mat3<T> dP, dY;
 };
 
+/// Adds what a tie of the frames' rotations to F gives the directional derivative of P and Y.
+template <Stabilization Tie, class T, class Material>
+FASCIA_HD void add_tie_differential(const PointMotion<T>& x, const TangentStress<T>& s, const Material& material,
+                                    Tangent tangent, const PointMotion<T>& d, PointStressDifferential<T>& r) {
+  if constexpr (Tie == Stabilization::drilling) {
+    const Mat3<T> dT = skew(drilling_axis(drilling_differential(x, d), material.stabilization)), dTt = transpose(dT);
+    r.dP += dT + x.Dbar * dT;
+    r.dY = dTt + x.H * dTt;
+    if (tangent == Tangent::full) {
+      const Mat3<T> Tm = skew(s.drilling);
+      r.dP += d.Dbar * Tm;
+      r.dY += times_transpose(d.H, Tm);
+    }
+  }
+  if constexpr (Tie == Stabilization::affine) {
+    const Mat3<T> dG = (d.H - d.Dbar) * material.stabilization;
+    r.dP += dG;
+    r.dY = dG * T(-1);
+  }
+}
+
 /// Directional derivative of P and Y, with the frames' rotations.
 ///
 /// @param s  the stresses of the geometric part: tangent_stress(), or extrapolated
@@ -192,21 +213,7 @@ FASCIA_HD PointStressDifferential<T> point_stress_differential(const PointMotion
   const Mat3<T> dS = stress_differential(material, x.H, dE);
   r.dP = dS + x.H * dS;
   if (tangent == Tangent::full) r.dP += d.H * s.S;
-  if constexpr (Tie == Stabilization::drilling) {
-    const Mat3<T> dT = skew(drilling_axis(drilling_differential(x, d), material.stabilization)), dTt = transpose(dT);
-    r.dP += dT + x.Dbar * dT;
-    r.dY = dTt + x.H * dTt;
-    if (tangent == Tangent::full) {
-      const Mat3<T> Tm = skew(s.drilling);
-      r.dP += d.Dbar * Tm;
-      r.dY += times_transpose(d.H, Tm);
-    }
-  }
-  if constexpr (Tie == Stabilization::affine) {
-    const Mat3<T> dG = (d.H - d.Dbar) * material.stabilization;
-    r.dP += dG;
-    r.dY = dG * T(-1);
-  }
+  add_tie_differential<Tie>(x, s, material, tangent, d, r);
   return r;
 }
 

@@ -11,7 +11,7 @@ namespace fascia {
 
 namespace {
 
-/// Products by blocks of a tangent. An assembly takes as long as 4 of tetrahedra, 6 of shells, and 10 to 50 of points.
+/// Products by blocks of a tangent. An assembly takes as long as 4 of tetrahedra, 6 of shells, and 5 to 10 of points.
 constexpr int kWorthAssembling = 20;
 
 }  // namespace

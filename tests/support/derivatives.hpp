@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,6 +110,7 @@ class DerivativeTest : public testing::TestWithParam<Case> {
   }
   void expect_assembled_equals_product(const Linearization& lin) {
     BlockMatrix matrix(built_.model.points);
+    std::fill_n(matrix.values(), matrix.value_count(), std::numeric_limits<double>::quiet_NaN());  // all is cleared
     executor_.assemble(lin, matrix);
     const std::vector<double> d = random_direction(built_.model), free = product(lin, d);
     std::vector<double> assembled(size());

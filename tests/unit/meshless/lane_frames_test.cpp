@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <ostream>
 
 namespace fascia::lane_frames_test {
@@ -184,6 +186,8 @@ TEST_P(LaneFramesOf, FillTheDiagonalAlike) {
   Linearization lin;
   executor.linearize(state_, {}, Tangent::material, lin);
   BlockMatrix all(set), diagonal(set);
+  for (BlockMatrix* matrix : {&all, &diagonal})
+    std::fill_n(matrix->values(), matrix->value_count(), std::numeric_limits<double>::quiet_NaN());
   executor.assemble(lin, all);
   executor.assemble(lin, diagonal, Entries::diagonal);
   for (int node = 0; node < set.node_count(); ++node) {
