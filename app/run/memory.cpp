@@ -172,6 +172,9 @@ class Setup {
     const double directions = on_gpu || s_.model.loads_are_conservative() ? 0 : 24;
     // Points that remember stresses have what fades of them, and a linearisation keeps what they are given.
     to_come_.keep(8.0 * (6 + kGivenRows) * static_cast<double>(s_.model.points.memory.lanes()));
+    // Schemes other than implicit Euler, which this system began with, keep what they predict.
+    if (dt > 0 && scheme_of(solver.kind) != TimeScheme::implicit_euler)
+      to_come_.keep(2.0 * sizeof(PoseMotion) * static_cast<double>(s_.model.node_count()));
     to_come_.keep(3 * state_bytes(s_.model) + (12 + directions) * vector_bytes(s_.model));
     if (!on_gpu && s_.model.free_dof_count() > 0) of_solver();
   }

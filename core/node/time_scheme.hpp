@@ -78,7 +78,7 @@ struct StepConstants {
   }
 };
 
-/// Constants of a step, and the q and w of each node that it starts from.
+/// Constants of a step, and the q and w of each node that it starts from; of implicit Euler's rule none are asked for.
 struct StepForm : StepConstants {
   std::vector<PoseMotion> q, w;
 };

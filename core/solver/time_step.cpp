@@ -30,15 +30,16 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   surfaces_.begin_step();
   executor_.start_from(start_);
   static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);
-  clear_as(pool, start_.u, form_.q);
-  clear_as(pool, start_.u, form_.w);
   history_.inverse_step = 0;
-  if (dt > 0) {
-    space_.for_each(model_.node_count(),
-                    loops::Predict{step_view(), data_or_null(memory.motion), data_or_null(memory.velocity),
-                                   data_or_null(memory.acceleration)});
-    if (model_.points.damped) predict_strain(memory);
+  if (scheme != TimeScheme::implicit_euler) {
+    clear_as(pool, start_.u, form_.q);
+    clear_as(pool, start_.u, form_.w);
+    if (dt > 0)
+      space_.for_each(model_.node_count(),
+                      loops::Predict{step_view(), data_or_null(memory.motion), data_or_null(memory.velocity),
+                                     data_or_null(memory.acceleration)});
   }
+  if (dt > 0 && model_.points.damped) predict_strain(memory);
   if (!memory_.empty()) {
     if (memory_.remembers() && start_.memory.empty()) rest_as_it_is(start_);
     state_.memory = start_.memory;

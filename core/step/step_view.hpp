@@ -14,9 +14,9 @@ struct StepView {
   const Mat3d *D0 = nullptr, *rate0 = nullptr;
   Vec3d *du = nullptr, *u = nullptr;
   Mat3d *Ds = nullptr, *D = nullptr;
-  PoseMotion *q = nullptr, *w = nullptr;
-  double* turned = nullptr;  ///< (constraints × 3)
-  bool turning = false;      ///< any node is a frame: there are D, Ds and rates
+  PoseMotion *q = nullptr, *w = nullptr;  ///< not of implicit Euler's rule, in which they are 0 and v
+  double* turned = nullptr;               ///< (constraints × 3)
+  bool turning = false;                   ///< any node is a frame: there are D, Ds and rates
 
   FASCIA_HD Mat3d D_at_start(int i) const { return turning ? D0[i] : Mat3d{}; }
   FASCIA_HD Mat3d D_now(int i) const { return turning ? D[i] : Mat3d{}; }
@@ -27,20 +27,25 @@ struct StepView {
     n.inertia = model.inertia[i];
     n.v.u = v0[i];
     n.du = du[i];
-    n.q = q[i];
-    n.w = w[i];
     if (turning) {
       n.D = D0[i];
       n.v.Q = rate0[i];
       n.Ds = Ds[i];
+    }
+    if (step.scheme == TimeScheme::implicit_euler) {
+      n.w = n.v;
+    } else {
+      n.q = q[i];
+      n.w = w[i];
     }
     return n;
   }
   /// Inertia of the step at a vertex: a point mass asks for less than a frame.
   FASCIA_HD StepInertia vertex_inertia(int i) const {
     const FrameInertia* damping = model.damping_of(i);
-    return step_inertia(step, model.inertia[i].mass, damping != nullptr ? damping->mass : 0, du[i], q[i].u, w[i].u,
-                        v0[i]);
+    const bool euler = step.scheme == TimeScheme::implicit_euler;
+    return step_inertia(step, model.inertia[i].mass, damping != nullptr ? damping->mass : 0, du[i],
+                        euler ? Vec3d{} : q[i].u, euler ? v0[i] : w[i].u, v0[i]);
   }
 };
 

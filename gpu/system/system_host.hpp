@@ -115,8 +115,10 @@ StepInProgress System<Space>::step_in_progress() const {
   increment.turned.resize(model_.constraints.size());
   if (!increment.turned.empty()) turned_.download(std::span(increment.turned[0].data(), turned_.size()));
   static_cast<StepConstants&>(out.form) = step_;
-  out.form.q = q_.downloaded();
-  out.form.w = w_.downloaded();
+  if (step_.scheme != TimeScheme::implicit_euler) {
+    out.form.q = q_.downloaded();
+    out.form.w = w_.downloaded();
+  }
   out.history = strain_history();
   out.factors = factors_;
   if (!surfaces_.empty()) out.pressures = surfaces_.followed();

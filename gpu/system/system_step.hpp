@@ -27,14 +27,16 @@ void System<Space>::begin_step(const Pose& start, double dt, TimeScheme scheme, 
   if (!surfaces_.empty()) surfaces_.begin_step();
   step_ = StepConstants::of(scheme, dt, memory.step);
   inverse_step_ = 0;
-  if (dt > 0) {
-    Space::for_each(model_.node_count(), loops::Predict{step_view(), memory.motion.data(), memory.velocity.data(),
-                                                        memory.acceleration.data()});
-    if (damped_) predict_strain(memory);
-  } else {
-    q_.set_zero();
-    w_.set_zero();
+  if (scheme != TimeScheme::implicit_euler) {
+    if (dt > 0) {
+      Space::for_each(model_.node_count(), loops::Predict{step_view(), memory.motion.data(), memory.velocity.data(),
+                                                          memory.acceleration.data()});
+    } else {
+      q_.set_zero();
+      w_.set_zero();
+    }
   }
+  if (dt > 0 && damped_) predict_strain(memory);
   if (!memory_.empty()) {
     if (memory_.remembers() && start_.begin_memory(memory_.size())) {  // as it is for ever
       memory_.prepare({});

@@ -120,6 +120,27 @@ TEST(TimeScheme, OrderInTime) {
   }
 }
 
+/// Implicit Euler's rule keeps nothing that it predicts, and takes nothing that another scheme has left in the system.
+TEST(TimeScheme, EulerFollowsOtherSchemes) {
+  const double dt = 0.01;
+  for (const char* name : {"rigid frames", "vertices", "mass damping"}) {
+    const Case c = make_case(name);
+    ThreadPool pool(1);
+    const SolverSettings settings = tight();
+    MechanicalSystem fresh(c.model, pool, settings), used(c.model, pool, settings);
+    used.begin_step(c.start, dt, TimeScheme::midpoint, {});
+    used.evaluate();
+    double energies[2];
+    for (int k = 0; k < 2; ++k) {
+      MechanicalSystem& system = k == 0 ? fresh : used;
+      system.begin_step(c.start, 0.5 * dt, TimeScheme::implicit_euler, {});
+      energies[k] = system.evaluate().energy;
+    }
+    EXPECT_GT(energies[0], 0) << name;
+    EXPECT_EQ(energies[0], energies[1]) << name;
+  }
+}
+
 /// All schemes of second order go to the same motion.
 TEST(TimeScheme, SchemesAgree) {
   for (const char* name : {"rigid frames", "stiffness damping", "turned boundary"}) {
