@@ -45,7 +45,6 @@ class ElementBody final : public ModelBody {
   Attachment attach_point(std::size_t point) const override;
   Attachment attach_surface(std::size_t point) const override;
   std::vector<Mat3d> gradients(const State& state) const override;
-  std::vector<PointTensors> tensors(const State& state) const override;
   PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const override;
   TensorField tensor_field(const State& state) const override;
   std::vector<std::vector<int>> faces() const override;
@@ -59,6 +58,7 @@ class ElementBody final : public ModelBody {
   bool averaged() const { return averaged_; }
 
  private:
+  void store_tensors(const State& state, ThreadPool& pool, std::span<PointTensors> out) const override;
   using PointGradients = std::array<Mat3d, kMostRulePoints>;
   struct Strained {
     double swelling = 0;  ///< relative change of the element's volume

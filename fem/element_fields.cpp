@@ -1,4 +1,5 @@
 #include "core/base/index.hpp"
+#include "core/base/throwing_loops.hpp"
 #include "core/math/polar.hpp"
 #include "core/physics/element_law.hpp"
 #include "fem/element_body.hpp"
@@ -163,19 +164,19 @@ std::vector<Mat3d> ElementBody::gradients(const State& state) const {
   return all;
 }
 
-std::vector<PointTensors> ElementBody::tensors(const State& state) const {
+void ElementBody::store_tensors(const State& state, ThreadPool& pool, std::span<PointTensors> out) const {
+  constexpr int kGrain = 128;
   const std::vector<Averaged> average = averages(state);
   const std::size_t points = points_.size() / mesh().size();
-  std::vector<PointTensors> all;
-  all.reserve(points_.size());
-  for (std::size_t e = 0; e < mesh().size(); ++e) {
-    const PointGradients H = gradients_in(e, state);
-    const Strained element = strained(e, H);
-    for (std::size_t q = points * e; q < points * (e + 1); ++q)
-      all.push_back(tensors_of(q, H[q - points * e], remembered(q, state), element,
-                               average.empty() ? std::nullopt : std::optional(average[e])));
-  }
-  return all;
+  for_throwing_ranges(pool, static_cast<int>(mesh().size()), kGrain, [&](int begin, int end) {
+    for (std::size_t e = at(begin); e < at(end); ++e) {
+      const PointGradients H = gradients_in(e, state);
+      const Strained element = strained(e, H);
+      for (std::size_t q = points * e; q < points * (e + 1); ++q)
+        out[q] = tensors_of(q, H[q - points * e], remembered(q, state), element,
+                            average.empty() ? std::nullopt : std::optional(average[e]));
+    }
+  });
 }
 
 PointTensors ElementBody::tensors_at(const Attachment& place, std::size_t nearest, const State& state) const {

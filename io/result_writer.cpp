@@ -28,7 +28,9 @@
 #include <cstddef>
 #include <iterator>
 #include <new>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace fascia::io {
 namespace {
@@ -190,20 +192,35 @@ void fill(vtkUnstructuredGrid& grid, const VisualMesh& mesh) {
   add_fields(grid, mesh);
 }
 
+std::vector<vtkDataArray*> arrays_of(vtkUnstructuredGrid& grid) {
+  std::vector<vtkDataArray*> arrays{grid.GetPoints()->GetData(), grid.GetCells()->GetConnectivityArray(),
+                                    grid.GetCells()->GetOffsetsArray(), grid.GetCellTypesArray()};
+  for (vtkFieldData* data :
+       {static_cast<vtkFieldData*>(grid.GetPointData()), static_cast<vtkFieldData*>(grid.GetCellData())})
+    for (int k = 0; k < data->GetNumberOfArrays(); ++k) arrays.push_back(data->GetArray(k));
+  return arrays;
+}
+
+std::span<const unsigned char> bytes_of(vtkDataArray& array) {
+  const std::size_t size =
+      static_cast<std::size_t>(array.GetNumberOfValues()) * static_cast<std::size_t>(array.GetDataTypeSize());
+  if (size == 0) return {};
+  return {static_cast<const unsigned char*>(array.GetVoidPointer(0)), size};
+}
+
 /// Of an array: the writer compresses blocks, of which some are taken as samples, evenly spaced.
 double estimated_size(vtkDataArray& array, VtkDeflate& compressor) {
   constexpr std::size_t block = 32768, most_samples = 6;  // the writer's block; enough for a few percent
-  const std::size_t size =
-      static_cast<std::size_t>(array.GetNumberOfValues()) * static_cast<std::size_t>(array.GetDataTypeSize());
+  const std::span<const unsigned char> bytes = bytes_of(array);
+  const std::size_t size = bytes.size();
   if (size == 0) return 0;
-  const auto* bytes = static_cast<const unsigned char*>(array.GetVoidPointer(0));
   const std::size_t blocks = (size + block - 1) / block, samples = std::min(blocks, most_samples);
   double taken = 0, compressed = 0;
   std::vector<unsigned char> space(compressor.GetMaximumCompressionSpace(block));
   for (std::size_t k = 0; k < samples; ++k) {
     const std::size_t begin = k * blocks / samples * block, length = std::min(block, size - begin);
     taken += static_cast<double>(length);
-    compressed += static_cast<double>(compressor.Compress(bytes + begin, length, space.data(), space.size()));
+    compressed += static_cast<double>(compressor.Compress(bytes.data() + begin, length, space.data(), space.size()));
   }
   return compressed / taken * static_cast<double>(size) + 4 * static_cast<double>(blocks);
 }
@@ -214,17 +231,12 @@ double estimated_size(const VisualMesh& mesh) {
   vtkNew<vtkUnstructuredGrid> grid;
   fill(*grid, mesh);
   vtkNew<VtkDeflate> compressor;
-  std::vector<vtkDataArray*> arrays{grid->GetPoints()->GetData(), grid->GetCells()->GetConnectivityArray(),
-                                    grid->GetCells()->GetOffsetsArray(), grid->GetCellTypesArray()};
-  for (vtkFieldData* data :
-       {static_cast<vtkFieldData*>(grid->GetPointData()), static_cast<vtkFieldData*>(grid->GetCellData())})
-    for (int k = 0; k < data->GetNumberOfArrays(); ++k) arrays.push_back(data->GetArray(k));
   double size = 1000;  // the description
-  for (vtkDataArray* array : arrays) size += 200 + estimated_size(*array, *compressor);
+  for (vtkDataArray* array : arrays_of(*grid)) size += 200 + estimated_size(*array, *compressor);
   return size;
 }
 
-void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
+void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh, ThreadPool* pool) {
   vtkNew<vtkUnstructuredGrid> grid;
   fill(*grid, mesh);
   add_origin(*grid, mesh);
@@ -237,6 +249,11 @@ void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh) {
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   const vtkNew<VtkDeflate> compressor;
+  if (pool != nullptr) {
+    std::vector<std::span<const unsigned char>> arrays;
+    for (vtkDataArray* array : arrays_of(*grid)) arrays.push_back(bytes_of(*array));
+    compressor->look_ahead(std::move(arrays), *pool);
+  }
   writer->SetCompressor(compressor);
   writer->WriteToOutputStringOn();
   int written = 0;

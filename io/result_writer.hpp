@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/thread_pool.hpp"
 #include "core/geometry/mesh.hpp"
 #include "core/math/vec3.hpp"
 #include "io/growing_file.hpp"
@@ -47,10 +48,11 @@ struct VisualMesh {
   std::vector<int> part;  ///< cell array "part", one a cell (volumes, triangles, lines, vertices); may be empty
 };
 
-/// Writes an unstructured grid (XML, appended and compressed).
+/// Writes an unstructured grid (XML, appended and compressed), by the threads of a pool where there is one: the same
+/// file, whatever their number.
 /// @throws FileError   where it cannot be written in whole
 /// @throws InputError  where a value is not finite (names the array)
-void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh);
+void write_vtu(const std::filesystem::path& file, const VisualMesh& mesh, ThreadPool* pool = nullptr);
 
 /// Bytes of what write_vtu would write, by compressing samples of its arrays.
 double estimated_size(const VisualMesh& mesh);

@@ -33,8 +33,6 @@ class ShellBody final : public ModelBody {
   Attachment attach_point(std::size_t point) const override;
   Attachment attach_surface(std::size_t point) const override;
   std::vector<FacePoint> face_points() const override;
-  /// In the middle surface.
-  std::vector<PointTensors> tensors(const State& state) const override;
   /// At the place's height over the middle surface.
   PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const override;
   Mat3d strain_at(const Attachment& place, const State& state) const override;
@@ -49,6 +47,7 @@ class ShellBody final : public ModelBody {
   double thickness(std::size_t triangle) const { return thickness_[triangle]; }
 
  private:
+  void store_tensors(const State& state, ThreadPool& pool, std::span<PointTensors> out) const override;
   /// Membrane strain (E₁₁, E₂₂, 2E₁₂) and curvature of a triangle at a state, and where its axes are.
   struct Strained {
     std::array<double, 3> membrane{}, curvature{};

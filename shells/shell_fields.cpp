@@ -1,4 +1,5 @@
 #include "core/base/index.hpp"
+#include "core/base/throwing_loops.hpp"
 #include "core/physics/shell_triangle.hpp"
 #include "core/physics/von_mises.hpp"
 #include "shells/shell_body.hpp"
@@ -114,11 +115,12 @@ PointTensors ShellBody::tensors_of(std::size_t t, const Strained& s, double offs
           0.5 * lasting * (E[0] * S[0] + E[1] * S[1] + E[2] * S[2])};
 }
 
-std::vector<PointTensors> ShellBody::tensors(const State& state) const {
-  std::vector<PointTensors> all;
-  all.reserve(mesh_.triangles.size());
-  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) all.push_back(tensors_of(t, strained(t, kMiddle, state), 0));
-  return all;
+/// In the middle surface.
+void ShellBody::store_tensors(const State& state, ThreadPool& pool, std::span<PointTensors> out) const {
+  constexpr int kGrain = 128;
+  for_throwing_ranges(pool, static_cast<int>(out.size()), kGrain, [&](int begin, int end) {
+    for (std::size_t t = at(begin); t < at(end); ++t) out[t] = tensors_of(t, strained(t, kMiddle, state), 0);
+  });
 }
 
 PointTensors ShellBody::tensors_at(const Attachment& place, std::size_t /*nearest*/, const State& state) const {

@@ -3,6 +3,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/base/index.hpp"
+#include "core/base/throwing_loops.hpp"
 #include "core/math/rotation.hpp"
 #include "core/physics/von_mises.hpp"
 #include "io/quantity.hpp"
@@ -39,18 +40,29 @@ std::vector<PointTensors> cell_means(const ModelBody& body, std::vector<PointTen
   return cells;
 }
 
+constexpr int kGrain = 256;  // places
+
+/// Calls act(i) for each of so many places, on all threads.
+template <class Act>
+void for_each_place(ThreadPool& pool, std::size_t count, const Act& act) {
+  for_throwing_ranges(pool, static_cast<int>(count), kGrain, [&](int begin, int end) {
+    for (std::size_t i = at(begin); i < at(end); ++i) act(i);
+  });
+}
+
 /// Collects arrays of values of one place each.
 class FieldWriter {
  public:
-  FieldWriter(std::vector<io::FieldArray>& fields, std::size_t count) : fields_(fields), count_(count) {}
+  FieldWriter(std::vector<io::FieldArray>& fields, std::size_t count, ThreadPool& pool)
+      : fields_(fields), count_(count), pool_(pool) {}
 
   /// @param value  of a place: a number, a vector, or a matrix by rows
   template <class Value>
   void add(const std::string& name, const Value& value) {
     using T = decltype(value(std::size_t{0}));
     io::FieldArray array{name, std::is_same_v<T, double> ? 1 : std::is_same_v<T, Vec3d> ? 3 : 9, {}};
-    array.values.reserve(count_ * at(array.components));
-    for (std::size_t i = 0; i < count_; ++i) push(array.values, value(i));
+    array.values.resize(count_ * at(array.components));
+    for_each_place(pool_, count_, [&](std::size_t i) { put(value(i), &array.values[i * at(array.components)]); });
     fields_.push_back(std::move(array));
   }
 
@@ -64,15 +76,25 @@ class FieldWriter {
   }
 
  private:
-  static void push(std::vector<double>& out, double v) { out.push_back(v); }
-  static void push(std::vector<double>& out, const Vec3d& v) { out.insert(out.end(), v.v, v.v + 3); }
-  static void push(std::vector<double>& out, const Mat3d& m) {
-    for (int i = 0; i < 3; ++i) push(out, m.row(i));
+  static void put(double v, double* out) { *out = v; }
+  static void put(const Vec3d& v, double* out) { std::copy_n(v.v, 3, out); }
+  static void put(const Mat3d& m, double* out) {
+    for (int i = 0; i < 3; ++i) put(m.row(i), out + 3 * i);
   }
 
   std::vector<io::FieldArray>& fields_;
   std::size_t count_;
+  ThreadPool& pool_;
 };
+
+/// Threads that write a state: those of the run, where it has so many places that they are worth waking.
+int threads_for(const Simulation& s) {
+  constexpr std::size_t kWorthwhile = 4096;
+  std::size_t places = 0;
+  for (const SimulatedBody& b : s.bodies)
+    places += b.nodes.size() + b.body->points().size() + b.body->surface().points.size();
+  return places < kWorthwhile ? 1 : s.scene.solver.threads;
+}
 
 bool asks_for(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -97,6 +119,7 @@ ResultFiles::ResultFiles(const Simulation& simulation, std::filesystem::path dir
       directory_(std::move(directory)),
       name_(std::move(name)),
       provenance_(std::move(provenance)),
+      pool_(threads_for(simulation)),
       last_(simulation.probes.size()),
       recovery_(simulation.bodies.size()) {
   for (const SimulatedBody& b : simulation.bodies) {
@@ -130,8 +153,8 @@ bool ResultFiles::tells_time_step() const { return simulation_.scene.solver.time
 ResultFiles::BodyTensors ResultFiles::tensors(const SimulatedBody& b, const State& state) {
   std::optional<NodalRecovery>& recovery = recovery_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
   if (!recovery) recovery.emplace(b);
-  std::vector<PointTensors> points = b.body->tensors(state);
-  std::vector<PointTensors> nodes = recovery->at_nodes(points);
+  std::vector<PointTensors> points = b.body->tensors(state, pool_);
+  std::vector<PointTensors> nodes = recovery->at_nodes(points, pool_);
   return {std::move(points), std::move(nodes)};
 }
 
@@ -144,13 +167,13 @@ io::VisualMesh ResultFiles::visual_mesh(const SimulatedBody& b, const State& sta
   const BodyCells& cells = body.cells();
   mesh.volumes.push_back({cells.type, cells.nodes_per_cell > node_count(cells.type), cells.nodes});
   const std::vector<std::string>& names = simulation_.scene.output.fields;
-  FieldWriter of_nodes(mesh.point_fields, b.nodes.size());
+  FieldWriter of_nodes(mesh.point_fields, b.nodes.size(), pool_);
   of_nodes.add("rest_position", [&](std::size_t i) { return b.nodes[i]; });
   const bool tensor_fields = asks_for_tensors(names);
   BodyTensors t = tensor_fields ? tensors(b, state) : BodyTensors{};
   const std::vector<PointTensors> means =
       tensor_fields ? cell_means(body, std::move(t.points)) : std::vector<PointTensors>{};
-  FieldWriter of_cells(mesh.cell_fields, means.size());
+  FieldWriter of_cells(mesh.cell_fields, means.size(), pool_);
   std::vector<BodyField> fields = tensor_fields ? body.own_fields(state) : std::vector<BodyField>{};
   for (const std::string& name : names) {
     if (name == "displacement") of_nodes.add(name, [&](std::size_t i) { return state.u[first + i]; });
@@ -177,42 +200,42 @@ io::VisualMesh ResultFiles::visual(const SimulatedBody& b, const State& state) {
   const bool turns = asks_for(names, "rotation"), tensor_fields = asks_for_tensors(names);
   const BodyTensors t = tensor_fields ? tensors(b, state) : BodyTensors{};
   const std::vector<Attachment>& surface = surface_[static_cast<std::size_t>(&b - simulation_.bodies.data())];
-  std::vector<PointValue> values;
-  std::vector<PointTensors> tensors_of_values;
-  values.reserve(surface.size() + b.nodes.size() + body.points().size());
-  if (tensor_fields) tensors_of_values.reserve(values.capacity());
-  const auto add_field_value = [&](const Vec3d& X, const Attachment& a) {
+  const std::size_t first_point = surface.size() + b.nodes.size();
+  std::vector<PointValue> values(first_point + body.points().size());
+  std::vector<PointTensors> tensors_of_values(tensor_fields ? values.size() : 0);
+  const auto value_at = [&](const Vec3d& X, const Attachment& a) -> PointValue {
     const FieldValue f = field_at(a, state);
     const Mat3d D = turns ? polar_increment(f.D) : Mat3d{};
-    values.push_back({X, f.u, turns ? rotation_vector(D) : Vec3d{}, Mat3d::identity() + D});
+    return {X, f.u, turns ? rotation_vector(D) : Vec3d{}, Mat3d::identity() + D};
   };
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    add_field_value(body.surface().points[i], surface[i]);
-    if (!tensor_fields) continue;
-    PointTensors& mean = tensors_of_values.emplace_back();
-    for (std::size_t k = 0; k < surface[i].nodes.size(); ++k)
-      add_share(mean, t.nodes[b.index_of(surface[i].nodes[k])], surface[i].influences[k].w);
-  }
-  for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+  for_each_place(pool_, surface.size(), [&](std::size_t i) {
+    values[i] = value_at(body.surface().points[i], surface[i]);
+    for (std::size_t k = 0; tensor_fields && k < surface[i].nodes.size(); ++k)
+      add_share(tensors_of_values[i], t.nodes[b.index_of(surface[i].nodes[k])], surface[i].influences[k].w);
+  });
+  for_each_place(pool_, b.nodes.size(), [&](std::size_t i) {
     const std::size_t node = at(b.node_ids[i]);
     const bool rigid = simulation_.model.frame_kind[node] == FrameKind::rigid;
     const Mat3d turn = rigid || !turns ? state.D[node] : polar_increment(state.D[node]);
-    values.push_back({b.nodes[i], state.u[node], turns ? rotation_vector(turn) : Vec3d{},
-                      (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node]});
-  }
-  for (std::size_t q = 0; q < body.points().size(); ++q) add_field_value(body.points()[q].X, body.attach_point(q));
-  if (tensor_fields) std::copy_n(t.nodes.begin(), b.nodes.size(), std::back_inserter(tensors_of_values));
-  tensors_of_values.insert(tensors_of_values.end(), t.points.begin(), t.points.end());
+    values[surface.size() + i] = {b.nodes[i], state.u[node], turns ? rotation_vector(turn) : Vec3d{},
+                                  (Mat3d::identity() + state.D[node]) * simulation_.model.rest_orientation[node]};
+    if (tensor_fields) tensors_of_values[surface.size() + i] = t.nodes[i];
+  });
+  for_each_place(pool_, body.points().size(), [&](std::size_t q) {
+    values[first_point + q] = value_at(body.points()[q].X, body.attach_point(q));
+    if (tensor_fields) tensors_of_values[first_point + q] = t.points[q];
+  });
   io::VisualMesh mesh;
-  for (const PointValue& v : values) mesh.points.push_back(v.rest + v.u);
+  mesh.points.resize(values.size());
+  for_each_place(pool_, values.size(), [&](std::size_t i) { mesh.points[i] = values[i].rest + values[i].u; });
   mesh.triangles = body.surface().triangles;
   mesh.lines = body.segments();
   mesh.part.assign(mesh.triangles.size() + mesh.lines.size(), 0);
   for (std::size_t i = surface.size(); i < values.size(); ++i) {
     mesh.vertices.push_back(static_cast<int>(i));
-    mesh.part.push_back(i < surface.size() + b.nodes.size() ? 1 : 2);
+    mesh.part.push_back(i < first_point ? 1 : 2);
   }
-  FieldWriter fields(mesh.point_fields, values.size());
+  FieldWriter fields(mesh.point_fields, values.size(), pool_);
   fields.add("rest_position", [&](std::size_t i) { return values[i].rest; });
   for (const std::string& name : names) {
     if (name == "displacement") fields.add(name, [&](std::size_t i) { return values[i].u; });
@@ -245,7 +268,7 @@ void ResultFiles::add_state(double time, const State& state) {
   try {
     for (const SimulatedBody& body : simulation_.bodies) {
       files.push_back(state_file(body, times_.size()));
-      io::write_vtu(directory_ / files.back(), state_mesh(body, state, time));
+      io::write_vtu(directory_ / files.back(), state_mesh(body, state, time), &pool_);
     }
   } catch (const std::exception&) {  // the bodies that are there are no whole state
     std::error_code ignored;

@@ -5,6 +5,7 @@
 #include "app/results/step_seconds.hpp"
 #include "app/run/recovery.hpp"
 #include "assembly/simulation/simulation.hpp"
+#include "core/base/thread_pool.hpp"
 #include "core/run/drivers.hpp"
 #include "fascia/run/run_simulation.hpp"
 #include "io/result_writer.hpp"
@@ -62,6 +63,7 @@ class ResultFiles {
   const Simulation& simulation_;
   std::filesystem::path directory_;
   std::string name_, provenance_;
+  ThreadPool pool_;
   std::optional<io::GrowingFile> csv_;
   std::optional<io::Collection> collection_;  ///< from the first state on
   std::vector<std::vector<double>> last_;

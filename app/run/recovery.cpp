@@ -105,13 +105,16 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
   shares_.resize(kept);
 }
 
-std::vector<PointTensors> NodalRecovery::at_nodes(const std::vector<PointTensors>& points) const {
+std::vector<PointTensors> NodalRecovery::at_nodes(const std::vector<PointTensors>& points, ThreadPool& pool) const {
+  constexpr int kGrain = 64;
   std::vector<PointTensors> nodes(begin_.size() - 1);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (std::size_t s = begin_[i]; s < begin_[i + 1]; ++s)
-      add_share(nodes[i], points[at(shares_[s].point)], shares_[s].weight);
-    nodes[i].energy_density = std::max(0.0, nodes[i].energy_density);  // no slope makes it negative
-  }
+  pool.for_ranges(static_cast<int>(nodes.size()), kGrain, [&](int begin, int end) {
+    for (std::size_t i = at(begin); i < at(end); ++i) {
+      for (std::size_t s = begin_[i]; s < begin_[i + 1]; ++s)
+        add_share(nodes[i], points[at(shares_[s].point)], shares_[s].weight);
+      nodes[i].energy_density = std::max(0.0, nodes[i].energy_density);  // no slope makes it negative
+    }
+  });
   return nodes;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "assembly/simulation/simulation.hpp"
+#include "core/base/thread_pool.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -23,7 +24,7 @@ class NodalRecovery {
 
   explicit NodalRecovery(const SimulatedBody& body);
   /// @param points  one for each integration point
-  std::vector<PointTensors> at_nodes(const std::vector<PointTensors>& points) const;
+  std::vector<PointTensors> at_nodes(const std::vector<PointTensors>& points, ThreadPool& pool) const;
 
  private:
   void find_patches(const SimulatedBody& body);

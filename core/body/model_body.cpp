@@ -1,6 +1,7 @@
 #include "core/body/model_body.hpp"
 
 #include "core/base/index.hpp"
+#include "core/base/throwing_loops.hpp"
 #include "core/physics/element_law.hpp"
 
 #include <algorithm>
@@ -93,10 +94,21 @@ std::vector<Mat3d> ModelBody::gradients(const State& state) const {
 }
 
 std::vector<PointTensors> ModelBody::tensors(const State& state) const {
-  std::vector<PointTensors> all;
-  all.reserve(points_.size());
-  for (std::size_t q = 0; q < points_.size(); ++q) all.push_back(tensors_at(attach_point(q), q, state));
+  ThreadPool alone(1);
+  return tensors(state, alone);
+}
+
+std::vector<PointTensors> ModelBody::tensors(const State& state, ThreadPool& pool) const {
+  std::vector<PointTensors> all(points_.size());
+  store_tensors(state, pool, all);
   return all;
+}
+
+void ModelBody::store_tensors(const State& state, ThreadPool& pool, std::span<PointTensors> out) const {
+  constexpr int kGrain = 256;
+  for_throwing_ranges(pool, static_cast<int>(out.size()), kGrain, [&](int begin, int end) {
+    for (std::size_t q = at(begin); q < at(end); ++q) out[q] = tensors_at(attach_point(q), q, state);
+  });
 }
 
 TensorField ModelBody::tensor_field(const State& state) const {

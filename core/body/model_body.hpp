@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,8 @@ struct BodyCells {
   std::vector<int> nodes;
 };
 
+class ThreadPool;
+
 /// A body in a model. Its own nodes are a contiguous range, its groups of points and blocks of elements too; nodes of
 /// other bodies may move it as well.
 class ModelBody {
@@ -147,8 +150,9 @@ class ModelBody {
   virtual std::vector<FacePoint> face_points() const;
   /// ∂u/∂X at each integration point.
   virtual std::vector<Mat3d> gradients(const State& state) const;
-  /// At each integration point.
-  virtual std::vector<PointTensors> tensors(const State& state) const;
+  /// At each integration point, by one thread or by those of a pool.
+  std::vector<PointTensors> tensors(const State& state) const;
+  std::vector<PointTensors> tensors(const State& state, ThreadPool& pool) const;
   /// At any place. @param nearest  index of the integration point whose material counts there
   virtual PointTensors tensors_at(const Attachment& place, std::size_t nearest, const State& state) const;
   /// Tensors at many places of one state: what these share is computed once, when this is called. Body and state must
@@ -169,6 +173,8 @@ class ModelBody {
 
  protected:
   ModelBody() = default;
+  /// tensors(), one for each of the points.
+  virtual void store_tensors(const State& state, ThreadPool& pool, std::span<PointTensors> out) const;
   ModelBody(const ModelBody&) = default;
   ModelBody(ModelBody&&) = default;
   ModelBody& operator=(const ModelBody&) = default;

@@ -128,7 +128,7 @@ Peak peak_of(int around, int across, int through) {
   const std::vector<PointTensors> points = body.body->tensors(state);
   const std::size_t d = plate.peak();
   Peak peak;
-  peak.recovered = app::NodalRecovery(body).at_nodes(points)[d].stress(1, 1);
+  peak.recovered = app::NodalRecovery(body).at_nodes(points, pool)[d].stress(1, 1);
   double nearest = 1e9, volume = 0;
   std::size_t at_d = 0;
   for (std::size_t q = 0; q < points.size(); ++q) {

@@ -19,13 +19,18 @@ Simulation body(const std::string& keys, const std::string& material = "material
       "b.toml", {}));
 }
 
+ThreadPool& one_thread() {
+  static ThreadPool pool(1);
+  return pool;
+}
+
 /// The field 2 + 3 x − y + 5 z.
 double linear(const Vec3d& x) { return 2 + 3 * x[0] - x[1] + 5 * x[2]; }
 
 double largest_error(const SimulatedBody& b) {
   std::vector<PointTensors> points;
   for (const BodyPoint& p : b.body->points()) points.push_back({{}, Mat3d::identity() * linear(p.X), 0});
-  const std::vector<PointTensors> nodes = NodalRecovery(b).at_nodes(points);
+  const std::vector<PointTensors> nodes = NodalRecovery(b).at_nodes(points, one_thread());
   double worst = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     worst = std::max(worst, std::abs(nodes[i].stress(1, 1) - linear(b.nodes[i])));
@@ -48,7 +53,7 @@ TEST(NodalRecovery, FallsBackToTheMeanWhereThereIsNoSlope) {
   const SimulatedBody& b = s.bodies[0];
   std::vector<PointTensors> points(b.body->points().size());
   for (PointTensors& p : points) p.energy_density = 7;
-  for (const PointTensors& n : NodalRecovery(b).at_nodes(points)) EXPECT_NEAR(n.energy_density, 7, 1e-12);
+  for (const PointTensors& n : NodalRecovery(b).at_nodes(points, one_thread())) EXPECT_NEAR(n.energy_density, 7, 1e-12);
   EXPECT_LT(largest_error(b), 9);  // of a field from 1 to 10
 }
 
@@ -63,7 +68,7 @@ TEST(NodalRecovery, DoesNotGoAcrossMaterials) {
   std::vector<PointTensors> points;
   for (const BodyPoint& p : b.body->points()) points.push_back({{}, Mat3d::identity() * (p.mu * 0.02), 0});
   const double soft = 1e3 / 2 * 0.02, stiff = 5e4 / 2 * 0.02;
-  for (const PointTensors& n : NodalRecovery(b).at_nodes(points)) {
+  for (const PointTensors& n : NodalRecovery(b).at_nodes(points, one_thread())) {
     const double value = n.stress(0, 0);
     EXPECT_LT(std::min(std::abs(value - soft), std::abs(value - stiff)), 1e-9 * stiff) << value;
   }

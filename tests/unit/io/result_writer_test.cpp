@@ -113,6 +113,18 @@ TEST(WriteVtu, of_several_blocks_of_noise_reads_back) {
   }
 }
 
+/// 9,602 points are some blocks of each field, of which threads compress several ahead.
+TEST(WriteVtu, is_the_same_for_any_number_of_threads) {
+  const TemporaryDirectory directory;
+  const VisualMesh mesh = sample(40);
+  write_vtu(directory.path() / "a.vtu", mesh);
+  for (const int threads : {1, 2, 3}) {
+    ThreadPool pool(threads);
+    write_vtu(directory.path() / "b.vtu", mesh, &pool);
+    EXPECT_TRUE(content(directory.path() / "a.vtu") == content(directory.path() / "b.vtu")) << threads;
+  }
+}
+
 TEST(WriteVtu, is_deterministic) {
   const TemporaryDirectory directory;
   write_vtu(directory.path() / "a.vtu", sample());
