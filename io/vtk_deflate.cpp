@@ -15,7 +15,7 @@ namespace fascia::io {
 namespace {
 
 constexpr int kFastest = 1;
-constexpr std::size_t kBlocksOfThread = 16;  // that are compressed ahead together
+constexpr std::size_t kBlocksOfThread = 4;  // that are compressed ahead together
 
 }  // namespace
 
