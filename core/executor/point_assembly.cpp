@@ -50,15 +50,27 @@ struct PointExecutor::FramesOfOne {
   GroupOfFrames view() { return {frames.data(), moduli}; }
 };
 
-/// These of all groups, where nodes assemble: a frame of a group is asked for with each of those before it.
+/// These of all groups that share theirs, where nodes assemble: a frame of a group is asked for with each of those
+/// before it.
 struct PointExecutor::FramesOfAll {
+  std::vector<int> first_slot, number;  ///< of each group, among these groups
   std::vector<PointFrame> frames;
   std::vector<PointModuli> moduli;
 
-  explicit FramesOfAll(const PointSet& set)
-      : frames(at(set.slot_count() * kBatches)), moduli(at(set.group_count() * kBatches)) {}
-  GroupOfFrames of(const PointSet& set, int group) {
-    return {&frames[at(set.slot_begin[at(group)] * kBatches)], &moduli[at(group * kBatches)]};
+  FramesOfAll(const PointSet& set, const LaneFrames& lanes) {
+    int slots = 0, groups = 0;
+    for (int group = 0; group < set.group_count(); ++group) {
+      first_slot.push_back(slots);
+      number.push_back(groups);
+      if (lanes.count(group) > 0) continue;
+      slots += static_cast<int>(set.nodes(group).size());
+      ++groups;
+    }
+    frames.resize(at(slots * kBatches));
+    moduli.resize(at(groups * kBatches));
+  }
+  GroupOfFrames of(int group) {
+    return {&frames[at(first_slot[at(group)] * kBatches)], &moduli[at(number[at(group)] * kBatches)]};
   }
 };
 
@@ -164,7 +176,7 @@ void PointExecutor::assemble_node(const BlockState& state, int node, Entries ent
     const int slot = set_.node_slot[at(k)], group = group_of_slot_[at(slot)], b = slot - set_.slot_begin[at(group)];
     if (frames_.lanes().count(group) > 0) continue;
     with_kind(rule_of(group), [&]<PointKind Kind>() {
-      assemble_slot<Kind>(state, group, b, frames_of_all_->of(set_, group), entries, matrix_out);
+      assemble_slot<Kind>(state, group, b, frames_of_all_->of(group), entries, matrix_out);
     });
   }
 }
@@ -226,11 +238,10 @@ void PointExecutor::assemble_one(const BlockState& state, int group, Entries ent
 
 /// All blocks by nodes, of groups whose colours are small.
 void PointExecutor::assemble_by_nodes(const BlockState& state, Entries entries, BlockMatrix& matrix_out) {
-  if (frames_of_all_ == nullptr) frames_of_all_ = std::make_shared<FramesOfAll>(set_);
+  if (frames_of_all_ == nullptr) frames_of_all_ = std::make_shared<FramesOfAll>(set_, frames_.lanes());
   pool_.for_ranges(set_.group_count(), 1, [&](int group, int) {
     if (frames_.lanes().count(group) > 0) return;
-    with_kind(rule_of(group),
-              [&]<PointKind Kind>() { set_frames<Kind>(state, group, frames_of_all_->of(set_, group)); });
+    with_kind(rule_of(group), [&]<PointKind Kind>() { set_frames<Kind>(state, group, frames_of_all_->of(group)); });
   });
   pool_.for_ranges(set_.node_count(), 1, [&](int node, int) { assemble_node(state, node, entries, matrix_out); });
 }

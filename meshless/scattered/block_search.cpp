@@ -1,16 +1,15 @@
 #include "meshless/scattered/block_search.hpp"
 
 #include "core/base/index.hpp"
+#include "core/base/throwing_loops.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/math/batch.hpp"
 #include "meshless/scattered/owned_pieces.hpp"
 #include "meshless/scattered/point_grid.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <new>
 
 namespace fascia {
 
@@ -188,20 +187,14 @@ void BlockSearch::nearest(std::span<const Vec3d> points, std::span<int> nearest,
     return;
   }
   const Sorted by_cell = sorted(points);
-  std::atomic<bool> out_of_memory = false;  // threads must not throw
-  pool.for_ranges(static_cast<int>(blocks_.size()), kGrain, [&](int begin, int end) {
-    try {
-      Candidates among;
-      for (std::size_t b = at(begin); b < at(end); ++b) {
-        if (begin_[b] == begin_[b + 1]) continue;
-        list(blocks_.middle(b), by_cell, among);
-        search(begin_[b], begin_[b + 1], among, nearest);
-      }
-    } catch (const std::bad_alloc&) {
-      out_of_memory = true;
+  for_throwing_ranges(pool, static_cast<int>(blocks_.size()), kGrain, [&](int begin, int end) {
+    Candidates among;
+    for (std::size_t b = at(begin); b < at(end); ++b) {
+      if (begin_[b] == begin_[b + 1]) continue;
+      list(blocks_.middle(b), by_cell, among);
+      search(begin_[b], begin_[b + 1], among, nearest);
     }
   });
-  if (out_of_memory) throw std::bad_alloc();
 }
 
 }  // namespace fascia
