@@ -18,7 +18,7 @@ class BlockCholesky {
  public:
   /// @param order  of elimination where it is known; null: is found
   /// @param pool   for solves; null: one thread
-  /// @throws InputError  a factor too large for its indices
+  /// @throws InputError  a factor too large for its indices: without CHOLMOD, which has some of 64 bits
   BlockCholesky(const BlockMatrix& pattern, const DofFilter& filter, Pivots pivots = Pivots::positive,
                 const EliminationOrder* order = nullptr, ThreadPool* pool = nullptr);
   ~BlockCholesky();

@@ -1,3 +1,4 @@
+#include "core/base/errors.hpp"
 #include "core/linear/cholesky.hpp"
 #include "core/linear/free_matrix.hpp"
 
@@ -42,7 +43,7 @@ EliminationOrder EliminationOrder::of(const BlockMatrix& pattern, const DofFilte
 /// The build without SuiteSparse: slower on large models, same results to rounding.
 struct BlockCholesky::Impl {
   using Sparse = Eigen::Map<const Eigen::SparseMatrix<double>>;
-  FreeMatrix matrix;
+  FreeMatrix<int> matrix;
   const DofFilter& filter;
   Analysed<Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower>> llt;
   Analysed<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>> ldlt;
@@ -53,7 +54,11 @@ struct BlockCholesky::Impl {
   Impl(const BlockMatrix& pattern, const DofFilter& f, Pivots pivots, const EliminationOrder* order)
       : matrix(pattern, f), filter(f), any_pivots(pivots == Pivots::any), rhs(matrix.size) {
     const EliminationOrder counted = order != nullptr ? *order : EliminationOrder::of(pattern, f);
-    counted.expect_to_fit();
+    if (!counted.narrow())
+      throw InputError(
+          "out of memory: the factor of the direct solver would have more numbers than the indices of this build "
+          "reach, "
+          "which was made without CHOLMOD; use solver.linear = { kind = \"cg\" }");
     flops = counted.flops;
     if (any_pivots)
       ldlt.analyzePattern(view());

@@ -1,6 +1,5 @@
 #include "core/linear/elimination_order.hpp"
 
-#include "core/base/errors.hpp"
 #include "core/base/index.hpp"
 
 #include <algorithm>
@@ -8,13 +7,6 @@
 #include <numeric>
 
 namespace fascia {
-
-void EliminationOrder::expect_to_fit() const {
-  if (!fits())
-    throw InputError(
-        "out of memory: the factor of the direct solver would have more numbers than its indices reach; use "
-        "solver.linear = { kind = \"cg\" }");
-}
 
 NodeGraph::NodeGraph(const BlockMatrix& pattern, const DofFilter& filter) {
   std::vector<int> number(at(pattern.rows()), -1);

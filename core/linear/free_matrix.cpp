@@ -9,8 +9,9 @@ namespace fascia {
 
 /// Visits the lower triangle column by column: row r of the symmetric matrix serves as column r.
 /// begin_column(r, j), entry(offset of the block behind the diagonal, place in that block, number of the row)
+template <class Int>
 template <class BeginColumn, class Entry>
-void FreeMatrix::visit(const BlockMatrix& pattern, const BeginColumn& begin_column, const Entry& entry) const {
+void FreeMatrix<Int>::visit(const BlockMatrix& pattern, const BeginColumn& begin_column, const Entry& entry) const {
   const DofLayout& dofs = pattern.dofs();
   for (int r = 0; r < pattern.rows(); ++r) {
     const auto columns = pattern.columns(r).subspan(at(pattern.diagonal(r) - pattern.row_begin(r)));
@@ -26,20 +27,22 @@ void FreeMatrix::visit(const BlockMatrix& pattern, const BeginColumn& begin_colu
   }
 }
 
-FreeMatrix::FreeMatrix(const BlockMatrix& pattern, const DofFilter& filter) : number(filter.size(), -1) {
+template <class Int>
+FreeMatrix<Int>::FreeMatrix(const BlockMatrix& pattern, const DofFilter& filter) : number(filter.size(), -1) {
   for (std::size_t i = 0; i < filter.size(); ++i)
     if (!filter.is_fixed(i)) number[i] = size++;
   visit(
       pattern,
       [&](int r, int j) {
-        if (number[at(pattern.dofs().begin(r) + j)] >= 0) column_begin.push_back(static_cast<int>(row.size()));
+        if (number[at(pattern.dofs().begin(r) + j)] >= 0) column_begin.push_back(static_cast<Int>(row.size()));
       },
       [&](std::size_t, int, int row_number) { row.push_back(row_number); });
-  column_begin.push_back(static_cast<int>(row.size()));
+  column_begin.push_back(static_cast<Int>(row.size()));
   value.resize(row.size());
 }
 
-std::vector<int> FreeMatrix::numbers_of(const std::vector<int>& nodes, const DofLayout& dofs) const {
+template <class Int>
+std::vector<int> FreeMatrix<Int>::numbers_of(const std::vector<int>& nodes, const DofLayout& dofs) const {
   std::vector<int> numbers;
   for (const int node : nodes)
     for (int i = dofs.begin(node); i < dofs.begin(node) + dofs.size(node); ++i)
@@ -47,7 +50,9 @@ std::vector<int> FreeMatrix::numbers_of(const std::vector<int>& nodes, const Dof
   return numbers;
 }
 
-void FreeMatrix::fill(const BlockMatrix& matrix, const DofFilter& filter, double shift, const BlockMatrix* shift_from) {
+template <class Int>
+void FreeMatrix<Int>::fill(const BlockMatrix& matrix, const DofFilter& filter, double shift,
+                           const BlockMatrix* shift_from) {
   constexpr double kLeast = 1e-3;                        // rows that nothing resists need a shift too
   constexpr std::size_t kBlock = kMostDofs * kMostDofs;  // room for the largest
   std::size_t next = 0;
@@ -69,5 +74,8 @@ void FreeMatrix::fill(const BlockMatrix& matrix, const DofFilter& filter, double
   };
   visit(matrix, turn_row, [&](std::size_t k, int place, int) { value[next++] = turned_[kBlock * k + at(place)]; });
 }
+
+template struct FreeMatrix<int>;
+template struct FreeMatrix<std::int64_t>;
 
 }  // namespace fascia

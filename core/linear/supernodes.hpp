@@ -10,12 +10,13 @@ namespace fascia {
 
 /// A Cholesky factor L by supernodes: runs of columns that share their rows below. The numbers of one lie by columns,
 /// as a dense matrix whose first rows are its own columns; what is above its diagonal is not read.
-template <class T>
+/// @tparam Int  of places in `value`, of which there may be more than 32 bits count: int or std::int64_t
+template <class T, class Int = int>
 struct Supernodes {
-  std::span<const int> first_column;  ///< of each, and of the end
-  std::span<const int> row_begin;     ///< of each in `row`, and of the end
-  std::span<const int> value_begin;   ///< of each in `value`, and of the end
-  std::span<const int> row;           ///< of L, ascending in each
+  std::span<const Int> first_column;  ///< of each, and of the end
+  std::span<const Int> row_begin;     ///< of each in `row`, and of the end
+  std::span<const Int> value_begin;   ///< of each in `value`, and of the end
+  std::span<const Int> row;           ///< of L, ascending in each
   std::span<const T> value;
 };
 
@@ -26,14 +27,14 @@ struct Supernodes {
 class SupernodeSolver {
  public:
   SupernodeSolver() = default;
-  template <class T>
-  explicit SupernodeSolver(const Supernodes<T>& pattern) {
+  template <class T, class Int>
+  explicit SupernodeSolver(const Supernodes<T, Int>& pattern) {
     find_subtrees(pattern.first_column, pattern.row_begin, pattern.value_begin, pattern.row);
   }
 
   /// @tparam T  numbers of L: double, or float, which is half as much to read; they are multiplied and added in 64 bits
-  template <class T>
-  void solve(const Supernodes<T>& L, ThreadPool* pool, std::span<double> x);
+  template <class T, class Int>
+  void solve(const Supernodes<T, Int>& L, ThreadPool* pool, std::span<double> x);
 
   int subtrees() const { return static_cast<int>(subtree_.size()); }
 
@@ -42,9 +43,11 @@ class SupernodeSolver {
   struct Subtree {
     int begin, end, end_column;
   };
-  void find_subtrees(std::span<const int> first_column, std::span<const int> row_begin,
-                     std::span<const int> value_begin, std::span<const int> row);
-  void keep_large(std::span<const int> value_begin, double most);
+  template <class Int>
+  void find_subtrees(std::span<const Int> first_column, std::span<const Int> row_begin,
+                     std::span<const Int> value_begin, std::span<const Int> row);
+  template <class Int>
+  void keep_large(std::span<const Int> value_begin, double most);
 
   std::vector<Subtree> subtree_;  ///< ascending
   std::vector<int> top_;          ///< supernodes of none of them, ascending

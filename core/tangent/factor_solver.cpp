@@ -48,7 +48,7 @@ double FactorSolver::matrix_numbers() {
 }
 
 bool FactorSolver::fits() {
-  return order().fits() && sizeof(double) * order().numbers <= kMostBytes && cholesky().factor_bytes() <= kMostBytes;
+  return sizeof(double) * order().numbers <= kMostBytes && cholesky().factor_bytes() <= kMostBytes;
 }
 
 /// K + Σ k g gᵀ has as many negative eigenvalues as K, less those that the terms lift.

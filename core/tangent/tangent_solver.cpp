@@ -94,7 +94,7 @@ bool TangentSolver::direct() {
 }
 
 bool TangentSolver::factor_is_small() {
-  return !factor_.takes_more_than(kFlopsPerNumber * factor_.matrix_numbers()) && factor_.order().fits();
+  return !factor_.takes_more_than(kFlopsPerNumber * factor_.matrix_numbers()) && factor_.order().narrow();
 }
 
 SolverChoice TangentSolver::choice() {

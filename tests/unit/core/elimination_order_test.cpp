@@ -1,4 +1,5 @@
 #include "core/linear/elimination_order.hpp"
+#include "core/base/errors.hpp"
 #include "core/linear/cholesky.hpp"
 #include "tests/support/tangent_at_rest.hpp"
 
@@ -6,6 +7,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace fascia::elimination_order_test {
 namespace {
@@ -30,7 +34,62 @@ TEST(EliminationOrder, CountsWhatAFactorTakes) {
     EXPECT_NEAR(order.flops, factor.factor_flops(), 1e-9 * order.flops);
     EXPECT_GE(factor.factor_bytes(), 8 * order.numbers);
     EXPECT_LE(factor.factor_bytes(), 20 * order.numbers);
-    EXPECT_TRUE(order.fits());
+    EXPECT_TRUE(order.narrow());
+  }
+}
+
+/// What a factor gives: without and with a shift, in 64 and 32 bits, and how many pivots are negative.
+struct Given {
+  std::vector<double> numbers;
+  int negative_pivots;
+  double bytes;
+  bool operator==(const Given& other) const {
+    return numbers == other.numbers && negative_pivots == other.negative_pivots;
+  }
+};
+
+Given given_by(const TangentAtRest& t, const BlockMatrix& matrix, Pivots pivots, const EliminationOrder& order) {
+  BlockCholesky factor(t.matrix, t.filter, pivots, &order);
+  Given out{{}, 0, factor.factor_bytes()};
+  std::vector<double> b(at(t.model.dof_count())), x(b.size());
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] = static_cast<double>(i % 7) - 3;
+  for (const double shift : {0.0, 1e-3}) {
+    EXPECT_TRUE(factor.factorize(matrix, shift, &t.matrix));
+    factor.solve(b, x);
+    out.numbers.insert(out.numbers.end(), x.begin(), x.end());
+    factor.precondition(b, x);
+    out.numbers.insert(out.numbers.end(), x.begin(), x.end());
+  }
+  out.negative_pivots = factor.negative_pivots();
+  return out;
+}
+
+/// Supernodes and single columns. Factors that need them take 9 GB and more (docs/performance.md).
+TEST(EliminationOrder, WideIndicesMakeTheSameFactor) {
+  for (const int n : {3, 9}) {
+    BlockOptions o;
+    o.grid = {n, n, n};
+    const TangentAtRest t(held(vertex_block(o)), 1);
+    BlockMatrix indefinite = t.matrix;
+    for (double* number = indefinite.block(indefinite.diagonal(n * n * n / 2)); double& entry : std::span(number, 9))
+      entry *= -1;
+    const EliminationOrder order = EliminationOrder::of(t.matrix, t.filter);
+    EliminationOrder large = order;
+    large.numbers = 3e9;
+    ASSERT_FALSE(large.narrow());
+    for (const Pivots pivots : {Pivots::positive, Pivots::any}) {
+      const BlockMatrix& matrix = pivots == Pivots::any ? indefinite : t.matrix;
+      const Given narrow = given_by(t, matrix, pivots, order);
+      EXPECT_EQ(narrow.negative_pivots > 0, pivots == Pivots::any);
+      try {
+        const Given wide = given_by(t, matrix, pivots, large);
+        EXPECT_TRUE(wide == narrow) << n;
+        EXPECT_GT(wide.bytes, narrow.bytes);
+        EXPECT_LT(wide.bytes, 1.5 * narrow.bytes);
+      } catch (const InputError& error) {  // a build that has no such indices
+        EXPECT_NE(std::string(error.what()).find("without CHOLMOD"), std::string::npos) << error.what();
+      }
+    }
   }
 }
 

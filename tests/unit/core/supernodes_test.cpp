@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -63,6 +64,17 @@ struct RandomFactor {
   template <class T>
   Supernodes<T> view(const std::vector<T>& numbers) const {
     return {first_column, row_begin, value_begin, row, numbers};
+  }
+
+  /// The same places, of 64 bits.
+  struct Wide {
+    std::vector<std::int64_t> first_column, row_begin, value_begin, row;
+  };
+  Wide widened() const {
+    const auto wide = [](const std::vector<int>& places) {
+      return std::vector<std::int64_t>(places.begin(), places.end());
+    };
+    return {wide(first_column), wide(row_begin), wide(value_begin), wide(row)};
   }
 
   /// L Lᵀ x
@@ -137,6 +149,19 @@ TEST(Supernodes, AreSolvedAlikeByAnyNumberOfThreads) {
   const std::vector<double> b = random_numbers(factor.first_column.back(), random);
   const std::vector<double> alone = solved(factor, factor.value, b, 1, 100);
   for (const int threads : {2, 3, 7}) EXPECT_EQ(solved(factor, factor.value, b, threads, 100), alone);
+}
+
+TEST(Supernodes, AreSolvedAlikeByPlacesOf64Bits) {
+  std::mt19937 random(5);
+  const RandomFactor factor(binary(7), 40, random);
+  std::vector<double> x = random_numbers(factor.first_column.back(), random);
+  const std::vector<double> narrow = solved(factor, factor.value, x, 1, 100);
+  const RandomFactor::Wide wide = factor.widened();
+  const Supernodes<double, std::int64_t> L{wide.first_column, wide.row_begin, wide.value_begin, wide.row, factor.value};
+  SupernodeSolver solver(L);
+  EXPECT_GT(solver.subtrees(), 1);
+  solver.solve(L, nullptr, x);
+  EXPECT_EQ(x, narrow);
 }
 
 }  // namespace
