@@ -61,16 +61,16 @@ std::string probe_of(const std::string& column) { return column.substr(0, column
 
 void compare_tables(const fs::path& a, const fs::path& b, ResultDifference& difference, Distances& distances) {
   const io::NumberTable x = io::read_number_table(a / "probes.csv"), y = io::read_number_table(b / "probes.csv");
-  if (x.columns != y.columns) {
-    difference.structure.emplace_back("probes.csv has other columns");
-    return;
-  }
+  if (x.columns != y.columns) difference.structure.emplace_back("probes.csv has other columns");
+  std::map<std::string, std::size_t> there;
+  for (std::size_t c = 0; c < y.columns.size(); ++c) there[y.columns[c]] = c;
   if (x.rows.size() != y.rows.size())
     difference.structure.push_back(
         fmt::format("probes.csv has {} rows in the first and {} in the second", x.rows.size(), y.rows.size()));
   for (std::size_t r = 0; r < std::min(x.rows.size(), y.rows.size()); ++r)
     for (std::size_t c = 0; c < x.columns.size(); ++c)
-      distances[probe_of(x.columns[c])].add(x.rows[r][c], y.rows[r][c], x.rows[r][0]);
+      if (const auto other = there.find(x.columns[c]); other != there.end())
+        distances[probe_of(x.columns[c])].add(x.rows[r][c], y.rows[r][other->second], x.rows[r][0]);
 }
 
 void compare_states(const fs::path& a, const fs::path& b, const io::CollectionEntry& x, const io::CollectionEntry& y,

@@ -74,7 +74,11 @@ class Planner {
     return scene_.solver.time_step_automatic ? std::optional(scene_.solver.time_step) : std::nullopt;
   }
 
-  /// A twin of another mesh. Explicit steps keep their length, or halve it with the cells, which keeps them stable.
+  /// How the time step of explicit steps shrinks with halved cells. Half of an automatic step, which is as long as is
+  /// stable, may be a little too long there.
+  double step_of_halved_cells() const { return automatic_step() ? 0.4 : 0.5; }
+
+  /// A twin of another mesh. Explicit steps keep their length, or shrink with the cells, which keeps them stable.
   SceneTwin other_mesh(SceneTwin mesh, double step) const {
     if (!explicit_steps() || (step == 1 && !automatic_step())) return mesh;
     return mesh + with_time_step(scene_, step, automatic_step());
@@ -97,7 +101,8 @@ class Planner {
     const bool small = small_enough(unknowns);
     if (finer.complete() && by != EstimateBy::coarser && (small || by == EstimateBy::finer)) {
       note(fmt::format("discretisation: by a finer twin: {}", fmt::join(finer.changes, "; ")));
-      add(TwinRole::finer, other_mesh(finer, 0.5), more_time(s_, more) * (explicit_steps() ? 2 : 1));
+      add(TwinRole::finer, other_mesh(finer, step_of_halved_cells()),
+          more_time(s_, more) / (explicit_steps() ? step_of_halved_cells() : 1));
       if (coarser.complete()) add_coarser(coarser, TwinRole::coarser);
     } else if (coarser.complete() && by != EstimateBy::finer) {
       note(fmt::format(

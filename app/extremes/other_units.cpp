@@ -28,19 +28,38 @@ constexpr std::array kSymbols{Symbol{"1", 0, 0, 0},   Symbol{"rad", 0, 0, 0},  S
 
 const Shape& resolved(const Shape& shape) { return shape.type == Type::reference ? resolved(shape.target()) : shape; }
 
+const Shape* alternative_for(const Value& value, const Shape& shape);
+
+/// A value of this shape has numbers with units, here or in a list in it.
+bool is_written_by(const Value& value, const Shape& given) {
+  const Shape& shape = resolved(given);
+  const Array* items = value.as_array();
+  switch (shape.type) {
+    case Type::one_of:
+      return alternative_for(value, shape) != nullptr;
+    case Type::number: {
+      const std::string* text = value.as_string();
+      return number_in(value) || (text != nullptr && parse_quantity(*text, shape.unit).index() == 0);
+    }
+    case Type::array:
+      return items != nullptr &&
+             std::ranges::any_of(*items, [&](const Value& item) { return is_written_by(item, shape.items.front()); });
+    case Type::tuple:
+      for (std::size_t i = 0; items != nullptr && i < std::min(items->size(), shape.items.size()); ++i)
+        if (is_written_by((*items)[i], shape.items[i])) return true;
+      return false;
+    case Type::table:
+    case Type::named_tables:
+      return value.as_table() != nullptr;
+    default:
+      return false;
+  }
+}
+
 /// The alternative that a value is written by; null where none of them has numbers with units.
 const Shape* alternative_for(const Value& value, const Shape& shape) {
-  for (const Shape& item : shape.items) {
-    const Shape& s = resolved(item);
-    const bool nested = s.type == Type::one_of && alternative_for(value, s) != nullptr;
-    const std::string* text = value.as_string();
-    const bool number =
-        s.type == Type::number && (number_in(value) || (text != nullptr && parse_quantity(*text, s.unit).index() == 0));
-    const bool list = value.as_array() != nullptr && (s.type == Type::array || s.type == Type::tuple);
-    const bool table = value.as_table() != nullptr && (s.type == Type::table || s.type == Type::named_tables);
-    if (nested || number || list || table) return &s;
-  }
-  return nullptr;
+  const auto found = std::ranges::find_if(shape.items, [&](const Shape& item) { return is_written_by(value, item); });
+  return found == shape.items.end() ? nullptr : &resolved(*found);
 }
 
 class Walk {

@@ -151,6 +151,11 @@ Probe read_probe(const TableReader& table, const std::vector<std::string>& bodie
   Probe probe;
   probe.place = table.place();
   probe.name = table.name();
+  for (const char* column : {"time", "time_step"})
+    if (probe.name == column)
+      table.diagnostics().add(probe.place, fmt::format("\"{}\" is the name of a column of probes.csv; give the probe "
+                                                       "another one",
+                                                       column));
   if (table.value("body")) probe.body = read_body_name(table, bodies);
   if (const auto name = table.text("quantity")) {
     const auto found = std::find_if(quantity_names.begin(), quantity_names.end(),

@@ -199,7 +199,7 @@ class Setup {
     blocks_serve_ =
         !statics && s_.model.loads_are_conservative() && guessed_iterations() <= BlocksOrLevels({}).patience();
     linear.expect_inertia(blocks_serve_);
-    factorizes_ = linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
+    factorizes_ = (statics && !load) || linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
                   (statics && linear.gives_way_to_factor(guessed_iterations())) ||
                   (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations())) ||
                   takes_kept_factor(linear);

@@ -4,7 +4,7 @@ namespace fascia::app {
 
 const std::vector<Choice>& warning_names() {
   static const std::vector<Choice> names = {
-      {"mesh", "What was mended in a mesh, or looks wrong in it."},
+      {"mesh", "What was mended in a mesh, or looks wrong in it, such as elements that lock."},
       {"sampling", "Frames, points and weights of a meshless body."},
       {"far", "A body lies so far from the origin that digits are lost."},
       {"size", "A body is larger or smaller than what is made of such a material."},
@@ -26,7 +26,7 @@ const std::vector<Choice>& warning_names() {
       {"rotations", "Positions are prescribed without rotations."},
       {"place", "The point of a probe or load was moved onto the body."},
       {"masses", "A probe counts masses that bodies share."},
-      {"locking", "A choice that makes elements or frames too stiff."},
+      {"locking", "A single cell of frames that hardly bends."},
       {"backend", "The GPU was not used as the scene asks."},
       {"output", "The results will be large."},
       {"stability", "The end state is, or may be, unstable."},

@@ -143,10 +143,12 @@ std::string cost_kind(const Body& body) {
 }
 
 LinearUse linear_use(const Solver& solver, int dimension, double courant, bool conservative) {
-  const bool open = solver.linear == LinearMethod::automatic &&
-                    solver.preconditioner == PreconditionerKind::automatic &&
-                    solver.linear_max_iterations >= kEnoughForBulk;
-  return {solver.linear, dimension, courant, open && conservative && is_implicit_dynamics(solver.kind)};
+  const bool named = solver.preconditioner != PreconditionerKind::automatic;
+  LinearMethod method = solver.linear;
+  if (method == LinearMethod::automatic && named)
+    method = solver.preconditioner == PreconditionerKind::cholesky ? LinearMethod::cholesky : LinearMethod::cg;
+  const bool open = method == LinearMethod::automatic && solver.linear_max_iterations >= kEnoughForBulk;
+  return {method, dimension, courant, open && conservative && is_implicit_dynamics(solver.kind)};
 }
 
 /// As TangentSolver chooses, but that the shape of a body is not known: of more than so many unknowns, and after more

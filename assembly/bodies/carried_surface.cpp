@@ -2,6 +2,7 @@
 
 #include "assembly/bodies/shell_meshes.hpp"
 #include "core/geometry/primitives.hpp"
+#include "core/geometry/surface.hpp"
 #include "core/math/rotation.hpp"
 #include "shells/surface_checks.hpp"
 
@@ -59,6 +60,10 @@ CarriedSurface carried_surface(const Body& body) {
   carried.closed = closed(mesh);
   carried.mesh = {std::move(mesh.nodes), std::move(mesh.triangles)};
   carried.messages = std::move(mesh.messages);
+  if (body.model == BodyModel::rigid && carried.closed && !mesh.file.empty())
+    for (std::string& message :
+         turn_cavities(mesh.file, body.density ? OfOverlap::is_refused : OfOverlap::is_told, carried.mesh))
+      carried.messages.push_back(std::move(message));
   return carried;
 }
 

@@ -15,7 +15,8 @@ struct CarriedSurface {
   std::vector<std::string> messages;
 };
 
-/// Solids give their skin; files their triangles, or the boundary of their volume cells.
+/// Solids give their skin; files their triangles, or the boundary of their volume cells. Closed parts of a rigid body's
+/// surface that lie inside of others bound cavities.
 /// @throws InputError, FileError
 CarriedSurface carried_surface(const Body& body);
 

@@ -212,6 +212,12 @@ Simulation build_simulation(Scene scene, const SampleStore* store) {
     s.warnings.add("no-effect",
                    "modes are those of the unloaded rest state: gravity, loads, fluids and active stresses are not "
                    "used");
+  const Solver& solver = s.scene.solver;
+  const bool path = solver.kind == SolverKind::statics && solver.control != StaticControl::load;
+  if (solver.preconditioner != PreconditionerKind::automatic && (solver.linear == LinearMethod::cholesky || path))
+    s.warnings.add("no-effect", s.scene.place_of("solver.linear.preconditioner"),
+                   fmt::format("does nothing {}, which makes factors: it is of conjugate gradients",
+                               path ? "on a path" : "with linear.kind = \"cholesky\""));
   resolve_probes(s);
   resolve_controlled(s);
   return s;

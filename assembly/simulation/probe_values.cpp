@@ -103,6 +103,10 @@ double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const St
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
     const ModelBody& body = *s.bodies[b].body;
+    if (s.scene.bodies[b].model == BodyModel::rigid) {
+      volume += body.volume();
+      continue;
+    }
     const std::vector<Mat3d> H = body.gradients(state);
     for (std::size_t q = 0; q < H.size(); ++q)
       volume += body.points()[q].volume * determinant(Mat3d::identity() + H[q]);

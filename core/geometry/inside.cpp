@@ -113,4 +113,20 @@ void InsideTest::contains_on_line(double y, double z, std::span<const double> x,
   }
 }
 
+InsideTest::Surrounded InsideTest::surrounded(double y, double z) const {
+  std::vector<Crossing> crossings;
+  for_each_crossing(y, z, [&](const Crossing& c) { crossings.push_back(c); });
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.x > b.x; });
+  Surrounded out;
+  int winding = 0;
+  for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {
+    winding += crossings[k].passes;
+    const double length = crossings[k].x - crossings[k + 1].x;
+    const int of_solid = winding > 0 ? 1 : 0;
+    out.inside += of_solid * length;
+    out.wrong += std::abs(winding - of_solid) * length;
+  }
+  return out;
+}
+
 }  // namespace fascia

@@ -28,6 +28,13 @@ class InsideTest {
   /// @param inside  receives 1 or 0 for each of x
   void contains_on_line(double y, double z, std::span<const double> x, std::span<char> inside) const;
 
+  /// How long a line along x is inside, and how long it is surrounded otherwise than by the surface of a solid: twice,
+  /// where parts overlap, or inside out; as often as it is too much.
+  struct Surrounded {
+    double inside = 0, wrong = 0;  ///< [m]
+  };
+  Surrounded surrounded(double y, double z) const;
+
   /// Distance to the surface [m], not signed; `nearest` receives the surface's nearest point.
   double distance(const Vec3d& x, Vec3d* nearest = nullptr) const { return tree_.distance(x, nearest); }
 

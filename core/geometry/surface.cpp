@@ -25,4 +25,17 @@ ClosedSurface closed_surface(const Mesh& mesh) {
   return result;
 }
 
+std::vector<std::string> turn_cavities(const std::string& file, OfOverlap overlap, TriangleMesh& closed) {
+  surface_parts::Solid solid;
+  solid.file = file;
+  solid.points = closed.points;
+  std::vector<surface_parts::Triangle> triangles;
+  triangles.reserve(closed.triangles.size());
+  for (const std::array<int, 3>& nodes : closed.triangles) triangles.push_back({nodes});
+  std::vector<std::string> messages;
+  surface_parts::turn_cavities(solid, overlap, triangles, messages);
+  for (std::size_t t = 0; t < triangles.size(); ++t) closed.triangles[t] = triangles[t].nodes;
+  return messages;
+}
+
 }  // namespace fascia

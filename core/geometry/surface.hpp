@@ -2,6 +2,9 @@
 
 #include "core/geometry/mesh.hpp"
 
+#include <string>
+#include <vector>
+
 namespace fascia {
 
 /// The closed outward-oriented surface of a solid, from a volume mesh (faces that one cell has) or a surface mesh.
@@ -18,5 +21,15 @@ struct ClosedSurface {
 /// @throws InputError  open or branching edges, flat or inverted cells, mixed orientation, NaN; with the file and its
 ///                     own cell or node number
 ClosedSurface closed_surface(const Mesh& mesh);
+
+/// Closed parts that overlap by more than a fiftieth of the volume: refused where the volume counts, else told.
+enum class OfOverlap { is_refused, is_told };
+
+/// Makes a closed surface bound matter whose parts all face outward: those that lie inside of an odd number of others
+/// are turned inward, since they bound cavities.
+/// @param file  begins messages and errors
+/// @return  what was found
+/// @throws InputError  parts that overlap, where that is refused
+std::vector<std::string> turn_cavities(const std::string& file, OfOverlap overlap, TriangleMesh& closed);
 
 }  // namespace fascia

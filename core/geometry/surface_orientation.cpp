@@ -4,6 +4,7 @@
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/surface_parts.hpp"
 #include "core/geometry/surface_touching.hpp"
+#include "core/geometry/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,9 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace fascia::surface_parts {
 namespace {
@@ -97,6 +100,47 @@ std::vector<int> nesting_depths(const Solid& solid, const std::vector<Component>
     }
   }
   return depth;
+}
+
+bool meet(const Bounds& a, const Bounds& b) {
+  for (int c = 0; c < 3; ++c)
+    if (!(a.low[c] <= b.high[c] && b.low[c] <= a.high[c])) return false;
+  return true;
+}
+
+/// The boxes of two components meet, so that they themselves may.
+bool may_intersect(const std::vector<Component>& components) {
+  for (std::size_t i = 0; i < components.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (meet(components[i].bounds, components[j].bounds)) return true;
+  return false;
+}
+
+/// Looks at how often the surface surrounds what lies on lines along x. What touches, or overlaps by what splits of
+/// curved faces differ by, is left alone or told.
+void check_overlaps(const Solid& solid, const std::vector<Triangle>& triangles, OfOverlap overlap,
+                    std::vector<std::string>& messages) {
+  constexpr int kLines = 48;                       // along y and z
+  constexpr double kTold = 1e-3, kTooMuch = 0.02;  // of the volume
+  const TriangleMesh mesh = compact(solid, triangles);
+  const Bounds box = bounds_of(mesh.points);
+  const InsideTest test(mesh);
+  InsideTest::Surrounded sum;
+  for (int j = 0; j < kLines; ++j)
+    for (int k = 0; k < kLines; ++k) {
+      const auto along = [&](int axis, int line) {
+        return box.low[axis] + (line + 0.5) / kLines * (box.high[axis] - box.low[axis]);
+      };
+      const InsideTest::Surrounded line = test.surrounded(along(1, j), along(2, k));
+      sum.inside += line.inside;
+      sum.wrong += line.wrong;
+    }
+  if (sum.wrong <= kTold * sum.inside) return;
+  const double percent = std::min(100.0, std::round(1000 * sum.wrong / sum.inside) / 10);
+  const std::string what = "its closed parts intersect, and about " + message::text(percent) +
+                           " % of what they enclose counts twice; unite them to one surface, or make a body of each";
+  if (overlap == OfOverlap::is_refused && sum.wrong > kTooMuch * sum.inside) fail(solid, what);
+  messages.push_back(solid.file + ": " + what);
 }
 
 /// A part of the sheet that hangs together across edges of two triangles.
@@ -207,7 +251,13 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
     else
       first_wrong = c;
   }
-  if (wrong == wrong_pockets) return leave_out(solid, pockets, numbering, triangles, messages);
+  const auto check = [&] {
+    if (may_intersect(components)) check_overlaps(solid, triangles, OfOverlap::is_refused, messages);
+  };
+  if (wrong == wrong_pockets) {
+    leave_out(solid, pockets, numbering, triangles, messages);
+    return check();
+  }
   if (wrong < components.size())
     fail(solid, "the closed part with triangle " + std::to_string(components[first_wrong].triangles[0].file_number) +
                     " is oriented against the others (" + std::to_string(wrong) + " of " +
@@ -215,6 +265,23 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
                     " parts); orient outer surfaces outward and those of cavities " + "inward");
   for (Triangle& t : triangles) std::swap(t.nodes[1], t.nodes[2]);
   messages.push_back(solid.file + ": all " + std::to_string(triangles.size()) + " triangles face inward; turned over");
+  check();
+}
+
+void turn_cavities(const Solid& solid, OfOverlap overlap, std::vector<Triangle>& triangles,
+                   std::vector<std::string>& messages) {
+  const Components numbering(Neighbours(triangles.size(), sorted_edges(triangles)));
+  if (numbering.count < 2) return;
+  const std::vector<Component> components = split(solid, triangles, numbering);
+  const std::vector<int> depth = nesting_depths(solid, components);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (depth[at(numbering.of[t])] % 2 != 0) turn_over(triangles[t]);
+  const auto cavities = std::ranges::count_if(depth, [](int d) { return d % 2 != 0; });
+  if (cavities > 0)
+    messages.push_back(solid.file + ": " + std::to_string(cavities) +
+                       (cavities == 1 ? " closed part lies inside another and bounds a cavity"
+                                      : " closed parts lie inside others and bound cavities"));
+  if (may_intersect(components)) check_overlaps(solid, triangles, overlap, messages);
 }
 
 void orient_sheet(const Solid& sheet, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {

@@ -86,8 +86,14 @@ std::vector<Cell> cells_off_volumes(const Solid& solid);
 void check_closed(const Solid& solid, const std::vector<Triangle>& triangles, std::vector<std::string>& messages);
 
 /// Turns a surface outward: every component outward, or inward where it bounds a cavity.
-/// @throws InputError  some components the right way, some not
+/// @throws InputError  some components the right way, some not; components that overlap
 void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages);
+
+/// Turns those of closed components inward that lie inside of an odd number of others: they bound cavities.
+/// @param triangles  of components that face outward
+/// @throws InputError  components that overlap by much, where that is refused
+void turn_cavities(const Solid& solid, OfOverlap overlap, std::vector<Triangle>& triangles,
+                   std::vector<std::string>& messages);
 
 /// Makes neighbours of a sheet agree, by as few turns as possible in each part that hangs together; then closed parts
 /// face outward.

@@ -28,8 +28,8 @@ void take_buffer() {
   if (room == MAP_FAILED)
     throw InputError(
         "out of memory: OpenBLAS, which the direct solver calls, needs 136 MB for its buffer, and the process cannot "
-        "have "
-        "them; raise its limit (ulimit -v), or use solver.linear = { kind = \"cg\" }");
+        "have them; raise its limit (ulimit -v). Steps of dynamics do without it by solver.linear = { kind = \"cg\" }; "
+        "statics may factorise at their end, to tell whether the state is stable");
   munmap(room, kBuffer);
   constexpr int n = 64;  // beyond what small products do without a buffer
   constexpr double one = 1, zero = 0;

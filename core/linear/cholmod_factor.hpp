@@ -68,8 +68,8 @@ cholmod_sparse lower_triangle(std::vector<Int>& column_begin, std::vector<Int>& 
   return sparse;
 }
 
-/// What BlockCholesky promises, with indices of one width. Those of 64 bits take as long, and memory for twice the
-/// indices, of which the factor has few.
+/// A factor as BlockCholesky promises it, with indices of one width. Those of 64 bits take twice the memory of indices,
+/// of which supernodes have few.
 template <class Int>
 class CholmodFactor {
  public:
@@ -77,104 +77,97 @@ class CholmodFactor {
                 ThreadPool* pool)
       : matrix_(pattern, filter), filter_(filter), pool_(pool) {
     hold_blas_to_one_thread();
-    Calls::start(&common_);
-    common_.print = 0;
-    common_.quick_return_if_not_posdef = 1;
-    common_.final_ll = pivots == Pivots::positive;  // LDLᵀ, its choice for small matrices, accepts negative pivots
-    if (pivots == Pivots::any) common_.supernodal = CHOLMOD_SIMPLICIAL;
-    common_.nmethods = 1;
-    common_.method[0].ordering = CHOLMOD_GIVEN;
+    own_.common.print = 0;
+    own_.common.quick_return_if_not_posdef = 1;
+    own_.common.final_ll = pivots == Pivots::positive;  // LDLᵀ, its choice for small matrices, accepts negative pivots
+    if (pivots == Pivots::any) own_.common.supernodal = CHOLMOD_SIMPLICIAL;
+    own_.common.nmethods = 1;
+    own_.common.method[0].ordering = CHOLMOD_GIVEN;
     const auto n = static_cast<std::size_t>(matrix_.size);
     sparse_ = lower_triangle(matrix_.column_begin, matrix_.row);
     sparse_.x = matrix_.value.data();
     sparse_.xtype = CHOLMOD_REAL;
     const std::vector<int> numbers = matrix_.numbers_of(order.nodes, pattern.dofs());
     std::vector<Int> permutation(numbers.begin(), numbers.end());
-    factor_ = Calls::analyze_in_order(&sparse_, permutation.data(), nullptr, 0, &common_);
-    rhs_ = Calls::zeros(n, 1, CHOLMOD_REAL, &common_);
-    if (factor_ == nullptr || rhs_ == nullptr) throw std::bad_alloc();
-    if (factor_->is_super == 0) return;
+    own_.factor = Calls::analyze_in_order(&sparse_, permutation.data(), nullptr, 0, &own_.common);
+    own_.rhs = Calls::zeros(n, 1, CHOLMOD_REAL, &own_.common);
+    if (own_.factor == nullptr || own_.rhs == nullptr) throw std::bad_alloc();
+    if (own_.factor->is_super == 0) return;
     take_blas_buffer();
     std::vector<int> place_of(n);
-    const auto* kth = static_cast<const Int*>(factor_->Perm);
+    const auto* kth = static_cast<const Int*>(own_.factor->Perm);
     for (std::size_t k = 0; k < n; ++k) place_of[static_cast<std::size_t>(kth[k])] = static_cast<int>(k);
     for (const int number : matrix_.number) place_.push_back(number < 0 ? -1 : place_of[at(number)]);
     ordered_.resize(n);
     solver_ = SupernodeSolver(supernodes(numbers_of_factor()));
   }
-  ~CholmodFactor() {
-    Calls::free_dense(&rhs_, &common_);
-    Calls::free_dense(&solution_, &common_);
-    Calls::free_dense(&work_y_, &common_);
-    Calls::free_dense(&work_e_, &common_);
-    Calls::free_factor(&factor_, &common_);
-    Calls::finish(&common_);
-  }
-  CholmodFactor(const CholmodFactor&) = delete;
-  CholmodFactor& operator=(const CholmodFactor&) = delete;
 
-  double flops() const { return common_.fl; }
+  double flops() const { return own_.common.fl; }
 
   /// The peak of a factorisation, beside what the analysis has left: CHOLMOD holds the matrix in its own order then,
   /// and once more while it orders it (cholmod_factorize_p). Supernodes are dense, of which one is updated at a time;
   /// else columns have room to grow, by Common->grow1 and grow2.
   double bytes() const {
     constexpr double number = sizeof(double), entry = sizeof(Int) + sizeof(double);
-    const auto n = static_cast<double>(factor_->n);
+    const auto n = static_cast<double>(own_.factor->n);
     const double matrix = entry * static_cast<double>(matrix_.row.size()) + sizeof(Int) * n;
-    if (factor_->is_super == 0)
-      return entry * (common_.grow1 * common_.lnz + static_cast<double>(common_.grow2) * n) + matrix + 4 * number * n;
-    return number * (static_cast<double>(factor_->xsize) + 4 * n) + matrix +
-           std::max(matrix, number * static_cast<double>(factor_->maxcsize));
+    if (own_.factor->is_super == 0)
+      return entry * (own_.common.grow1 * own_.common.lnz + static_cast<double>(own_.common.grow2) * n) + matrix +
+             4 * number * n;
+    return number * (static_cast<double>(own_.factor->xsize) + 4 * n) + matrix +
+           std::max(matrix, number * static_cast<double>(own_.factor->maxcsize));
   }
 
   bool factorize(const BlockMatrix& matrix, double shift, const BlockMatrix* shift_from) {
     matrix_.fill(matrix, filter_, shift, shift_from);
     rounded_.clear();
-    Calls::factorize(&sparse_, factor_, &common_);
-    if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-    return common_.status == CHOLMOD_OK && factor_->minor == factor_->n;
+    Calls::factorize(&sparse_, own_.factor, &own_.common);
+    if (own_.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    return own_.common.status == CHOLMOD_OK && own_.factor->minor == own_.factor->n;
   }
 
   int negative_pivots() const {
-    if (factor_->is_ll != 0) return 0;
-    const auto* begin = static_cast<const Int*>(factor_->p);
-    const auto* value = static_cast<const double*>(factor_->x);  // D stands first in each column
+    if (own_.factor->is_ll != 0) return 0;
+    const auto* begin = static_cast<const Int*>(own_.factor->p);
+    const auto* value = static_cast<const double*>(own_.factor->x);  // D stands first in each column
     int count = 0;
-    for (std::size_t j = 0; j < factor_->n; ++j) count += value[begin[j]] < 0 ? 1 : 0;
+    for (std::size_t j = 0; j < own_.factor->n; ++j) count += value[begin[j]] < 0 ? 1 : 0;
     return count;
   }
 
   void solve(std::span<const double> b, std::span<double> x) {
-    if (factor_->is_super != 0) return solve_by_supernodes(numbers_of_factor(), b, x);
-    auto* rhs = static_cast<double*>(rhs_->x);
+    if (own_.factor->is_super != 0) return solve_by_supernodes(numbers_of_factor(), b, x);
+    auto* rhs = static_cast<double*>(own_.rhs->x);
     for (std::size_t i = 0; i < b.size(); ++i)
       if (matrix_.number[i] >= 0) rhs[matrix_.number[i]] = b[i];
-    if (Calls::solve(CHOLMOD_A, factor_, rhs_, nullptr, &solution_, nullptr, &work_y_, &work_e_, &common_) == 0)
+    if (Calls::solve(CHOLMOD_A, own_.factor, own_.rhs, nullptr, &own_.solution, nullptr, &own_.work_y, &own_.work_e,
+                     &own_.common) == 0)
       throw std::bad_alloc();
-    const auto* solution = static_cast<const double*>(solution_->x);
+    const auto* solution = static_cast<const double*>(own_.solution->x);
     for (std::size_t i = 0; i < b.size(); ++i) x[i] = matrix_.number[i] >= 0 ? solution[matrix_.number[i]] : 0.0;
   }
 
   void precondition(std::span<const double> b, std::span<double> x) {
-    if (factor_->is_super == 0 || !round()) return solve(b, x);
+    if (own_.factor->is_super == 0 || !round()) return solve(b, x);
     solve_by_supernodes(std::span<const float>(rounded_), b, x);
   }
 
   double rounded_bytes() const {
-    return factor_->is_super == 0 ? 0.0 : sizeof(float) * static_cast<double>(factor_->xsize);
+    return own_.factor->is_super == 0 ? 0.0 : sizeof(float) * static_cast<double>(own_.factor->xsize);
   }
 
  private:
   using Calls = Cholmod<Int>;
 
-  std::span<const double> numbers_of_factor() const { return {static_cast<const double*>(factor_->x), factor_->xsize}; }
+  std::span<const double> numbers_of_factor() const {
+    return {static_cast<const double*>(own_.factor->x), own_.factor->xsize};
+  }
   template <class T>
   Supernodes<T, Int> supernodes(std::span<const T> values) const {
-    const std::size_t count = factor_->nsuper;
+    const std::size_t count = own_.factor->nsuper;
     const auto indices = [](const void* p, std::size_t n) { return std::span(static_cast<const Int*>(p), n); };
-    return {indices(factor_->super, count + 1), indices(factor_->pi, count + 1), indices(factor_->px, count + 1),
-            indices(factor_->s, factor_->ssize), values};
+    return {indices(own_.factor->super, count + 1), indices(own_.factor->pi, count + 1),
+            indices(own_.factor->px, count + 1), indices(own_.factor->s, own_.factor->ssize), values};
   }
   /// False where memory does not hold both.
   bool round() {
@@ -195,19 +188,32 @@ class CholmodFactor {
     for (std::size_t i = 0; i < b.size(); ++i) x[i] = place_[i] >= 0 ? ordered_[at(place_[i])] : 0.0;
   }
 
+  /// Owns what CHOLMOD allocates, also where the constructor throws.
+  struct Owned {
+    cholmod_common common{};
+    cholmod_factor* factor = nullptr;
+    cholmod_dense *rhs = nullptr, *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
+
+    Owned() { Calls::start(&common); }
+    ~Owned() {
+      for (cholmod_dense** vector : {&rhs, &solution, &work_y, &work_e}) Calls::free_dense(vector, &common);
+      Calls::free_factor(&factor, &common);
+      Calls::finish(&common);
+    }
+    Owned(const Owned&) = delete;
+    Owned& operator=(const Owned&) = delete;
+  };
+
   FreeMatrix<Int> matrix_;
   const DofFilter& filter_;
-  cholmod_common common_{};
+  Owned own_;
   cholmod_sparse sparse_{};
-  cholmod_factor* factor_ = nullptr;
-  // Reused by every solve: of supernodes
+  // Of supernodes, reused by every solve.
   std::vector<int> place_;  ///< of each degree of freedom in the factor's order, −1 where prescribed
   std::vector<double> ordered_;
   SupernodeSolver solver_;
   ThreadPool* pool_;
   std::vector<float> rounded_;  ///< numbers of the factor; empty before one asks for them
-  // and of single columns.
-  cholmod_dense *rhs_ = nullptr, *solution_ = nullptr, *work_y_ = nullptr, *work_e_ = nullptr;
 };
 
 }  // namespace fascia

@@ -21,7 +21,7 @@ struct EliminationOrder {
   bool exceeds(double limit) const { return flops > (rough ? 5 : 1) * limit; }
 
   /// Indices of 32 bits reach all numbers of the factor, with room for the zeros of its dense columns. It takes less
-  /// than 9 GB then. Nothing takes a larger one that is not asked for it.
+  /// than 9 GB then. A larger factor is made only where the user asks for one.
   bool narrow() const { return numbers < 0x1.0p30; }
 
   /// @param enough  operations: an order that no other one brings down to as few may be rough

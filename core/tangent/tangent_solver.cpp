@@ -88,7 +88,8 @@ bool TangentSolver::direct() {
   else if (!guessed())
     direct_ = settings_.linear == LinearMethod::cholesky;
   else
-    direct_ = filter_.free_count() <= kDirectDofs || factor_is_small();
+    direct_ = settings_.preconditioner == PreconditionerKind::automatic &&
+              (filter_.free_count() <= kDirectDofs || factor_is_small());
   if (*direct_ && blocks_go_first()) kept_by_cost_ = true;
   return *direct_;
 }

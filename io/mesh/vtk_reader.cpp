@@ -18,9 +18,11 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <cstdint>
 #include <exception>
 #include <fstream>
 #include <regex>
+#include <sstream>
 
 namespace fascia::io {
 namespace {
@@ -70,6 +72,23 @@ std::string true_ending(const std::filesystem::path& path, const std::string& en
   return type[1] == "PolyData" ? ".vtp" : ending;
 }
 
+/// A header may promise more than memory holds, which VTK asks for before it looks for the first number: each vertex
+/// and face takes a byte at least.
+void check_ply_counts(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  std::string line, word, name;
+  constexpr int most_lines = 10'000;
+  for (int number = 1; number < most_lines && std::getline(stream, line) && !line.starts_with("end_header"); ++number) {
+    double count = 0;
+    std::istringstream words(line);
+    if (words >> word >> name >> count && word == "element" && count > static_cast<double>(size))
+      throw InputError(file + ":" + std::to_string(number) + ": the number of " +
+                       (name == "vertex" ? "vertices" : name + "s") + " is above the " + std::to_string(size) +
+                       " bytes of the file; correct it, or write the file again: it may be cut off");
+  }
+}
+
 Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mid_nodes) {
   VtkErrors errors;
   try {
@@ -99,6 +118,7 @@ Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending,
     return mesh;
   }
   const std::string kind = true_ending(path, ending);
+  if (kind == ".ply") check_ply_counts(file);
   Mesh mesh = read_isolated(file, [&] { return read_by_vtk(file, kind, mid_nodes); });
   if (kind != ending) mesh.messages.push_back(file + ": holds XML, which is a " + kind + " file, and was read as one");
   return mesh;

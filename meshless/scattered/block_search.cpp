@@ -61,7 +61,7 @@ Vec3d BlockSearch::Cells::middle(std::size_t number) const {
 }
 
 BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPool& pool)
-    : blocks_({}, {}, 1, 1), cells_({}, {}, 1, 1), begin_(2, 0) {
+    : blocks_({}, {}, 1, 1), spacing_(spacing), begin_(2, 0) {
   if (places.empty()) return;
   const Bounds bounds = bounds_of(places);
   const double most = std::max(1e6, 2.0 * static_cast<double>(places.size()));
@@ -69,7 +69,8 @@ BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPo
   for (int a = 0; a < 3; ++a) volume *= std::max(1.0, (bounds.high[a] - bounds.low[a]) / spacing);
   const double edge = std::cbrt(kPlaces * volume / static_cast<double>(places.size()));
   blocks_ = Cells(bounds.low, bounds.high, std::clamp(edge, kNarrowest, kWidest) * spacing, most);
-  cells_ = Cells(bounds.low, bounds.high, spacing, most);
+  low_ = bounds.low;
+  high_ = bounds.high;
   RawArray<int> block(places.size());
   constexpr int kSome = 4096;
   pool.for_ranges(static_cast<int>(places.size()), kSome, [&](int first, int last) {
@@ -96,13 +97,15 @@ BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPo
 }
 
 BlockSearch::Sorted BlockSearch::sorted(std::span<const Vec3d> points) const {
-  Sorted out{std::vector<int>(cells_.size() + 1, 0), std::vector<int>(points.size()),
+  constexpr double kCells = 8, kFew = 1e4;
+  const Cells cells(low_, high_, spacing_, std::max(kFew, kCells * static_cast<double>(points.size())));
+  Sorted out{cells, std::vector<int>(cells.size() + 1, 0), std::vector<int>(points.size()),
              std::vector<Vec3d>(points.size())};
-  for (const Vec3d& x : points) ++out.begin[cells_.number(cells_.of(x)) + 1];
+  for (const Vec3d& x : points) ++out.begin[cells.number(cells.of(x)) + 1];
   for (std::size_t c = 1; c < out.begin.size(); ++c) out.begin[c] += out.begin[c - 1];
   std::vector<int> next(out.begin.begin(), out.begin.end() - 1);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const std::size_t n = at(next[cells_.number(cells_.of(points[p]))]++);
+    const std::size_t n = at(next[cells.number(cells.of(points[p]))]++);
     out.index[n] = static_cast<int>(p);
     out.x[n] = points[p];
   }
@@ -112,19 +115,19 @@ BlockSearch::Sorted BlockSearch::sorted(std::span<const Vec3d> points) const {
 /// No place in the block is farther than this from the point nearest to it: the distance of the farthest corner from a
 /// point near the block.
 double BlockSearch::reach_of(const Vec3d& middle, const Sorted& points) const {
-  const Cell home = cells_.of(middle);
+  const Cell home = points.cells.of(middle);
   const double half = 0.5 * blocks_.edge;
   double squared = kInfinity;
-  const int most = *std::max_element(cells_.count.begin(), cells_.count.end());
+  const int most = *std::max_element(points.cells.count.begin(), points.cells.count.end());
   for (int ring = 1; ring <= most && squared == kInfinity; ++ring) {
     Cell low{}, high{};
     for (std::size_t a = 0; a < 3; ++a) {
       low[a] = std::max(0, home[a] - ring);
-      high[a] = std::min(cells_.count[a] - 1, home[a] + ring);
+      high[a] = std::min(points.cells.count[a] - 1, home[a] + ring);
     }
     for_rows(low, high, [&](int j, int k) {
-      const int end = points.begin[cells_.number({high[0], j, k}) + 1];
-      for (int n = points.begin[cells_.number({low[0], j, k})]; n < end; ++n) {
+      const int end = points.begin[points.cells.number({high[0], j, k}) + 1];
+      for (int n = points.begin[points.cells.number({low[0], j, k})]; n < end; ++n) {
         double sum = 0;
         for (int a = 0; a < 3; ++a) {
           const double farthest = std::abs(points.x[at(n)][a] - middle[a]) + half;
@@ -141,11 +144,11 @@ void BlockSearch::list(const Vec3d& middle, const Sorted& points, Candidates& ou
   // Rounding, and equals that are so but for kTie, must not hide a point.
   const double reach = reach_of(middle, points) * (1 + 10 * kTie), half = 0.5 * blocks_.edge * (1 + 10 * kTie);
   const Vec3d around{{reach + half, reach + half, reach + half}};
-  const Cell low = cells_.of(middle - around), high = cells_.of(middle + around);
+  const Cell low = points.cells.of(middle - around), high = points.cells.of(middle + around);
   out.count = 0;
   for_rows(low, high, [&](int j, int k) {
-    const int begin = points.begin[cells_.number({low[0], j, k})],
-              end = points.begin[cells_.number({high[0], j, k}) + 1];
+    const int begin = points.begin[points.cells.number({low[0], j, k})],
+              end = points.begin[points.cells.number({high[0], j, k}) + 1];
     out.make_room(at(end - begin));
     for (int n = begin; n < end; ++n) {  // without branches that nobody can foresee
       const Vec3d& x = points.x[at(n)];

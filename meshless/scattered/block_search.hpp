@@ -40,8 +40,10 @@ class BlockSearch {
     std::size_t size() const;
     Vec3d middle(std::size_t number) const;
   };
-  /// Points by cell.
+  /// Points by cell. There are some times as many cells as points at most: where the places of a flat body are much
+  /// closer to one another than the points, most cells would be empty, and looking through them would take for ever.
   struct Sorted {
+    Cells cells;
     std::vector<int> begin, index;  ///< of each cell in the arrays, and of each point in the caller's order
     std::vector<Vec3d> x;
   };
@@ -63,7 +65,9 @@ class BlockSearch {
   void list(const Vec3d& middle, const Sorted& points, Candidates& out) const;
   void search(std::size_t first, std::size_t last, const Candidates& among, std::span<int> nearest) const;
 
-  Cells blocks_, cells_;            ///< of places, of points
+  Cells blocks_;      ///< of places
+  Vec3d low_, high_;  ///< of all places
+  double spacing_;
   std::vector<std::size_t> begin_;  ///< of each block in the arrays of places, multiples of kLanes
   std::array<RawArray<double>, 3> x_;
   RawArray<int> place_;  ///< in the caller's order; −1: fills up the lanes

@@ -116,6 +116,36 @@ TEST_F(BadMesh, GoodOnesRun) {
   }
 }
 
+/// A cube as an OBJ file, whose vertices follow `before` others.
+std::string obj_cube(double low, double high, int before) {
+  std::string text;
+  for (int k = 0; k < 8; ++k)
+    text += "v " + std::to_string(k % 2 != 0 ? high : low) + " " + std::to_string(k / 2 % 2 != 0 ? high : low) + " " +
+            std::to_string(k / 4 != 0 ? high : low) + "\n";
+  for (const auto& quad :
+       {std::array{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}}) {
+    text += "f";
+    for (const int node : quad) text += " " + std::to_string(node + before);
+    text += "\n";
+  }
+  return text;
+}
+
+/// Parts of its surface lie inside of others, and face outward in the file: they bound cavities.
+TEST_F(BadMesh, ARigidBodyIsHollowWhereItsSurfaceSaysSo) {
+  write("hollow.obj", obj_cube(0, 4, 0) + obj_cube(1, 3, 8));
+  write("hollow.toml",
+        "[bodies.shell]\nmodel = \"rigid\"\ndomain = { file = \"hollow.obj\" }\ndensity = 10\n"
+        "[solver]\nkind = \"implicit-euler\"\ntime_step = 1\nsteps = 1\n"
+        "[probes.mass]\nquantity = \"mass\"\n[probes.volume]\nquantity = \"volume\"\n");
+  const ProgramResult result = fascia({"run", "hollow.toml", "--output", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("1 closed part lies inside another and bounds a cavity"), std::string::npos) << result.err;
+  const auto value = [&](const char* probe) { return summary("out").at("probes").at(probe).at("value").get<double>(); };
+  EXPECT_NEAR(value("mass"), 560, 1e-9);
+  EXPECT_NEAR(value("volume"), 56, 1e-10);
+}
+
 /// Some callers ignore the signal of children that end, and what they start inherits it.
 TEST_F(BadMesh, GoodOnesAreReadWhereEndsOfChildrenAreIgnored) {
   write("box.vtk", vtk_box());
@@ -207,6 +237,17 @@ TEST_F(BadMesh, FilesOfSomethingElseAreRefused) {
     expect_refused(std::string("empty.") + ending, "", "");
   }
   expect_refused("box.xyz", gmsh_box(), "msh");
+}
+
+/// The reader would ask for as much memory as a header promises, or fill it for minutes.
+TEST_F(BadMesh, HeadersThatPromiseMoreThanTheFileHolds) {
+  const auto ply = [](const std::string& vertices, const std::string& faces) {
+    return "ply\nformat ascii 1.0\nelement vertex " + vertices +
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+           "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  };
+  expect_refused("vertices.ply", ply("99999999999", "1"), "vertices.ply:3: the number of vertices is above the ");
+  expect_refused("faces.ply", ply("3", "1000000"), "faces.ply:7: the number of faces is above the ");
 }
 
 }  // namespace

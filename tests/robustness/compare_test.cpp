@@ -232,6 +232,10 @@ TEST_F(Compare, ProbesThatOnlyOneHasAreTold) {
   ASSERT_EQ(fascia({"run", "b.toml", "--output", "b", "--quiet"}).status, 0);
   expect({"compare", "a", "b"}, 1, "probes.csv has other columns: B alone has more");
   expect({"compare", "a", "b", "--only", "displacement"}, 0, "B alone has more");
+  write("c.toml", read_text(folder_ / "b.toml") + "[probes.last]\nquantity = \"mass\"\n");
+  ASSERT_EQ(fascia({"run", "c.toml", "--output", "c", "--quiet"}).status, 0);
+  expect({"compare", "b", "c", "--only", "more"}, 0, "B alone has last");
+  expect({"compare", "b", "c", "--only", "last"}, 2, "--only last: is no field or probe that both results have");
 }
 
 /// Which one comes first makes no difference.

@@ -151,6 +151,22 @@ TEST(EstimatePlans, OfDynamicsHalveTheStep) {
   EXPECT_EQ(plan.twins[0].twin.overrides.back(), "solver.time_step=0.0005") << "the finer mesh needs it";
 }
 
+/// Half of the longest stable step may be a little too long in a mesh of halved cells.
+TEST(EstimatePlans, OfAutomaticStepsKeepTheFinerTwinStable) {
+  Simulation simulation = build_simulation(
+      parse_beam("[solver]\nkind = \"explicit\"\ntime_step = \"auto\"\nduration = 1\n", {"output.estimate=true"}));
+  simulation.scene.solver.time_step = 1e-3;  // as a run has found it
+  const EstimatePlan plan = plan_estimate(simulation);
+  ASSERT_EQ(roles(plan), (Roles{TwinRole::finer, TwinRole::shorter_step}));
+  const auto step = [&](std::size_t twin) {
+    for (const std::string& s : plan.twins[twin].twin.overrides)
+      if (s.starts_with("solver.time_step=")) return std::stod(s.substr(s.find('=') + 1));
+    return 0.0;
+  };
+  EXPECT_DOUBLE_EQ(step(0), 0.4e-3);
+  EXPECT_DOUBLE_EQ(step(1), 0.5e-3);
+}
+
 TEST(EstimatePlans, WhatCannotBeEstimatedIsAnError) {
   EXPECT_THROW(plan_of("[solver]\nkind = \"modes\"\n"), SceneError);
   EXPECT_THROW(plan_of("[probes.bodies]\nbody = \"beam\"\nquantity = \"volume\"\n"), SceneError);

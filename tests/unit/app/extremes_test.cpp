@@ -46,11 +46,17 @@ TEST(OtherUnits, FollowTheDimension) {
 
 TEST(OtherUnits, ReachNumbersTextsWithUnitsAndLists) {
   Specimen s;
-  Value scene = parse_toml(s.text() + "[world]\ngravity = [\"9.81 m/s2\", 0, 1]\n");
+  Value scene = parse_toml(s.text() +
+                           "[world]\ngravity = [\"9.81 m/s2\", 0, 1]\n[probes.one]\nat = [1, 2, 3]\n"
+                           "[probes.several]\nat = [[1, 2, 3], [\"4 mm\", 5, 6]]\n");
   ASSERT_TRUE(change_units(scene, {1, 10, 1}));
   const Array& gravity = *scene.find("world")->find("gravity")->as_array();
   EXPECT_DOUBLE_EQ(std::get<double>(gravity[0].data), 98.1);
   EXPECT_DOUBLE_EQ(std::get<double>(gravity[2].data), 10);
+  const auto at = [&](const char* probe) { return scene.find("probes")->find(probe)->find("at")->as_array(); };
+  EXPECT_DOUBLE_EQ(std::get<double>((*at("one"))[1].data), 20);
+  EXPECT_DOUBLE_EQ(std::get<double>((*(*at("several"))[0].as_array())[2].data), 30);
+  EXPECT_DOUBLE_EQ(std::get<double>((*(*at("several"))[1].as_array())[0].data), 0.04);
   EXPECT_DOUBLE_EQ(std::get<double>(scene.find("materials")->find("near")->find("young")->data), 1e3);
   EXPECT_DOUBLE_EQ(std::get<double>(scene.find("materials")->find("near")->find("poisson")->data), 0.3);
 }

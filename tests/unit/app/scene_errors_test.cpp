@@ -253,6 +253,10 @@ TEST(SceneErrors, Solver) {
 
 TEST(SceneErrors, ProbesAndOutput) {
   EXPECT_EQ(
+      errors_of_beam("[probes.time_step]\nquantity = \"mass\"\n"),
+      "a.toml:10:1: probes.time_step: \"time_step\" is the name of a column of probes.csv; give the probe another "
+      "one");
+  EXPECT_EQ(
       errors_of_beam("[probes.p]\nquantity = \"stress\"\nbody = \"beam\"\n"),
       "a.toml:10:1: probes.p.at: is missing for quantity \"stress\"; must be a point of the body, or a list of points");
   EXPECT_EQ(errors_of_beam("[probes.p]\nquantity = \"force\"\nbody = \"beam\"\n"),

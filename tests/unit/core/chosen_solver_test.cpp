@@ -108,13 +108,26 @@ TEST(ChosenSolver, FactorisesSmallModelsInStatics) {
   EXPECT_EQ(chosen.run.linear_iterations, 0);
 }
 
-/// A limit of iterations would cut blocks short, and a preconditioner is for another solver.
+/// A limit of iterations would cut blocks short.
 TEST(ChosenSolver, LeavesWhatTheUserSaidToAFactor) {
-  const BuiltModel built = cube();
-  SolverSettings few, asked;
+  SolverSettings few;
   few.cg.max_iterations = 100;
-  asked.preconditioner = PreconditionerKind::multigrid;
-  for (const SolverSettings& settings : {few, asked}) EXPECT_TRUE(run(built.model, settings, true).choice.direct);
+  EXPECT_TRUE(run(cube().model, few, true).choice.direct);
+}
+
+/// A preconditioner is of conjugate gradients: who names one asks for these.
+TEST(ChosenSolver, TakesThePreconditionerThatTheUserNames) {
+  const BuiltModel built = cube();
+  SolverSettings asked;
+  for (const PreconditionerKind kind : {PreconditionerKind::block_jacobi, PreconditionerKind::multigrid})
+    for (const bool dynamics : {false, true}) {
+      asked.preconditioner = kind;
+      const Chosen chosen = run(built.model, asked, dynamics);
+      EXPECT_FALSE(chosen.choice.direct);
+      EXPECT_EQ(chosen.choice.preconditioner, kind);
+      EXPECT_GT(chosen.run.linear_iterations, 0);
+      expect_as_by_factor(built.model, chosen, dynamics);
+    }
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ Given given_by(const TangentAtRest& t, const BlockMatrix& matrix, Pivots pivots,
   return out;
 }
 
-/// Supernodes and single columns. Factors that need them take 9 GB and more (docs/performance.md).
+/// Supernodes and single columns. Factors that need them take 9 GB and more (docs/manual/limits.md).
 TEST(EliminationOrder, WideIndicesMakeTheSameFactor) {
   for (const int n : {3, 9}) {
     BlockOptions o;

@@ -3,6 +3,8 @@
 #include "tests/unit/io/mesh_samples.hpp"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace fascia::surface_orientation_test {
 namespace {
@@ -82,6 +84,52 @@ TEST(SurfaceOrientation, cavities) {
   EXPECT_NEAR(s.volume, 729 - 343 + 1, 1e-10);
   EXPECT_EQ(s.messages.size(), 1u);
   EXPECT_TRUE(contains(input_error([&] { closed_surface(mesh_of(both(cube(0, 4), cube(1, 3)))); }), "cavities"));
+}
+
+/// Matter in both would count twice. What touches does not intersect, and what hardly does is told.
+TEST(SurfaceOrientation, parts_that_intersect) {
+  const auto block = [](const Vec3d& low, const Vec3d& high) { return box_surface(low, high, 1, 1, 1); };
+  const TriangleMesh shifted = block({{0.5, 0.25, 0.25}}, {{2, 0.75, 0.75}}),
+                     along = block({{-5, -0.5, -0.5}}, {{5, 0.5, 0.5}}),
+                     across = block({{-0.5, -5, -0.5}}, {{0.5, 5, 0.5}});
+  for (const TriangleMesh& mesh : {both(cube(0, 1), cube(0.3, 1.3)), both(cube(0, 1), shifted),
+                                   both(shifted, cube(0, 1)), inward(both(cube(0, 1), shifted)), both(along, across)}) {
+    const std::string e = input_error([&] { closed_surface(mesh_of(mesh)); });
+    EXPECT_TRUE(contains(e, "closed parts intersect, and about ")) << e;
+    EXPECT_TRUE(contains(e, "counts twice; unite them")) << e;
+  }
+  for (const double deep : {0.0, 1e-9, 1e-6}) {
+    const ClosedSurface on_it =
+        closed_surface(mesh_of(both(block({{0.2, 0.3, 1 - deep}}, {{0.7, 0.8, 2}}), cube(0, 1))));
+    EXPECT_NEAR(on_it.volume, 1.25, 2 * deep + 1e-12);
+    EXPECT_TRUE(on_it.messages.empty());
+  }
+  EXPECT_NEAR(closed_surface(mesh_of(both(cube(0, 1), block({{1.1, 0, 0}}, {{2, 1, 1}})))).volume, 1.9, 1e-12);
+  const ClosedSurface hardly = closed_surface(mesh_of(both(cube(0, 1), block({{0.2, 0.2, 0.96}}, {{0.7, 0.7, 2}}))));
+  ASSERT_EQ(hardly.messages.size(), 1u);
+  EXPECT_TRUE(contains(hardly.messages[0], "closed parts intersect, and about 0.8 % of")) << hardly.messages[0];
+}
+
+/// Of parts that all face outward, as those of sheets do.
+TEST(SurfaceOrientation, parts_in_others_become_cavities) {
+  const auto volume = [](const TriangleMesh& mesh) { return closed_surface(mesh_of(mesh)).volume; };
+  std::vector<std::string> messages;
+  const auto turned = [&](TriangleMesh mesh, OfOverlap overlap = OfOverlap::is_refused) {
+    messages = turn_cavities("a.stl", overlap, mesh);
+    return mesh;
+  };
+  EXPECT_NEAR(volume(turned(both(cube(0, 4), cube(1, 3)))), 64 - 8, 1e-12);
+  EXPECT_EQ(messages, std::vector<std::string>{"a.stl: 1 closed part lies inside another and bounds a cavity"});
+  EXPECT_NEAR(volume(turned(both(both(cube(3, 4), cube(0, 9)), cube(1, 8)))), 729 - 343 + 1, 1e-10);
+  EXPECT_NEAR(volume(turned(both(both(cube(0, 9), cube(1, 3)), cube(4, 8)))), 729 - 8 - 64, 1e-10);
+  EXPECT_EQ(messages, std::vector<std::string>{"a.stl: 2 closed parts lie inside others and bound cavities"});
+  const TriangleMesh apart = both(cube(0, 1), cube(2, 4)), crossed = both(cube(0, 1), cube(0.3, 1.3));
+  EXPECT_EQ(turned(apart).triangles, apart.triangles);
+  EXPECT_TRUE(messages.empty());
+  EXPECT_TRUE(contains(input_error([&] { turned(crossed); }), "a.stl: its closed parts intersect"));
+  EXPECT_EQ(turned(crossed, OfOverlap::is_told).triangles, crossed.triangles);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_TRUE(contains(messages[0], "a.stl: its closed parts intersect")) << messages[0];
 }
 
 TEST(SurfaceOrientation, one_sided_surface) {

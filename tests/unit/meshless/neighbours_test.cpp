@@ -129,6 +129,16 @@ TEST(BlockSearch, TakesAnyPlaces) {
   const std::vector<Vec3d> same(5, Vec3d{{4, 0, 0}});
   EXPECT_EQ(nearest(same, {}), std::vector<int>(5, -1));
   EXPECT_EQ(nearest(same, points), std::vector<int>(5, 1));
+  // Places of a flat body, a millionth of the distance of points apart: were cells as small, this would take for ever.
+  std::vector<Vec3d> flat;
+  std::vector<int> wanted;
+  for (int k = 0; k < 4000; ++k) {
+    flat.push_back({{6.0 * k / 4000, 1e-6 * (k % 7), 1e-6 * (k % 5)}});
+    wanted.push_back(flat.back()[0] <= 3 ? 0 : 1);
+  }
+  std::vector<int> found(flat.size(), 7);
+  BlockSearch(flat, 1e-6, pool).nearest(points, found, pool);
+  EXPECT_EQ(found, wanted);
   const std::vector<Vec3d> far{{{0, 0, 0}}, {{1e6, 1e6, 1e6}}, {{-1e9, 0, 3}}};
   EXPECT_EQ(nearest(far, points), (std::vector<int>{0, 1, 0}));
 }
