@@ -45,9 +45,11 @@ std::string condition_line(const Simulation& s) {
            "few "
            "or a part hangs on a point, or is unstable; what a run finds there may be arbitrary";
   std::string line = fmt::format(
-      "tangent at rest: condition {:.2g} (scaled by its diagonal blocks); conjugate gradients take {} {} iterations, a "
+      "tangent at rest: condition {:.2g} (scaled by its diagonal blocks); conjugate gradients take {} {} iterations{}, "
+      "a "
       "direct solve keeps about {:.0f} digits",
-      c.ratio(), c.cg_converged ? "about" : "more than", c.cg_iterations, c.digits());
+      c.ratio(), c.cg_converged ? "about" : "more than", c.cg_iterations, c.with_levels ? " with levels" : "",
+      c.digits());
   if (c.digits() < kFewDigits)
     line +=
         "; so few come from parts that are much softer, thinner or smaller than what they hang on, or from "

@@ -1,6 +1,7 @@
 #include "app/reader/readers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +104,7 @@ void check_load_keys(const TableReader& table) {
   if (at == where) return;
   table.refuse(at ? of_region : of_point,
                at ? "goes with where, not with at"
-                  : "goes with at, not with where (there: total_force, total_torque, traction)");
+                  : fmt::format("goes with at, not with where (there: {})", fmt::join(of_region, ", ")));
   const std::vector<std::string>& wanted = at ? of_point : of_region;
   const auto given = [&](const std::string& key) { return table.has(key); };
   if (std::none_of(of_region.begin(), of_region.end(), given) && std::none_of(of_point.begin(), of_point.end(), given))

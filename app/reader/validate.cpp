@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace fascia::app {
 namespace {
@@ -207,8 +208,17 @@ class Validator {
         diagnostics_.add(member.position, member_path,
                          fmt::format("{} cannot name a file; use up to {} letters, digits, _ and -",
                                      in_quotes(member.key), max_name_length));
+      mistyped_ = {member_path, similar_to(member, *members)};
       check(member.value, shape.items.front(), member_path, in_words(shape.items.front()));
     }
+  }
+
+  /// Another name that this one may be meant as, of a table that --set or a heading has begun: "baem", beside "beam".
+  static std::string similar_to(const Member& member, const Table& members) {
+    std::vector<std::string> others;
+    for (const Member& other : members)
+      if (other.key != member.key) others.push_back(other.key);
+    return nearest(member.key, others);
   }
 
   void check_table(Value& value, const Shape& shape, const std::string& path, const std::string& wanted) {
@@ -221,8 +231,14 @@ class Validator {
     for (Member& member : *members) check_member(member, shape, path);
     for (const Key& k : shape.keys)
       if (k.required && !value.find(k.name))
-        diagnostics_.add(value.position, join(path, k.name), fmt::format("is missing; must be {}", in_words(k.shape)));
+        diagnostics_.add(value.position, join(path, k.name),
+                         fmt::format("is missing; must be {}{}", in_words(k.shape), other_name(path)));
     for (const Exclusive& group : shape.exclusive) check_exclusive(value, shape, group, path);
+  }
+
+  std::string other_name(const std::string& path) const {
+    const auto& [mistyped, similar] = mistyped_;
+    return path != mistyped || similar.empty() ? "" : fmt::format("; or did you mean {}?", in_quotes(similar));
   }
 
   /// Reports a selector that is not supported; what else the table says then does not matter.
@@ -286,6 +302,7 @@ class Validator {
   }
 
   Diagnostics& diagnostics_;
+  std::pair<std::string, std::string> mistyped_;  ///< path of a named table, and another name of its kind
   bool needed_;
   int depth_ = 0;
 };

@@ -77,6 +77,7 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   const LinearReport made = cg_.solve(start, x, few);
   cg_.take_exact_products(false);
   out.cg_iterations = made.iterations;
+  out.with_levels = cg_.levels() != nullptr;
   out.cg_converged = made.usable && !made.unsolved;
   out.kind = TangentCondition::Kind::known;
   return out;

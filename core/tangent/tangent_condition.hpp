@@ -10,6 +10,7 @@ struct TangentCondition {
   double largest = 1, smallest = 1;
   int cg_iterations = 0;      ///< that conjugate gradients took for a load in all directions, with the run's settings
   bool cg_converged = false;  ///< false: they were ended there
+  bool with_levels = false;   ///< levels were their preconditioner
 
   double ratio() const { return largest / smallest; }
   /// Decimal digits of a direct solve that rounding leaves: −log₁₀(ε κ).

@@ -74,6 +74,12 @@ TEST(Overrides, MakeMissingTables) {
   EXPECT_EQ(scene.probes[0].place.file, "--set");
 }
 
+TEST(Overrides, NameWhatAMistypedBodyMayMean) {
+  const std::string errors = errors_of_override("bodies.baem.frames.grid=[3, 3, 3]");
+  EXPECT_NE(errors.find("bodies.baem.model: is missing; must be "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("; or did you mean \"beam\"?"), std::string::npos) << errors;
+}
+
 TEST(Overrides, AreCheckedLikeTheFile) {
   EXPECT_EQ(errors_of_override("materials.soft.poisson=0.6"),
             "--set:1:24: materials.soft.poisson: 0.6 is out of range; must be above -1 and below 0.5");

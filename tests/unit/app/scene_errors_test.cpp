@@ -192,7 +192,7 @@ TEST(SceneErrors, Loads) {
             "traction, pressure or line_force");
   EXPECT_EQ(errors_of_load("force = [1, 0, 0]\n"),
             "a.toml:13:9: loads[0].force: goes with at, not with where (there: total_force, total_torque, "
-            "traction); remove it");
+            "force_per_node, traction, pressure, line_force); remove it");
   EXPECT_EQ(errors_of_beam("[[loads]]\nbody = \"beam\"\nforce = [1, 0, 0]\n"),
             "a.toml:10:1: loads[0]: where or at is missing; give exactly one");
   EXPECT_EQ(errors_of_beam("[[loads]]\nbody = \"beam\"\nat = [0, 0, 0]\ntraction = [1, 0, 0]\n"),

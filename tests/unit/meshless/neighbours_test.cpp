@@ -132,6 +132,7 @@ TEST(BlockSearch, TakesAnyPlaces) {
   // Places of a flat body, a millionth of the distance of points apart: were cells as small, this would take for ever.
   std::vector<Vec3d> flat;
   std::vector<int> wanted;
+  wanted.reserve(4000);
   for (int k = 0; k < 4000; ++k) {
     flat.push_back({{6.0 * k / 4000, 1e-6 * (k % 7), 1e-6 * (k % 5)}});
     wanted.push_back(flat.back()[0] <= 3 ? 0 : 1);
