@@ -41,13 +41,11 @@ std::string condition_line(const Simulation& s) {
     return fmt::format("tangent at rest: {} unknowns, too many to estimate its condition here",
                        s.model.free_dof_count());
   if (c.kind == TangentCondition::Kind::not_definite)
-    return "tangent at rest: not positive definite: some motion is not resisted, as where integration points are too "
-           "few "
-           "or a part hangs on a point, or is unstable; what a run finds there may be arbitrary";
+    return "tangent at rest: not positive definite: some motion is unstable or is not resisted, as where integration "
+           "points are too few or a part hangs on a point; what a run finds there may be arbitrary";
   std::string line = fmt::format(
-      "tangent at rest: condition {:.2g} (scaled by its diagonal blocks); conjugate gradients take {} {} iterations{}, "
-      "a "
-      "direct solve keeps about {:.0f} digits",
+      "tangent at rest: condition {:.2g} (scaled by its diagonal blocks); conjugate gradients take {} {} "
+      "iterations{}, a direct solve keeps about {:.0f} digits",
       c.ratio(), c.cg_converged ? "about" : "more than", c.cg_iterations, c.with_levels ? " with levels" : "",
       c.digits());
   if (c.digits() < kFewDigits)

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <utility>
 
 namespace fascia::app {
 namespace {
@@ -208,17 +207,9 @@ class Validator {
         diagnostics_.add(member.position, member_path,
                          fmt::format("{} cannot name a file; use up to {} letters, digits, _ and -",
                                      in_quotes(member.key), max_name_length));
-      mistyped_ = {member_path, similar_to(member, *members)};
+      named_ = {member_path, member.key, members};
       check(member.value, shape.items.front(), member_path, in_words(shape.items.front()));
     }
-  }
-
-  /// Another name that this one may be meant as, of a table that --set or a heading has begun: "baem", beside "beam".
-  static std::string similar_to(const Member& member, const Table& members) {
-    std::vector<std::string> others;
-    for (const Member& other : members)
-      if (other.key != member.key) others.push_back(other.key);
-    return nearest(member.key, others);
   }
 
   void check_table(Value& value, const Shape& shape, const std::string& path, const std::string& wanted) {
@@ -236,9 +227,15 @@ class Validator {
     for (const Exclusive& group : shape.exclusive) check_exclusive(value, shape, group, path);
   }
 
+  /// Another name that the named table of this path may be meant as, which --set or a heading has begun: "baem", beside
+  /// "beam".
   std::string other_name(const std::string& path) const {
-    const auto& [mistyped, similar] = mistyped_;
-    return path != mistyped || similar.empty() ? "" : fmt::format("; or did you mean {}?", in_quotes(similar));
+    if (named_.among == nullptr || path != named_.path) return "";
+    std::vector<std::string> others;
+    for (const Member& other : *named_.among)
+      if (other.key != named_.key) others.push_back(other.key);
+    const std::string similar = nearest(named_.key, others);
+    return similar.empty() ? "" : fmt::format("; or did you mean {}?", in_quotes(similar));
   }
 
   /// Reports a selector that is not supported; what else the table says then does not matter.
@@ -302,7 +299,12 @@ class Validator {
   }
 
   Diagnostics& diagnostics_;
-  std::pair<std::string, std::string> mistyped_;  ///< path of a named table, and another name of its kind
+  /// The named table that was begun last, as a body is.
+  struct Named {
+    std::string path, key;
+    const Table* among = nullptr;
+  };
+  Named named_;
   bool needed_;
   int depth_ = 0;
 };

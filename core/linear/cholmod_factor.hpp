@@ -27,7 +27,6 @@ struct Cholmod<int> {
   static constexpr int kIndices = CHOLMOD_INT;
   static constexpr auto start = cholmod_start;
   static constexpr auto finish = cholmod_finish;
-  static constexpr auto analyze = cholmod_analyze;
   static constexpr auto analyze_in_order = cholmod_analyze_p;
   static constexpr auto factorize = cholmod_factorize;
   static constexpr auto solve = cholmod_solve2;
@@ -42,7 +41,6 @@ struct Cholmod<std::int64_t> {
   static constexpr int kIndices = CHOLMOD_LONG;
   static constexpr auto start = cholmod_l_start;
   static constexpr auto finish = cholmod_l_finish;
-  static constexpr auto analyze = cholmod_l_analyze;
   static constexpr auto analyze_in_order = cholmod_l_analyze_p;
   static constexpr auto factorize = cholmod_l_factorize;
   static constexpr auto solve = cholmod_l_solve2;
