@@ -22,7 +22,8 @@ struct ClosedSurface {
 ///                     own cell or node number
 ClosedSurface closed_surface(const Mesh& mesh);
 
-/// Closed parts that overlap by more than a fiftieth of the volume: refused where the volume counts, else told.
+/// Closed parts that overlap by more than a fiftieth of the volume: refused where the volume counts, else
+/// told.
 enum class OfOverlap { is_refused, is_told };
 
 /// Makes a closed surface bound matter whose parts all face outward: those that lie inside of an odd number of others

@@ -102,22 +102,9 @@ std::vector<int> nesting_depths(const Solid& solid, const std::vector<Component>
   return depth;
 }
 
-bool meet(const Bounds& a, const Bounds& b) {
-  for (int c = 0; c < 3; ++c)
-    if (!(a.low[c] <= b.high[c] && b.low[c] <= a.high[c])) return false;
-  return true;
-}
-
-/// The boxes of two components meet, so that they themselves may.
-bool may_intersect(const std::vector<Component>& components) {
-  for (std::size_t i = 0; i < components.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (meet(components[i].bounds, components[j].bounds)) return true;
-  return false;
-}
-
-/// Looks at how often the surface surrounds what lies on lines along x. What touches, or overlaps by what splits of
-/// curved faces differ by, is left alone or told.
+/// Looks at how often the surface surrounds what lies on lines along x: twice where parts overlap or one passes through
+/// itself, inside out where it has folded through itself. What touches, or overlaps by what splits of curved faces
+/// differ by, is left alone or told.
 void check_overlaps(const Solid& solid, const std::vector<Triangle>& triangles, OfOverlap overlap,
                     std::vector<std::string>& messages) {
   constexpr int kLines = 48;                       // along y and z
@@ -137,8 +124,9 @@ void check_overlaps(const Solid& solid, const std::vector<Triangle>& triangles, 
     }
   if (sum.wrong <= kTold * sum.inside) return;
   const double percent = std::min(100.0, std::round(1000 * sum.wrong / sum.inside) / 10);
-  const std::string what = "its closed parts intersect, and about " + message::text(percent) +
-                           " % of what they enclose counts twice; unite them to one surface, or make a body of each";
+  const std::string what = "its surface intersects itself, and about " + message::text(percent) +
+                           " % of what it encloses counts twice or not; unite what overlaps to one surface, or make a "
+                           "body of each part";
   if (overlap == OfOverlap::is_refused && sum.wrong > kTooMuch * sum.inside) fail(solid, what);
   messages.push_back(solid.file + ": " + what);
 }
@@ -251,12 +239,11 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
     else
       first_wrong = c;
   }
-  const auto check = [&] {
-    if (may_intersect(components)) check_overlaps(solid, triangles, OfOverlap::is_refused, messages);
-  };
+  // One that touches itself may close only with what it encloses twice.
+  const OfOverlap overlap = components.size() > 1 ? OfOverlap::is_refused : OfOverlap::is_told;
   if (wrong == wrong_pockets) {
     leave_out(solid, pockets, numbering, triangles, messages);
-    return check();
+    return check_overlaps(solid, triangles, overlap, messages);
   }
   if (wrong < components.size())
     fail(solid, "the closed part with triangle " + std::to_string(components[first_wrong].triangles[0].file_number) +
@@ -265,15 +252,13 @@ void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::v
                     " parts); orient outer surfaces outward and those of cavities " + "inward");
   for (Triangle& t : triangles) std::swap(t.nodes[1], t.nodes[2]);
   messages.push_back(solid.file + ": all " + std::to_string(triangles.size()) + " triangles face inward; turned over");
-  check();
+  check_overlaps(solid, triangles, overlap, messages);
 }
 
 void turn_cavities(const Solid& solid, OfOverlap overlap, std::vector<Triangle>& triangles,
                    std::vector<std::string>& messages) {
   const Components numbering(Neighbours(triangles.size(), sorted_edges(triangles)));
-  if (numbering.count < 2) return;
-  const std::vector<Component> components = split(solid, triangles, numbering);
-  const std::vector<int> depth = nesting_depths(solid, components);
+  const std::vector<int> depth = nesting_depths(solid, split(solid, triangles, numbering));
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (depth[at(numbering.of[t])] % 2 != 0) turn_over(triangles[t]);
   const auto cavities = std::ranges::count_if(depth, [](int d) { return d % 2 != 0; });
@@ -281,7 +266,7 @@ void turn_cavities(const Solid& solid, OfOverlap overlap, std::vector<Triangle>&
     messages.push_back(solid.file + ": " + std::to_string(cavities) +
                        (cavities == 1 ? " closed part lies inside another and bounds a cavity"
                                       : " closed parts lie inside others and bound cavities"));
-  if (may_intersect(components)) check_overlaps(solid, triangles, overlap, messages);
+  check_overlaps(solid, triangles, numbering.count > 1 ? overlap : OfOverlap::is_told, messages);
 }
 
 void orient_sheet(const Solid& sheet, std::vector<Triangle>& triangles, std::vector<std::string>& messages) {

@@ -86,12 +86,12 @@ std::vector<Cell> cells_off_volumes(const Solid& solid);
 void check_closed(const Solid& solid, const std::vector<Triangle>& triangles, std::vector<std::string>& messages);
 
 /// Turns a surface outward: every component outward, or inward where it bounds a cavity.
-/// @throws InputError  some components the right way, some not; components that overlap
+/// @throws InputError  some components the right way, some not; several that overlap by much
 void orient_outward(const Solid& solid, std::vector<Triangle>& triangles, std::vector<std::string>& messages);
 
 /// Turns those of closed components inward that lie inside of an odd number of others: they bound cavities.
 /// @param triangles  of components that face outward
-/// @throws InputError  components that overlap by much, where that is refused
+/// @throws InputError  several components that overlap by much, where that is refused
 void turn_cavities(const Solid& solid, OfOverlap overlap, std::vector<Triangle>& triangles,
                    std::vector<std::string>& messages);
 

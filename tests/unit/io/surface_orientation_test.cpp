@@ -95,8 +95,8 @@ TEST(SurfaceOrientation, parts_that_intersect) {
   for (const TriangleMesh& mesh : {both(cube(0, 1), cube(0.3, 1.3)), both(cube(0, 1), shifted),
                                    both(shifted, cube(0, 1)), inward(both(cube(0, 1), shifted)), both(along, across)}) {
     const std::string e = input_error([&] { closed_surface(mesh_of(mesh)); });
-    EXPECT_TRUE(contains(e, "closed parts intersect, and about ")) << e;
-    EXPECT_TRUE(contains(e, "counts twice; unite them")) << e;
+    EXPECT_TRUE(contains(e, "surface intersects itself, and about ")) << e;
+    EXPECT_TRUE(contains(e, "counts twice or not; unite what overlaps")) << e;
   }
   for (const double deep : {0.0, 1e-9, 1e-6}) {
     const ClosedSurface on_it =
@@ -105,9 +105,15 @@ TEST(SurfaceOrientation, parts_that_intersect) {
     EXPECT_TRUE(on_it.messages.empty());
   }
   EXPECT_NEAR(closed_surface(mesh_of(both(cube(0, 1), block({{1.1, 0, 0}}, {{2, 1, 1}})))).volume, 1.9, 1e-12);
+  TriangleMesh folded = cube(0, 1);  // its lid is pushed through the bottom
+  for (Vec3d& x : folded.points)
+    if (x[2] == 1 && x[0] == 0.5 && x[1] == 0.5) x[2] = -1;
+  const std::vector<std::string> told = closed_surface(mesh_of(folded)).messages;
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_TRUE(contains(told[0], "surface intersects itself, and about ")) << told[0];
   const ClosedSurface hardly = closed_surface(mesh_of(both(cube(0, 1), block({{0.2, 0.2, 0.96}}, {{0.7, 0.7, 2}}))));
   ASSERT_EQ(hardly.messages.size(), 1u);
-  EXPECT_TRUE(contains(hardly.messages[0], "closed parts intersect, and about 0.8 % of")) << hardly.messages[0];
+  EXPECT_TRUE(contains(hardly.messages[0], "surface intersects itself, and about 0.8 % of")) << hardly.messages[0];
 }
 
 /// Of parts that all face outward, as those of sheets do.
@@ -126,10 +132,10 @@ TEST(SurfaceOrientation, parts_in_others_become_cavities) {
   const TriangleMesh apart = both(cube(0, 1), cube(2, 4)), crossed = both(cube(0, 1), cube(0.3, 1.3));
   EXPECT_EQ(turned(apart).triangles, apart.triangles);
   EXPECT_TRUE(messages.empty());
-  EXPECT_TRUE(contains(input_error([&] { turned(crossed); }), "a.stl: its closed parts intersect"));
+  EXPECT_TRUE(contains(input_error([&] { turned(crossed); }), "a.stl: its surface intersects itself"));
   EXPECT_EQ(turned(crossed, OfOverlap::is_told).triangles, crossed.triangles);
   ASSERT_EQ(messages.size(), 1u);
-  EXPECT_TRUE(contains(messages[0], "a.stl: its closed parts intersect")) << messages[0];
+  EXPECT_TRUE(contains(messages[0], "a.stl: its surface intersects itself")) << messages[0];
 }
 
 TEST(SurfaceOrientation, one_sided_surface) {
