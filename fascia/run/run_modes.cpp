@@ -47,16 +47,19 @@ void warn_of_modes(const Modes& modes, const Simulation& simulation, Warnings& w
                     std::count_if(parts.begin(), parts.end(), is_hollow), first - parts.begin() + 1));
 }
 
-/// A mode as a state: displacements up to a given length, frames turned in proportion.
-State shape_of(const Simulation& s, const std::vector<double>& shape, double length) {
+/// A mode as a state: displacements up to a tenth of a size, frames turned in proportion; up to 0.1 rad where they turn
+/// and nothing is displaced.
+State shape_of(const Simulation& s, const std::vector<double>& shape, double size) {
+  constexpr double kPart = 0.1, kNone = 1e-9;
   State state = State::at_rest(s.model);
-  double largest = 0;
+  double largest = 0, turn = 0;
   const DofLayout& dofs = s.model.points.dofs;
   for (int i = 0; i < dofs.node_count(); ++i) {
     const double* d = shape.data() + dofs.begin(i);
     largest = std::max(largest, std::hypot(d[0], d[1], d[2]));
+    if (dofs.kind(i) == FrameKind::rigid) turn = std::max(turn, std::hypot(d[3], d[4], d[5]));
   }
-  const double scale = length / std::max(largest, 1e-300);
+  const double scale = kPart * size / std::max({largest, largest <= kNone * size * turn ? size * turn : 0.0, 1e-300});
   for (int i = 0; i < dofs.node_count(); ++i) {
     const double* d = shape.data() + dofs.begin(i);
     state.u[at(i)] = Vec3d{{d[0], d[1], d[2]}} * scale;
@@ -91,7 +94,7 @@ RunEnd run_modes(const Simulation& s, ThreadPool& pool, RunListener& listener) {
   for (const SimulatedBody& b : s.bodies) size = std::max(size, b.body->size());
   start = Clock::now();
   for (std::size_t m = 0; m < modes.frequency.size(); ++m) {
-    const State state = shape_of(s, modes.shape[m], 0.1 * size);
+    const State state = shape_of(s, modes.shape[m], size);
     const auto number = static_cast<double>(m + 1);
     const ProbedState probed{&state, nullptr, modes.frequency[m]};
     const ProbeValues values = probe_values(s, probed);

@@ -2,6 +2,8 @@
 #include "fascia/simulate.hpp"
 
 #include "app/reader/parse.hpp"
+#include "assembly/build/build_simulation.hpp"
+#include "fascia/run/run_modes.hpp"
 #include "fascia/scene_file.hpp"
 #include "fascia/stepper.hpp"
 #include "tests/support/crushed_cube.hpp"
@@ -98,6 +100,38 @@ quantity = "frequency"
   for (int m = 1; m <= 2; ++m) {
     const double f = c / (kPi * 0.1) * std::sin((2 * m - 1) * kPi * 0.1 / 4);
     EXPECT_NEAR(run.frequencies[static_cast<std::size_t>(m - 1)], f, 1e-8 * f);
+  }
+}
+
+/// Torsion of a rod displaces no node: such a mode is shown by turns of at most 0.1 rad, which half a wave has at both
+/// ends, and a free turn everywhere.
+TEST(Simulate, ShowsModesThatOnlyTurn) {
+  struct Shapes final : RunListener {
+    std::vector<State> states;
+    void save(double, const State& state) override { states.push_back(state); }
+    void show(double, const ProbedState&, const ProbeValues&) override {}
+  } shapes;
+  const Scene scene = app::parse_scene_text(R"(
+constraints = [{ body = "rod", where = "all", fix = ["x", "y", "z", "ry", "rz"] }]
+[bodies.rod]
+model = "meshless"
+domain = { line = { from = [0, 0, 0], to = [1, 0, 0] } }
+radius = 0.01
+density = 7850
+material = { young = 2e11, poisson = 0.3 }
+frames = { grid = [21] }
+[solver]
+kind = "modes"
+count = 2
+)",
+                                            "rod.toml", {});
+  ThreadPool pool(1);
+  EXPECT_FALSE(run_modes(build_simulation(scene), pool, shapes).failed);
+  ASSERT_EQ(shapes.states.size(), 2U);
+  for (const State& state : shapes.states) {
+    for (const std::size_t end : {std::size_t{0}, state.D.size() - 1})  // D = R - 1
+      EXPECT_NEAR(std::abs(state.D[end](2, 1)), std::sin(0.1), 1e-6);
+    for (const Vec3d& u : state.u) EXPECT_NEAR(u[0], 0, 1e-12);
   }
 }
 
