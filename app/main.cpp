@@ -21,7 +21,6 @@
 
 #include <fcntl.h>
 #include <fmt/ranges.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
@@ -315,7 +314,6 @@ void open_standard_streams() {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  prctl(PR_SET_NAME, "fascia");  // "exe" where hold_blas_to_one_thread() has started it again
   keep_freed_memory();
   remember_command(argc, argv);
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // told as errors of what is written

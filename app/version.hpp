@@ -9,7 +9,7 @@ namespace fascia::app {
 ///     fascia 0.1.0
 ///     commit: 0123456789ab
 ///     backends: cpu, cuda (toolkit 13.0, for 90-real)
-///     direct solver: CHOLMOD of SuiteSparse (GPL)
+///     direct solver: supernodal Cholesky, ordered by METIS and AMD of SuiteSparse
 ///     processor: x86-64-v4
 std::string version_text();
 

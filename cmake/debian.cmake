@@ -15,11 +15,6 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
 
-set(note "")
-if(FASCIA_WITH_CHOLMOD)
-  set(note "\nThe program is linked to CHOLMOD of SuiteSparse, parts of which are under the GNU General Public License, version 2 or\nlater, and is distributed under its terms: see /usr/share/common-licenses/GPL-2. A build with FASCIA_WITH_CHOLMOD=OFF is\nunder the licence above alone.\n")
-endif()
-
 # fascia_package(COMPONENT PACKAGE DEPENDS depends SUMMARY line TEXT lines): the package of a component.
 set(CPACK_COMPONENTS_ALL "")
 macro(fascia_package component package depends summary text)
@@ -31,7 +26,7 @@ macro(fascia_package component package depends summary text)
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}")
   # Debian wants two files of each package: who may use it, and what is new.
   file(READ ${CMAKE_SOURCE_DIR}/LICENSE license)
-  file(WRITE ${CMAKE_BINARY_DIR}/debian/${package}/copyright "${license}${note}")
+  file(WRITE ${CMAKE_BINARY_DIR}/debian/${package}/copyright "${license}")
   configure_file(${CMAKE_SOURCE_DIR}/cmake/changelog.in ${CMAKE_BINARY_DIR}/debian/${package}/changelog @ONLY)
   execute_process(COMMAND gzip -9nf ${CMAKE_BINARY_DIR}/debian/${package}/changelog)
   install(FILES ${CMAKE_BINARY_DIR}/debian/${package}/copyright ${CMAKE_BINARY_DIR}/debian/${package}/changelog.gz

@@ -68,7 +68,7 @@ report_stage() {
 
 # The last stage, whose output was shown: its row, and that of the whole run in times.csv.
 end_stages() {
-  local name=$1 file=$logs/times.csv columns='date,commit,mode,failed,total,packages,format,release,tidy,asan,fuzz,tsan,mit,debian,tests'
+  local name=$1 file=$logs/times.csv columns='date,commit,mode,failed,total,packages,format,release,tidy,asan,fuzz,tsan,lean,debian,tests'
   local row column entry value
   rm -f "$items"
   printf 'check: %-8s ' "$name"
@@ -76,7 +76,7 @@ end_stages() {
   report_stage "$name" "$entry" "$2" "" "$logs/$name.log"
   [ "$(head -n 1 "$file" 2>/dev/null)" = "$columns" ] || echo "$columns" >"$file"
   row=$(date -u +%FT%TZ),$(git rev-parse --short HEAD 2>/dev/null || echo none),$stage_mode,"${failed[*]}",$(seconds_between "$stages_started" "$EPOCHREALTIME")
-  for column in packages format release tidy asan fuzz tsan mit debian tests; do
+  for column in packages format release tidy asan fuzz tsan lean debian tests; do
     value=
     for entry in "${times[@]}"; do [ "${entry%%=*}" != "$column" ] || value=${entry#*=}; done
     row=$row,$value

@@ -54,7 +54,7 @@ surroundings() {
   grep -m 1 '^model name' /proc/cpuinfo
   nvidia-smi --query-gpu=uuid,driver_version --format=csv
   type -P valgrind nm xvfb-run xauth
-  env | grep -E '^(FASCIA|GTEST|G?OMP|OPENBLAS|CUDA|DISPLAY|ASAN_|LANG|LC_)' | LC_ALL=C sort
+  env | grep -E '^(FASCIA|GTEST|G?OMP|CUDA|DISPLAY|ASAN_|LANG|LC_)' | LC_ALL=C sort
 } 2>/dev/null
 
 # Lines "NUMBER LABEL PROGRAM" of all tests of build/$1; PROGRAM is "-" where no test program of the build runs them.

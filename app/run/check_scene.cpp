@@ -68,7 +68,7 @@ int check_scene(const RunOptions& options) {
                s.scene.solver.time_step_automatic ? "about " : "", s.scene.solver.steps, s.scene.solver.time_step,
                s.scene.solver.time_step_automatic ? " at first" : "");
   // Before the diagnosis, whose own memory is no run's.
-  const RunMemory memory = run_memory(s, backend == Backend::cuda);
+  const double memory = run_memory(s, backend == Backend::cuda);
   if (s.stable_step > 0 && std::isfinite(s.stable_step)) {
     ThreadPool pool(s.scene.solver.threads);
     MechanicalSystem system(s.model, pool, settings_of(s.scene.solver));
@@ -76,10 +76,7 @@ int check_scene(const RunOptions& options) {
       fmt::print("the time step is limited by {}\n", limit.text);
   }
   if (const std::string condition = condition_line(s); !condition.empty()) fmt::print("{}\n", condition);
-  fmt::print("memory: about {:.3g} MB{}\n", memory.peak / 1e6,
-             memory.beyond > 1.05 * memory.peak
-                 ? fmt::format(", {:.3g} MB where the path passes a limit point", memory.beyond / 1e6)
-                 : "");
+  fmt::print("memory: about {:.3g} MB\n", memory / 1e6);
   if (const std::string time = time_line(s); !time.empty()) fmt::print("{}\n", time);
   fmt::print("results: {}\n", results.text());
   if (s.scene.output.estimate)

@@ -149,7 +149,6 @@ class Setup {
   }
   const ToCome& to_come() const { return to_come_; }
   bool factorizes() const { return factorizes_; }
-  double beyond() const { return beyond_; }
 
  private:
   /// A run on a GPU makes a system of the processor too where it breaks off, or where the processor solves.
@@ -205,12 +204,10 @@ class Setup {
                   takes_kept_factor(linear);
     if (!factorizes_) return of_levels(matrix);
     if (solver.precision == "mixed" && !linear.direct()) to_come_.keep(rounded_bytes(matrix));
-    take(linear.factor().cholesky(), matrix);
+    to_come_.keep(linear.factor().cholesky().factor_bytes());
     const bool keeps = !statics && solver.linear == LinearMethod::automatic;
     if (keeps || solver.preconditioner == PreconditionerKind::cholesky)
       to_come_.keep(linear.factor().cholesky().rounded_bytes());
-    if (!load || !s_.model.loads_are_conservative())
-      beyond_ = bytes_of(BlockCholesky(matrix, system_->filter(), Pivots::any, &linear.factor().order()), matrix);
   }
 
   /// With inertia blocks take few iterations, however many their statics would.
@@ -254,21 +251,6 @@ class Setup {
 
   /// The entries of a matrix once more, of 32 bits.
   static double rounded_bytes(const BlockMatrix& matrix) { return 4.0 * static_cast<double>(matrix.value_count()); }
-  /// The lower triangle of a matrix, by columns, takes this.
-  static double bytes_of(const BlockMatrix& matrix) {
-    return 12.0 * static_cast<double>(matrix.value_count()) * (matrix.fills_upper() ? 1 : 0.5);
-  }
-  /// A second factor beside the first takes this, with what it is made from.
-  static double bytes_of(const BlockCholesky& factor, const BlockMatrix& matrix) {
-    return factor.factor_bytes() + bytes_of(matrix);
-  }
-
-  /// Counts a factorisation; what it holds beside the factor is the matrix, twice.
-  void take(const BlockCholesky& factor, const BlockMatrix& matrix) {
-    const double passing = 2 * bytes_of(matrix);
-    to_come_.pass(factor.factor_bytes());
-    to_come_.kept += std::max(0.0, factor.factor_bytes() - passing);
-  }
 
   /// natural_modes() holds the matrix twice, its factor, the block of vectors with its products and copies.
   void of_modes() {
@@ -287,10 +269,10 @@ class Setup {
       executor.linearize(state_, {}, Tangent::full, lin);
       executor.assemble(lin, *matrix_);
     }
-    factor_.emplace(*matrix_, *filter_);
+    factor_.emplace(*matrix_, *filter_, nullptr, &pool_);
     factorizes_ = true;
     to_come_.pass(factor_->factor_bytes() + 8.0 * static_cast<double>(matrix_->value_count()));
-    take(*factor_, *matrix_);
+    to_come_.keep(factor_->factor_bytes());
     const int wanted = std::min(s_.scene.solver.modes, free), block = std::min(free, std::max(2 * wanted, wanted + 8));
     to_come_.keep(wanted * vector_bytes(model));
     to_come_.pass(kBlocks * block * vector_bytes(model));
@@ -308,7 +290,6 @@ class Setup {
   TakenStep taken_;
   Linearization lin_;
   ToCome to_come_;
-  double beyond_ = 0;  ///< what a limit point asks for
   bool factorizes_ = false;
   bool blocks_serve_ = false;  ///< in implicit dynamics, where inertia makes them quick
 };
@@ -338,12 +319,11 @@ void check_memory(const Scene& scene) {
   if (need > have.bytes || need >= kMost) refuse(scene, "about " + in_words(need), have, false);
 }
 
-RunMemory run_memory(const Simulation& s, bool on_gpu) {
+double run_memory(const Simulation& s, bool on_gpu) {
   const FreeMemory have = free_memory();
   try {
     const Setup setup(s, on_gpu);
-    const double peak = std::max(peak_memory(), resident_memory() + setup.to_come().most);
-    return {peak, peak + setup.beyond()};
+    return std::max(peak_memory(), resident_memory() + setup.to_come().most);
   } catch (const std::bad_alloc&) {
     refuse(s.scene, "more memory", have, false);
   }

@@ -11,18 +11,12 @@ double estimated_memory(const Scene& scene);
 /// @throws SceneError  the rough memory is more than there is, with the place of the largest body
 void check_memory(const Scene& scene);
 
-/// Peak of a run [bytes].
-struct RunMemory {
-  double peak = 0;
-  double beyond = 0;  ///< where a path passes a limit point, which asks for another factor
-};
-
-/// The peak of a run, as summary.json will report it. All that a run holds while it solves is set up for this
+/// The peak of a run [bytes], as summary.json will report it. All that a run holds while it solves is set up for this
 /// beside the model, up to the analysis of the factor, and measured; what the factor, the solver's vectors and the
 /// results add is computed.
 /// @param on_gpu  the GPU solves, in memory of its own
 /// @throws SceneError  as check_run_memory(), where not even that fits
-RunMemory run_memory(const Simulation& simulation, bool on_gpu);
+double run_memory(const Simulation& simulation, bool on_gpu);
 
 /// Refuses a run that cannot fit, before it starts: where it may come near what is free, the closer figure decides.
 /// @throws SceneError  with the place of the largest body

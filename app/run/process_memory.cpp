@@ -24,8 +24,6 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Room that a process needs beside what it has when main() begins: stacks and heaps of threads, and a small scene.
 constexpr double kLeastRoom = 96e6;
-/// The same with the buffer of OpenBLAS, which statics and small steps of dynamics need too.
-constexpr double kSmallScene = 172e6;
 
 /// The number behind a key in a file of lines "key value", in the unit that stands there.
 std::optional<double> number_behind(const fs::path& file, std::string_view key) {
@@ -127,8 +125,8 @@ void require_room() {
     throw InputError(
         fmt::format("fascia: the limit of the process, ulimit {} {:.0f}, is {:.0f} MB, of which {:.0f} MB are taken "
                     "before a scene is read; a small scene needs {:.0f} MB: raise the limit to {:.0f} at least",
-                    option, (used + left) / 1024, (used + left) / 1e6, used / 1e6, (used + kSmallScene) / 1e6,
-                    (used + kSmallScene) / 1024));
+                    option, (used + left) / 1024, (used + left) / 1e6, used / 1e6, (used + kLeastRoom) / 1e6,
+                    (used + kLeastRoom) / 1024));
   };
   check(RLIMIT_AS, "VmSize:", "-v");
   check(RLIMIT_DATA, "VmData:", "-d");

@@ -1,10 +1,9 @@
 #include "core/linear/elimination_order.hpp"
 
 #include "core/base/index.hpp"
+#include "core/linear/elimination_tree.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <numeric>
 
 namespace fascia {
 
@@ -25,18 +24,12 @@ NodeGraph::NodeGraph(const BlockMatrix& pattern, const DofFilter& filter) {
   column_begin.push_back(static_cast<int>(row.size()));
 }
 
-EliminationOrder NodeGraph::counted(const std::vector<int>& order, const std::vector<int>& counts) const {
+EliminationOrder NodeGraph::counted(const std::vector<int>& order) const {
+  const EliminationTree tree(*this, order);
   EliminationOrder out;
-  const double mean = std::accumulate(free.begin(), free.end(), 0.0) / std::max(size(), 1);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const int own = free[at(order[k])];
-    out.nodes.push_back(node[at(order[k])]);
-    for (int i = 0; i < own; ++i) {
-      const double column = mean * (counts[k] - 1) + own - i;
-      out.numbers += column;
-      out.flops += column * column;
-    }
-  }
+  for (const int column : tree.order) out.nodes.push_back(node[at(column)]);
+  out.flops = tree.flops();
+  out.numbers = tree.numbers();
   return out;
 }
 

@@ -20,9 +20,9 @@ struct EliminationOrder {
   /// on bodies of 14,000 to 70,000 nodes, and up to 5.5 times on larger ones, which are far beyond any limit.
   bool exceeds(double limit) const { return flops > (rough ? 5 : 1) * limit; }
 
-  /// Indices of 32 bits reach all numbers of the factor, with room for the zeros of its dense columns. It takes less
-  /// than 9 GB then. A larger factor is made only where the user asks for one.
-  bool narrow() const { return numbers < 0x1.0p30; }
+  /// The factor takes less than 9 GB, and up to a third more for the zeros of its dense columns. A larger one is made
+  /// only where the user asks for it.
+  bool moderate() const { return numbers < 0x1.0p30; }
 
   /// @param enough  operations: an order that no other one brings down to as few may be rough
   static EliminationOrder of(const BlockMatrix& pattern, const DofFilter& filter,
@@ -36,9 +36,8 @@ struct NodeGraph {
 
   NodeGraph(const BlockMatrix& pattern, const DofFilter& filter);
   int size() const { return static_cast<int>(node.size()); }
-  /// @param order   columns in the order in which they are eliminated
-  /// @param counts  nodes in each column of the factor in that order, the diagonal among them
-  EliminationOrder counted(const std::vector<int>& order, const std::vector<int>& counts) const;
+  /// @param order  columns in the order in which they are eliminated
+  EliminationOrder counted(const std::vector<int>& order) const;
 };
 
 }  // namespace fascia

@@ -68,19 +68,21 @@ struct Columns {
 };
 
 /// One supernode, and room for the numbers of its rows.
-template <class T, class Int>
+template <class T>
 struct Supernode {
   int columns, rows;
-  Int first;
-  const Int* below;  ///< rows from the end of its columns on
+  int first;
+  const int* below;  ///< rows from the end of its columns on
   const T* value;
+  const double* sign;
 
-  Supernode(const Supernodes<T, Int>& all, int s)
-      : columns(static_cast<int>(all.first_column[at(s + 1)] - all.first_column[at(s)])),
+  Supernode(const Supernodes<T>& all, int s)
+      : columns(all.first_column[at(s + 1)] - all.first_column[at(s)]),
         rows(static_cast<int>(all.row_begin[at(s + 1)] - all.row_begin[at(s)])),
         first(all.first_column[at(s)]),
         below(all.row.data() + all.row_begin[at(s)] + columns),
-        value(all.value.data() + all.value_begin[at(s)]) {}
+        value(all.value.data() + all.value_begin[at(s)]),
+        sign(all.sign.empty() ? nullptr : all.sign.data() + first) {}
 
   template <int N>
   Columns<N, T> from(int j) const {
@@ -99,8 +101,10 @@ struct Supernode {
     for (int i = columns; i < rows; ++i) add(below[i - columns], w[i]);
   }
 
+  /// Takes S too: it lies between both triangles.
   void backward(double* x, double* w) const {
     std::copy_n(x + first, columns, w);
+    for (int j = 0; sign != nullptr && j < columns; ++j) w[j] *= sign[j];
     for (int i = columns; i < rows; ++i) w[i] = x[below[i - columns]];
     int j = columns;
     for (; j % kColumns != 0; --j) from<1>(j - 1).backward(w + j - 1);
@@ -113,9 +117,8 @@ struct Supernode {
 
 /// The largest subtrees are taken apart until each is a small part of the whole. Columns are in postorder, so that a
 /// subtree is a run of supernodes; where one is not, it stays on top.
-template <class Int>
-void SupernodeSolver::find_subtrees(std::span<const Int> first_column, std::span<const Int> row_begin,
-                                    std::span<const Int> value_begin, std::span<const Int> row) {
+void SupernodeSolver::find_subtrees(std::span<const int> first_column, std::span<const std::int64_t> row_begin,
+                                    std::span<const std::int64_t> value_begin, std::span<const int> row) {
   constexpr int kParts = 12;
   constexpr double kWorthThreads = 1e5;  ///< numbers of L: some 50 µs
   const std::size_t count = first_column.size() - 1;
@@ -128,7 +131,7 @@ void SupernodeSolver::find_subtrees(std::span<const Int> first_column, std::span
   std::vector<std::vector<int>> children(count);
   std::vector<int> roots;
   for (std::size_t s = 0; s < count; ++s) {  // children come before their parents
-    const Int begin = row_begin[s] + (first_column[s + 1] - first_column[s]);
+    const std::int64_t begin = row_begin[s] + (first_column[s + 1] - first_column[s]);
     if (begin == row_begin[s + 1]) {
       roots.push_back(static_cast<int>(s));
       continue;
@@ -151,7 +154,7 @@ void SupernodeSolver::find_subtrees(std::span<const Int> first_column, std::span
       roots.pop_back();
       const bool run = size[at(root)] == root + 1 - first[at(root)];
       if (run && (numbers(root) * kParts <= all || children[at(root)].empty())) {
-        subtree_.push_back({first[at(root)], root + 1, static_cast<int>(first_column[at(root) + 1])});
+        subtree_.push_back({first[at(root)], root + 1, first_column[at(root) + 1]});
         continue;
       }
       for (const int child : children[at(root)]) {
@@ -167,9 +170,9 @@ void SupernodeSolver::find_subtrees(std::span<const Int> first_column, std::span
   for (std::size_t s = 0; s < count; ++s) {
     if (on_top[s] == 0) continue;
     top_.push_back(static_cast<int>(s));
-    for (Int column = first_column[s]; column < first_column[s + 1]; ++column) {
+    for (int column = first_column[s]; column < first_column[s + 1]; ++column) {
       place_[at(column)] = static_cast<int>(top_column_.size());
-      top_column_.push_back(static_cast<int>(column));
+      top_column_.push_back(column);
     }
   }
   work_.resize((subtree_.size() + 1) * most_rows_);
@@ -178,8 +181,7 @@ void SupernodeSolver::find_subtrees(std::span<const Int> first_column, std::span
 
 /// Neighbours become one up to so many numbers. Those that stay small go on top, for each has sums for all of it; so do
 /// all where they are but a small part of the whole.
-template <class Int>
-void SupernodeSolver::keep_large(std::span<const Int> value_begin, double most) {
+void SupernodeSolver::keep_large(std::span<const std::int64_t> value_begin, double most) {
   constexpr double kSmall = 0.4, kFew = 4;  // of what a subtree may have at most
   const auto numbers = [&](const Subtree& part) {
     return static_cast<double>(value_begin[at(part.end)] - value_begin[at(part.begin)]);
@@ -200,8 +202,8 @@ void SupernodeSolver::keep_large(std::span<const Int> value_begin, double most) 
   subtree_ = std::move(joined);
 }
 
-template <class T, class Int>
-void SupernodeSolver::solve(const Supernodes<T, Int>& L, ThreadPool* pool, std::span<double> x) {
+template <class T>
+void SupernodeSolver::solve(const Supernodes<T>& L, ThreadPool* pool, std::span<double> x) {
   const std::size_t top = top_column_.size();
   const auto for_subtrees = [&](const auto& act) {
     const auto of = [&](int k) { act(subtree_[at(k)], work_.data() + at(k) * most_rows_, sums_.data() + at(k) * top); };
@@ -213,7 +215,7 @@ void SupernodeSolver::solve(const Supernodes<T, Int>& L, ThreadPool* pool, std::
   for_subtrees([&](const Subtree& part, double* work, double* sums) {
     std::fill_n(sums, top, 0.0);
     for (int s = part.begin; s < part.end; ++s)
-      Supernode(L, s).forward(x.data(), work, [&](Int row, double number) {
+      Supernode(L, s).forward(x.data(), work, [&](int row, double number) {
         (row < part.end_column ? x[at(row)] : sums[place_[at(row)]]) += number;
       });
   });
@@ -221,20 +223,14 @@ void SupernodeSolver::solve(const Supernodes<T, Int>& L, ThreadPool* pool, std::
     for (std::size_t i = 0; i < top; ++i) x[at(top_column_[i])] += sums_[at(k) * top + i];
   double* work = work_.data() + subtree_.size() * most_rows_;
   for (const int s : top_)
-    Supernode(L, s).forward(x.data(), work, [&](Int row, double number) { x[at(row)] += number; });
+    Supernode(L, s).forward(x.data(), work, [&](int row, double number) { x[at(row)] += number; });
   for (std::size_t k = top_.size(); k-- > 0;) Supernode(L, top_[k]).backward(x.data(), work);
   for_subtrees([&](const Subtree& part, double* own, double*) {
     for (int s = part.end; s-- > part.begin;) Supernode(L, s).backward(x.data(), own);
   });
 }
 
-template void SupernodeSolver::find_subtrees(std::span<const int>, std::span<const int>, std::span<const int>,
-                                             std::span<const int>);
-template void SupernodeSolver::find_subtrees(std::span<const std::int64_t>, std::span<const std::int64_t>,
-                                             std::span<const std::int64_t>, std::span<const std::int64_t>);
-template void SupernodeSolver::solve(const Supernodes<double, int>&, ThreadPool*, std::span<double>);
-template void SupernodeSolver::solve(const Supernodes<float, int>&, ThreadPool*, std::span<double>);
-template void SupernodeSolver::solve(const Supernodes<double, std::int64_t>&, ThreadPool*, std::span<double>);
-template void SupernodeSolver::solve(const Supernodes<float, std::int64_t>&, ThreadPool*, std::span<double>);
+template void SupernodeSolver::solve(const Supernodes<double>&, ThreadPool*, std::span<double>);
+template void SupernodeSolver::solve(const Supernodes<float>&, ThreadPool*, std::span<double>);
 
 }  // namespace fascia

@@ -49,10 +49,12 @@ class Problem {
   /// Σ diag K / Σ diag M over the displacements, without tethers: the scale of the largest eigenvalues [1/s²].
   double stiffness_to_mass() const { return stiffness_ / mass_sum_; }
 
-  /// A factor of K + s M; the smallest s that the factorisation accepts. Thin walls bend with eigenvalues that are
-  /// 1e-12 of their membranes': s starts where rounding does.
+  /// A factor of K + s M; the smallest s that leaves every pivot some digits. Thin walls bend with eigenvalues that are
+  /// 1e-12 of their membranes': s starts where rounding does. What moves freely, as a whole or in part, has no
+  /// stiffness but rounding, which would amplify this motion alone.
   BlockCholesky factorize() {
-    BlockCholesky factor(K_, filter_);
+    BlockCholesky factor(K_, filter_, nullptr, &pool_);
+    constexpr double kLeastPivot = 16 * std::numeric_limits<double>::epsilon();
     const double step = 1e-15 * stiffness_to_mass();
     double s = free_ ? step : 0.0;
     for (int attempt = 0; attempt < 15; ++attempt) {
@@ -60,7 +62,7 @@ class Problem {
       for (int i = 0; i < K_.rows() && s > 0; ++i)
         for (int k = 0; k < dofs().size(i) * dofs().size(i); ++k)
           shifted.block(shifted.diagonal(i))[k] += s * mass_[dofs().block_begin(i) + at(k)];
-      if (factor.factorize(shifted)) return factor;
+      if (factor.factorize(shifted) && factor.smallest_pivot() > kLeastPivot) return factor;
       s = std::max(10 * s, step);
     }
     return factor;

@@ -19,8 +19,6 @@ void FactorSolver::follow_pattern() {
   pattern_ = K_.pattern_revision();
   order_.reset();
   cholesky_.reset();
-  indefinite_.reset();
-  factor_ = nullptr;
   definite_ = false;
 }
 
@@ -38,7 +36,7 @@ bool FactorSolver::takes_more_than(double flops) {
 
 BlockCholesky& FactorSolver::cholesky() {
   follow_pattern();
-  if (!cholesky_) cholesky_.emplace(K_.pattern(), K_.filter(), Pivots::positive, &order(), &K_.pool());
+  if (!cholesky_) cholesky_.emplace(K_.pattern(), K_.filter(), &order(), &K_.pool());
   return *cholesky_;
 }
 
@@ -48,42 +46,30 @@ double FactorSolver::matrix_numbers() {
 }
 
 bool FactorSolver::fits() {
-  return sizeof(double) * order().numbers <= kMostBytes && cholesky().factor_bytes() <= kMostBytes;
+  return sizeof(double) * order().numbers <= kMostBytes && cholesky().number_bytes() <= kMostBytes;
 }
 
 /// K + Σ k g gᵀ has as many negative eigenvalues as K, less those that the terms lift.
-void FactorSolver::take(BlockCholesky& factor, int negative_pivots) {
-  factor_ = &factor;
-  negative_pivots_ = negative_pivots;
+void FactorSolver::renew_terms() {
   shifted_ = false;
-  K_.beside().prepare([&](std::span<const double> g, std::span<double> z) { factor.solve(g, z); });
-  negative_ = std::max(0, negative_pivots - K_.beside().lifted());
+  K_.beside().prepare([&](std::span<const double> g, std::span<double> z) { cholesky_->solve(g, z); });
+  negative_ = std::max(0, cholesky_->negative_pivots() - K_.beside().lifted());
   definite_ = negative_ == 0;
 }
 
-bool FactorSolver::factorize_any() {
-  follow_pattern();
-  if (!indefinite_) indefinite_.emplace(K_.pattern(), K_.filter(), Pivots::any, &order());
-  if (!indefinite_->factorize(K_.matrix())) return false;
-  take(*indefinite_, indefinite_->negative_pivots());
+bool FactorSolver::prepare_with(Pivots pivots) {
+  definite_ = false;
+  if (!cholesky().factorize(K_.matrix(), pivots)) return false;
+  renew_terms();
   return true;
 }
 
-bool FactorSolver::prepare_any(bool definite_first) {
-  definite_ = false;
-  if (!definite_first || !cholesky().factorize(K_.matrix())) return factorize_any();
-  take(cholesky(), 0);
-  return true;
-}
+bool FactorSolver::prepare_any() { return prepare_with(Pivots::any); }
 
 /// The matrix alone may not be positive definite where it is with the terms beside it: an enclosed fluid holds a wall
 /// that could not hold itself.
 bool FactorSolver::prepare() {
-  definite_ = false;
-  if (cholesky().factorize(K_.matrix()))
-    take(cholesky(), 0);
-  else if (!K_.beside().empty())
-    factorize_any();
+  prepare_with(K_.beside().empty() ? Pivots::positive : Pivots::any);
   return definite_;
 }
 
@@ -92,8 +78,8 @@ bool FactorSolver::prepare_shifted() {
   constexpr double kLargest = 1e3, kDown = 0.1, kUp = 4;
   const BlockMatrix& shift_from = K_.material_part(Entries::diagonal);
   for (shift_ = std::max(kSmallestShift, kDown * shift_); shift_ < kLargest; shift_ *= kUp)
-    if (cholesky().factorize(K_.matrix(), shift_, &shift_from)) {
-      take(cholesky(), 0);
+    if (cholesky().factorize(K_.matrix(), Pivots::positive, shift_, &shift_from)) {
+      renew_terms();
       definite_ = false;
       shifted_ = true;
       return true;
@@ -103,20 +89,20 @@ bool FactorSolver::prepare_shifted() {
 
 bool FactorSolver::preconditions() {
   follow_pattern();
-  return definite_ && cholesky_ && factor_ == &*cholesky_;
+  return definite_ && cholesky_ && cholesky_->negative_pivots() == 0;
 }
 
 void FactorSolver::renew_terms_of_preconditioner() {
-  K_.beside().prepare([&](std::span<const double> g, std::span<double> z) { factor_->precondition(g, z); });
+  K_.beside().prepare([&](std::span<const double> g, std::span<double> z) { cholesky_->precondition(g, z); });
 }
 
 void FactorSolver::precondition(std::span<const double> b, std::span<double> x) {
-  factor_->precondition(b, x);
+  cholesky_->precondition(b, x);
   K_.beside().correct(b, x);
 }
 
 void FactorSolver::apply_inverse(std::span<const double> b, std::span<double> x) {
-  factor_->solve(b, x);
+  cholesky_->solve(b, x);
   K_.beside().correct(b, x);
 }
 

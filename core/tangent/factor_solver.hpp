@@ -10,7 +10,7 @@
 
 namespace fascia {
 
-/// Solves with a factor: L Lᵀ of a positive definite tangent, or L D Lᵀ of any, whose pivots tell in how many
+/// Solves with a factor: L Lᵀ of a positive definite tangent, or L S Lᵀ of any, whose pivots tell in how many
 /// directions the equilibrium is unstable.
 class FactorSolver final : public LinearSolver {
  public:
@@ -19,8 +19,8 @@ class FactorSolver final : public LinearSolver {
 
   /// False where K with the terms beside it is not positive definite.
   bool prepare() override;
-  /// False where a pivot vanishes. @param definite_first  L Lᵀ, which is several times faster, is tried first
-  bool prepare_any(bool definite_first = true);
+  /// False where a pivot vanishes.
+  bool prepare_any();
   /// Takes K + s · diagonal of its material part, with the smallest s of a few that is enough. False where none is.
   bool prepare_shifted();
 
@@ -28,7 +28,7 @@ class FactorSolver final : public LinearSolver {
   void begin_afresh() { shift_ = 0; }
 
   /// Takes the terms beside K as they are now, with the factor of a K as good as the same.
-  void renew_terms() { take(*factor_, negative_pivots_); }
+  void renew_terms();
   /// Takes them for precondition(), with the factor of a K met before.
   void renew_terms_of_preconditioner();
   /// The factor is L Lᵀ of a tangent that was positive definite, that of K as it is now or one met before.
@@ -40,7 +40,7 @@ class FactorSolver final : public LinearSolver {
 
   /// After a shift: a direction of descent.
   LinearReport solve(std::span<const double> b, std::span<double> x, double rough = 0) override;
-  /// With a step of refinement, since L D Lᵀ has no pivoting. False where rounding spoils the solution: K is all but
+  /// With a step of refinement, since L S Lᵀ has no pivoting. False where rounding spoils the solution: K is all but
   /// singular.
   bool solve_refined(std::span<const double> b, std::span<double> x);
   bool iterates() const override { return false; }
@@ -67,17 +67,15 @@ class FactorSolver final : public LinearSolver {
  private:
   static constexpr double kMostBytes = 2e9;
   void follow_pattern();
-  bool factorize_any();
-  void take(BlockCholesky& factor, int negative_pivots);
+  bool prepare_with(Pivots pivots);
   void finish_shifted(std::span<const double> b, std::span<double> x);
 
   TangentOperator& K_;
   std::optional<EliminationOrder> order_;
-  std::optional<BlockCholesky> cholesky_, indefinite_;
-  BlockCholesky* factor_ = nullptr;  ///< that solves
-  long pattern_ = 0;                 ///< of K, that these were made of
+  std::optional<BlockCholesky> cholesky_;
+  long pattern_ = 0;  ///< of K, that these were made of
   bool definite_ = false;
-  int negative_ = 0, negative_pivots_ = 0;
+  int negative_ = 0;
   double shift_ = 0;      ///< of the last factorisation that needed one
   bool shifted_ = false;  ///< the last factor is such
   std::vector<double> rest_, correction_;

@@ -38,7 +38,7 @@ Times times_of(const PointSet& set) {
   return sum;
 }
 /// Others of these: of a number of an assembled matrix in a product, of a factor's operation, of its number in a solve.
-constexpr double kOfMatrixNumber = 0.1, kOfFactorOperation = 1. / 15, kOfFactorNumber = 1.5;
+constexpr double kOfMatrixNumber = 0.1, kOfFactorOperation = 1. / 30, kOfFactorNumber = 1.5;
 
 }  // namespace
 

@@ -32,7 +32,7 @@ TangentCondition TangentSolver::condition(const Linearization& lin, double most_
   TangentCondition out;
   if (filter_.free_count() == 0) return out;
   K_.take(lin);
-  if (factor_.takes_more_than(most_flops) || !factor_.order().narrow()) return out;
+  if (factor_.takes_more_than(most_flops) || !factor_.order().moderate()) return out;
   if (!factor_.prepare()) {
     out.kind = TangentCondition::Kind::not_definite;
     return out;

@@ -47,7 +47,6 @@ TangentSolver::TangentSolver(const Model& model, CpuExecutor& executor, const Do
 
 void TangentSolver::begin_afresh() {
   direct_.reset();
-  unstable_ = 0;
   factor_.begin_afresh();
   kept_factor_.begin_afresh();
   kept_by_cost_.reset();
@@ -95,7 +94,7 @@ bool TangentSolver::direct() {
 }
 
 bool TangentSolver::factor_is_small() {
-  return !factor_.takes_more_than(kFlopsPerNumber * factor_.matrix_numbers()) && factor_.order().narrow();
+  return !factor_.takes_more_than(kFlopsPerNumber * factor_.matrix_numbers()) && factor_.order().moderate();
 }
 
 SolverChoice TangentSolver::choice() {
@@ -119,7 +118,7 @@ bool TangentSolver::gives_way_to_factor(long iterations) {
 }
 
 bool TangentSolver::factor_is_cheap(long made) {
-  constexpr double kSpeedup = 5, kShare = 0.1;
+  constexpr double kSpeedup = 10, kShare = 0.1;
   constexpr int kAlways = 5000;  // less than a second, whatever the shape
   if (settings_.preconditioner == PreconditionerKind::cholesky || filter_.free_count() <= kAlways) return true;
   const double product = (cg_.levels() != nullptr ? kCycle : 1) * 2.0 * factor_.matrix_numbers();
@@ -300,10 +299,8 @@ std::optional<TangentReport> TangentSolver::solve_unsymmetric(std::span<double> 
 std::optional<int> TangentSolver::factorize_as_is(const Linearization& lin) {
   K_.take(lin);
   if (filter_.free_count() == 0) return 0;
-  // Cholesky's factor, which is several times faster, while it lasts.
-  if (!factor_.prepare_any(unstable_ == 0)) return std::nullopt;
-  unstable_ = factor_.negative();
-  if (unstable_ == 0 || K_.symmetric()) return unstable_;
+  if (!factor_.prepare_any()) return std::nullopt;
+  if (factor_.negative() == 0 || K_.symmetric()) return factor_.negative();
   const SoftestDirection whole = softest_of_whole(K_, factor_, false);
   return whole.probe.usable ? std::optional(whole.probe.unstable) : std::nullopt;
 }

@@ -138,7 +138,6 @@ class TangentSolver {
   bool factor_is_current_ = false;    ///< the last solve made its factor
   double left_ = 0;                   ///< as aim_at() was told
   double of_gradient_ = 1;            ///< the gradient over the right-hand side, where a boundary moves
-  int unstable_ = 0;                  ///< negative directions that factorize_as_is() met last
   std::vector<double> rhs_, product_;
 };
 

@@ -109,7 +109,7 @@ TEST_F(EstimateRuns, StopAtASignal) {
   options.signal_after = std::chrono::milliseconds(700);
   const ProgramResult result =
       fascia({"run", "beam.toml", "--output", "out", "--set", "output.estimate=finer", "--set",
-              "bodies.beam.frames.grid=[17, 5, 5]", "--set",
+              "bodies.beam.frames.grid=[21, 6, 6]", "--set",
               "solver={ kind = \"implicit-euler\", time_step = 0.01, duration = 0.02 }", "--set", "solver.threads=1"},
              options);
   EXPECT_EQ(result.status, 130) << result.out << result.err;

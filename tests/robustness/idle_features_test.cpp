@@ -146,7 +146,6 @@ class IdleFeatures : public SceneRuns {
     for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
     ProgramOptions options;
     options.directory = folder_;
-    options.environment = {"OPENBLAS_NUM_THREADS=1"};
     options.timeout = std::chrono::minutes(10);
     const ProgramResult result = run_program(command, options);
     EXPECT_EQ(result.status, 0) << result.err;

@@ -89,7 +89,7 @@ TEST_F(Memory, OfLargeRunsIsAsCheckSays) {
 
 TEST_F(Memory, OfLimitedProcessesRunsOutWithAMessage) {
   write("scene.toml", fmt::format(kCube, "tetrahedra", cells(10, 2), 1, kStatic));
-  for (const int megabytes : {150, 200, 230, 260, 300}) {
+  for (const int megabytes : {45, 90, 120, 150, 200, 230, 260, 300}) {
     for (const std::string command : {"check", "run"}) {
       ProgramOptions options;
       options.directory = folder_;

@@ -26,7 +26,7 @@ TEST(Options, ConjugateGradientsAgreeWithCholesky) {
   const SolvedScene direct("soft_cantilever", {"solver.linear.kind='cholesky'"});
   const SolvedScene iterative("soft_cantilever", {"solver.linear.kind='cg'", "solver.linear.max_iterations=5000"});
   const double d = difference(iterative.vector("tip"), direct.vector("tip"));
-  std::printf("soft cantilever 21 x 3 x 3: CHOLMOD (%.9f, %.9f), CG (%.9f, %.9f), difference %.1e; %d CG iterations\n",
+  std::printf("soft cantilever 21 x 3 x 3: Cholesky (%.9f, %.9f), CG (%.9f, %.9f), difference %.1e; %d CG iterations\n",
               direct.vector("tip")[0], direct.vector("tip")[1], iterative.vector("tip")[0], iterative.vector("tip")[1],
               d, iterative.summary().value("linear_iterations", -1));
   EXPECT_LT(d, 1e-6);

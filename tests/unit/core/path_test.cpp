@@ -78,8 +78,8 @@ TEST(Path, IndefiniteFactorCountsAndSolves) {
   const DofFilter& filter = system.filter();
   const auto n = static_cast<Eigen::Index>(filter.size());
   for (const double shift : {0.0, -0.1, -0.3, -0.7}) {
-    BlockCholesky factor(matrix, filter, Pivots::any);
-    ASSERT_TRUE(factor.factorize(matrix, shift, &matrix));
+    BlockCholesky factor(matrix, filter);
+    ASSERT_TRUE(factor.factorize(matrix, Pivots::any, shift, &matrix));
     // The inverse by columns, whose eigenvalues have the signs of the matrix's.
     std::vector<int> free;
     for (Eigen::Index i = 0; i < n; ++i)
