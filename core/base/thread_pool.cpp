@@ -1,6 +1,6 @@
 #include "core/base/thread_pool.hpp"
 
-#include "core/base/portability.hpp"
+#include "core/base/look.hpp"
 #include "core/base/processors.hpp"
 
 #include <chrono>
@@ -8,25 +8,6 @@
 namespace fascia {
 
 namespace {
-
-/// How long a thread looks before it sleeps: some times what waking one costs, so that loops that follow one another
-/// find their threads awake, and little beside what they save where they do not.
-constexpr std::chrono::microseconds kLook{20};
-
-/// Looks until `found()`, at most kLook long, and lets other processes have their turn meanwhile; whether it was found.
-template <class Found>
-bool look(const Found& found) {
-  constexpr int kLooksBetweenTurns = 64;
-  const auto end = std::chrono::steady_clock::now() + kLook;
-  do {
-    for (int i = 0; i < kLooksBetweenTurns; ++i) {
-      if (found()) return true;
-      wait_a_moment();
-    }
-    std::this_thread::yield();
-  } while (std::chrono::steady_clock::now() < end);
-  return false;
-}
 
 constexpr int left(std::uint64_t open) { return static_cast<int>(static_cast<std::uint32_t>(open)); }
 
@@ -69,7 +50,7 @@ void ThreadPool::run(int chunks, const void* work, Call call) {
   calls_.notify_all();
   work_from(0);
   const auto all_done = [&] { return done_.load(std::memory_order_acquire) == chunks; };
-  if (look(all_done)) return;
+  if (look_for(all_done)) return;
   for (int done = done_.load(std::memory_order_acquire); done != chunks; done = done_.load(std::memory_order_acquire))
     done_.wait(done, std::memory_order_acquire);
 }
@@ -98,7 +79,7 @@ void ThreadPool::worker_loop(int share) {
   while (true) {
     work_from(share);
     const auto called = [&] { return calls_.load(std::memory_order_acquire) != seen; };
-    if (!look(called)) calls_.wait(seen, std::memory_order_acquire);
+    if (!look_for(called)) calls_.wait(seen, std::memory_order_acquire);
     seen = calls_.load(std::memory_order_acquire);
     if (stop_) return;
   }

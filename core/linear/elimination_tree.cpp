@@ -119,6 +119,7 @@ void EliminationTree::take_postorder(const NodeGraph& graph, bool by_rows) {
   }
   const auto placed = [&](const std::vector<int>& of) {
     std::vector<int> out;
+    out.reserve(sequence.size());
     for (const int k : sequence) out.push_back(of[at(k)]);
     return out;
   };

@@ -3,6 +3,7 @@
 #include "core/base/thread_pool.hpp"
 #include "core/linear/factor_pattern.hpp"
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <vector>
@@ -23,17 +24,18 @@ class FactorTasks {
   };
 
   FactorTasks() = default;
-  /// @param threads    that will share them; one: there are none
+  /// @param threads    that may share them; one, or little to do: there are none
   /// @param most_rows  of a supernode that one thread works at
   FactorTasks(const FactorPattern& pattern, int threads, int most_rows);
   FactorTasks(FactorTasks&&) = delete;
 
   bool empty() const { return units_.empty(); }
+  int threads() const { return threads_; }  ///< that share them: as many as have enough to do
   /// Calls make(task, thread) for each, on all threads.
   template <class Make>
   void run(ThreadPool& pool, const Make& make) {
     begin();
-    pool.for_chunks(pool.size(), [&](int thread) {
+    pool.for_chunks(threads_, [&](int thread) {
       for (Task task; take(task);) {
         make(task, thread);
         finish(task);
@@ -42,11 +44,12 @@ class FactorTasks {
   }
 
  private:
-  /// A subtree, or a supernode.
+  /// A supernode, or a subtree that one thread makes.
   struct Unit {
     int begin, end;     ///< supernodes
-    bool subtree;       ///< else one supernode
+    bool whole;         ///< one task
     int columns, rows;  ///< of the supernode
+    int part;           ///< rows of it for a task
     int next = -1;      ///< the unit that waits for it
     int awaited = 0;    ///< units that it waits for
     int waiting = 0;    ///< for so many of them still
@@ -64,7 +67,8 @@ class FactorTasks {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Task> ready_;
-  int unfinished_ = 0;  ///< units
+  std::atomic<bool> worth_a_look_{false};  ///< a task is ready, or all are done
+  int unfinished_ = 0;                     ///< units
 };
 
 }  // namespace fascia

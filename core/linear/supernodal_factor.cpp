@@ -27,7 +27,7 @@ SupernodalFactor::SupernodalFactor(const BlockMatrix& pattern, const DofFilter& 
       pattern_(pattern, filter, order.nodes),
       pool_(pool),
       tasks_(pattern_, pool == nullptr ? 1 : pool->size(), kMostRows),
-      scratch_(tasks_.empty() ? 1 : at(pool->size())) {
+      scratch_(at(tasks_.threads())) {
   list_entries(pattern);
 }
 
