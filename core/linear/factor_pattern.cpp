@@ -109,7 +109,6 @@ FactorPattern::FactorPattern(const BlockMatrix& pattern, const DofFilter& filter
   for (const int n : nodes) given.push_back(column_of[at(n)]);
   const EliminationTree tree(graph, given);
   flops = tree.flops();
-  numbers = tree.numbers();
 
   position.assign(at(pattern.rows()), -1);
   column.push_back(0);

@@ -32,8 +32,7 @@ struct FactorPattern {
   std::vector<Descendant> descendant;          ///< ascending in each
   std::vector<std::int64_t> descendant_begin;  ///< of each supernode, and of the end
 
-  double flops = 0;    ///< Σ of squares of the numbers in a column, without the zeros of joined supernodes
-  double numbers = 0;  ///< of the factor, without these
+  double flops = 0;  ///< Σ of squares of the numbers in a column, without the zeros of joined supernodes
 
   FactorPattern() = default;
   FactorPattern(const BlockMatrix& pattern, const DofFilter& filter, const std::vector<int>& order);

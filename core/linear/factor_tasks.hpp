@@ -23,7 +23,6 @@ class FactorTasks {
     int unit;
   };
 
-  FactorTasks() = default;
   /// @param threads    that may share them; one, or little to do: there are none
   /// @param most_rows  of a supernode that one thread works at
   FactorTasks(const FactorPattern& pattern, int threads, int most_rows);
