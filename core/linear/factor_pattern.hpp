@@ -34,7 +34,6 @@ struct FactorPattern {
 
   double flops = 0;  ///< Σ of squares of the numbers in a column, without the zeros of joined supernodes
 
-  FactorPattern() = default;
   FactorPattern(const BlockMatrix& pattern, const DofFilter& filter, const std::vector<int>& order);
 
   int supernodes() const { return static_cast<int>(first_column.size()) - 1; }

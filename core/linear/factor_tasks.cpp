@@ -14,7 +14,7 @@ constexpr int kFewRows = 48;  ///< of a part, at least
 /// one on costs.
 constexpr double kWorthThread = 1.5e7, kWorthTask = 5e5;
 
-/// Of the products that a supernode gathers, and of its own division.
+/// Counts the operations of the products that a supernode gathers, and of its own division.
 double work_of(const FactorPattern& pattern, int s) {
   const double columns = pattern.columns(s), rows = pattern.rows(s);
   double work = columns * columns * rows;

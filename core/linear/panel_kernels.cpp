@@ -12,7 +12,7 @@ namespace fascia::panel {
 namespace {
 
 using Register = Lanes::Register;
-constexpr int kPages = 16;
+constexpr int kPages = 16;  ///< columns that are packed together: each lies on a page of its own
 
 Register load(const double* p) {
   Register r;
@@ -45,7 +45,7 @@ void tile(int k, const double* a, std::size_t a_stride, const double* b, double*
 
 using Tile = void (*)(int, const double*, std::size_t, const double*, double*, std::size_t);
 
-/// Of 1 to 3 registers, of 1 to kTileColumns columns.
+/// The kernel for 1 to 3 registers and 1 to kTileColumns columns is taken from a table.
 template <int... Columns>
 Tile tile_of(int registers, int columns, std::integer_sequence<int, Columns...>) {
   static constexpr Tile kTiles[3][sizeof...(Columns)] = {
@@ -94,7 +94,6 @@ struct Triangle {
 
 }  // namespace
 
-/// Some columns at a time: each lies on a page of its own.
 void pack_left(const double* a, std::size_t stride, int m, int k, double* packed) {
   for (int first = 0; first < k; first += kPages)
     for_tiles(0, m, [&](int row, int registers) {

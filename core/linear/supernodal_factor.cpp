@@ -16,7 +16,7 @@ namespace {
 constexpr int kMostRows = 384;  ///< of a part of a supernode: what a thread works at stays in its cache
 constexpr int kDepth = 128;     ///< columns that a product sums at a time
 constexpr std::size_t kBlock = kMostDofs * kMostDofs;
-/// What is left of a number of the diagonal has no digit, nor a sign, where it is below the rounding of that number.
+/// A pivot below this part of the matrix's own number there is rounding: it has no digit, nor a sign.
 constexpr double kVanished = std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -135,7 +135,7 @@ void SupernodalFactor::make(const FactorTasks::Task& task, Scratch& scratch) {
   store(task.supernode, task.begin, task.end, scratch);
 }
 
-/// What the matrix has there, less the products of all columns before.
+/// Takes what the matrix has there, and subtracts the products of all columns before.
 void SupernodalFactor::gather(int s, int begin, int end, Scratch& scratch) {
   const int columns = pattern_.columns(s), first_column = pattern_.first_column[at(s)];
   const std::size_t stride = at(panel::padded(end - begin));

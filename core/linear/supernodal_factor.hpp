@@ -27,7 +27,7 @@ class SupernodalFactor {
   const FactorPattern& pattern() const { return pattern_; }
   double bytes() const;  ///< of the numbers, and what each thread works in
 
-  /// As BlockCholesky::factorize()
+  /// This is BlockCholesky::factorize().
   bool factorize(const BlockMatrix& matrix, Pivots pivots, double shift, const BlockMatrix* shift_from);
   int negative_pivots() const;
   double smallest_pivot() const;

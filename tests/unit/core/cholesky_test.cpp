@@ -197,7 +197,7 @@ TEST(Cholesky, MakesTheSameBitsByAnyNumberOfThreads) {
   TangentAtRest t(turning(build({block_spec(grid(9, 9, 8))}).model), 1);
   const BlockMatrix turned = indefinite(t.matrix);
   const EliminationOrder order = EliminationOrder::of(t.matrix, t.filter);
-  ASSERT_GT(order.flops, 5e7);
+  ASSERT_GT(order.flops, 7 * 1.5e7) << "seven threads have enough to do";
   std::vector<double> b = right_side(at(t.model.dof_count())), x(b.size());
   t.filter.clear_fixed(b);
   std::vector<double> alone;
@@ -272,7 +272,7 @@ TEST(Cholesky, GoesOnWhereMemoryEnded) {
   }
 }
 
-/// Of a body that nothing holds rounding decides what the last pivots are.
+/// Rounding decides what the last pivots of a body are that nothing holds.
 TEST(Cholesky, TellsHowSmallPivotsAre) {
   for (const int length : {4, 9, 20, 33}) {
     const TangentAtRest free(build({block_spec(grid(length, 2, 2))}).model, 1);

@@ -16,7 +16,7 @@ std::vector<double> random_numbers(int count, std::mt19937& random) {
   return x;
 }
 
-/// Of all sizes around a tile's and a register's, in place and packed, with signs and without.
+/// Sizes lie around a tile's and a register's; rows are in place and packed, with signs and without.
 TEST(PanelKernels, SubtractProducts) {
   std::mt19937 random(1);
   for (const int m : {1, 3, 8, 9, 17, 24, 25, 50})
