@@ -18,11 +18,12 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <fstream>
-#include <regex>
 #include <sstream>
+#include <string_view>
 
 namespace fascia::io {
 namespace {
@@ -56,6 +57,20 @@ vtkSmartPointer<vtkDataSet> read_data(const std::string& file, const std::string
   return read_with<vtkPLYReader>(file);
 }
 
+/// The value of an attribute of an XML element's start; empty where it has none.
+std::string_view attribute(std::string_view element, std::string_view name) {
+  constexpr std::string_view spaces = " \t\r\n";
+  for (std::size_t at = element.find(name); at != element.npos; at = element.find(name, at + 1)) {
+    std::string_view rest = element.substr(at + name.size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(spaces), rest.size()));
+    if (at == 0 || spaces.find(element[at - 1]) == spaces.npos || !rest.starts_with('=')) continue;
+    rest.remove_prefix(std::min(rest.find_first_not_of(spaces, 1), rest.size()));
+    if (!rest.starts_with('"') && !rest.starts_with('\'')) continue;
+    return rest.substr(1, rest.find(rest[0], 1) - 1);
+  }
+  return {};
+}
+
 /// Files of VTK's XML formats are often called .vtk; what they hold says which of them they are.
 std::string true_ending(const std::filesystem::path& path, const std::string& ending) {
   if (ending != ".vtk") return ending;
@@ -65,11 +80,12 @@ std::string true_ending(const std::filesystem::path& path, const std::string& en
   stream.read(start.data(), static_cast<std::streamsize>(longest));
   start.resize(static_cast<std::size_t>(stream.gcount()));
   if (start.starts_with("\xEF\xBB\xBF")) start.erase(0, 3);  // a byte order mark
-  std::smatch type;
-  static const std::regex kRoot(R"(<VTKFile[^>]*\btype\s*=\s*["'](\w+)["'])");
-  if (!start.starts_with('<') || !std::regex_search(start, type, kRoot)) return ending;
-  if (type[1] == "UnstructuredGrid") return ".vtu";
-  return type[1] == "PolyData" ? ".vtp" : ending;
+  const std::size_t root = start.find("<VTKFile");
+  if (!start.starts_with('<') || root == start.npos) return ending;
+  const std::string_view element = std::string_view(start).substr(root, start.find('>', root) - root);
+  const std::string_view type = attribute(element, "type");
+  if (type == "UnstructuredGrid") return ".vtu";
+  return type == "PolyData" ? ".vtp" : ending;
 }
 
 /// A header may promise more than memory holds, which VTK asks for before it looks for the first number: each vertex

@@ -20,6 +20,25 @@ TEST(VtkReader, every_format) {
   }
 }
 
+TEST(VtkReader, xml_is_told_by_what_a_file_called_vtk_holds) {
+  const TemporaryDirectory directory;
+  int files = 0;
+  for (const samples::VtkSample& sample : samples::vtk_samples) {
+    for (const std::string kind : {"UnstructuredGrid", "PolyData"}) {
+      const std::string text = sample.text, start = "<VTKFile type=\"" + kind + "\"";
+      const std::size_t place = text.find(start);
+      if (place == text.npos) continue;
+      ++files;
+      for (const std::string& other :
+           {start, "<VTKFile subtype=\"x\" type = '" + kind + "'", "<VTKFile\n\ttype=\"" + kind + "\""}) {
+        const std::string file = text.substr(0, place) + other + text.substr(place + start.size());
+        EXPECT_NEAR(closed_surface(read_mesh(directory.write("a.vtk", file))).volume, 1. / 6, 1e-15) << other;
+      }
+    }
+  }
+  EXPECT_EQ(files, 2);
+}
+
 /// A legacy file of one cell on the points of the unit cube.
 std::string one_cell(int type, const std::string& nodes, int count) {
   return "# vtk DataFile Version 3.0\nsample\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n"
