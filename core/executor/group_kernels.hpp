@@ -56,18 +56,18 @@ inline LawFactors<Lanes> law_factors(const double* rows, GivenRow first, int bat
 
 /// @param targets  of tethers: (groups with axes × 3 × 8) [m]
 /// @param factors  of points that remember stresses: those of the step, or of what never fades
-template <PointKind Kind>
+template <Law L>
 inline auto material(const PointSet& set, int group, int batch, const BlockState& state,
                      const AlignedVector<double>& targets, GivenRow factors = kGivenFactors) {
   const double* base = set.material_of_group(group);
-  MaterialOf<Kind.law, Lanes> m;
+  MaterialOf<L, Lanes> m;
   m.volume = row(base, kVolume, batch);
   m.lambda = row(base, kLambda, batch);
   m.mu = row(base, kMu, batch);
   m.stabilization = row(base, kStabilization, batch);
   m.viscosity = row(base, kStiffnessDamping, batch) * Lanes(state.inverse_step);
-  if constexpr (!is_thin(Kind.law)) {
-    if constexpr (constexpr int kOwn = SolidLaw<Kind.law, Lanes>::kOwn; kOwn > 0)
+  if constexpr (!is_thin(L)) {
+    if constexpr (constexpr int kOwn = SolidLaw<L, Lanes>::kOwn; kOwn > 0)
       for (int k = 0; k < kOwn; ++k) m.own[k] = row(set.own_of_group(group), k, batch);
   } else {
     const GroupRule& rule = set.rule[static_cast<std::size_t>(group)];

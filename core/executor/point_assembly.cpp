@@ -103,8 +103,28 @@ void PointExecutor::find_pairs(const BlockMatrix& matrix) {
   }
 }
 
-template <PointKind Kind>
-[[gnu::flatten]] void PointExecutor::set_frames(const BlockState& state, int group, const GroupOfFrames& frames) const {
+/// Sets the moduli of a batch: all that assembly asks of a law, so that the rest is compiled for all laws at once.
+template <Law L>
+[[gnu::noinline, gnu::flatten]] void PointExecutor::set_moduli_of(const BlockState& state, int group, int batch,
+                                                                  PointModuli& moduli) const {
+  const double* kept = kept_of(state, group);
+  moduli.set(matrix(kept, kKeptH, batch), symmetric_matrix(kept, kKeptS, batch),
+             material<L>(set_, group, batch, state, targets_), state.tangent);
+}
+
+void PointExecutor::set_moduli(const BlockState& state, int group, int batch, PointModuli& moduli) const {
+  with_point_law(rule_of(group).law, [&]<Law L>() { set_moduli_of<L>(state, group, batch, moduli); });
+}
+
+template <Stabilization Tie>
+PointTie PointExecutor::tie_of(const BlockState& state, int group, int batch) const {
+  const double *kept = kept_of(state, group), *material = set_.material_of_group(group);
+  const bool tether = rule_of(group).law == Law::tether;
+  return {kept_motion<Tie>(kept, batch), kept_stress<Tie>(kept, batch), row(material, kVolume, batch),
+          tether ? Lanes(0) : row(material, kStabilization, batch)};
+}
+
+void PointExecutor::set_frames(const BlockState& state, int group, const GroupOfFrames& frames) const {
   const auto nodes = set_.nodes(group);
   for (int a = 0; a < static_cast<int>(nodes.size()); ++a) {
     const Mat3<Lanes> Q = broadcast(Mat3d::identity() + turn_of(state, nodes[at(a)]));
@@ -112,20 +132,17 @@ template <PointKind Kind>
     for (int batch = 0; batch < kBatches; ++batch)
       frames.frames[a * kBatches + batch].set(set_.dofs.kind(nodes[at(a)]), shape, false, batch, Q);
   }
-  const double* kept = kept_of(state, group);
-  for (int batch = 0; batch < kBatches; ++batch)
-    frames.moduli[batch].set(matrix(kept, kKeptH, batch), symmetric_matrix(kept, kKeptS, batch),
-                             material<Kind>(set_, group, batch, state, targets_), state.tangent);
+  for (int batch = 0; batch < kBatches; ++batch) set_moduli(state, group, batch, frames.moduli[batch]);
 }
 
 /// The degrees of freedom of slot b give dP and dY, and these the forces on slots a ≥ b of the group, which go into
 /// blocks of that pair of nodes alone.
 /// All that it calls is inlined: matrices of lanes that are passed by memory take as long as what is done with them.
-template <PointKind Kind>
+template <Stabilization Tie>
 [[gnu::flatten]] void PointExecutor::assemble_slot(const BlockState& state, int group, int b,
                                                    const GroupOfFrames& frames, Entries entries,
                                                    BlockMatrix& matrix_out) const {
-  constexpr bool kBlend = Kind.stabilization != Stabilization::none;
+  constexpr bool kBlend = Tie != Stabilization::none;
   const auto nodes = set_.nodes(group);
   const int n = static_cast<int>(nodes.size()), first_slot = set_.slot_begin[at(group)];
   const bool upper = matrix_out.fills_upper();
@@ -137,11 +154,8 @@ template <PointKind Kind>
   LaneMatrix dP[kBatches][kMostDofs], dY[kBatches][kBlend ? kMostDofs : 1];
   with_frame(set_.dofs.kind(nodes[at(b)]), [&]<FrameKind Frame>() {
     for (int batch = 0; batch < kBatches; ++batch)
-      stress_columns<Kind.stabilization, Frame>(frames.moduli[batch],
-                                                kept_motion<Kind.stabilization>(kept_of(state, group), batch),
-                                                kept_stress<Kind.stabilization>(kept_of(state, group), batch),
-                                                material<Kind>(set_, group, batch, state, targets_), state.tangent,
-                                                frames.of(batch, b), dP[batch], dY[batch]);
+      stress_columns<Tie, Frame>(frames.moduli[batch], tie_of<Tie>(state, group, batch), state.tangent,
+                                 frames.of(batch, b), dP[batch], dY[batch]);
   });
   for (int a = b; a < end; ++a) {
     if (!together(first_slot + a, first_slot + b)) continue;
@@ -162,12 +176,17 @@ template <PointKind Kind>
   }
 }
 
-template <PointKind Kind>
+void PointExecutor::assemble_slot_of(const BlockState& state, int group, int b, const GroupOfFrames& frames,
+                                     Entries entries, BlockMatrix& matrix_out) const {
+  with_stabilization(rule_of(group).stabilization,
+                     [&]<Stabilization Tie>() { assemble_slot<Tie>(state, group, b, frames, entries, matrix_out); });
+}
+
 void PointExecutor::assemble_group(const BlockState& state, int group, Entries entries, BlockMatrix& matrix_out) const {
   FramesOfOne own;
-  set_frames<Kind>(state, group, own.view());
+  set_frames(state, group, own.view());
   const int n = static_cast<int>(set_.nodes(group).size());
-  for (int b = 0; b < n; ++b) assemble_slot<Kind>(state, group, b, own.view(), entries, matrix_out);
+  for (int b = 0; b < n; ++b) assemble_slot_of(state, group, b, own.view(), entries, matrix_out);
 }
 
 /// Fills all blocks of which a node is the first.
@@ -175,17 +194,15 @@ void PointExecutor::assemble_node(const BlockState& state, int node, Entries ent
   for (int k = set_.node_slot_begin[at(node)]; k < set_.node_slot_begin[at(node + 1)]; ++k) {
     const int slot = set_.node_slot[at(k)], group = group_of_slot_[at(slot)], b = slot - set_.slot_begin[at(group)];
     if (frames_.lanes().count(group) > 0) continue;
-    with_kind(rule_of(group), [&]<PointKind Kind>() {
-      assemble_slot<Kind>(state, group, b, frames_of_all_->of(group), entries, matrix_out);
-    });
+    assemble_slot_of(state, group, b, frames_of_all_->of(group), entries, matrix_out);
   }
 }
 
 /// Lane by lane: each has blocks of its own. All frames of the group are of one kind.
-template <PointKind Kind, FrameKind Frame>
+template <Stabilization Tie, FrameKind Frame>
 [[gnu::flatten]] void PointExecutor::assemble_lanes(const BlockState& state, int group, Entries entries,
                                                     BlockMatrix& matrix_out) const {
-  constexpr bool kBlend = Kind.stabilization != Stabilization::none;
+  constexpr bool kBlend = Tie != Stabilization::none;
   constexpr int kDofs = dof_count(Frame);
   const LaneFrames& lanes = frames_.lanes();
   const int n = lanes.count(group);
@@ -194,9 +211,7 @@ template <PointKind Kind, FrameKind Frame>
   std::array<PointFrame, LaneFrames::kMostFrames> frames;
   PointModuli moduli;
   for (int batch = 0; batch < kBatches; ++batch) {
-    const auto m = material<Kind>(set_, group, batch, state, targets_);
-    const PointMotion<Lanes> x = kept_motion<Kind.stabilization>(kept_of(state, group), batch);
-    const TangentStress<Lanes> stress = kept_stress<Kind.stabilization>(kept_of(state, group), batch);
+    const PointTie tie = tie_of<Tie>(state, group, batch);
     for (int a = 0; a < n; ++a) {
       Lanes D[9];
       const std::uint16_t* own = starts + a * kGroupSize + batch * kBatchWidth;
@@ -204,12 +219,12 @@ template <PointKind Kind, FrameKind Frame>
       frames[at(a)].set(Frame, lanes.shape(group) + a * lanes.shape_rows(group) * kGroupSize, lanes.carries(group),
                         batch, Mat3<Lanes>::identity() + matrix_of(D));
     }
-    moduli.set(x.H, stress.S, m, state.tangent);
+    set_moduli(state, group, batch, moduli);
     const std::uint32_t* pair = pairs_.data() + pair_begin_[at(set_.slot_begin[at(group)])] + batch * kBatchWidth;
     const std::uint32_t* end = pair + n * (n + 1) / 2 * kGroupSize;
     for (int b = 0; b < n; ++b) {
       LaneMatrix dP[kDofs], dY[kBlend ? kDofs : 1];
-      stress_columns<Kind.stabilization, Frame>(moduli, x, stress, m, state.tangent, frames[at(b)], dP, dY);
+      stress_columns<Tie, Frame>(moduli, tie, state.tangent, frames[at(b)], dP, dY);
       for (int a = b; a < n; ++a, pair += kGroupSize) {
         if (entries == Entries::diagonal && a > b) continue;
         for (int lane = 0; lane < kBatchWidth && pair + kGroupSize < end && entries == Entries::all; ++lane)
@@ -226,14 +241,15 @@ template <PointKind Kind, FrameKind Frame>
   }
 }
 
-template <PointKind Kind>
 void PointExecutor::assemble_one(const BlockState& state, int group, Entries entries, BlockMatrix& matrix_out) const {
   const LaneFrames& lanes = frames_.lanes();
-  if (!lanes.has_blocks(group)) return assemble_group<Kind>(state, group, entries, matrix_out);
-  if (lanes.kind(group) == FrameKind::rigid)
-    assemble_lanes<Kind, FrameKind::rigid>(state, group, entries, matrix_out);
-  else
-    assemble_lanes<Kind, FrameKind::affine>(state, group, entries, matrix_out);
+  if (!lanes.has_blocks(group)) return assemble_group(state, group, entries, matrix_out);
+  with_stabilization(rule_of(group).stabilization, [&]<Stabilization Tie>() {
+    if (lanes.kind(group) == FrameKind::rigid)
+      assemble_lanes<Tie, FrameKind::rigid>(state, group, entries, matrix_out);
+    else
+      assemble_lanes<Tie, FrameKind::affine>(state, group, entries, matrix_out);
+  });
 }
 
 /// All blocks by nodes, of groups whose colours are small.
@@ -241,7 +257,7 @@ void PointExecutor::assemble_by_nodes(const BlockState& state, Entries entries, 
   if (frames_of_all_ == nullptr) frames_of_all_ = std::make_shared<FramesOfAll>(set_, frames_.lanes());
   pool_.for_ranges(set_.group_count(), 1, [&](int group, int) {
     if (frames_.lanes().count(group) > 0) return;
-    with_kind(rule_of(group), [&]<PointKind Kind>() { set_frames<Kind>(state, group, frames_of_all_->of(group)); });
+    set_frames(state, group, frames_of_all_->of(group));
   });
   pool_.for_ranges(set_.node_count(), 1, [&](int node, int) { assemble_node(state, node, entries, matrix_out); });
 }
@@ -252,8 +268,7 @@ void PointExecutor::assemble(const BlockState& state, BlockMatrix& matrix_out, E
   const LaneFrames& lanes = frames_.lanes();
   if (pattern_ != matrix_out.pattern()) find_pairs(matrix_out);
   const auto assemble_groups = [&](std::span<const int> groups) {
-    for (const int group : groups)
-      with_kind(rule_of(group), [&]<PointKind Kind>() { assemble_one<Kind>(state, group, entries, matrix_out); });
+    for (const int group : groups) assemble_one(state, group, entries, matrix_out);
   };
   constexpr int kRowGrain = 64;
   const std::span<const int> others = lanes.nodes_of_no_patch();

@@ -128,17 +128,24 @@ class PointModuli {
   LaneMatrix entry_[9];
 };
 
+/// A batch of points as a tie of frames' rotations to F reads it: no law is asked.
+struct PointTie {
+  PointMotion<Lanes> x;
+  TangentStress<Lanes> stress;
+  Lanes volume, stabilization;  ///< [m³], γ [Pa]: 0 of tethers
+};
+
 /// Sets v dP and, where rotations blend, v dY of each degree of freedom of a frame.
-template <Stabilization Tie, FrameKind Frame, class Material>
-void stress_columns(const PointModuli& moduli, const PointMotion<Lanes>& x, const TangentStress<Lanes>& stress,
-                    const Material& material, Tangent tangent, const PointFrame& f, LaneMatrix* dP, LaneMatrix* dY) {
+template <Stabilization Tie, FrameKind Frame>
+void stress_columns(const PointModuli& moduli, const PointTie& of, Tangent tangent, const PointFrame& f, LaneMatrix* dP,
+                    LaneMatrix* dY) {
   moduli.columns<Frame>(f, dP);
   if constexpr (Tie != Stabilization::none) {
     for (int k = 0; k < dof_count(Frame); ++k) {
       PointStressDifferential<Lanes> tie;
-      if (!is_tether(material)) add_tie_differential<Tie>(x, stress, material, tangent, unit_motion<Frame>(f, k), tie);
-      dP[k].set(dP[k] + tie.dP * material.volume);
-      dY[k].set(tie.dY * material.volume);
+      add_tie_differential<Tie>(of.x, of.stress, of, tangent, unit_motion<Frame>(f, k), tie);
+      dP[k].set(dP[k] + tie.dP * of.volume);
+      dY[k].set(tie.dY * of.volume);
     }
   }
 }

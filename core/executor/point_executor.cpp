@@ -42,45 +42,47 @@ PointExecutor::PointExecutor(const PointSet& set, ThreadPool& pool)
 }
 
 /// Where points remember stresses, what never fades is elastic, and the rest of the step's potential viscous.
-template <PointKind Kind>
+template <Stabilization Tie, Law L>
 void PointExecutor::split_energy(const BlockState& state, int group, int batch, const PointMotion<Lanes>& x,
                                  PointEnergy<Lanes>& energy) const {
-  const auto lasting = material<Kind>(set_, group, batch, state, targets_, kLastingFactors);
-  const Lanes elastic = point_energy<Kind.stabilization>(x, lasting, {}).elastic;
+  const auto lasting = material<L>(set_, group, batch, state, targets_, kLastingFactors);
+  const Lanes elastic = point_energy<Tie>(x, lasting, {}).elastic;
   const Mat3<Lanes> E = green_strain(x.H);
   energy.viscous += energy.elastic - elastic + lasting.volume * contract(given_stress(state, group, batch), E);
   energy.elastic = elastic;
 }
 
-template <PointKind Kind>
+template <Stabilization Tie>
 [[gnu::flatten]] GroupStress PointExecutor::stress_on_group(const BlockState& state, int group, Rows rows,
                                                             bool energies, std::span<const double> part_motion) {
-  constexpr bool kBlend = Kind.stabilization != Stabilization::none;
+  constexpr bool kBlend = Tie != Stabilization::none;
   GroupStress out;
   const Lanes motion(energies ? part_motion[at(set_.part_of_group(group))] : 0.0);
   double elastic = 0, stabilizing = 0, viscous = 0, rounding = 0, tether = 0;
   for (int b = 0; b < kBatches; ++b) {
     const PointMotion<Lanes> x = frames_.motion<kBlend>(group, b, rows);
-    const auto m = material<Kind>(set_, group, b, state, targets_);
-    const Mat3<Lanes> E_old = old_strain(state, group, b);
-    PointStress<Lanes> stress = point_stress<Kind.stabilization>(x, m, E_old);
-    if (!state.given.empty()) stress.P += first_piola(x.H, given_stress(state, group, b));
-    const Mat3<Lanes> P = stress.P * m.volume;
-    out.P[b].set(P);
-    if constexpr (kBlend) out.Y[b].set(stress.Y * m.volume);
-    if (!energies) continue;
-    PointEnergy<Lanes> energy = point_energy<Kind.stabilization>(x, m, E_old);
-    if (!state.given.empty()) split_energy<Kind>(state, group, b, x, energy);
-    elastic += lane_sum(energy.elastic);
-    stabilizing += lane_sum(energy.stabilization);
-    viscous += lane_sum(energy.viscous);
-    if (is_tether(m)) tether += lane_sum(squared(P));
-    // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
-    const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
-    const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0)) * (Lanes(1.0) + m.viscosity);
-    const Lanes strain = is_tether(m) ? Lanes{} : squared(x.H);  // a tether's H is a displacement
-    rounding += lane_sum((g * g) * (squared(P) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
-                                                     (Lanes(1.0) + strain)));
+    with_point_law(rule_of(group).law, [&]<Law L>() {
+      const auto m = material<L>(set_, group, b, state, targets_);
+      const Mat3<Lanes> E_old = old_strain(state, group, b);
+      PointStress<Lanes> stress = point_stress<Tie>(x, m, E_old);
+      if (!state.given.empty()) stress.P += first_piola(x.H, given_stress(state, group, b));
+      const Mat3<Lanes> P = stress.P * m.volume;
+      out.P[b].set(P);
+      if constexpr (kBlend) out.Y[b].set(stress.Y * m.volume);
+      if (!energies) return;
+      PointEnergy<Lanes> energy = point_energy<Tie>(x, m, E_old);
+      if (!state.given.empty()) split_energy<Tie, L>(state, group, b, x, energy);
+      elastic += lane_sum(energy.elastic);
+      stabilizing += lane_sum(energy.stabilization);
+      viscous += lane_sum(energy.viscous);
+      if (is_tether(m)) tether += lane_sum(squared(P));
+      // Rounding of F − I grows with the displacements that cancel in it, and passes through the stiffness.
+      const Lanes g = row(set_.material_of_group(group), kGradientNorm, b);
+      const Lanes stiffness = m.volume * (m.lambda + m.mu * Lanes(2.0)) * (Lanes(1.0) + m.viscosity);
+      const Lanes strain = is_tether(m) ? Lanes{} : squared(x.H);  // a tether's H is a displacement
+      rounding += lane_sum((g * g) * (squared(P) + stiffness * stiffness * (strain + (g * motion) * (g * motion)) *
+                                                       (Lanes(1.0) + strain)));
+    });
   }
   if (energies) {
     group_elastic_[at(group)] = elastic;
@@ -95,9 +97,9 @@ template <PointKind Kind>
 void PointExecutor::compute_forces(const BlockState& state, bool energies, std::span<const double> part_motion) {
   if (empty()) return;
   frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, true, [&](int group, const auto& rows) {
-    with_kind(rule_of(group), [&]<PointKind Kind>() {
-      frames_.put<Kind.stabilization != Stabilization::none>(
-          group, stress_on_group<Kind>(state, group, rows[0], energies, part_motion));
+    with_stabilization(rule_of(group).stabilization, [&]<Stabilization Tie>() {
+      frames_.put<Tie != Stabilization::none>(group,
+                                              stress_on_group<Tie>(state, group, rows[0], energies, part_motion));
     });
   });
   if (!energies) return;
@@ -122,11 +124,10 @@ void PointExecutor::store_slot_sums(const BlockState& state, std::vector<double>
   out.resize(at(set_.slot_count()) * 12);
   if (empty()) return;
   frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, false, [&](int group, const auto& rows) {
-    with_kind(rule_of(group), [&]<PointKind Kind>() {
-      const GroupStress stress = stress_on_group<Kind>(state, group, rows[0], false, {});
+    with_stabilization(rule_of(group).stabilization, [&]<Stabilization Tie>() {
+      const GroupStress stress = stress_on_group<Tie>(state, group, rows[0], false, {});
       for (int slot = set_.slot_begin[at(group)]; slot < set_.slot_begin[at(group + 1)]; ++slot)
-        slot_sums<Kind.stabilization != Stabilization::none>(set_.shape_of_slot(slot), stress.P, stress.Y,
-                                                             out.data() + at(slot) * 12);
+        slot_sums<Tie != Stabilization::none>(set_.shape_of_slot(slot), stress.P, stress.Y, out.data() + at(slot) * 12);
     });
   });
 }
@@ -163,22 +164,22 @@ Vec3d tether_force(const PointSet& set, std::span<const double> targets, const T
   return force * set.material_of_group(tether.group)[kVolume * kGroupSize + tether.lane];
 }
 
-template <PointKind Kind>
 void PointExecutor::stress_of_group(const BlockState& state, int group, Rows rows, std::span<double> S) const {
   for (int b = 0; b < kBatches; ++b) {
     const PointMotion<Lanes> x = frames_.motion<false>(group, b, rows);
-    const auto m = material<Kind>(set_, group, b, state, targets_);
     Mat3<Lanes> stress;
-    if (!is_tether(m)) stress = tangent_stress<Stabilization::none>(x, m, {}).S + given_stress(state, group, b);
+    with_point_law(rule_of(group).law, [&]<Law L>() {
+      const auto m = material<L>(set_, group, b, state, targets_);
+      if (!is_tether(m)) stress = tangent_stress<Stabilization::none>(x, m, {}).S + given_stress(state, group, b);
+    });
     store_symmetric(S.data() + at(group) * 6 * kGroupSize, 0, b, stress);
   }
 }
 
 void PointExecutor::store_stress(const BlockState& state, std::span<double> S) {
   if (empty()) return;
-  frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, false, [&](int group, const auto& rows) {
-    with_kind(rule_of(group), [&]<PointKind Kind>() { stress_of_group<Kind>(state, group, rows[0], S); });
-  });
+  frames_.for_each_group(std::array{frames_.rows_of(state, now_)}, false,
+                         [&](int group, const auto& rows) { stress_of_group(state, group, rows[0], S); });
 }
 
 void PointExecutor::store_strain(const BlockState& state, std::span<double> E) {

@@ -11,6 +11,10 @@
 #include <vector>
 
 namespace fascia {
+namespace kernels {
+class PointModuli;
+struct PointTie;
+}  // namespace kernels
 
 /// How far a tether's material is from where it pulls to, and the force with which it does.
 /// @param targets  as CpuExecutor::targets()
@@ -70,37 +74,40 @@ class PointExecutor {
 
  private:
   using Rows = PointFrames::Rows;
-  template <PointKind Kind>
+  template <Stabilization Tie>
   GroupStress stress_on_group(const BlockState& state, int group, Rows rows, bool energies,
                               std::span<const double> part_motion);
   /// Returns the rows that are kept of a group: kernels::KeptRow in point_kernels.hpp.
   const double* kept_of(const BlockState& state, int group) const { return state.kept.data() + kept_begin_[at(group)]; }
-  template <PointKind Kind>
+  template <Stabilization Tie, Law L>
   void split_energy(const BlockState& state, int group, int batch, const PointMotion<Lanes>& x,
                     PointEnergy<Lanes>& energy) const;
-  template <PointKind Kind>
   void stress_of_group(const BlockState& state, int group, Rows rows, std::span<double> S) const;
-  template <PointKind Kind>
+  template <Stabilization Tie>
   void linearize_group(const BlockState& now, int group, Rows rows, std::span<double> kept) const;
-  template <PointKind Kind>
+  template <Stabilization Tie>
   void extrapolate_group(const BlockState& now, int group, const std::array<Rows, 3>& rows, std::span<double> kept);
   template <PointKind Kind>
   void product_of_group(const BlockState& state, int group, Rows rows);
   struct GroupOfFrames;
   struct FramesOfOne;
   struct FramesOfAll;
-  template <PointKind Kind>
+  template <Law L>
+  void set_moduli_of(const BlockState& state, int group, int batch, kernels::PointModuli& moduli) const;
+  void set_moduli(const BlockState& state, int group, int batch, kernels::PointModuli& moduli) const;
+  template <Stabilization Tie>
+  kernels::PointTie tie_of(const BlockState& state, int group, int batch) const;
   void set_frames(const BlockState& state, int group, const GroupOfFrames& frames) const;
-  template <PointKind Kind>
+  template <Stabilization Tie>
   void assemble_slot(const BlockState& state, int group, int slot, const GroupOfFrames& frames, Entries entries,
                      BlockMatrix& matrix) const;
+  void assemble_slot_of(const BlockState& state, int group, int slot, const GroupOfFrames& frames, Entries entries,
+                        BlockMatrix& matrix) const;
   void assemble_node(const BlockState& state, int node, Entries entries, BlockMatrix& matrix) const;
   void assemble_by_nodes(const BlockState& state, Entries entries, BlockMatrix& matrix);
-  template <PointKind Kind>
   void assemble_group(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
-  template <PointKind Kind>
   void assemble_one(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
-  template <PointKind Kind, FrameKind Frame>
+  template <Stabilization Tie, FrameKind Frame>
   void assemble_lanes(const BlockState& state, int group, Entries entries, BlockMatrix& matrix) const;
   void find_pairs(const BlockMatrix& matrix);
   /// Both move a point of their group.

@@ -9,40 +9,42 @@ namespace fascia {
 
 using namespace kernels;
 
-template <PointKind Kind>
-[[gnu::flatten]] void PointExecutor::linearize_group(const BlockState& now, int group, Rows rows,
-                                                     std::span<double> kept) const {
+template <Stabilization Tie>
+void PointExecutor::linearize_group(const BlockState& now, int group, Rows rows, std::span<double> kept) const {
   for (int b = 0; b < kBatches; ++b) {
     const PointMotion<Lanes> x = frames_.motion<true>(group, b, rows);
-    const auto m = material<Kind>(set_, group, b, now, targets_);
     TangentStress<Lanes> stress;
-    if (!is_tether(m)) stress = tangent_stress<Kind.stabilization>(x, m, old_strain(now, group, b));
+    with_point_law(rule_of(group).law, [&]<Law L>() {
+      const auto m = material<L>(set_, group, b, now, targets_);
+      if (!is_tether(m)) stress = tangent_stress<Tie>(x, m, old_strain(now, group, b));
+    });
     if (!now.given.empty()) stress.S += given_stress(now, group, b);
-    keep<Kind.stabilization>(x, stress, kept.data() + kept_begin_[at(group)], b);
+    keep<Tie>(x, stress, kept.data() + kept_begin_[at(group)], b);
   }
 }
 
 /// @param rows  of the state, of where a step to it started, and of the step
-template <PointKind Kind>
-[[gnu::flatten]] void PointExecutor::extrapolate_group(const BlockState& now, int group,
-                                                       const std::array<Rows, 3>& rows, std::span<double> kept) {
+template <Stabilization Tie>
+void PointExecutor::extrapolate_group(const BlockState& now, int group, const std::array<Rows, 3>& rows,
+                                      std::span<double> kept) {
   GroupStress sums;
   for (int b = 0; b < kBatches; ++b) {
-    const PointMotion<Lanes> x = frames_.motion<true>(group, b, rows[0]);
-    const Mat3<Lanes> E_old = old_strain(now, group, b);
-    const auto m = material<Kind>(set_, group, b, now, targets_);
-    TangentStress<Lanes> stress;
-    if (!is_tether(m))
-      stress = extrapolated_stress<Kind.stabilization>(frames_.motion<true>(group, b, rows[1]),
-                                                       frames_.motion<true>(group, b, rows[2]), m, E_old);
-    if (!now.given.empty()) stress.S += given_stress(now, group, b);
-    keep<Kind.stabilization>(x, stress, kept.data() + kept_begin_[at(group)], b);
-    const PointStress<Lanes> p =
-        is_tether(m) ? point_stress<Kind.stabilization>(x, m, E_old) : point_stress<Kind.stabilization>(x, m, stress);
-    sums.P[b].set(p.P * m.volume);
-    sums.Y[b].set(p.Y * m.volume);
+    const PointMotion<Lanes> x = frames_.motion<true>(group, b, rows[0]),
+                             start = frames_.motion<true>(group, b, rows[1]),
+                             step = frames_.motion<true>(group, b, rows[2]);
+    with_point_law(rule_of(group).law, [&]<Law L>() {
+      const Mat3<Lanes> E_old = old_strain(now, group, b);
+      const auto m = material<L>(set_, group, b, now, targets_);
+      TangentStress<Lanes> stress;
+      if (!is_tether(m)) stress = extrapolated_stress<Tie>(start, step, m, E_old);
+      if (!now.given.empty()) stress.S += given_stress(now, group, b);
+      keep<Tie>(x, stress, kept.data() + kept_begin_[at(group)], b);
+      const PointStress<Lanes> p = is_tether(m) ? point_stress<Tie>(x, m, E_old) : point_stress<Tie>(x, m, stress);
+      sums.P[b].set(p.P * m.volume);
+      sums.Y[b].set(p.Y * m.volume);
+    });
   }
-  frames_.put<Kind.stabilization != Stabilization::none>(group, sums);
+  frames_.put<Tie != Stabilization::none>(group, sums);
 }
 
 void PointExecutor::linearize(const BlockState& now, const BlockState* start, const BlockDirection* step,
@@ -51,23 +53,26 @@ void PointExecutor::linearize(const BlockState& now, const BlockState* start, co
   const Rows rows = frames_.rows_of(now, now_);
   if (start == nullptr) {
     frames_.for_each_group(std::array{rows}, false, [&](int group, const auto& near) {
-      with_kind(rule_of(group), [&]<PointKind Kind>() { linearize_group<Kind>(now, group, near[0], kept); });
+      with_stabilization(rule_of(group).stabilization,
+                         [&]<Stabilization Tie>() { linearize_group<Tie>(now, group, near[0], kept); });
     });
     return;
   }
   const std::array<Rows, 3> all{rows, frames_.rows_of(*start, start_), step->motions.data()};
   frames_.for_each_group(all, true, [&](int group, const auto& near) {
-    with_kind(rule_of(group), [&]<PointKind Kind>() { extrapolate_group<Kind>(now, group, near, kept); });
+    with_stabilization(rule_of(group).stabilization,
+                       [&]<Stabilization Tie>() { extrapolate_group<Tie>(now, group, near, kept); });
   });
 }
 
+/// By law too: conjugate gradients ask for little else.
 template <PointKind Kind>
 [[gnu::flatten]] void PointExecutor::product_of_group(const BlockState& state, int group, Rows rows) {
   constexpr bool kBlend = Kind.stabilization != Stabilization::none;
   const double* kept = kept_of(state, group);
   GroupStress sums;
   for (int b = 0; b < kBatches; ++b) {
-    const auto m = material<Kind>(set_, group, b, state, targets_);
+    const auto m = material<Kind.law>(set_, group, b, state, targets_);
     const auto r = point_stress_differential<Kind.stabilization>(kept_motion<Kind.stabilization>(kept, b),
                                                                  kept_stress<Kind.stabilization>(kept, b), m,
                                                                  state.tangent, frames_.motion<kBlend>(group, b, rows));

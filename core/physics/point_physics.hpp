@@ -12,23 +12,34 @@
 ///   rotation-rotation tangent of a rigid frame = sym(L) − tr(L) I.
 namespace fascia {
 
+/// Calls act.operator()<Stabilization>().
+template <class Act>
+FASCIA_HD void with_stabilization(Stabilization tie, const Act& act) {
+  switch (tie) {
+    case Stabilization::none:
+      return act.template operator()<Stabilization::none>();
+    case Stabilization::drilling:
+      return act.template operator()<Stabilization::drilling>();
+    case Stabilization::affine:
+      return act.template operator()<Stabilization::affine>();
+  }
+}
+
+/// Calls act.operator()<L>() for a law of points; all thin ones are one.
+template <class Act>
+FASCIA_HD void with_point_law(Law law, const Act& act) {
+  if (is_thin(law))
+    act.template operator()<Law::sheet>();
+  else
+    with_solid_law(law, act);
+}
+
 /// Calls act.operator()<Kind>() for a rule.
 template <class Act>
 FASCIA_HD void with_kind(const PointRule& rule, const Act& act) {
-  const auto with_law = [&]<Law L>() {
-    switch (rule.stabilization) {
-      case Stabilization::none:
-        return act.template operator()<PointKind{Stabilization::none, L}>();
-      case Stabilization::drilling:
-        return act.template operator()<PointKind{Stabilization::drilling, L}>();
-      case Stabilization::affine:
-        return act.template operator()<PointKind{Stabilization::affine, L}>();
-    }
-  };
-  if (is_thin(rule.law))
-    with_law.template operator()<Law::sheet>();
-  else
-    with_solid_law(rule.law, with_law);
+  with_point_law(rule.law, [&]<Law L>() {
+    with_stabilization(rule.stabilization, [&]<Stabilization Tie>() { act.template operator()<PointKind{Tie, L}>(); });
+  });
 }
 
 /// Displacement gradient H = F − I and blended rotation increment Dbar = Σ w (Q − I). Of a tether, H's first column is

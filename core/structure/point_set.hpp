@@ -109,10 +109,9 @@ struct PointSet {
   const double* shape_of_slot(int slot) const {
     return shape.data() + static_cast<std::size_t>(slot) * 13 * kGroupSize;
   }
-  /// Constants that the group's law has of its own, by rows; null where it has none.
+  /// Constants that the group's law has of its own, by rows; the law must have some.
   const double* own_of_group(int group) const {
-    const int row = rule[static_cast<std::size_t>(group)].own;
-    return row < 0 ? nullptr : own.data() + static_cast<std::size_t>(row) * kGroupSize;
+    return own.data() + static_cast<std::size_t>(rule[static_cast<std::size_t>(group)].own) * kGroupSize;
   }
   const double* material_of_group(int group) const {
     return material.data() + static_cast<std::size_t>(group) * 6 * kGroupSize;
