@@ -60,20 +60,20 @@ decltype(auto) translated(const Call& call) {
 
 bool is_finite(const Vec3d& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
+}  // namespace
+
 /// x = center + (I + D) (X − center) + u.
-struct Pose {
+struct DriverPose {
   Mat3d D{};
   Vec3d u{}, center{};
 
   /// This motion, told about another center.
-  Pose about(const Vec3d& c) const { return {D, u + D * (c - center), c}; }
+  DriverPose about(const Vec3d& c) const { return {D, u + D * (c - center), c}; }
 };
-
-}  // namespace
 
 struct Snapshot::Data {
   SteppingSnapshot steps;
-  std::vector<Pose> from, to;  ///< of drivers
+  std::vector<DriverPose> from, to;  ///< of drivers
   std::vector<double> dials, next_dials;
   ReachedForces reached;               ///< with the inertia of the step that led there
   std::shared_ptr<const int> stepper;  ///< whose it is
@@ -124,9 +124,9 @@ struct Stepper::Parts {
   }
 
   /// Tells the model how drivers move in the next step: from where they are, to where they were told to go.
-  void place_motions(const std::vector<Pose>& ends) {
+  void place_motions(const std::vector<DriverPose>& ends) {
     for (std::size_t k = 0; k < from.size(); ++k) {
-      const Pose start = from[k].about(ends[k].center);
+      const DriverPose start = from[k].about(ends[k].center);
       const Vec3d turn = rotation_vector(compose_increments(ends[k].D, transpose(start.D)));
       const double angle = norm(turn);
       PrescribedMotion& m = simulation.model.motions[at(simulation.drivers[k].motion)];
@@ -206,7 +206,7 @@ struct Stepper::Parts {
   ThreadPool pool;
   Backend backend = Backend::cpu;
   std::unique_ptr<ModelStepper> steps;
-  std::vector<Pose> from, to;  ///< of drivers: where they are, and where the next step takes them
+  std::vector<DriverPose> from, to;  ///< of drivers: where they are, and where the next step takes them
   std::vector<double> next_dials;
   std::stop_token stop;  ///< of the step that runs
   StateViews views{simulation};
@@ -281,7 +281,7 @@ void Stepper::set_motion(int driver, const RigidMotion& motion) {
 RigidMotion Stepper::motion(int driver) const {
   const Parts& p = *parts_;
   p.require_driver(driver);
-  const Pose& pose = p.from[at(driver)];
+  const DriverPose& pose = p.from[at(driver)];
   return {pose.u, rotation_vector(pose.D), pose.center};
 }
 
@@ -291,7 +291,7 @@ Wrench Stepper::driver_force(int driver, const std::optional<Vec3d>& about) {
   const Driver& of = p.simulation.drivers[at(driver)];
   if (about && !is_finite(*about))
     throw InputError(fmt::format("the point for the moment of the driver \"{}\" is not finite", of.name));
-  const Pose& pose = p.from[at(driver)];
+  const DriverPose& pose = p.from[at(driver)];
   const Wrench w =
       force_of_motion(p.simulation, p.state(), p.forces(), of.motion, about.value_or(pose.center + pose.u));
   if (!is_finite(w.force) || !is_finite(w.moment))

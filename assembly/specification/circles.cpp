@@ -52,27 +52,27 @@ std::string chain(const std::vector<Body>& bodies, const std::vector<Step>& way,
 
 std::vector<Diagnostic> circles_of(const std::vector<Body>& bodies) {
   std::vector<Diagnostic> circles;
-  enum class State { open, on_the_way, done };
+  enum class Visit { open, on_the_way, done };
   const std::vector<std::vector<Need>> needs = needs_of(bodies);
-  std::vector<State> state(bodies.size(), State::open);
+  std::vector<Visit> visit(bodies.size(), Visit::open);
   for (std::size_t first = 0; first < bodies.size(); ++first) {
-    if (state[first] != State::open) continue;
+    if (visit[first] != Visit::open) continue;
     std::vector<Step> way{{first}};
-    state[first] = State::on_the_way;
+    visit[first] = Visit::on_the_way;
     while (!way.empty()) {
       Step& step = way.back();
       if (step.next == needs[step.body].size()) {
-        state[step.body] = State::done;
+        visit[step.body] = Visit::done;
         way.pop_back();
         continue;
       }
       const Need& need = needs[step.body][step.next++];
-      if (state[need.body] == State::on_the_way)
+      if (visit[need.body] == Visit::on_the_way)
         circles.push_back(
             {need.place, fmt::format("closes a circle, {}; share and between must not lead back to a body",
                                      chain(bodies, way, need.body))});
-      if (state[need.body] != State::open) continue;
-      state[need.body] = State::on_the_way;
+      if (visit[need.body] != Visit::open) continue;
+      visit[need.body] = Visit::on_the_way;
       way.push_back({need.body});
     }
   }
