@@ -138,6 +138,10 @@ bool Multigrid::build(const Places& places, std::vector<double> inverse_blocks, 
   return coarsest_->factor.info() == Eigen::Success;
 }
 
+void Multigrid::keep_rounded_entries() {
+  for (const auto& level : levels_) level->P.values = {};
+}
+
 /// The level of corners, and the first of frames.
 bool Multigrid::add_corners() {
   Level& fine = *levels_.front();
@@ -220,7 +224,6 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   };
   const auto inverse = [&](int i) { return level.inverse.data() + matrix.block_begin(i); };
   level.P = galerkin::smoothed(matrix, pool_, groups, 4 / (3 * level.largest), tentative, inverse);
-  level.rounded_P = RoundedRows(level.P);
   auto next = std::make_unique<Level>();
   next->nodes = groups.count;
   next->size = kFrameDofs;
@@ -228,6 +231,7 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   next->length = next->dofs + RoundedRows::kBeyond;
   next->places.x = std::move(centre);
   next->matrix = std::make_unique<FrameMatrix>(galerkin::product(matrix, level.P, pool_, groups.count), level.dead);
+  level.rounded_P = RoundedRows(level.P);  // not before that product, which takes the most memory
   next->inverse = galerkin::inverse_diagonal(*next->matrix, pool_);
   Level* made = next.get();
   next->rounded = RoundedRows(next->matrix->blocks());
@@ -273,6 +277,37 @@ void Multigrid::smooth(Level& level, bool from_zero) {
   vectors_.add(1, d, x);
 }
 
+/// x += P M⁻¹ Pᵀ r of a level.
+void Multigrid::correct(std::size_t depth) {
+  Level& level = *levels_[depth];
+  Level& next = *levels_[depth + 1];
+  const auto rows = [&](int i) {
+    return level.size == 0 ? std::pair(matrix_.dofs().begin(i), matrix_.dofs().size(i))
+                           : std::pair(level.size * i, level.size);
+  };
+  // Chunks add to parts of their own, which are then added in order.
+  const int chunks = std::clamp(level.nodes / 2048, 1, 16);
+  std::vector<std::vector<double>>& part = level.parts;
+  part.resize(at(chunks));
+  const auto edge = [&](int c) { return static_cast<int>(static_cast<std::int64_t>(level.nodes) * c / chunks); };
+  pool_.for_chunks(chunks, [&](int c) {
+    part[at(c)].assign(next.length, 0.0);
+    for (int i = edge(c); i < edge(c + 1); ++i) {
+      const auto [begin, n] = rows(i);
+      level.rounded_P.add_transposed_product(level.P, i, n, level.r.data() + begin, part[at(c)].data());
+    }
+  });
+  std::copy(part[0].begin(), part[0].end(), next.b.begin());
+  for (int c = 1; c < chunks; ++c) vectors_.add(1, part[at(c)], next.b);
+  cycle(depth + 1);
+  pool_.for_ranges(level.nodes, 256, [&](int first, int end) {
+    for (int i = first; i < end; ++i) {
+      const auto [begin, n] = rows(i);
+      level.rounded_P.add_product(level.P, i, n, next.x.data(), level.x.data() + begin);
+    }
+  });
+}
+
 /// x ← M⁻¹ b of a level.
 void Multigrid::cycle(std::size_t depth) {
   Level& level = *levels_[depth];
@@ -298,33 +333,10 @@ void Multigrid::cycle(std::size_t depth) {
     corners_->add_prolonged(*fine_, pool_, next.x, level.x);
     renew_residual();
   } else if (!last) {
-    Level& next = *levels_[depth + 1];
-    const auto rows = [&](int i) {
-      return level.size == 0 ? std::pair(matrix_.dofs().begin(i), matrix_.dofs().size(i))
-                             : std::pair(level.size * i, level.size);
-    };
-    // Chunks add to parts of their own, which are then added in order.
-    const int chunks = std::clamp(level.nodes / 2048, 1, 16);
-    std::vector<std::vector<double>>& part = level.parts;
-    part.resize(at(chunks));
-    const auto edge = [&](int c) { return static_cast<int>(static_cast<std::int64_t>(level.nodes) * c / chunks); };
-    pool_.for_chunks(chunks, [&](int c) {
-      part[at(c)].assign(next.length, 0.0);
-      for (int i = edge(c); i < edge(c + 1); ++i) {
-        const auto [begin, n] = rows(i);
-        level.rounded_P.add_transposed_product(level.P, i, n, level.r.data() + begin, part[at(c)].data());
-      }
-    });
-    std::copy(part[0].begin(), part[0].end(), next.b.begin());
-    for (int c = 1; c < chunks; ++c) vectors_.add(1, part[at(c)], next.b);
-    cycle(depth + 1);
-    pool_.for_ranges(level.nodes, 256, [&](int first, int end) {
-      for (int i = first; i < end; ++i) {
-        const auto [begin, n] = rows(i);
-        level.rounded_P.add_product(level.P, i, n, next.x.data(), level.x.data() + begin);
-      }
-    });
-    renew_residual();
+    for (int k = 0; k < corrections(depth, levels_.size()); ++k) {
+      correct(depth);
+      renew_residual();
+    }
   }
   smooth(level, false);
 }
@@ -345,7 +357,7 @@ Multigrid::LevelView Multigrid::level(std::size_t depth) const {
           l.inverse,
           l.matrix ? &l.matrix->blocks() : nullptr,
           depth == 0 ? fine_.get() : nullptr,
-          l.P.rows() > 0 ? &l.P : nullptr};
+          l.P.values.empty() ? nullptr : &l.P};
 }
 
 std::vector<double> Multigrid::coarsest_inverse() const {

@@ -27,14 +27,21 @@ struct Smoothing {
   static Smoothing up_to(double largest);
 };
 
+/// Corrections of a level by the next coarser one in a cycle: three between coarse levels, which have a ninth of the
+/// nodes of the one above in shells and less in solids, so that these visits cost little. With one alone the iterations
+/// of thin shells grow with the number of levels. One of the finest level, whose products are most of the work, and of
+/// that above the coarsest, which is solved at once.
+constexpr int corrections(std::size_t depth, std::size_t levels) { return depth > 0 && depth + 2 < levels ? 3 : 1; }
+
 /// A preconditioner whose cost grows with the number of unknowns and whose iterations hardly do: smoothed aggregation
 /// (Vanek, Mandel, Brezina 1996) in which a coarse node is a rigid frame, whatever its nodes are, so that coarse levels
 /// are matrices of 6 × 6 blocks.
 ///
 /// The tentative prolongator is the rigid motion of an aggregate at the present state: u_i = U + Θ × (x_i − x_A), of a
 /// frame also θ_i = Θ, of an affine frame dA = skew(Θ) A. P = (I − 4/(3ρ) D⁻¹ K) of it, with D the block diagonal and ρ
-/// the largest eigenvalue of D⁻¹ K. A V-cycle with Chebyshev smoothing of degree 2, and a dense factor of the coarsest
-/// level: symmetric and positive definite where K is. Sums run in a fixed order: results do not depend on threads.
+/// the largest eigenvalue of D⁻¹ K. A cycle with Chebyshev smoothing of degree 2, several corrections() on the way, and
+/// a dense factor of the coarsest level: symmetric and positive definite where K is. Sums run in a fixed order: results
+/// do not depend on threads.
 ///
 /// Quadratic elements have a level of their corners between: a vertex in the middle of an edge moves by the mean of its
 /// ends. Aggregates of all their nodes, most of which are no corners, take more than twice the iterations.
@@ -61,6 +68,9 @@ class Multigrid {
   /// @param inverse_blocks  of the diagonal, by node: as block Jacobi has them
   /// @return  false where a level is not positive definite
   bool build(const Places& places, std::vector<double> inverse_blocks, const Product& product);
+
+  /// Forgets entries of prolongators that cycles here do not read: those of 64 bits. level() shows none of them then.
+  void keep_rounded_entries();
 
   /// z = M⁻¹ r; returns r · z. Calls the product of build().
   double precondition(std::span<const double> r, std::span<double> z);
@@ -93,6 +103,7 @@ class Multigrid {
   template <class Matrix>
   bool add_coarser(const Matrix& matrix, std::size_t depth);
   void cycle(std::size_t depth);
+  void correct(std::size_t depth);
   void smooth(Level& level, bool from_zero);
   double largest_eigenvalue_of(const Level& level) const;
 

@@ -14,6 +14,11 @@ CgSolver::CgSolver(TangentOperator& K, const LinearSettings& settings, FactorSol
 
 void CgSolver::choose_one() {
   rounds_ = settings_.precision == Precision::mixed;
+  renew_one();
+}
+
+void CgSolver::renew_one() {
+  one_is_ready_ = false;
   one_ = preconditioner_of(settings_.preconditioner, K_, factor_);
   if (!one_) one_ = std::make_unique<DiagonalBlocks>(K_, true);
 }
@@ -104,6 +109,7 @@ CgReport CgSolver::solve_by_either(const Vector& b, Vector& x, const CgOptions& 
   hands_over_ = leaves && factor_takes_less(blocks_or_levels_.expected());
   if (hands_over_) return tried;
   blocks_or_levels_.turn_to_levels();
+  renew_one();  // what it holds may go: levels have the same of their own
   CgReport cg = by_levels();
   cg.iterations += tried.iterations;
   return cg;
@@ -114,7 +120,6 @@ void CgSolver::begin_afresh() {
   pattern_ = K_.pattern_revision();
   levels_.forget();
   material_.forget();
-  one_is_ready_ = false;
   hands_over_ = false;
   kept_levels_ = {};
   blocks_or_levels_ = BlocksOrLevels({});

@@ -89,6 +89,7 @@ class CgSolver final : public LinearSolver {
 
   LinearReport report_of(const CgReport& cg, std::span<double> x) const;
   void choose_one();
+  void renew_one();
   bool factor_takes_less(double iterations);
 
   TangentOperator& K_;

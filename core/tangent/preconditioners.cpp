@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace fascia {
 
@@ -135,10 +136,13 @@ bool OldFactor::took(int iterations) {
 bool LevelsOfFrames::prepare() {
   const BlockMatrix& from = material_ ? K_.material_part() : K_.matrix();
   if (!levels_) levels_.emplace(from, K_.filter(), K_.pool(), corners_ ? find_edge_ends(K_.model()) : EdgeEnds{});
-  K_.invert_diagonal(from, true, inverse_);
-  return levels_->build(K_.places(), inverse_, [this](std::span<const double> x, std::span<double> y) {
-    K_.apply_free_rounded(material_, x, y);
-  });
+  std::vector<double> inverse;
+  K_.invert_diagonal(from, true, inverse);
+  const bool usable = levels_->build(
+      K_.places(), std::move(inverse),
+      [this](std::span<const double> x, std::span<double> y) { K_.apply_free_rounded(material_, x, y); });
+  if (corners_) levels_->keep_rounded_entries();  // others, who know no corners, read them
+  return usable;
 }
 
 double LevelsOfFrames::apply(std::span<const double> r, std::span<double> z) {

@@ -143,7 +143,6 @@ class LevelsOfFrames final : public Preconditioner {
   TangentOperator& K_;
   bool material_, corners_ = true;
   std::optional<Multigrid> levels_;
-  std::vector<double> inverse_;
   DefiniteProducts products_;
 };
 

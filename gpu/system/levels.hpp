@@ -107,7 +107,7 @@ void Levels<Space>::cycle(std::size_t depth, const double* b, double* x) const {
   }
   smooth(level, b, x, true);
   renew_residual(level, b, x);
-  if (!last) {
+  for (int k = 0; !last && k < corrections(depth, levels_.size()); ++k) {
     const Level& next = *levels_[depth + 1];
     Space::template sum_lanes<kFrameDofs>(next.nodes.count,
                                           kernels::Restrict{level.nodes, level.column_begin.data(), level.row.data(),

@@ -24,7 +24,7 @@ class ExactCycle {
     if (last && !coarsest_.empty()) return multiplied(coarsest_, b.size(), b.size(), b);
     Vector x(b.size(), 0.0);
     smooth(depth, b, x);
-    if (!last) {
+    for (int k = 0; !last && k < corrections(depth, levels_.level_count()); ++k) {
       const Multigrid::LevelView level = levels_.level(depth);
       const BlockRows& P = *level.P;
       Vector coarse(at(kFrameDofs * levels_.level(depth + 1).nodes), 0.0);
