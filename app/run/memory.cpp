@@ -58,14 +58,24 @@ std::string in_words(double bytes) {
 }
 
 /// What is allocated from now on: kept to the end, and the most at any moment, with what is kept.
-struct ToCome {
-  double kept = 0, most = 0;
+class ToCome {
+ public:
   void keep(double bytes) {
-    kept += bytes;
-    most += bytes;
+    kept_ += bytes;
+    most_ += bytes;
   }
-  void pass(double bytes) { most = std::max(most, kept + bytes); }
+  void pass(double bytes) { most_ = std::max(most_, kept_ + bytes); }
+  double most() const { return most_; }
+
+ private:
+  double kept_ = 0, most_ = 0;
 };
+
+/// A run saves one state, its last, which waits until the solvers are gone.
+bool saves_last_alone(const Scene& scene, bool on_gpu) {
+  return !on_gpu && scene.solver.kind == SolverKind::statics && scene.solver.control == StaticControl::load &&
+         scene.output.every_steps == 0;
+}
 
 double state_bytes(const Model& model) {
   return static_cast<double>(model.node_count()) * (model.has_frames() ? 192 : 48) +
@@ -141,16 +151,30 @@ class Setup {
       of_modes();
     else
       of_steps(on_gpu);
-    for (const SimulatedBody& b : s.bodies) to_come_.pass(output_bytes(s, b));
-    to_come_.keep(attachment_bytes(s) + kCodeOfRun);
-    const double recovery = recovery_bytes(s);
-    to_come_.pass(3 * recovery);  // shares as they are found, beside them by node, and attachments that come and go
-    to_come_.keep(recovery);
+    of_results(on_gpu);
   }
-  const ToCome& to_come() const { return to_come_; }
+  /// Resident at most.
+  double most() const { return std::max(resident_memory() + to_come_.most(), model_ + end_); }
   bool factorizes() const { return factorizes_; }
 
  private:
+  /// Shares of recovery are found beside those by node, and attachments come and go.
+  void of_results(bool on_gpu) {
+    constexpr double kAsFound = 3;
+    const double recovery = recovery_bytes(s_), attached = attachment_bytes(s_);
+    double written = 0;
+    for (const SimulatedBody& b : s_.bodies) written = std::max(written, output_bytes(s_, b));
+    if (saves_last_alone(s_.scene, on_gpu)) {
+      end_ = std::max(written + recovery, kAsFound * recovery) + attached + kCodeOfRun;
+      to_come_.keep(kCodeOfRun);
+      return;
+    }
+    to_come_.pass(written);
+    to_come_.keep(attached + kCodeOfRun);
+    to_come_.pass(kAsFound * recovery);
+    to_come_.keep(recovery);
+  }
+
   /// A run on a GPU makes a system of the processor too where it breaks off, or where the processor solves.
   void of_steps(bool on_gpu) {
     const Solver& solver = s_.scene.solver;
@@ -200,7 +224,7 @@ class Setup {
     linear.expect_inertia(blocks_serve_);
     factorizes_ = (statics && !load) || linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
                   (statics && linear.gives_way_to_factor(guessed_iterations())) ||
-                  (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_iterations())) ||
+                  (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_cost())) ||
                   takes_kept_factor(linear);
     if (!factorizes_) return of_levels(matrix);
     if (solver.precision == "mixed" && !linear.direct()) to_come_.keep(rounded_bytes(matrix));
@@ -249,6 +273,14 @@ class Setup {
     return std::lround(10 * std::min(along, static_cast<double>(s_.model.node_count())));
   }
 
+  /// That of a solve in iterations with blocks: levels take their place where the choice is the program's.
+  long guessed_cost() const {
+    const Solver& solver = s_.scene.solver;
+    const bool chosen =
+        solver.linear == LinearMethod::automatic && solver.preconditioner == PreconditionerKind::automatic;
+    return chosen ? std::min(guessed_iterations(), std::lround(BlocksOrLevels({}).expected())) : guessed_iterations();
+  }
+
   /// The entries of a matrix once more, of 32 bits.
   static double rounded_bytes(const BlockMatrix& matrix) { return 4.0 * static_cast<double>(matrix.value_count()); }
 
@@ -289,7 +321,9 @@ class Setup {
   StrainHistory history_;
   TakenStep taken_;
   Linearization lin_;
+  const double model_ = resident_memory();
   ToCome to_come_;
+  double end_ = 0;  ///< of results beside the model, when solvers are gone
   bool factorizes_ = false;
   bool blocks_serve_ = false;  ///< in implicit dynamics, where inertia makes them quick
 };
@@ -323,7 +357,7 @@ double run_memory(const Simulation& s, bool on_gpu) {
   const FreeMemory have = free_memory();
   try {
     const Setup setup(s, on_gpu);
-    return std::max(peak_memory(), resident_memory() + setup.to_come().most);
+    return std::max(peak_memory(), setup.most());
   } catch (const std::bad_alloc&) {
     refuse(s.scene, "more memory", have, false);
   }
@@ -338,7 +372,7 @@ void check_run_memory(const Simulation& s, bool on_gpu) {
   bool factor = false;
   try {
     const Setup setup(s, on_gpu);
-    need = resident_memory() - before + setup.to_come().most;
+    need = setup.most() - before;
     factor = setup.factorizes();
   } catch (const std::bad_alloc&) {
     refuse(s.scene, "more memory", have, false);

@@ -65,6 +65,7 @@ class Steps {
     end_.solve_seconds = seconds_since(start) - end_.output_seconds;
     end_.processor_seconds = fascia::processor_seconds() - processor - output_processor_;
     tell_choice();
+    show_the_end();
     save_the_last();
     judge();
     return std::move(end_);
@@ -151,44 +152,72 @@ class Steps {
     listener_.stepped(step);
     const bool due = rule_.save(step);
     rule_.note(step);
-    if (due || statics()) save(step.time, step.step, reached, due);
+    if (step.progress >= 1 && end_.backend == Backend::cpu)
+      wait_for_the_end(step, reached);
+    else if (due || statics())
+      save(step.time, step.step, reached, due);
     end_.stabilization = reached.energy().stabilization;
     if (statics() && !path()) snaps_.look(step.time, reached.energy().elastic);
     return goes_on();
   }
 
   void save(double time, int step, ReachedStep& reached, bool fields) {
-    const Clock::time_point start = Clock::now();
-    const double processor = fascia::processor_seconds();
-    if (const std::optional<ShownStep> shown = saved(time, step, reached, fields)) {
-      listener_.show(time, shown->at, shown->values);  // what this throws is the listener's own
-      if (fields) saved_time_ = time;
-      if (fields) saved_step_ = step;
-    }
-    end_.output_seconds += seconds_since(start);
-    output_processor_ += fascia::processor_seconds() - processor;
+    timed_output([&] {
+      if (std::optional<ShownStep> read = look_at(time, step, reached)) show(*read, fields);
+    });
   }
 
   /// A step with the values of its probes.
   struct ShownStep {
+    double time;
+    int step;
     ProbedState at;
     ProbeValues values;
   };
-  /// Reads a step and saves it; none where it cannot be shown.
-  std::optional<ShownStep> saved(double time, int step, ReachedStep& reached, bool fields) {
+  /// Reads a step; none where it cannot be shown.
+  std::optional<ShownStep> look_at(double time, int step, ReachedStep& reached) {
     try {
       acting_is_known_ = false;
       const State& at = reached.state();
       reached.read(parts_, end_.acting);
       acting_is_known_ = true;
       const ProbedState probed{&at, &end_.acting, 0, time_step_};
-      ProbeValues values = probe_values(s_, probed);  // before a file is written: all of a state, or nothing
-      if (fields) listener_.save(path() ? step : time, at);
-      return ShownStep{probed, std::move(values)};
+      return ShownStep{time, step, probed, probe_values(s_, probed)};  // before a file: all of a state, or nothing
     } catch (const StateError& e) {
       not_shown_ = e.what();
       return std::nullopt;
     }
+  }
+  void show(const ShownStep& shown, bool fields) {
+    try {
+      if (fields) listener_.save(path() ? shown.step : shown.time, *shown.at.state);
+    } catch (const StateError& e) {
+      not_shown_ = e.what();
+      return;
+    }
+    listener_.show(shown.time, shown.at, shown.values);  // what this throws is the listener's own
+    if (fields) saved_time_ = shown.time;
+    if (fields) saved_step_ = shown.step;
+  }
+  template <class Act>
+  void timed_output(const Act& act) {
+    const Clock::time_point start = Clock::now();
+    const double processor = fascia::processor_seconds();
+    act();
+    end_.output_seconds += seconds_since(start);
+    output_processor_ += fascia::processor_seconds() - processor;
+  }
+
+  /// Keeps the last step until the run is over: a matrix, its factor and levels need not lie beside what writes a
+  /// state.
+  void wait_for_the_end(const StepInfo& step, ReachedStep& reached) {
+    timed_output([&] { last_ = look_at(step.time, step.step, reached); });
+  }
+  void show_the_end() {
+    if (!last_) return;
+    of_processor_.reset();
+    timed_output([&] { show(*last_, true); });
+    listener_.stops();  // as after each state that was shown
   }
 
   /// No step led there: the start of explicit runs, and where a run broke off.
@@ -219,6 +248,7 @@ class Steps {
     const bool unsaved = path() ? saved_step_ != run.steps || saved_step_ == 0 : saved_time_ != end_.state.time;
     if (run.status == RunStatus::converged || !unsaved || !not_shown_.empty()) return;
     if (!statics() || run.steps == 0 || !acting_is_known_) return save_where_it_stands(run.steps);
+    of_processor_.reset();
     try {
       listener_.save(path() ? run.steps : end_.state.time, end_.state);
     } catch (const StateError& e) {
@@ -250,7 +280,8 @@ class Steps {
   SaveRule rule_;
   SnapWatch snaps_;
   RunEnd end_;
-  bool acting_is_known_ = false;  ///< nothing broke off in the midst of it
+  std::optional<ShownStep> last_;  ///< that waits for the end
+  bool acting_is_known_ = false;   ///< nothing broke off in the midst of it
   double time_step_, saved_time_ = -1, output_processor_ = 0;
   int saved_step_ = 0;
   std::string not_shown_;  ///< why the last state is in no result
