@@ -223,7 +223,7 @@ class Setup {
         !statics && s_.model.loads_are_conservative() && guessed_iterations() <= BlocksOrLevels({}).patience();
     linear.expect_inertia(blocks_serve_);
     factorizes_ = (statics && !load) || linear.direct() || solver.preconditioner == PreconditionerKind::cholesky ||
-                  (statics && linear.gives_way_to_factor(guessed_iterations())) ||
+                  (statics && linear.gives_way_to_factor(guessed_cost())) ||
                   (statics && load && linear.factor_is_cheap(kGuessedSolves * guessed_cost())) ||
                   takes_kept_factor(linear);
     if (!factorizes_) return of_levels(matrix);

@@ -195,8 +195,8 @@ void mirror(std::vector<std::vector<int>>& columns, std::vector<std::vector<doub
       for (int a = 0; a < N; ++a)
         for (int b = 0; b < N; ++b) turned[N * b + a] = block[N * a + b];
     }
-    columns[I] = {};
-    blocks[I] = {};
+    columns[I] = std::vector<int>();  // {} would keep the memory
+    blocks[I] = std::vector<double>();
   }
 }
 

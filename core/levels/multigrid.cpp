@@ -138,10 +138,6 @@ bool Multigrid::build(const Places& places, std::vector<double> inverse_blocks, 
   return coarsest_->factor.info() == Eigen::Success;
 }
 
-void Multigrid::keep_rounded_entries() {
-  for (const auto& level : levels_) level->P.values = {};
-}
-
 /// The level of corners, and the first of frames.
 bool Multigrid::add_corners() {
   Level& fine = *levels_.front();
@@ -231,7 +227,8 @@ bool Multigrid::add_coarser(const Matrix& matrix, std::size_t depth) {
   next->length = next->dofs + RoundedRows::kBeyond;
   next->places.x = std::move(centre);
   next->matrix = std::make_unique<FrameMatrix>(galerkin::product(matrix, level.P, pool_, groups.count), level.dead);
-  level.rounded_P = RoundedRows(level.P);  // not before that product, which takes the most memory
+  level.rounded_P = RoundedRows(level.P);                       // not before that product, which takes the most memory
+  if (!keeps_exact_) level.P.values = AlignedVector<double>();  // {} would keep the memory
   next->inverse = galerkin::inverse_diagonal(*next->matrix, pool_);
   Level* made = next.get();
   next->rounded = RoundedRows(next->matrix->blocks());

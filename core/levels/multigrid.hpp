@@ -69,8 +69,8 @@ class Multigrid {
   /// @return  false where a level is not positive definite
   bool build(const Places& places, std::vector<double> inverse_blocks, const Product& product);
 
-  /// Forgets entries of prolongators that cycles here do not read: those of 64 bits. level() shows none of them then.
-  void keep_rounded_entries();
+  /// Levels to come keep of prolongators what cycles here read, entries of 32 bits; level() shows none then.
+  void keep_rounded_entries() { keeps_exact_ = false; }
 
   /// z = M⁻¹ r; returns r · z. Calls the product of build().
   double precondition(std::span<const double> r, std::span<double> z);
@@ -112,6 +112,7 @@ class Multigrid {
   ThreadPool& pool_;
   CpuVectors vectors_;
   std::unique_ptr<FineRows> fine_;
+  bool keeps_exact_ = true;           ///< entries of prolongators
   std::unique_ptr<Corners> corners_;  ///< null: none
   std::vector<std::unique_ptr<Level>> levels_;
   std::unique_ptr<Coarsest> coarsest_;

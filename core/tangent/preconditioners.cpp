@@ -138,11 +138,10 @@ bool LevelsOfFrames::prepare() {
   if (!levels_) levels_.emplace(from, K_.filter(), K_.pool(), corners_ ? find_edge_ends(K_.model()) : EdgeEnds{});
   std::vector<double> inverse;
   K_.invert_diagonal(from, true, inverse);
-  const bool usable = levels_->build(
-      K_.places(), std::move(inverse),
-      [this](std::span<const double> x, std::span<double> y) { K_.apply_free_rounded(material_, x, y); });
-  if (corners_) levels_->keep_rounded_entries();  // others, who know no corners, read them
-  return usable;
+  if (corners_) levels_->keep_rounded_entries();  // others, who know no corners, read all bits
+  return levels_->build(K_.places(), std::move(inverse), [this](std::span<const double> x, std::span<double> y) {
+    K_.apply_free_rounded(material_, x, y);
+  });
 }
 
 double LevelsOfFrames::apply(std::span<const double> r, std::span<double> z) {
