@@ -330,7 +330,8 @@ void Multigrid::cycle(std::size_t depth) {
     corners_->add_prolonged(*fine_, pool_, next.x, level.x);
     renew_residual();
   } else if (!last) {
-    for (int k = 0; k < corrections(depth, levels_.size()); ++k) {
+    const std::size_t finest = corners_ ? 1 : 0;  // of those that aggregates join
+    for (int k = 0; k < corrections(depth - finest, levels_.size() - finest); ++k) {
       correct(depth);
       renew_residual();
     }

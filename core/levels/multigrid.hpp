@@ -30,7 +30,7 @@ struct Smoothing {
 /// Corrections of a level by the next coarser one in a cycle: three between coarse levels, which have a ninth of the
 /// nodes of the one above in shells and less in solids, so that these visits cost little. With one alone the iterations
 /// of thin shells grow with the number of levels. One of the finest level, whose products are most of the work, and of
-/// that above the coarsest, which is solved at once.
+/// that above the coarsest, which is solved at once. A level of corners counts as the finest.
 constexpr int corrections(std::size_t depth, std::size_t levels) { return depth > 0 && depth + 2 < levels ? 3 : 1; }
 
 /// A preconditioner whose cost grows with the number of unknowns and whose iterations hardly do: smoothed aggregation
