@@ -12,6 +12,45 @@ namespace fascia::drivers {
 constexpr int kMostFailures = 16, kMostHalvings = 8;
 /// Load steps in a row that conjugate gradients do not solve, however short.
 constexpr int kMostUnsolved = 8;
+/// Load steps whose boundary motion leads over tangents that are not positive definite. What is shortened at once may
+/// end straight, unstable or inside out; such steps are left for shorter ones, which lead it into the buckle. Where the
+/// shortest ones stray too, or fail, the path itself has no way on there, and the step is taken in one go.
+class LedSteps {
+ public:
+  /// @param smallest  step there is, in load factors
+  explicit LedSteps(double smallest) : smallest_(smallest) {}
+
+  /// Whether a step is left where it strays. Not where a boundary turns: what goes with it as a whole is guessed along
+  /// the tangent of its circle, and comes to the path by itself. @param turn  of the boundary in this step [rad]
+  bool watches(double from, double to, double turn) const {
+    return !ended_ && returns_ < kMostReturns && 0.5 * (to - from) >= smallest_ && turn == 0;
+  }
+  void left(double target) {
+    furthest_ = std::max(furthest_, target);
+    ++returns_;
+  }
+  /// Whether a step that failed has a longer one in its place, which was left: the next one.
+  bool gives_up(double failed) {
+    if (ended_ || furthest_ <= failed) return false;
+    return ended_ = true;
+  }
+  /// Counts an accepted step. @return  whether to take what is left of the longer one in one go
+  bool accepted(const NewtonReport& newton) {
+    const bool strays = newton.led && newton.indefinite;
+    if (ended_ || returns_ == 0 || !strays || ++detours_ < kMostDetours) return false;
+    return ended_ = true;
+  }
+  /// Target of the longest step that was left.
+  double furthest() const { return furthest_; }
+
+ private:
+  static constexpr int kMostReturns = 32;  ///< the shortest steps are come to three times
+  static constexpr int kMostDetours = 4;   ///< steps that stray, as short as they may be
+
+  double smallest_, furthest_ = 0;
+  int returns_ = 0, detours_ = 0;
+  bool ended_ = false;
+};
 
 inline void count(RunReport& run, const NewtonReport& newton) {
   run.newton_iterations += newton.iterations;

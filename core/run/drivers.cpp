@@ -78,6 +78,7 @@ std::string failure_sentence(const NewtonReport& r, const SolverSettings& settin
   switch (r.status) {
     case NewtonStatus::converged:
     case NewtonStatus::stopped:
+    case NewtonStatus::astray:
       return "";
     case NewtonStatus::out_of_time:
       out << "the step's budget ended after " << r.iterations << " iterations of Newton's method";

@@ -90,8 +90,8 @@ struct StaticsSettings {
 };
 
 /// Equilibrium under loads and boundary motions that grow with the load factor, from 0 to 1 where nothing else is said.
-/// A load step that does not converge is cut in half, down to 1/1024; shorter steps end on the multiples of
-/// 1/load_steps too.
+/// A load step that does not converge is cut in half, down to 1/1024, and so is one whose boundary motion leads over
+/// tangents that are not positive definite; shorter steps end on the multiples of 1/load_steps too.
 ///
 /// A system is a MechanicalSystem, or one of the same functions on another processor, with its own kind of state.
 template <class System>

@@ -21,8 +21,9 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
   RunReport run;
   const double longest = statics.load_steps > 0 ? whole / statics.load_steps : whole;
   double reached = statics.from, increment = longest;
-  int failures = 0;       // since the last step that was as long as asked
-  int unsolved = 0;       // in a row, by conjugate gradients: shorter steps do not help them
+  int failures = 0;  // since the last step that was as long as asked
+  int unsolved = 0;  // in a row, by conjugate gradients: shorter steps do not help them
+  LedSteps led(smallest);
   bool definite = false;  // all tangents of the last step
   state.time = statics.from;
   while (reached < statics.to) {
@@ -38,10 +39,20 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
       target = reached + increment;
       system.set_factors(factors(target));
     }
-    Newton newton(system, settings, {run.steps + 1, target});
+    const bool watched = led.watches(reached, target, system.prescribed_rotation());
+    Newton newton(system, settings, {run.steps + 1, target, watched});
     const NewtonReport report = newton.solve();
     count(run, report);
     if (ends_within(run, report)) return run;
+    if (report.status == NewtonStatus::astray) {
+      led.left(target);
+      increment = 0.5 * (target - reached);
+      continue;
+    }
+    if (!acceptable(report, settings) && led.gives_up(target)) {
+      increment = led.furthest() - reached;
+      continue;
+    }
     if (!acceptable(report, settings)) {
       increment = 0.5 * (target - reached);
       unsolved = report.status == NewtonStatus::unsolved ? unsolved + 1 : 0;
@@ -76,6 +87,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     definite = !report.indefinite;
     reached = target;
     increment = std::min(longest, 2 * increment);
+    if (led.accepted(report)) increment = std::min(longest, std::max(increment, led.furthest() - reached));
     if (reached >= statics.to)
       run.stability = end_stability(system, state, run, has_tangent_of_end(report, system.model()));
     const double progress = (reached - statics.from) / whole;

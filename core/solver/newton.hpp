@@ -24,8 +24,19 @@ struct DirectionReport {
   double cg_seconds = 0;       ///< in conjugate gradients
 };
 
-/// stopped: as SolverSettings::stops asked for; out_of_time: the step's budget holds no further iteration.
-enum class NewtonStatus { converged, limit, stalled, unsolved, not_finite, linear_failure, stopped, out_of_time };
+/// stopped: as SolverSettings::stops asked for; out_of_time: the step's budget holds no further iteration; astray: left
+/// as SolvedStep::keeps_to_path asks.
+enum class NewtonStatus {
+  converged,
+  limit,
+  stalled,
+  unsolved,
+  not_finite,
+  linear_failure,
+  stopped,
+  out_of_time,
+  astray
+};
 
 /// No limit of iterations beside that of the settings.
 inline constexpr int kAsManyAsNeeded = std::numeric_limits<int>::max();
@@ -50,12 +61,15 @@ struct NewtonReport {
   double last_tangent = 0;     ///< relative residual where the last tangent was taken; infinite where a boundary moved
   double cg_seconds = 0;       ///< of all directions
   bool progress = false;       ///< a better state was found than the first one
+  bool led = false;            ///< a boundary motion was carried out
 };
 
 /// The load or time step that a solve belongs to.
 struct SolvedStep {
   int number = 0;   ///< counted from 1
   double time = 0;  ///< its end [s]; in statics the load factor
+  /// Leave it where a boundary motion has led over a tangent that is not positive definite.
+  bool keeps_to_path = false;
 };
 
 /// Newton's method with a watchdog (Chamberlain et al. 1982): full steps may raise energy and residual for a few
@@ -78,6 +92,7 @@ class Newton {
     current_ = system_.evaluate();
     if (!current_.finite()) return finish(NewtonStatus::not_finite);
     first_residual_ = current_.residual;
+    report_.led = system_.has_prescribed_increment();
     mark();
     while (system_.has_prescribed_increment() || !settled()) {
       if (report_.iterations >= settings_.max_iterations) return give_up(NewtonStatus::limit);
@@ -85,6 +100,7 @@ class Newton {
       const bool moving = system_.has_prescribed_increment();  // arrives, whatever time that takes
       if (report_.iterations > 0 && !moving && !holds_iteration()) return give_up(NewtonStatus::out_of_time);
       const DirectionReport d = direction();
+      if (step_.keeps_to_path && report_.led && report_.indefinite) return finish(NewtonStatus::astray);
       if (!d.usable) return give_up(NewtonStatus::linear_failure);
       const double before = current_.residual;
       const double step = system_.largest_step(capped(d));

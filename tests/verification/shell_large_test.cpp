@@ -120,6 +120,73 @@ TEST(ShellLarge, CutLoadStepsReturnToThoseAskedFor) {
         << asked;
 }
 
+struct LedStrip {
+  RunReport report;
+  Vec3d middle;
+};
+
+/// A strip of length 10 whose ends are held, the far one led.
+LedStrip led_strip(const PrescribedMotion& near, const PrescribedMotion& far, double across, int load_steps) {
+  ShellModel b = shell_model(patch_mesh(
+                                 [](double u, double v) {
+                                   return Vec3d{{10 * u, v, 0}};
+                                 },
+                                 {16, 1, Diagonals::alternating}),
+                             {1.2e6, 0, 0.1});
+  b.model.motions = {near, far};
+  for (int i = 0; i < b.model.node_count(); ++i) {
+    const double x = b.model.rest_position[at(i)][0];
+    if (!is_zero(x) && !is_zero(x - 10)) continue;
+    FrameConstraint c;
+    c.node = i;
+    c.translations = c.rotations = 3;
+    c.translation_motion.fill(is_zero(x) ? 0 : 1);
+    c.rotation_motion.fill(is_zero(x) ? 0 : 1);
+    b.model.constraints.push_back(c);
+  }
+  const int middle = node_at(b.model, {{5, 0, 0}});
+  if (across != 0) add_node_load(b.model, middle, {{0, 0, across}});
+  ThreadPool pool(1);
+  const SolverSettings settings;
+  MechanicalSystem system(b.model, pool, settings);
+  State state = State::at_rest(b.model);
+  LedStrip end;
+  end.report =
+      run_statics(system, state, [&](double t) { return std::vector<double>(zero_factors(b.model).size(), t); },
+                  settings, {load_steps}, {});
+  end.middle = state.u[at(middle)];
+  EXPECT_EQ(end.report.status, RunStatus::converged) << end.report.message;
+  std::printf("led strip, %d steps (asked for %d), %d iterations: its middle moves by %.4f, %.4f\n", end.report.steps,
+              load_steps, end.report.newton_iterations, end.middle[0], end.middle[2]);
+  return end;
+}
+
+/// Shortened by half, with a thousandth of the load across that bends it by its length: led in one step it must reach
+/// the buckle that small steps reach, and not another one. Led without a load it has no side to go to: it stays
+/// straight and unstable, and that is soon told.
+TEST(ShellLarge, StripThatIsShortenedAtOnceBuckles) {
+  PrescribedMotion back;
+  back.translation = {{-5, 0, 0}};
+  const LedStrip at_once = led_strip({}, back, 4e-3, 1), in_steps = led_strip({}, back, 4e-3, 50);
+  EXPECT_FALSE(at_once.report.stability.is_unstable());
+  EXPECT_GT(in_steps.middle[2], 3);
+  EXPECT_LT(norm(at_once.middle - in_steps.middle), 1e-6);
+  back.translation = {{-0.1, 0, 0}};
+  const LedStrip straight = led_strip({}, back, 0, 1);
+  EXPECT_TRUE(straight.report.stability.is_unstable());
+  EXPECT_LT(straight.report.newton_iterations, 150);
+}
+
+/// A turn of the whole strip is guessed along the tangent of its circle, which stretches it: no reason for short steps.
+TEST(ShellLarge, StripThatIsTurnedAsAWholeTakesItsSteps) {
+  PrescribedMotion turn;
+  turn.axis = {{0, 1, 0}};
+  turn.angle = kPi / 2;
+  const LedStrip turned = led_strip(turn, turn, 0, 1);
+  EXPECT_EQ(turned.report.steps, 5);  // of 0.35 rad at most
+  EXPECT_NEAR(turned.middle[2], -5, 1e-6);
+}
+
 /// Closed form: a circle of radius L P_max / (2π P); in the plane, since the ring is unstable out of it.
 TEST(ShellLarge, CantileverRolledToACircle) {
   std::vector<Row> table;
