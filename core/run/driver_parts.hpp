@@ -55,7 +55,7 @@ class LedSteps {
 inline void count(RunReport& run, const NewtonReport& newton) {
   run.newton_iterations += newton.iterations;
   run.linear_iterations += newton.linear_iterations;
-  run.indefinite_solves += newton.indefinite ? 1 : 0;
+  run.indefinite_solves += newton.indefinite && newton.status != NewtonStatus::astray ? 1 : 0;
 }
 
 /// A time step during which some tangent was not positive definite: at its length it may have several solutions.

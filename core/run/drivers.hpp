@@ -51,7 +51,7 @@ struct RunReport {
   int indefinite_solves = 0;                  ///< in which a tangent was not positive definite
   int indefinite_steps = 0;                   ///< time steps with such solves
   double first_indefinite = 0;                ///< end of the first of them [s]
-  int halved_steps = 0;                       ///< time steps taken in parts, because Newton's method failed
+  int halved_steps = 0;                       ///< time steps taken in parts, as Newton's method failed or strayed
   double first_halved = 0;                    ///< end of the first of them [s]
   std::vector<std::string> events;            ///< limit points and bifurcations that were passed, a sentence each
   std::vector<std::string> doubts;            ///< why another run may find another solution, a sentence each
@@ -118,8 +118,9 @@ struct DynamicsSettings {
   bool ends_at_duration(int step) const { return duration > 0 && step == steps; }
 };
 
-/// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256; one whose
-/// budget ends is taken as far as it got. A run whose budget holds no iteration ends before its first step.
+/// Dynamics by an implicit scheme. A time step that does not converge is taken in halves, down to 1/256, one whose
+/// boundary motion leads over tangents that are not positive definite down to 1/8; one whose budget ends is taken as
+/// far as it got. A run whose budget holds no iteration ends before its first step.
 ///
 /// The observer sees the state at the end of each step. The system's gradient belongs to the step's equations there,
 /// with inertia; after a midpoint step it is what look_back() says, at the start what look_at() does.

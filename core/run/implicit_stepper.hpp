@@ -26,7 +26,8 @@ class ImplicitStepper {
   }
 
   /// Advances the state by a time step, in halves where Newton's method fails or a boundary turns too far at once, down
-  /// to 1/256. Where that fails too, the state stays as it was, and the run's status, message and failed state say why.
+  /// to 1/256, and where a boundary motion leads over tangents that are not positive definite, down to 1/8. Where that
+  /// fails too, the state stays as it was, and the run's status, message and failed state say why.
   /// @param end, dt  end and length of the step [s]
   /// @param run      counts the step, and is not touched otherwise
   NewtonReport step(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
@@ -35,6 +36,7 @@ class ImplicitStepper {
     std::swap(earlier_, before_);
     before_ = state;
     failures_ = 0;
+    in_parts_ = false;
     kept_.reset();
     const int solves = run.indefinite_solves;
     NewtonReport report = advanced(state, factors, end, dt, run);
@@ -45,7 +47,7 @@ class ImplicitStepper {
       return report;
     }
     accept(run, report, settings_, end);
-    if (failures_ > 0 && run.halved_steps++ == 0) run.first_halved = end;
+    if (in_parts_ && run.halved_steps++ == 0) run.first_halved = end;
     as_long_as_before_ = last_step_ > 0 && StepConstants::equal(dt, last_step_);
     last_step_ = dt;
     return report;
@@ -102,6 +104,10 @@ class ImplicitStepper {
   }
 
  private:
+  /// So long a step may have several solutions, and halves fewer. Not for ever: where each step asks for halves, what
+  /// is led turns, or nothing holds it, and comes to its place all the same.
+  static constexpr int kWatchedHalvings = 3, kMostReturns = 100;
+
   /// Leaves the state as it was where a step throws, too; the scheme starts anew then, for it may have been amid what
   /// it keeps.
   NewtonReport advanced(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
@@ -166,7 +172,8 @@ class ImplicitStepper {
     NewtonReport report;
     if (depth == 0 || system_.prescribed_rotation() <= kRotationPerStep) {
       system_.start_from_prediction();
-      Newton newton(system_, settings_, {run.steps + 1, end}, budget_ ? &*budget_ : nullptr);
+      const bool watched = !budget_ && depth > kMostHalvings - kWatchedHalvings && returns_ < kMostReturns;
+      Newton newton(system_, settings_, {run.steps + 1, end, watched}, budget_ ? &*budget_ : nullptr);
       report = newton.solve();
       count(run, report);
       const Clock::time_point solved = Clock::now();
@@ -177,7 +184,11 @@ class ImplicitStepper {
         if (budget_) budget_->took_end(seconds_since(solved));
         return report;
       }
-      if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings) return report;
+      if (report.status == NewtonStatus::astray)
+        ++returns_;
+      else if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings)
+        return report;
+      in_parts_ = true;
     }
     report = advance(state, factors, end - 0.5 * dt, 0.5 * dt, depth - 1, run);
     if (!acceptable(report, settings_)) return report;
@@ -205,6 +216,8 @@ class ImplicitStepper {
   double last_step_ = 0;            ///< [s]; 0: none
   bool as_long_as_before_ = false;  ///< both were of one length
   int failures_ = 0;                ///< of the present time step
+  bool in_parts_ = false;           ///< it is taken so because Newton's method asked for that
+  int returns_ = 0;                 ///< to halves, from motions that led astray
 };
 
 }  // namespace fascia

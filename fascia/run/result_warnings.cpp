@@ -218,8 +218,8 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   if (run.halved_steps > 0)
     doubt("time-step",
           fmt::format("{} time step{}, first at t = {:.4g} s, {} taken in parts, because Newton's method did not "
-                      "converge in one: their error of time is another one than that of the rest; compare with a "
-                      "smaller time_step",
+                      "converge in one, or a led boundary took it over an indefinite stiffness: their error of time is "
+                      "another one than that of the rest; compare with a smaller time_step",
                       run.halved_steps, run.halved_steps == 1 ? "" : "s", run.first_halved,
                       run.halved_steps == 1 ? "was" : "were"));
   // A muscle that is free has no load beside which to say it.
