@@ -17,8 +17,8 @@ constexpr int kMostUnsolved = 8;
 /// shortest ones stray too, or fail, the path itself has no way on there, and the step is taken in one go.
 class LedSteps {
  public:
-  /// @param smallest  step there is, in load factors
-  explicit LedSteps(double smallest) : smallest_(smallest) {}
+  /// @param smallest, from  the shortest step there is and the start, in load factors
+  LedSteps(double smallest, double from) : smallest_(smallest), furthest_(from) {}
 
   /// Whether a step is left where it strays. Not where a boundary turns: what goes with it as a whole is guessed along
   /// the tangent of its circle, and comes to the path by itself. @param turn  of the boundary in this step [rad]
@@ -47,7 +47,7 @@ class LedSteps {
   static constexpr int kMostReturns = 32;  ///< the shortest steps are come to three times
   static constexpr int kMostDetours = 4;   ///< steps that stray, as short as they may be
 
-  double smallest_, furthest_ = 0;
+  double smallest_, furthest_;
   int returns_ = 0, detours_ = 0;
   bool ended_ = false;
 };

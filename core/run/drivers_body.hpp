@@ -23,7 +23,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
   double reached = statics.from, increment = longest;
   int failures = 0;  // since the last step that was as long as asked
   int unsolved = 0;  // in a row, by conjugate gradients: shorter steps do not help them
-  LedSteps led(smallest);
+  LedSteps led(smallest, statics.from);
   bool definite = false;  // all tangents of the last step
   state.time = statics.from;
   while (reached < statics.to) {

@@ -37,9 +37,13 @@ class ImplicitStepper {
     before_ = state;
     failures_ = 0;
     in_parts_ = false;
+    watches_ = !budget_;
+    strayed_.reset();
     kept_.reset();
     const int solves = run.indefinite_solves;
     NewtonReport report = advanced(state, factors, end, dt, run);
+    if (strayed_ && !acceptable(report, settings_) && report.status != NewtonStatus::stopped)
+      report = taken_whole(state, factors, end, dt, run);
     if (report.status != NewtonStatus::stopped) note_indefinite(run, solves, end);
     if (!acceptable(report, settings_)) {
       if (!ends_within(run, report)) fail(report, end, run);
@@ -108,6 +112,16 @@ class ImplicitStepper {
   /// is led turns, or nothing holds it, and comes to its place all the same.
   static constexpr int kWatchedHalvings = 3, kMostReturns = 100;
 
+  /// Where a step that was left for halves fails in one of them, it may succeed in one go, wherever that leads.
+  NewtonReport taken_whole(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
+    state = before_;
+    if (kept_) memory_ = Memory(StepMemory(*kept_));
+    system_.forget_steps(strayed_->factors, strayed_->pressures);
+    failures_ = 0;
+    in_parts_ = watches_ = false;
+    return advanced(state, factors, end, dt, run);
+  }
+
   /// Leaves the state as it was where a step throws, too; the scheme starts anew then, for it may have been amid what
   /// it keeps.
   NewtonReport advanced(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
@@ -172,7 +186,7 @@ class ImplicitStepper {
     NewtonReport report;
     if (depth == 0 || system_.prescribed_rotation() <= kRotationPerStep) {
       system_.start_from_prediction();
-      const bool watched = !budget_ && depth > kMostHalvings - kWatchedHalvings && returns_ < kMostReturns;
+      const bool watched = watches_ && depth > kMostHalvings - kWatchedHalvings && returns_ < kMostReturns;
       Newton newton(system_, settings_, {run.steps + 1, end, watched}, budget_ ? &*budget_ : nullptr);
       report = newton.solve();
       count(run, report);
@@ -184,9 +198,13 @@ class ImplicitStepper {
         if (budget_) budget_->took_end(seconds_since(solved));
         return report;
       }
-      if (report.status == NewtonStatus::astray)
+      if (report.status == NewtonStatus::astray) {
+        if (!strayed_) strayed_ = {system_.reached_factors(), system_.reached_pressures()};
         ++returns_;
-      else if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings)
+        // A motion that is applied at once is all in the first half.
+        watches_ = factors(end - 0.5 * dt) != factors(end);
+        if (!watches_) return advance(state, factors, end, dt, depth, run);
+      } else if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings)
         return report;
       in_parts_ = true;
     }
@@ -217,7 +235,12 @@ class ImplicitStepper {
   bool as_long_as_before_ = false;  ///< both were of one length
   int failures_ = 0;                ///< of the present time step
   bool in_parts_ = false;           ///< it is taken so because Newton's method asked for that
+  bool watches_ = true;             ///< whether it is left for halves where its motion leads astray
   int returns_ = 0;                 ///< to halves, from motions that led astray
+  struct Reached {
+    std::vector<double> factors, pressures;
+  };
+  std::optional<Reached> strayed_;  ///< what the system had reached before a step of which that is so
 };
 
 }  // namespace fascia
