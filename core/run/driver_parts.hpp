@@ -12,6 +12,7 @@ namespace fascia::drivers {
 constexpr int kMostFailures = 16, kMostHalvings = 8;
 /// Load steps in a row that conjugate gradients do not solve, however short.
 constexpr int kMostUnsolved = 8;
+
 /// Load steps whose boundary motion leads over tangents that are not positive definite. What is shortened at once may
 /// end straight, unstable or inside out; such steps are left for shorter ones, which lead it into the buckle. Where the
 /// shortest ones stray too, or fail, the path itself has no way on there, and the step is taken in one go.

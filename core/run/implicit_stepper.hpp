@@ -199,11 +199,11 @@ class ImplicitStepper {
         return report;
       }
       if (report.status == NewtonStatus::astray) {
-        if (!strayed_) strayed_ = {system_.reached_factors(), system_.reached_pressures()};
-        ++returns_;
         // A motion that is applied at once is all in the first half.
         watches_ = factors(end - 0.5 * dt) != factors(end);
         if (!watches_) return advance(state, factors, end, dt, depth, run);
+        if (!strayed_) strayed_ = {system_.reached_factors(), system_.reached_pressures()};
+        ++returns_;
       } else if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings)
         return report;
       in_parts_ = true;

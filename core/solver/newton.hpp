@@ -92,12 +92,12 @@ class Newton {
     current_ = system_.evaluate();
     if (!current_.finite()) return finish(NewtonStatus::not_finite);
     first_residual_ = current_.residual;
-    report_.led = system_.has_prescribed_increment();
     mark();
     while (system_.has_prescribed_increment() || !settled()) {
       if (report_.iterations >= settings_.max_iterations) return give_up(NewtonStatus::limit);
       if (settings_.stops && settings_.stops()) return finish(NewtonStatus::stopped);
       const bool moving = system_.has_prescribed_increment();  // arrives, whatever time that takes
+      report_.led = report_.led || moving;
       if (report_.iterations > 0 && !moving && !holds_iteration()) return give_up(NewtonStatus::out_of_time);
       const DirectionReport d = direction();
       if (step_.keeps_to_path && report_.led && report_.indefinite) return finish(NewtonStatus::astray);

@@ -287,6 +287,50 @@ TEST(ShellScenes, TensionThatFoldsTrianglesIsNamedInDynamics) {
 }
 
 // ------------------------------------------------------------------------------------------------------------ dynamics
+/// A strip that is led back in long time steps, which are left for halves where that leads over indefinite tangents.
+SolvedScene shortened_strip(double by, const std::string& over, const std::string& solver) {
+  return SolvedScene::of_text(R"(
+[bodies.b]
+model = "shell"
+domain = { rectangle = { origin = [0, -0.1, 0], edge_u = [1, 0, 0], edge_v = [0, 0.2, 0], cells = [16, 3] } }
+thickness = 0.01
+density = 1000
+material = { young = 1e5, poisson = 0.3 }
+[[constraints]]
+body = "b"
+where = { group = "u0" }
+fix = "all"
+[[constraints]]
+body = "b"
+where = { group = "u1" }
+move = { translate = [)" + std::to_string(-by) +
+                              R"(, 0, 0] }
+)" + over + R"(
+[[loads]]
+body = "b"
+where = { nearest = [0.5, 0, 0] }
+total_force = [0, 0, 0.001]
+[solver]
+)" + solver);
+}
+
+/// Halves of the second step fail, and the whole of it does not.
+TEST(ShellScenes, AStepWhoseHalvesFailIsTakenWhole) {
+  const SolvedScene run = shortened_strip(0.5, "over = 1", "kind = \"newmark\"\ntime_step = 0.5\nsteps = 2\n");
+  EXPECT_EQ(run.status(), "converged") << run.message();
+}
+
+/// What is moved at once is all in the first half: shorter steps would only make it faster.
+TEST(ShellScenes, AMotionAppliedAtOnceIsTakenWhole) {
+  const auto said = [](const std::string& over) {
+    const SolvedScene run = shortened_strip(0.1, over, "kind = \"implicit-euler\"\ntime_step = 0.5\nsteps = 2\n");
+    EXPECT_EQ(run.status(), "converged") << run.message();
+    return run.summary()["doubts"].dump();
+  };
+  EXPECT_NE(said("over = 1").find("taken in parts"), std::string::npos);
+  EXPECT_EQ(said("").find("taken in parts"), std::string::npos);
+}
+
 TEST(ShellScenes, ASpinningShellKeepsItsMomenta) {
   const auto drift = [](const std::vector<std::vector<double>>& rows, std::size_t first) {
     double largest = 0, size = 0;
