@@ -2,9 +2,11 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(VTK 9.1 REQUIRED
-  COMPONENTS CommonCore CommonDataModel IOCore IOXML IOLegacy IOPLY
-  OPTIONAL_COMPONENTS FiltersCore FiltersGeometry FiltersSources IOImage RenderingFreeType RenderingOpenGL2)
+if(NOT mechanics_alone)
+  find_package(VTK 9.1 REQUIRED
+    COMPONENTS CommonCore CommonDataModel IOCore IOXML IOLegacy IOPLY
+    OPTIONAL_COMPONENTS FiltersCore FiltersGeometry FiltersSources IOImage RenderingFreeType RenderingOpenGL2)
+endif()
 
 find_path(UDUNITS2_INCLUDE udunits2.h REQUIRED)
 find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)

@@ -3,16 +3,14 @@
 
 say() { printf 'fascia: %s\n' "$*" >&2; }
 
-# Packages of packages.txt that are needed for $1 (run, check or all), one a line.
+# Packages of packages.txt that are needed for $1, one a line: first (before ./run compiles anything), run, check or all.
 packages_for() {
   local needed_by package proof
   while read -r needed_by package proof _; do
-    case "$needed_by" in
-      run) echo "$package $proof" ;;
-      check) [ "$1" = run ] || echo "$package $proof" ;;
-      all) [ "$1" != all ] || echo "$package $proof" ;;
+    case "$1 $needed_by" in
+      *" first" | "run run" | "check run" | "check check" | "all "[a-z]*) echo "$package $proof" ;;
     esac
-  done <"${root:?}/cmake/packages.txt"
+  done < <(grep -v '^#' "${root:?}/cmake/packages.txt")
 }
 
 # Those of them that this system lacks. A tool on the PATH counts, wherever it came from.
@@ -43,7 +41,7 @@ apt_knows() {
   done
 }
 
-# Installs what $1 (run, check or all) needs and this system lacks; says what and why. $2: log file.
+# Installs what $1 (as packages_for) needs and this system lacks; says what and why. $2: log file.
 install_missing() {
   local missing log=$2
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -55,7 +53,7 @@ install_missing() {
   missing=$(missing_packages "$1" | tr '\n' ' ')
   [ -n "$missing" ] || return 0
 
-  say "installing with apt-get what is missing (cmake/packages.txt says what each is for; 520 MB to fetch on a bare system): $missing"
+  say "installing with apt-get what is missing (cmake/packages.txt says what each is for; 520 MB to fetch in all on a bare system): $missing"
   if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
     say "that needs root and there is no sudo; as root: apt-get install --no-install-recommends $missing"
     return 1
