@@ -13,11 +13,15 @@ constexpr int kMostFailures = 16, kMostHalvings = 8;
 /// Load steps in a row that conjugate gradients do not solve, however short.
 constexpr int kMostUnsolved = 8;
 
-/// Load steps whose boundary motion leads over tangents that are not positive definite. What is shortened at once may
-/// end straight, unstable or inside out; such steps are left for shorter ones, which lead it into the buckle. Where the
-/// shortest ones stray too, or fail, the path itself has no way on there, and the step is taken in one go.
+/// Load steps whose boundary motion leads astray (NewtonReport::strays()). One tangent that is not positive definite is
+/// met on the way from a first guess far off, and the end is that of short steps all the same; from kMany on it may be
+/// another. What is shortened at once may end straight, unstable or inside out; such steps are left for shorter ones,
+/// which lead it into the buckle. Where the shortest ones stray too, or fail, the path itself has no way on there, and
+/// the step is taken in one go.
 class LedSteps {
  public:
+  static constexpr int kMany = 2;  ///< tangents that are not positive definite
+
   /// @param smallest, from  the shortest step there is and the start, in load factors
   LedSteps(double smallest, double from) : smallest_(smallest), furthest_(from) {}
 
@@ -37,8 +41,7 @@ class LedSteps {
   }
   /// Counts an accepted step. @return  whether to take what is left of the longer one in one go
   bool accepted(const NewtonReport& newton) {
-    const bool strays = newton.led && newton.indefinite;
-    if (ended_ || returns_ == 0 || !strays || ++detours_ < kMostDetours) return false;
+    if (ended_ || returns_ == 0 || !newton.strays(kMany) || ++detours_ < kMostDetours) return false;
     return ended_ = true;
   }
   /// Target of the longest step that was left.

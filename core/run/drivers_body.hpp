@@ -40,7 +40,7 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
       system.set_factors(factors(target));
     }
     const bool watched = led.watches(reached, target, system.prescribed_rotation());
-    Newton newton(system, settings, {run.steps + 1, target, watched});
+    Newton newton(system, settings, {run.steps + 1, target, watched ? LedSteps::kMany : 0});
     const NewtonReport report = newton.solve();
     count(run, report);
     if (ends_within(run, report)) return run;

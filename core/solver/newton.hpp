@@ -25,7 +25,7 @@ struct DirectionReport {
 };
 
 /// stopped: as SolverSettings::stops asked for; out_of_time: the step's budget holds no further iteration; astray: left
-/// as SolvedStep::keeps_to_path asks.
+/// as SolvedStep::leaves_at asks.
 enum class NewtonStatus {
   converged,
   limit,
@@ -62,14 +62,20 @@ struct NewtonReport {
   double cg_seconds = 0;       ///< of all directions
   bool progress = false;       ///< a better state was found than the first one
   bool led = false;            ///< a boundary motion was carried out
+  int indefinite_tangents = 0;
+
+  /// Whether a boundary motion led astray: over so many tangents that are not positive definite, or to an end whose
+  /// last one is not.
+  bool strays(int many) const { return led && (indefinite_tangents >= many || !trouble.empty()); }
 };
 
 /// The load or time step that a solve belongs to.
 struct SolvedStep {
   int number = 0;   ///< counted from 1
   double time = 0;  ///< its end [s]; in statics the load factor
-  /// Leave it where a boundary motion has led over a tangent that is not positive definite.
-  bool keeps_to_path = false;
+  /// Leave it where a boundary motion leads over so many tangents that are not positive definite, or to an end whose
+  /// last one is not; 0: never.
+  int leaves_at = 0;
 };
 
 /// Newton's method with a watchdog (Chamberlain et al. 1982): full steps may raise energy and residual for a few
@@ -100,7 +106,8 @@ class Newton {
       report_.led = report_.led || moving;
       if (report_.iterations > 0 && !moving && !holds_iteration()) return give_up(NewtonStatus::out_of_time);
       const DirectionReport d = direction();
-      if (step_.keeps_to_path && report_.led && report_.indefinite) return finish(NewtonStatus::astray);
+      if (step_.leaves_at > 0 && report_.led && report_.indefinite_tangents >= step_.leaves_at)
+        return finish(NewtonStatus::astray);
       if (!d.usable) return give_up(NewtonStatus::linear_failure);
       const double before = current_.residual;
       const double step = system_.largest_step(capped(d));
@@ -118,6 +125,7 @@ class Newton {
         if (status != NewtonStatus::converged) return give_up(status);
       }
     }
+    if (step_.leaves_at > 0 && report_.strays(step_.leaves_at)) return finish(NewtonStatus::astray);
     report_.convergence = current_.by_rounding ? Convergence::rounding : Convergence::tolerance;
     return finish(NewtonStatus::converged);
   }
@@ -211,6 +219,7 @@ class Newton {
     unsolved_ = d.unsolved;
     iterates_ = d.linear_residual > 0;
     small_correction_ = is_small(d, kNoDecrement);
+    report_.indefinite_tangents += !d.trouble.empty();
     report_.indefinite = report_.indefinite || !d.trouble.empty();
     in_doubt_ = in_doubt_ || d.indefinite;
     report_.linear_residual = d.linear_residual;
