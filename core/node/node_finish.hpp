@@ -25,6 +25,13 @@ FASCIA_HD inline EndRates rates_at_end(const StepConstants& step, const StepNode
   return out;
 }
 
+/// The vector with another one's components along the first axes (rows) of a constraint.
+FASCIA_HD inline Vec3d with_components(const Vec3d& v, const Mat3d& axes, int count, const Vec3d& other) {
+  Vec3d out = v;
+  for (int k = 0; k < count; ++k) out += axes.row(k) * dot(axes.row(k), other - v);
+  return out;
+}
+
 /// Replaces velocity and acceleration of what a constraint prescribes by differences of its motion: those that the
 /// scheme would keep ring for ever after a boundary that starts at once.
 /// @param x     motion of the node in the step, last that in the step before, of the same length
@@ -42,12 +49,17 @@ FASCIA_HD inline void follow_boundary(const StepConstants& step, FrameKind kind,
     rates.v.Q = v.Q;
     rates.a.Q = a.Q;
   }
-  if (kind != FrameKind::rigid || c.rotations < 3) return;
+  if (kind != FrameKind::rigid || c.rotations == 0) return;
   const Mat3d Q = Mat3d::identity() + D;
   const Vec3d spin = spin_of(x.Q * (1 / dt), Q), spin_before = spin_of(last.Q * (1 / dt), Q - x.Q);  // means
-  const Mat3d W = skew(spin * 1.5 - spin_before * 0.5);
+  Vec3d w = spin * 1.5 - spin_before * 0.5, alpha = (spin - spin_before) * (1 / dt);
+  if (c.rotations < 3) {  // what is free keeps those of the scheme
+    w = with_components(spin_of(rates.v.Q, Q), c.rotation_axes, c.rotations, w);
+    alpha = with_components(spin_of(rates.a.Q, Q), c.rotation_axes, c.rotations, alpha);
+  }
+  const Mat3d W = skew(w);
   rates.v.Q = W * Q;
-  rates.a.Q = (skew((spin - spin_before) * (1 / dt)) + W * W) * Q;
+  rates.a.Q = (skew(alpha) + W * W) * Q;
 }
 
 /// Motion in a whole midpoint step and velocity at its end.
@@ -57,10 +69,12 @@ struct MiddleEnd {
 
 /// Finishes a midpoint step of a rigid frame: Q turns by the same rotation again, and the mass centre goes on straight.
 /// The momentum is kept exactly, L₊ = L + dt τ with the torque in the middle of the step: about the mass centre, or of
-/// a held frame about its origin and its free axes.
-/// @param end  of a node whose motion and velocity go on straight
+/// a held frame about its origin and its free axes, while it follows its boundary about the others.
+/// @param before  its motion in the step before, of the same length; null: none
+/// @param end     of a node whose motion and velocity go on straight
 FASCIA_HD inline void finish_middle_of_frame(const StepConstants& step, const StepNode& node,
-                                             const FrameConstraint* held, const Mat3d& D_middle, MiddleEnd& end) {
+                                             const FrameConstraint* held, const Mat3d& D_middle,
+                                             const PoseMotion* before, MiddleEnd& end) {
   const double h = step.h;
   const FrameInertia& inertia = node.inertia;
   const PoseMotion x = motion_of(node);
@@ -78,11 +92,14 @@ FASCIA_HD inline void finish_middle_of_frame(const StepConstants& step, const St
     if (turning.regular) spin_end = turning.spin(Q_end, turning.momentum(Q, spin) + torque * step.step);
   } else if (const SpinInertia turning(inertia.second); turning.regular) {
     const Mat3d& R = held->rotation_axes;
+    const Vec3d mean = rotation_vector(node.Ds) * (1 / h),
+                mean_before = before == nullptr ? mean : spin_of(before->Q * (1 / step.step), Q),
+                led = mean * 1.5 - mean_before * 0.5;
     const Vec3d torque = axl(Q_middle * transpose(rest.Q * inertia.second));
     Vec3d momentum = R * (turning.momentum(Q, spin) + torque * step.step);
     Mat3d local = times_transpose(R * times_transpose(Q_end * turning.rest, Q_end), R);
     for (int a = 0; a < held->rotations; ++a) {
-      momentum[a] = dot(R.row(a), spin_end);
+      momentum[a] = dot(R.row(a), led);
       for (int k = 0; k < 3; ++k) local(a, k) = a == k ? 1 : 0;
     }
     spin_end = transpose(R) * (inverse(local) * momentum);
@@ -101,11 +118,12 @@ FASCIA_HD inline void finish_middle_of_frame(const StepConstants& step, const St
 /// From the middle of the step to its end.
 /// @param held      null: nothing holds the node
 /// @param D_middle  present D
+/// @param before    motion in the step before, of the same length; null: none
 FASCIA_HD inline MiddleEnd finish_middle(const StepConstants& step, const StepNode& node, const FrameConstraint* held,
-                                         const Mat3d& D_middle) {
+                                         const Mat3d& D_middle, const PoseMotion* before) {
   const PoseMotion x = motion_of(node);
   MiddleEnd end{x * 2, x * (2 / step.h) - node.v};
-  if (node.rigid()) finish_middle_of_frame(step, node, held, D_middle, end);
+  if (node.rigid()) finish_middle_of_frame(step, node, held, D_middle, before, end);
   return end;
 }
 

@@ -128,7 +128,8 @@ struct FinishMiddle {
   FASCIA_HD void operator()(int i) const {
     const StepNode n = s.node(i);
     const int c = s.model.constraint[i];
-    const MiddleEnd middle = finish_middle(s.step, n, s.model.held(i), s.D_now(i));
+    const MiddleEnd middle =
+        finish_middle(s.step, n, s.model.held(i), s.D_now(i), end.before == nullptr ? nullptr : end.before + i);
     end.motion[i] = middle.motion;
     end.velocity[i] = n.v;
     end.u[i] = s.u0[i] + middle.motion.u;
