@@ -59,6 +59,20 @@ void warn_of_idle_viscosity(Simulation& s, const Material& m) {
                    "does nothing where the solver is not static; remove it");
 }
 
+/// Keys that ask for more than the scene has.
+void warn_of_absent(Simulation& s) {
+  const auto& fields = s.scene.output.fields;
+  const bool turns = std::any_of(s.bodies.begin(), s.bodies.end(), [](const SimulatedBody& b) { return !b.vertices; });
+  if (!turns && std::find(fields.begin(), fields.end(), "rotation") != fields.end() && s.scene.says("output.fields"))
+    s.warnings.add("no-effect", s.scene.place_of("output.fields"),
+                   "names \"rotation\", which bodies of elements do not have; remove it");
+  const int free = s.model.free_dof_count(), asked = s.scene.solver.modes;
+  if (s.scene.solver.kind == SolverKind::modes && asked > free)
+    s.warnings.add(
+        "no-effect", s.scene.place_of("solver.count"),
+        fmt::format("asks for {} modes of a model with {} unknowns, which has no more of them", asked, free));
+}
+
 }  // namespace
 
 void warn_of_no_effect(Simulation& s) {
@@ -89,6 +103,7 @@ void warn_of_no_effect(Simulation& s) {
     if (key.starts_with("materials.") && key.find('.', 10) == std::string::npos && !used.contains(key))
       s.warnings.add("no-effect", place, "no body is made of it; name it as material, or remove it");
   warn_of_held(s, fixed_nodes(s));
+  warn_of_absent(s);
 }
 
 }  // namespace fascia::app

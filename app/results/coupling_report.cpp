@@ -127,11 +127,17 @@ nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b
   return j;
 }
 
-/// Distance between a body's surface and its host's field, at points of the faces that follow it [m].
+/// Distance between a body's material and its host's field [m]: at points of the faces that follow it, and at the
+/// frames that follow it where these are not where their material is.
 double gap_of(const Simulation& s, const Coupling& c, const BuiltCoupling& built, const State& state) {
   const SimulatedBody& b = s.bodies[at(body_index(s, c.body))];
   const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
   double gap = 0;
+  if (!b.body->interpolates())
+    for (const int node : built.nodes) {
+      const Vec3d& X = s.model.rest_position[at(node)];
+      gap = std::max(gap, norm(field_at(b.body->attach(X), state).u - field_at(host.body->attach(X), state).u));
+    }
   for (const FacePoint& p : b.body->face_points()) {
     const bool follows = std::all_of(p.attachment.nodes.begin(), p.attachment.nodes.end(), [&](int node) {
       return std::binary_search(built.nodes.begin(), built.nodes.end(), node);

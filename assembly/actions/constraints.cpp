@@ -1,5 +1,6 @@
 #include "assembly/actions/actions.hpp"
 #include "assembly/actions/directions.hpp"
+#include "assembly/simulation/regions.hpp"
 #include "assembly/simulation/simulation.hpp"
 #include "assembly/specification/errors.hpp"
 #include "core/base/index.hpp"
@@ -61,8 +62,21 @@ int add_motion(Simulation& s, const Constraint& c) {
   return static_cast<int>(s.model.motions.size()) - 1;
 }
 
-bool moves_positions_only(const Constraint& c) {
-  return (c.motion || !c.driver.empty()) && !(c.fixed[3] || c.fixed[4] || c.fixed[5]);
+bool holds_rotations(const Constraint& c) { return c.fixed[3] || c.fixed[4] || c.fixed[5]; }
+bool holds_positions(const Constraint& c) { return c.fixed[0] || c.fixed[1] || c.fixed[2]; }
+bool is_moved(const Constraint& c) { return c.motion || !c.driver.empty(); }
+
+/// Nodes that span a face, not those of a hinge.
+bool span_face(const Simulation& s, const std::vector<int>& nodes) {
+  const auto X = [&](std::size_t i) { return s.model.rest_position[at(nodes[i])]; };
+  std::size_t far = 0;
+  for (std::size_t i = 1; i < nodes.size(); ++i)
+    if (squared_norm(X(i) - X(0)) > squared_norm(X(far) - X(0))) far = i;
+  if (far == 0) return false;
+  const Vec3d along = X(far) - X(0);
+  for (std::size_t i = 1; i < nodes.size(); ++i)
+    if (norm(cross(along, X(i) - X(0))) > 1e-6 * squared_norm(along)) return true;
+  return false;
 }
 
 /// A frame that a driver turns turns about any axis.
@@ -96,7 +110,7 @@ void check_vertex_rotations(const Simulation& s, int body, const Constraint& c) 
 }
 
 void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<int, Held>& held) {
-  if (!moves_positions_only(c)) return;
+  if (!holds_positions(c) || holds_rotations(c)) return;
   const int body = body_index(s, c.body);
   if (s.scene.bodies[at(body)].model != BodyModel::meshless) return;
   const std::vector<int> nodes = find_nodes(s, body, c.where);
@@ -105,9 +119,32 @@ void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<i
     return found == held.end() || found->second.rotation.axis.size() < 3;
   };
   if (std::none_of(nodes.begin(), nodes.end(), turns)) return;
-  s.warnings.add("rotations", c.place,
-                 "prescribes positions without rotations, which leaves the displacement between frames free (the force "
-                 "comes out too small); add \"rx\", \"ry\", \"rz\" to axes");
+  if (is_moved(c))
+    s.warnings.add("rotations", c.place,
+                   "prescribes positions without rotations, which leaves the displacement between frames free (the "
+                   "force comes out too small); add \"rx\", \"ry\", \"rz\" to axes");
+  else if (span_face(s, nodes))
+    s.warnings.add(
+        "rotations", c.place,
+        "prescribes positions without rotations on a face, which leaves the displacement between frames free "
+        "(the body comes out too soft); use fix = \"all\" or \"symmetry\", or name rotations too");
+}
+
+/// A rigid body is one frame at its mass centre: that is what a constraint holds, whatever points its region has.
+void warn_of_place(Simulation& s, const Constraint& c) {
+  const int body = body_index(s, c.body);
+  const bool turns = !(c.fixed[3] && c.fixed[4] && c.fixed[5]);
+  if (s.scene.bodies[at(body)].model != BodyModel::rigid || !holds_positions(c) || !turns) return;
+  const SimulatedBody& b = s.bodies[at(body)];
+  if (b.body->surface().points.empty()) return;
+  const std::vector<bool> chosen = select(c.where, b.selectable_surface());
+  if (std::all_of(chosen.begin(), chosen.end(), [](bool in) { return in; })) return;
+  const Vec3d& X = s.model.rest_position[at(b.body->first_node())];
+  s.warnings.add("rigid", c.place,
+                 fmt::format("holds the mass centre of the rigid body, ({:.6g}, {:.6g}, {:.6g}), and not the points in "
+                             "where; use where = \"all\" where that is meant, or hold points by a spring of "
+                             "[couplings]",
+                             X[0], X[1], X[2]));
 }
 
 /// A node that another body shares: what holds that body's material there, and what holds the node itself, must agree.
@@ -128,42 +165,55 @@ void check_shared(const Simulation& s, const std::vector<SharedHold>& shared, co
   }
 }
 
-}  // namespace
-
-void add_constraints(Simulation& s, PointSetBuilder& points) {
+/// What constraints hold, by node.
+struct Holds {
   std::map<int, Held> held;
   TiedPlaces places;
   std::vector<SharedHold> shared;
-  for (const Constraint& c : s.scene.constraints) {
-    const int motion = add_motion(s, c);
-    const int body = body_index(s, c.body);
-    const bool interpolates = s.bodies[at(body)].body->interpolates();
-    const Body& described = s.scene.bodies[at(body)];
-    const bool thin = described.radius || !described.thickness.empty();
-    const bool vertices = is_mesh_model(described);
-    if (vertices) check_vertex_rotations(s, body, c);
-    const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion, places);
-    const bool enough = tied > 0 && (thin || c.fixed[0] || c.fixed[1] || c.fixed[2]);
-    check_affine_turn(s, body, c);
-    check_driver(s, body, c);
-    const bool whole = std::all_of(c.fixed.begin(), c.fixed.end(), [](bool f) { return f; });
-    for (const int node : enough ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
-      const Vec3d& X = s.model.rest_position[at(node)];
-      if (!interpolates && std::binary_search(s.bodies[at(body)].body->shared_nodes().begin(),
-                                              s.bodies[at(body)].body->shared_nodes().end(), node))
-        shared.push_back({&c, node, motion});
-      if (!interpolates && thin) continue;  // tethers hold all of it
-      held[node].whole = held[node].whole || whole;
-      for (int k = 0; k < 3; ++k) {
-        if (c.fixed[at(k)] && interpolates)
-          add_direction(s, held[node].translation, c.axes.row(k), motion, false, X, c);
-        if (c.fixed[at(3 + k)] && !vertices && s.model.kind(node) != FrameKind::vertex)
-          add_direction(s, held[node].rotation, c.axes.row(k), motion, true, X, c);
-      }
+};
+
+void add_constraint(Simulation& s, PointSetBuilder& points, const Constraint& c, Holds& holds) {
+  const int motion = add_motion(s, c);
+  const int body = body_index(s, c.body);
+  const bool interpolates = s.bodies[at(body)].body->interpolates();
+  const Body& described = s.scene.bodies[at(body)];
+  const bool thin = described.radius || !described.thickness.empty();
+  const bool vertices = is_mesh_model(described);
+  if (vertices) check_vertex_rotations(s, body, c);
+  const int tied = interpolates ? 0 : add_tethers(s, points, body, c, motion, holds.places);
+  const bool enough = tied > 0 && (thin || holds_positions(c));
+  check_affine_turn(s, body, c);
+  check_driver(s, body, c);
+  const bool whole = std::all_of(c.fixed.begin(), c.fixed.end(), [](bool f) { return f; });
+  for (const int node : enough ? find_nodes(s, body, c.where) : select_nodes(s, body, c.where)) {
+    const Vec3d& X = s.model.rest_position[at(node)];
+    if (!interpolates && std::binary_search(s.bodies[at(body)].body->shared_nodes().begin(),
+                                            s.bodies[at(body)].body->shared_nodes().end(), node))
+      holds.shared.push_back({&c, node, motion});
+    if (!interpolates && thin) continue;  // tethers hold all of it
+    Held& held = holds.held[node];
+    held.whole = held.whole || whole;
+    for (int k = 0; k < 3; ++k) {
+      if (c.fixed[at(k)] && interpolates) add_direction(s, held.translation, c.axes.row(k), motion, false, X, c);
+      if (c.fixed[at(3 + k)] && !vertices && s.model.kind(node) != FrameKind::vertex)
+        add_direction(s, held.rotation, c.axes.row(k), motion, true, X, c);
     }
   }
-  check_shared(s, shared, held);
-  for (const Constraint& c : s.scene.constraints) warn_of_free_rotations(s, c, held);
+}
+
+}  // namespace
+
+void add_constraints(Simulation& s, PointSetBuilder& points) {
+  Holds holds;
+  SceneErrors errors;
+  for (const Constraint& c : s.scene.constraints) errors.gather([&] { add_constraint(s, points, c, holds); });
+  errors.tell();
+  const std::map<int, Held>& held = holds.held;
+  check_shared(s, holds.shared, held);
+  for (const Constraint& c : s.scene.constraints) {
+    warn_of_free_rotations(s, c, held);
+    warn_of_place(s, c);
+  }
   for (const auto& [node, h] : held) {
     FrameConstraint c;
     c.node = node;

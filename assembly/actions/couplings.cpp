@@ -242,26 +242,32 @@ void check_surfaces_ride(const Simulation& s, const Followers& dependents) {
   }
 }
 
+void add_coupling(Simulation& s, const Coupling& c, PointSetBuilder& points, Followers& dependents) {
+  const int body = body_index(s, c.body);
+  if (c.kind != CouplingKind::spring && !s.bodies[at(body)].body->interpolates())
+    s.warnings.add("scattered", c.place,
+                   "holds scattered frames, whose weights do not interpolate: the material between them parts from the "
+                   "other body (the gap in the results tells how far); let the body share the frames of the other one "
+                   "(frames.share), or take a grid or finer frames");
+  BuiltCoupling& built = s.couplings.emplace_back();
+  built.nodes = select_nodes(s, body, c.where);
+  if (c.kind == CouplingKind::spring) return add_springs(s, c, points, built);
+  const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
+  if (c.kind == CouplingKind::weld) {
+    const WeldHosts hosts(s, c, host);
+    for (const int node : built.nodes) dependents.add(c, welded(s, c, node, hosts));
+  } else {
+    for (const int node : built.nodes) dependents.add(c, embedded(s, c, node, host));
+  }
+}
+
 }  // namespace
 
 void add_couplings(Simulation& s, PointSetBuilder& points) {
   Followers dependents(s);
-  for (const Coupling& c : s.scene.couplings) {
-    const int body = body_index(s, c.body);
-    BuiltCoupling& built = s.couplings.emplace_back();
-    built.nodes = select_nodes(s, body, c.where);
-    if (c.kind == CouplingKind::spring) {
-      add_springs(s, c, points, built);
-      continue;
-    }
-    const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
-    if (c.kind == CouplingKind::weld) {
-      const WeldHosts hosts(s, c, host);
-      for (const int node : built.nodes) dependents.add(c, welded(s, c, node, hosts));
-    } else {
-      for (const int node : built.nodes) dependents.add(c, embedded(s, c, node, host));
-    }
-  }
+  SceneErrors errors;
+  for (const Coupling& c : s.scene.couplings) errors.gather([&] { add_coupling(s, c, points, dependents); });
+  errors.tell();
   for (const SimulatedBody& b : s.bodies) attach_interfaces(s, b, dependents);
   dependents.check_circles();
   check_surfaces_ride(s, dependents);

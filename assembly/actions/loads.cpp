@@ -236,7 +236,22 @@ void add_shares(Simulation& s, const std::vector<Share>& shares, bool vertices, 
   s.model.loads.push_back(std::move(load));
 }
 
+/// A force on each vertex of a rigid body's surface that the region holds. @return  whether there is one
+bool add_vertex_forces(Simulation& s, const SimulatedBody& owner, const Load& load, int schedule) {
+  if (owner.body->surface().points.empty()) return false;
+  const std::vector<bool> chosen = select(*load.where, owner.selectable_surface());
+  std::vector<Share> shares;
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    if (chosen[i])
+      shares.push_back({owner.body->surface().points[i], owner.body->attach_surface(i), 1, *load.force_per_node, {}});
+  if (!shares.empty()) add_shares(s, shares, false, load.follower, schedule);
+  return !shares.empty();
+}
+
 void add_node_forces(Simulation& s, int body, const Load& load, int schedule) {
+  const bool of_vertices =
+      s.scene.bodies[at(body)].model == BodyModel::rigid && !std::holds_alternative<AllRegion>(load.where->shape);
+  if (of_vertices && add_vertex_forces(s, s.bodies[at(body)], load, schedule)) return;
   DeadLoad dead;
   dead.schedule = schedule;
   if (load.follower && s.bodies[at(body)].vertices)
@@ -250,42 +265,46 @@ void add_node_forces(Simulation& s, int body, const Load& load, int schedule) {
   if (!load.follower) s.model.loads.push_back(std::move(dead));
 }
 
+void add_load(Simulation& s, const Load& load) {
+  const int body = body_index(s, load.body), schedule = new_schedule(s, load.schedule, load.place);
+  const SimulatedBody& b = s.bodies[at(body)];
+  if (load.total_force || load.total_torque) {
+    Spread spread = spread_of(s, body, load);
+    if (load.total_force)
+      for (Share& share : spread.shares) share.force = *load.total_force * share.part;
+    if (load.total_torque) spread_torque(spread, *load.total_torque);
+    add_shares(s, spread.shares, b.vertices, load.follower, schedule);
+  }
+  if (load.traction) {
+    std::vector<Share> shares = surface_shares(b, *load.where);
+    if (shares.empty())
+      throw SceneError({{load.where->place, fmt::format("the region holds no face of body \"{}\" with all its "
+                                                        "corners; enlarge it",
+                                                        b.name)}});
+    for (Share& share : shares) share.force = *load.traction * share.part;
+    add_shares(s, shares, b.vertices, false, schedule);
+  }
+  if (load.pressure) add_pressure(s, body, load, schedule);
+  if (load.line_force) {
+    std::vector<Share> shares = line_shares(b, *load.where);
+    for (Share& share : shares) share.force = *load.line_force * share.part;
+    add_shares(s, shares, b.vertices, load.follower, schedule);
+  }
+  if (load.force_per_node) add_node_forces(s, body, load, schedule);
+  if (load.at) {
+    const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
+    add_shares(s, {{X, b.body->attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
+               b.vertices, load.follower, schedule);
+  }
+}
+
 }  // namespace
 
 void add_loads(Simulation& s) {
   add_gravity(s);
-  for (const Load& load : s.scene.loads) {
-    const int body = body_index(s, load.body), schedule = new_schedule(s, load.schedule, load.place);
-    const SimulatedBody& b = s.bodies[at(body)];
-    if (load.total_force || load.total_torque) {
-      Spread spread = spread_of(s, body, load);
-      if (load.total_force)
-        for (Share& share : spread.shares) share.force = *load.total_force * share.part;
-      if (load.total_torque) spread_torque(spread, *load.total_torque);
-      add_shares(s, spread.shares, b.vertices, load.follower, schedule);
-    }
-    if (load.traction) {
-      std::vector<Share> shares = surface_shares(b, *load.where);
-      if (shares.empty())
-        throw SceneError({{load.where->place, fmt::format("the region holds no face of body \"{}\" with all its "
-                                                          "corners; enlarge it",
-                                                          b.name)}});
-      for (Share& share : shares) share.force = *load.traction * share.part;
-      add_shares(s, shares, b.vertices, false, schedule);
-    }
-    if (load.pressure) add_pressure(s, body, load, schedule);
-    if (load.line_force) {
-      std::vector<Share> shares = line_shares(b, *load.where);
-      for (Share& share : shares) share.force = *load.line_force * share.part;
-      add_shares(s, shares, b.vertices, load.follower, schedule);
-    }
-    if (load.force_per_node) add_node_forces(s, body, load, schedule);
-    if (load.at) {
-      const Vec3d X = place_on_body(s, body, *load.at, load.at_place);
-      add_shares(s, {{X, b.body->attach(X), 1.0, load.force.value_or(Vec3d{}), load.torque.value_or(Vec3d{})}},
-                 b.vertices, load.follower, schedule);
-    }
-  }
+  SceneErrors errors;
+  for (const Load& load : s.scene.loads) errors.gather([&] { add_load(s, load); });
+  errors.tell();
   add_fluids(s);
 }
 

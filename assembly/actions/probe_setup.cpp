@@ -123,39 +123,47 @@ void resolve_controlled(Simulation& s) {
   s.controlled = {std::move(place.nodes), std::move(place.influences), normalized(wanted.direction), wanted.to};
 }
 
-void resolve_probes(Simulation& s) {
-  for (const Probe& probe : s.scene.probes) {
-    ResolvedProbe r;
-    r.probe = &probe;
-    if (probe.body)
-      r.body = body_index(s, *probe.body);
-    else if (s.bodies.size() == 1)
-      r.body = 0;
-    for (const Vec3d& X0 : probe.at) {
-      ProbePoint p;
-      p.X = place_on_body(s, r.body, X0, probe.at_place);
-      const ModelBody& body = *s.bodies[at(r.body)].body;
-      p.field = body.attach(p.X);
-      p.nearest = nearest_point(body, p.X, p.field.cell);
-      r.points.push_back(std::move(p));
-    }
-    select_tethers(s, r);
-    r.fluid = find_fluid(s, r);
-    if (probe.where) {
-      r.nodes = r.tethered.empty() ? select_nodes(s, r.body, *probe.where) : find_nodes(s, r.body, *probe.where);
-    } else {
-      r.nodes = nodes_of(s, r);
-    }
-    warn_of_shared_mass(s, r);
-    r.about = probe.about.value_or(Vec3d{});
-    if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))
-      s.warnings.add("no-effect", probe.place, "is zero in a static solve");
-    const bool modes = s.scene.solver.kind == SolverKind::modes, frequency = probe.quantity == Quantity::frequency;
-    if (frequency && !modes) throw SceneError({{probe.place, "quantity \"frequency\" needs solver.kind = \"modes\""}});
-    if (modes && !frequency && probe.quantity != Quantity::mass && probe.quantity != Quantity::volume)
-      throw SceneError({{probe.place, "solver.kind = \"modes\" knows frequency, mass and volume only"}});
-    s.probes.push_back(std::move(r));
+namespace {
+
+void resolve_probe(Simulation& s, const Probe& probe) {
+  ResolvedProbe r;
+  r.probe = &probe;
+  if (probe.body)
+    r.body = body_index(s, *probe.body);
+  else if (s.bodies.size() == 1)
+    r.body = 0;
+  for (const Vec3d& X0 : probe.at) {
+    ProbePoint p;
+    p.X = place_on_body(s, r.body, X0, probe.at_place);
+    const ModelBody& body = *s.bodies[at(r.body)].body;
+    p.field = body.attach(p.X);
+    p.nearest = nearest_point(body, p.X, p.field.cell);
+    r.points.push_back(std::move(p));
   }
+  select_tethers(s, r);
+  r.fluid = find_fluid(s, r);
+  if (probe.where) {
+    r.nodes = r.tethered.empty() ? select_nodes(s, r.body, *probe.where) : find_nodes(s, r.body, *probe.where);
+  } else {
+    r.nodes = nodes_of(s, r);
+  }
+  warn_of_shared_mass(s, r);
+  r.about = probe.about.value_or(Vec3d{});
+  if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))
+    s.warnings.add("no-effect", probe.place, "is zero in a static solve");
+  const bool modes = s.scene.solver.kind == SolverKind::modes, frequency = probe.quantity == Quantity::frequency;
+  if (frequency && !modes) throw SceneError({{probe.place, "quantity \"frequency\" needs solver.kind = \"modes\""}});
+  if (modes && !frequency && probe.quantity != Quantity::mass && probe.quantity != Quantity::volume)
+    throw SceneError({{probe.place, "solver.kind = \"modes\" knows frequency, mass and volume only"}});
+  s.probes.push_back(std::move(r));
+}
+
+}  // namespace
+
+void resolve_probes(Simulation& s) {
+  SceneErrors errors;
+  for (const Probe& probe : s.scene.probes) errors.gather([&] { resolve_probe(s, probe); });
+  errors.tell();
 }
 
 }  // namespace fascia

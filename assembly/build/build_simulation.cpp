@@ -184,17 +184,21 @@ Simulation build_simulation(Scene scene, const SampleStore* store) {
     body.first_shell = shell;
     body.shell_count = points.shell_count() - shell;
   }
-  add_constraints(s, points);
-  add_couplings(s, points);
+  SceneErrors errors;
+  errors.gather([&] { add_constraints(s, points); });
+  errors.gather([&] { add_couplings(s, points); });
   s.model.points = std::move(points).finish(s.model.frame_kind);
   for (const SimulatedBody& b : s.bodies) b.body->find_memories(s.model.points);
   if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
-  give_inertia_to_hosts(s);
+  errors.gather([&] { give_inertia_to_hosts(s); });
   s.initial = State::at_rest(s.model);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
   stop_held(s.model, s.initial);
   start_dependents(s);
   s.initial.turned.resize(s.model.constraints.size());
+  errors.gather([&] { add_loads(s); });
+  errors.gather([&] { resolve_probes(s); });
+  errors.tell();
   if (s.model.constrained_dof_count() == s.model.dof_count() && s.scene.solver.kind == SolverKind::modes)
     throw SceneError(
         {{s.scene.solver.place, "the constraints hold every degree of freedom; leave some free for modes"}});
@@ -204,7 +208,6 @@ Simulation build_simulation(Scene scene, const SampleStore* store) {
     throw SceneError({{s.scene.solver.place,
                        "nothing in the scene is elastic, so that nothing vibrates; add springs or a body of another "
                        "model, or use kind = \"implicit-euler\""}});
-  add_loads(s);
   if (set.memory.acts()) s.initial.factors = s.factors(0);
   if (s.scene.solver.kind == SolverKind::statics) check_support(s);
   if (s.scene.solver.kind == SolverKind::modes &&
@@ -218,7 +221,6 @@ Simulation build_simulation(Scene scene, const SampleStore* store) {
     s.warnings.add("no-effect", s.scene.place_of("solver.linear.preconditioner"),
                    fmt::format("does nothing {}, which makes factors: it is of conjugate gradients",
                                path ? "on a path" : "with linear.kind = \"cholesky\""));
-  resolve_probes(s);
   resolve_controlled(s);
   return s;
 }

@@ -1,5 +1,6 @@
 #include "assembly/simulation/matter.hpp"
 
+#include "assembly/simulation/regions.hpp"
 #include "core/base/index.hpp"
 
 #include <algorithm>
@@ -22,6 +23,13 @@ void MatterDisplacement::add(const SimulatedBody& b, const State& state) {
     for (const int node : b.node_ids) add(state.u[at(node)], 0);
   else
     for (std::size_t i = 0; i < body.surface().points.size(); ++i) add(field_at(body.attach_surface(i), state).u, 0);
+}
+
+void MatterDisplacement::add_surface(const SimulatedBody& b, const Region& region, const State& state) {
+  if (b.body->surface().points.empty()) return;
+  const std::vector<bool> chosen = select(region, b.selectable_surface());
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    if (chosen[i]) add(field_at(b.body->attach_surface(i), state).u, 0);
 }
 
 Vec3d MatterDisplacement::mean() const {
@@ -50,6 +58,10 @@ FoldedPoints folded_points(const SimulatedBody& b, const State& state) {
 
 MatterDisplacement displacement_of_matter(const Simulation& s, const ResolvedProbe& probe, const State& state) {
   MatterDisplacement displacement;
+  if (probe.probe->where && s.scene.bodies[at(probe.body)].model == BodyModel::rigid) {
+    displacement.add_surface(s.bodies[at(probe.body)], *probe.probe->where, state);
+    if (!displacement.empty()) return displacement;
+  }
   if (probe.probe->where) {
     for (const int node : probe.nodes) displacement.add(state.u[at(node)], 0);
     return displacement;

@@ -11,7 +11,10 @@ class MatterDisplacement {
   /// Of one place. @param volume  of an integration point [m³]; 0 elsewhere
   void add(const Vec3d& u, double volume);
   void add(const SimulatedBody& body, const State& state);
+  /// Of the points of a body's surface that a region holds.
+  void add_surface(const SimulatedBody& body, const Region& region, const State& state);
 
+  bool empty() const { return places_ == 0; }
   double largest() const { return largest_; }  ///< [m]
   Vec3d mean() const;  ///< weighted with volume at rest; of what has none that of its places [m]
 
@@ -35,7 +38,8 @@ struct FoldedPoints {
 };
 FoldedPoints folded_points(const SimulatedBody& body, const State& state);
 
-/// Of what a probe measures: the nodes of its region, or the matter of its body or of all bodies.
+/// Of what a probe measures: the nodes of its region (of a rigid body the points of its surface there), or the matter
+/// of its body or of all bodies.
 MatterDisplacement displacement_of_matter(const Simulation& simulation, const ResolvedProbe& probe, const State& state);
 
 }  // namespace fascia

@@ -97,7 +97,20 @@ void push_point_value(std::vector<double>& out, const ResolvedProbe& probe, cons
   }
 }
 
-/// Deformed volume: Σ v det F over the integration points of a body (or all).
+/// The part of each of a body's integration points that a probe's nodes move: Σ w of them. All of it without a region.
+std::vector<double> parts_of_points(const ModelBody& body, const ResolvedProbe& probe) {
+  std::vector<double> parts(body.points().size(), 1.0);
+  if (!probe.probe->where) return parts;
+  for (std::size_t q = 0; q < parts.size(); ++q) {
+    const Attachment place = body.attach_point(q);
+    parts[q] = 0;
+    for (std::size_t k = 0; k < place.nodes.size(); ++k)
+      if (std::binary_search(probe.nodes.begin(), probe.nodes.end(), place.nodes[k])) parts[q] += place.influences[k].w;
+  }
+  return parts;
+}
+
+/// Deformed volume: Σ v det F over the integration points of a body (or all), of what the probe's nodes move.
 double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const State& state) {
   double volume = 0;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
@@ -108,10 +121,25 @@ double deformed_volume(const Simulation& s, const ResolvedProbe& probe, const St
       continue;
     }
     const std::vector<Mat3d> H = body.gradients(state);
+    const std::vector<double> parts = parts_of_points(body, probe);
     for (std::size_t q = 0; q < H.size(); ++q)
-      volume += body.points()[q].volume * determinant(Mat3d::identity() + H[q]);
+      volume += parts[q] * body.points()[q].volume * determinant(Mat3d::identity() + H[q]);
   }
   return volume;
+}
+
+/// The part of a body's elastic energy that a probe's nodes hold: energy densities say how it spreads over points.
+double part_of_energy(const ModelBody& body, const ResolvedProbe& probe, const State& state) {
+  if (!probe.probe->where) return 1;
+  const std::vector<PointTensors> tensors = body.tensors(state);
+  const std::vector<double> parts = parts_of_points(body, probe);
+  double all = 0, chosen = 0;
+  for (std::size_t q = 0; q < tensors.size(); ++q) {
+    const double energy = body.points()[q].volume * tensors[q].energy_density;
+    all += energy;
+    chosen += parts[q] * energy;
+  }
+  return all > 0 ? chosen / all : 0;
 }
 
 struct Energies {
@@ -132,14 +160,15 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const ProbedS
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
     const ModelBody& body = *s.bodies[b].body;
+    const double part = part_of_energy(body, probe, *snap.state);
     for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
-      e.elastic += of.groups[at(g)];
-      e.stabilization += of.stabilization[at(g)];
+      e.elastic += part * of.groups[at(g)];
+      e.stabilization += part * of.stabilization[at(g)];
     }
     for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
-      e.elastic += of.blocks[at(block)];
+      e.elastic += part * of.blocks[at(block)];
     for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
-      e.elastic += of.shells[at(shell)];
+      e.elastic += part * of.shells[at(shell)];
   }
   for (const int group : tether_groups(s, probe.body)) e.stabilization += of.stabilization[at(group)];
   const std::vector<Spring>& springs = s.model.points.springs;

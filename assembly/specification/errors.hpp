@@ -30,4 +30,25 @@ class SceneError : public std::exception {
   std::string text_;
 };
 
+/// Gathers what parts of a scene have wrong, so that it is told in one go.
+class SceneErrors {
+ public:
+  /// Runs a part, and keeps what it throws.
+  template <class Act>
+  void gather(const Act& act) {
+    try {
+      act();
+    } catch (const SceneError& e) {
+      found_.insert(found_.end(), e.diagnostics().begin(), e.diagnostics().end());
+    }
+  }
+  /// @throws SceneError  all that was kept, if anything was
+  void tell() const {
+    if (!found_.empty()) throw SceneError(found_);
+  }
+
+ private:
+  std::vector<Diagnostic> found_;
+};
+
 }  // namespace fascia

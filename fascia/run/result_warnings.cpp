@@ -65,7 +65,9 @@ void warn_of_folds(const SimulatedBody& b, const Folds& folds, RunReport& run, W
   warnings.add("resolution", run.doubts.back());
 }
 
-void add_shell_warnings(const SimulatedBody& b, const State& end, bool judged, RunReport& run, Warnings& warnings) {
+/// @param inside_out  takes why the state is no physical one
+void add_shell_warnings(const SimulatedBody& b, const State& end, bool judged, RunReport& run, Warnings& warnings,
+                        std::vector<std::string>& inside_out) {
   int unresolved = 0, against = 0;
   double smallest = 1;
   Vec3d where;
@@ -96,12 +98,11 @@ void add_shell_warnings(const SimulatedBody& b, const State& end, bool judged, R
             "which St Venant-Kirchhoff materials do not resist; mesh again there if it is a needle or cap",
             b.name, where[0], where[1], where[2], 100 * smallest));
   if (against > 0)
-    warnings.add(
-        "inverted",
-        fmt::format(
-            "body \"{}\": {} of {} triangles face against the directors of their nodes: no physical state; mesh finer "
-            "there, without needles and caps",
-            b.name, against, triangles.size()));
+    inside_out.push_back(
+        fmt::format("body \"{}\": {} of {} triangles face against the directors of their nodes: no physical state; "
+                    "mesh finer there, "
+                    "without needles and caps",
+                    b.name, against, triangles.size()));
   if (unresolved > 0)
     warnings.add(
         "resolution",
@@ -232,7 +233,7 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
   for (const SimulatedBody& b : s.bodies) {
     const auto index = static_cast<std::size_t>(&b - s.bodies.data());
     if (is_shell(s.scene.bodies[index])) {
-      add_shell_warnings(b, end, judged, run, warnings);
+      add_shell_warnings(b, end, judged, run, warnings, inside_out);
       continue;
     }
     const FoldedPoints folded = folded_points(b, end);
