@@ -62,7 +62,7 @@ std::string meaning_of(std::string doc) {
 void list_quantities() {
   const Key probes = probes_schema();
   for (const Choice& c : probes.shape.items.front().find("quantity")->shape.choices)
-    fmt::print("{:17}  {:8}  {}\n", c.value, unit_of_quantity(c.value), meaning_of(c.doc));
+    if (c.supported) fmt::print("{:17}  {:8}  {}\n", c.value, unit_of_quantity(c.value), meaning_of(c.doc));
 }
 
 void list_units() {

@@ -259,8 +259,10 @@ int dispatch(int argc, char** argv) {
   add_scene_options(*check, options);
   if (argc > 1 && argv[1][0] != '-' &&
       std::find(kCommands.begin(), kCommands.end(), std::string_view(argv[1])) == kCommands.end()) {
-    say("fascia: \"{}\" is no command; must be one of {}, as in: fascia run {}\n", argv[1], fmt::join(kCommands, ", "),
-        std::string_view(argv[1]).ends_with(".toml") ? argv[1] : "SCENE");
+    const std::string_view word = argv[1];
+    say("fascia: \"{}\" is {}; must be one of {}, as in: fascia run {}\n", word,
+        word == "resume" || word == "fit" ? "not supported yet" : "no command", fmt::join(kCommands, ", "),
+        word.ends_with(".toml") ? word : "SCENE");
     return kWrongInput;
   }
   RerunOptions rerun_options;

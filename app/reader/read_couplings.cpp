@@ -19,7 +19,7 @@ void need(const TableReader& coupling, const char* key, const std::string& kind)
 
 void read_spring(const TableReader& table, Coupling& coupling) {
   coupling.kind = CouplingKind::spring;
-  table.refuse({"to"}, unused_by_kind("spring"));
+  table.refuse({"to"}, unused_by_kind("spring") + ": springs to another body are not supported yet");
   need(table, "point", "spring");
   need(table, "stiffness", "spring");
   coupling.point = table.vector("point").value_or(coupling.point);

@@ -198,6 +198,10 @@ Key key(std::string name, Shape shape, std::string doc) {
   return result;
 }
 
+Key later(std::string name, std::string doc) {
+  return key(std::move(name), anything("a value"), std::move(doc)).not_yet();
+}
+
 const Shape& scene_schema() {
   static const Shape scene =
       table({key("title", text(), "One line for people.").defaults("empty"),
@@ -205,7 +209,10 @@ const Shape& scene_schema() {
                  "Warnings that are not told, by the name in brackets at their end.")
                  .defaults("[]"),
              world_schema(), materials_schema(), bodies_schema(), constraints_schema(), loads_schema(),
-             couplings_schema(), solver_schema(), probes_schema(), output_schema(), need_schema()});
+             couplings_schema(), solver_schema(), probes_schema(), output_schema(), need_schema(),
+             later("initial", "Another result of the same bodies that the run starts from."),
+             later("phases", "Parts of a run with loads, constraints and a solver of their own."),
+             later("contacts", "Contact between bodies."), later("tools", "Instruments that touch bodies.")});
   return scene;
 }
 

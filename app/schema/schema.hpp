@@ -106,6 +106,8 @@ Shape reference(std::string name, const Shape& (*target)());
 /// A value that somebody else checks.
 Shape anything(std::string in_words);
 Key key(std::string name, Shape shape, std::string doc);
+/// A key of the format that this version refuses.
+Key later(std::string name, std::string doc);
 
 /// The scene, a table.
 const Shape& scene_schema();

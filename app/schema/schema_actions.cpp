@@ -41,7 +41,8 @@ Shape constraint_schema() {
                 key("axes", array(vector3("1"), 3, 3), "Three perpendicular directions instead of the global axes.")
                     .defaults("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
                 key("normal", vector3("1"), "With `fix = \"symmetry\"`."),
-                key("axis", vector3("1"), "With `fix = \"hinge\"`."), over_key(), profile_key(), dial_key()},
+                key("axis", vector3("1"), "With `fix = \"hinge\"`."), over_key(), profile_key(), dial_key(),
+                later("from", "Time from which it holds."), later("until", "Time until which it holds.")},
                {{{"fix", "move"}}});
 }
 
@@ -66,7 +67,8 @@ Shape load_schema() {
            "has any."),
        key("follower", boolean(), "Turns with the material; not for `traction`.")
            .defaults("false; true for `pressure`"),
-       over_key(), profile_key(), dial_key()},
+       over_key(), profile_key(), dial_key(), later("from", "Time from which it acts."),
+       later("until", "Time until which it acts.")},
       {{{"where", "at"}}});
 }
 
@@ -84,7 +86,12 @@ Shape coupling_schema() {
        key("point", vector3("m"), "Where the springs end; for `spring`, which needs it."),
        key("stiffness", number("N/m", above(0)), "Of all the nodes' springs together; for `spring`, which needs it."),
        key("direction", vector3("1"), "The springs resist displacements along this direction alone; for `spring`.")
-           .defaults("they resist a change of their length")});
+           .defaults("they resist a change of their length"),
+       later("to_where", "Nodes of another body, to which springs run."),
+       later("to_at", "A material point of another body, to which springs run."),
+       later("slack", "Of springs: what they lengthen by before they pull."),
+       later("tension_only", "Springs that do not push."), later("damping", "Of springs."),
+       later("rest_length", "Of springs."), later("curve", "Stretches and forces of springs.")});
 }
 
 }  // namespace

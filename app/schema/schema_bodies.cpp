@@ -98,7 +98,8 @@ Shape body_schema() {
           "`mass` or `density`.")
           .defaults("of the mass spread evenly over the volume, or over an open surface"),
       key("fluid", fluid_schema(), "What fills a closed body: its cavities, or all that its surface encloses."),
-      body_need_key()};
+      body_need_key(),
+      later("inertia_kind", "Lumped or consistent masses of elements.")};
   const std::vector<Key> elements = element_keys();
   keys.insert(keys.end(), elements.begin(), elements.end());
   return table(std::move(keys), {{{"mass", "density"}, false}}, "model");
@@ -127,12 +128,16 @@ void add_muscle_keys(std::vector<Key>& keys) {
              key("angle", number("rad", between(-kRightAngle, kRightAngle)),
                  "From rings about the axis towards it, as a right-handed screw: \"90 deg\" runs along it.")
                  .defaults("0")});
-  keys.push_back(key("fibres",
-                     array(table({key("direction", vector3("1"), "The same for all the material, at rest."),
-                                  key("cylindrical", wound, "Fibres that wind about an axis.")},
-                                 {{{"direction", "cylindrical"}}}),
-                           1),
-                     "Families of fibres, beside `active`."));
+  keys.push_back(
+      key("fibres",
+          array(table({key("direction", vector3("1"), "The same for all the material, at rest."),
+                       key("cylindrical", wound, "Fibres that wind about an axis."),
+                       later("cell_data", "A field of the mesh with their directions."),
+                       later("laplace", "Regions between which they run."), later("k1", "Stiffness of the fibres."),
+                       later("k2", "Of their exponent."), later("kappa", "Their dispersion.")},
+                      {{{"direction", "cylindrical", "cell_data", "laplace"}}}),
+                1),
+          "Families of fibres, beside `active`."));
   keys.push_back(
       key("active",
           table({key("stress", number("Pa", above(0)), "Along the fibres at a factor of 1 (second Piola-Kirchhoff).")
@@ -147,6 +152,9 @@ Shape make_material_schema() {
   std::vector<Choice> laws;
   laws.reserve(kMaterialLaws.size());
   for (const LawWord& law : kMaterialLaws) laws.push_back({law.word, law.meaning});
+  for (const char* law :
+       {"ogden", "yeoh", "stable-neo-hookean", "transverse-isotropic", "orthotropic", "holzapfel-gasser-ogden"})
+    laws.push_back({law, "", false});
   std::vector<Key> keys{key("law", choice(laws), "Elastic law.").defaults("\"st-venant-kirchhoff\""),
                         key("young", number("Pa", above(0)), "Young's modulus."),
                         key("poisson", number("1", inside(-1, 0.5)), "Poisson's ratio; goes with `young`."),
@@ -188,7 +196,9 @@ Shape make_material_schema() {
           "How a static solve takes `viscosity`.")
           .defaults("\"long-term\""));
   add_muscle_keys(keys);
-  return table(std::move(keys), {one});
+  keys.push_back(later("incompressible", "Of isochoric laws, in the place of `bulk`."));
+  keys.push_back(later("axes", "Directions of orthotropy."));
+  return table(std::move(keys), {one}, "law");
 }
 
 }  // namespace

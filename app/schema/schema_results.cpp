@@ -13,9 +13,10 @@ std::vector<Choice> quantities() {
       {"stress", "At points: Cauchy, 3 x 3 by rows [Pa]."},
       {"force", "Of the constraint or load on the nodes in `where` [N]."},
       {"moment", "Likewise, about `about` [N m]."},
-      {"volume", "Of the deformed material [m3]."},
+      {"volume",
+       "Of the deformed material, of a body, of the nodes in `where` (what they move), or of the scene [m3]."},
       {"mass", "Of a body, of the nodes in `where`, or of the scene [kg]."},
-      {"energy", "Elastic energy without stabilisation [J]."},
+      {"energy", "Elastic energy without stabilisation, likewise [J]."},
       {"kinetic_energy", "Of what moves [J]."},
       {"total_energy",
        "With stabilisation, kinetic energy and the potential of gravity, dead loads, fluids, and pressure on surfaces "
@@ -26,7 +27,10 @@ std::vector<Choice> quantities() {
       {"mean_displacement", "Likewise, by volume [m]."},
       {"frequency", "Of `solver.kind = \"modes\"` [1/s]."},
       {"fluid_volume", "What the fluid of a body fills [m3]."},
-      {"fluid_pressure", "Of the fluid of a body, at the level of its centre at rest [Pa]."}};
+      {"fluid_pressure", "Of the fluid of a body, at the level of its centre at rest [Pa]."},
+      {"contact_force", "What contact exerts on a body [N].", false},
+      {"contact_area", "Of a body [m2].", false},
+      {"minimum_gap", "Between bodies [m].", false}};
 }
 
 Shape probe_schema() {
@@ -105,6 +109,7 @@ Key output_schema() {
                  "again: the next run starts at once, with the same numbers. A path names the directory, relative to "
                  "that which the program runs in.")
                  .defaults("true: in the user's cache, `~/.cache/fascia/samples`"),
+             later("checkpoint", "How often a run keeps what it needs to be resumed."),
              key("picture", picture_schema(), "A PNG of the end state; of modes, of each side by side.")
                  .defaults("none")},
             {{{"every", "every_steps"}, false}}),

@@ -138,7 +138,8 @@ Key solver_schema() {
                "GPUs of this machine that share the integration points of meshless solids; other models take one.")
                .defaults("1"),
            key("threads", integer(between(0, 4096)), "Threads of the processor; 0: as many as the process may run on.")
-               .defaults("0")},
+               .defaults("0"),
+           later("accuracy", "Local error of implicit steps, which chooses their length.")},
           {{{"duration", "steps"}, false}}, "kind"),
       "How it is computed.");
 }

@@ -303,9 +303,11 @@ TEST(CouplingErrors, KeysOfOtherKinds) {
             "a.toml:19:9: couplings.c.point: is not used by kind = \"embed\"; remove it\n"
             "a.toml:20:13: couplings.c.stiffness: is not used by kind = \"embed\"; remove it\n"
             "a.toml:21:13: couplings.c.direction: is not used by kind = \"embed\"; remove it");
-  EXPECT_EQ(errors_of_coupling("kind = \"spring\"\nbody = \"beam\"\nwhere = \"all\"\nto = \"bone\"\npoint = [0, 0, 0]\n"
-                               "stiffness = 1\n"),
-            "a.toml:18:6: couplings.c.to: is not used by kind = \"spring\"; remove it");
+  EXPECT_EQ(
+      errors_of_coupling("kind = \"spring\"\nbody = \"beam\"\nwhere = \"all\"\nto = \"bone\"\npoint = [0, 0, 0]\n"
+                         "stiffness = 1\n"),
+      "a.toml:18:6: couplings.c.to: is not used by kind = \"spring\": springs to another body are not supported yet; "
+      "remove it");
 }
 
 TEST(CouplingErrors, Bodies) {
