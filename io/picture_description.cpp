@@ -39,6 +39,18 @@ double apart_from_neighbours(const std::vector<double>& states, std::size_t stat
 
 nlohmann::json to_json(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
+/// What points up in the scene of a result, where its summary says so.
+std::optional<Vec3d> up_of_summary(const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / "summary.json";
+  if (!std::filesystem::exists(file)) return {};
+  const nlohmann::json summary = nlohmann::json::parse(read_file(file), nullptr, false);
+  if (!summary.is_object() || !summary.contains("up")) return {};
+  const nlohmann::json& up = summary["up"];
+  const bool is_vector = up.is_array() && up.size() == 3 &&
+                         std::all_of(up.begin(), up.end(), [](const nlohmann::json& x) { return x.is_number(); });
+  return is_vector ? std::optional(vector_of(up)) : std::nullopt;
+}
+
 PictureDescription from_json(const nlohmann::json& json) {
   PictureDescription description;
   description.title = json.at("title");
@@ -71,7 +83,11 @@ void write_description(const std::filesystem::path& directory, const PictureDesc
 
 PictureDescription read_description(const std::filesystem::path& directory) {
   const std::filesystem::path file = directory / kDescriptionFile;
-  if (!std::filesystem::exists(file)) return {};
+  if (!std::filesystem::exists(file)) {
+    PictureDescription description;
+    description.up = up_of_summary(directory);
+    return description;
+  }
   try {
     return from_json(nlohmann::json::parse(read_file(file)));
   } catch (const nlohmann::json::exception& e) {

@@ -133,7 +133,7 @@ Comparison compare(const fs::path& a, const fs::path& b, const std::vector<std::
   append(c.notes, c.probes.notes);
   append(c.notes, settings_a.notes);
   append(c.notes, settings_b.notes);
-  if (c.fields.same_meshes)
+  if (c.fields.same_meshes && c.probes.same_rows)
     use_arrays(c);
   else
     use_fields_and_probes(c);

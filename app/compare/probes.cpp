@@ -85,6 +85,15 @@ void add_row(ProbeDifference& d, std::vector<double> a, std::vector<double> b, d
   d.b = std::move(b);
 }
 
+/// Whether the pairs are all rows of two tables, each with the row of its number.
+bool are_rows(const TimePairs& times, std::size_t rows_of_a, std::size_t rows_of_b) {
+  const auto is_row = [](const TimePair& t) {
+    return t.a.fraction == 0 && t.b.fraction == 0 && t.a.below == t.b.below;
+  };
+  return rows_of_a == rows_of_b && times.pairs.size() == rows_of_a &&
+         std::all_of(times.pairs.begin(), times.pairs.end(), is_row);
+}
+
 void tell_others(const Columns& x, const Columns& y, const char* which, ProbeComparison& result) {
   std::vector<std::string> alone;
   for (const auto& [name, columns] : x)
@@ -105,6 +114,8 @@ ProbeComparison compare_probes(const ProbeSource& a, const ProbeSource& b) {
   tell_others(of_b, of_a, "B", result);
   if (of_a.empty() && of_b.empty()) return result;
   TimePairs times = pair_times(times_of(x), a.kind, times_of(y), b.kind, "rows of probes.csv");
+  const bool by_time = a.kind == b.kind && (a.kind == RunKind::statics || a.kind == RunKind::dynamics);
+  result.same_rows = !by_time || are_rows(times, x.rows.size(), y.rows.size());
   result.structure.insert(result.structure.end(), times.structure.begin(), times.structure.end());
   result.notes = std::move(times.notes);
   for (const auto& [name, columns] : of_a) {

@@ -24,6 +24,7 @@ struct ProbeDifference {
 struct ProbeComparison {
   std::vector<ProbeDifference> probes;  ///< the largest `relative` first
   std::vector<std::string> structure, notes;
+  bool same_rows = true;  ///< both have the same times
 };
 
 /// probes.csv of a result, as far as it is compared.

@@ -64,9 +64,7 @@ void add_springs(const Simulation& s, io::PictureDescription& description) {
 io::PictureDescription describe(const Simulation& s, const std::vector<double>& states, RunStatus status) {
   io::PictureDescription description;
   description.title = s.scene.title;
-  const World& world = s.scene.world;
-  description.up = world.up;
-  if (!world.up && norm(world.gravity) > 0) description.up = -normalized(world.gravity);
+  description.up = up_of(s.scene.world);
   const SolverKind kind = s.scene.solver.kind;
   description.kind = kind == SolverKind::modes     ? io::StateKind::frequency
                      : kind == SolverKind::statics ? io::StateKind::load_factor
@@ -87,6 +85,11 @@ std::vector<std::string> files_of(const Simulation& s, const fs::path& directory
 }
 
 }  // namespace
+
+std::optional<Vec3d> up_of(const World& world) {
+  if (world.up || norm(world.gravity) == 0) return world.up;
+  return -normalized(world.gravity);
+}
 
 void make_picture(const Simulation& s, const fs::path& directory, const std::vector<double>& states, RunStatus status) {
   constexpr std::size_t most_modes = 20;  // that can be told apart on a page

@@ -4,9 +4,13 @@
 #include "assembly/simulation/simulation.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace fascia::app {
+
+/// What points up in pictures: what the scene says, or against gravity.
+std::optional<Vec3d> up_of(const World& world);
 
 /// Draws the last saved state, of modes each of the first ones, into SCENE.png with the program fascia-picture beside
 /// this one, under a virtual display where there is none; picture.json beside it has what else the program shows. Where

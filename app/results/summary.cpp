@@ -1,4 +1,5 @@
 #include "app/results/coupling_report.hpp"
+#include "app/results/picture.hpp"
 #include "app/results/results.hpp"
 #include "app/run/process_memory.hpp"
 #include "app/version.hpp"
@@ -21,12 +22,13 @@ nlohmann::ordered_json bodies_of(const Simulation& s) {
   for (const SimulatedBody& b : s.bodies) {
     bodies[b.name] = {
         {"model", b.body->model_name()},
-        {b.vertices ? "nodes" : "frames", b.body->node_count()},
+        {"frames", b.vertices ? 0 : b.body->node_count()},
         {"shared", b.body->shared_nodes().size()},
         {"points", b.body->points().size()},
         {"cells", b.body->cells().nodes.size() / static_cast<std::size_t>(b.body->cells().nodes_per_cell)},
         {"volume", b.body->volume()},
         {"mass", b.body->mass()}};
+    if (b.vertices) bodies[b.name]["nodes"] = b.body->node_count();
   }
   return bodies;
 }
@@ -123,6 +125,7 @@ nlohmann::ordered_json summary(const Simulation& s, const RunEnd& end, const Run
     j["probes"][p.name] = {
         {"quantity", quantity_name(p.quantity)}, {"unit", probe_unit(p.quantity)}, {"value", probe_values[i]}};
   }
+  if (const std::optional<Vec3d> up = up_of(s.scene.world)) j["up"] = {(*up)[0], (*up)[1], (*up)[2]};
   j["provenance"] = provenance;
   return j;
 }

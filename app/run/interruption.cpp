@@ -3,14 +3,19 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <ctime>
 #include <utility>
 
 namespace fascia::app {
 namespace {
 
-constexpr long kPatience = 700'000'000;  // [ns]
-constexpr time_t kForResults = 6;        // to leave results in order [s]
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kSameRequest{300};  // "timeout" sends one signal to a program and another to its group
+constexpr long kPatience = 700'000'000;    // [ns]
+constexpr time_t kForResults = 6;          // to leave results in order [s]
 
 std::atomic<pthread_t> watcher_of_all{};
 
@@ -64,11 +69,13 @@ void Interruption::watch() {
   if (sigwait(&signals_, &first) != 0 || over_) return;
   signal_ = first;
   const timespec patience{0, kPatience};
-  do {
-    const int second = sigtimedwait(&signals_, nullptr, &patience);
+  const steady_clock::time_point asked = steady_clock::now();
+  for (bool waits = true; waits;) {
+    const int next = sigtimedwait(&signals_, nullptr, &patience);
+    waits = next > 0 || noticed_ || errno == EINTR;
     if (over_) return;
-    if (second > 0) _exit(128 + second);
-  } while (noticed_ || errno == EINTR);
+    if (next > 0 && steady_clock::now() - asked > kSameRequest) _exit(128 + next);
+  }
   // On another thread, so that a second signal, or a disk that does not answer, ends the process all the same.
   std::thread([this, first] {
     const std::lock_guard lock(mutex_);

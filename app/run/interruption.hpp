@@ -11,7 +11,7 @@ namespace fascia::app {
 
 /// Signals that ask a run to end: SIGINT, SIGTERM and, unless it is ignored (nohup), SIGHUP. A run looks at requested()
 /// between its steps; where it does not get there within a second, a function leaves its results in order, and the
-/// process ends. A second signal ends it at once. The exit status is 128 + the signal's number.
+/// process ends. A second signal, later than a moment, ends it at once. The exit status is 128 + the signal's number.
 class Interruption {
  public:
   /// From here on these signals wait for this object: to be made before other threads are.

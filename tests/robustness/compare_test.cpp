@@ -214,6 +214,14 @@ every_steps = 2
   EXPECT_NE(j.at("notes").dump().find("interpolated linearly"), std::string::npos) << j.at("notes");
 }
 
+/// Rows of probes.csv are those of one load factor each, however many a run has.
+TEST_F(Compare, LoadStepsAreNotMistakenForOneAnother) {
+  run("one", kCantilever, {"solver.load_steps=1"});
+  run("five", kCantilever, {"solver.load_steps=5"});
+  const Json j = compared("one", "five");
+  EXPECT_LT(j.at("quantities").at("tip").at("relative").get<double>(), 1e-6);
+}
+
 /// A mode's size and sign mean nothing: two meshes of one beam have nearly the same.
 TEST_F(Compare, ModesAreScaledToOneAnother) {
   const std::string modes =

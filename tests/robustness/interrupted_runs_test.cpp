@@ -75,6 +75,15 @@ TEST_F(InterruptedRuns, StopAtEverySignal) {
   }
 }
 
+/// `timeout` sends a signal to the program and another one to its group: both ask for the same.
+TEST_F(InterruptedRuns, TwoSignalsAtOnceAreOneRequest) {
+  const ProgramResult result =
+      in_shell("timeout --preserve-status -s INT 0.5 \"$PROGRAM\" run long.toml --output out --quiet");
+  EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
+  EXPECT_EQ(summary("out").at("status"), "interrupted");
+  expect_whole("long", 2);
+}
+
 TEST_F(InterruptedRuns, KilledLeaveWhatWasSaved) {
   for (const int milliseconds : {50, 120, 300, 1500}) {
     const ProgramResult result = stopped({"run", "long.toml", "--output", "out"}, SIGKILL, milliseconds);
