@@ -1,0 +1,327 @@
+// What the scene format says of regions, refusals and results, as scripts meet it.
+#include "tests/robustness/scene_runs.hpp"
+#include "tests/support/paths.hpp"
+
+#include <cmath>
+
+namespace fascia::format_runs_test {
+namespace {
+
+using namespace fascia::test;
+namespace fs = std::filesystem;
+
+/// Rows of probes.csv by the name of their column.
+class FormatRuns : public SceneRuns {
+ protected:
+  /// Runs a scene that must end well; what it said on standard error.
+  std::string run(const std::string& text, const std::vector<std::string>& settings = {}, int status = 0) const {
+    write("scene.toml", text);
+    std::vector<std::string> arguments{"run", "scene.toml", "--output", "out", "--quiet"};
+    for (const std::string& s : settings) arguments.insert(arguments.end(), {"--set", s});
+    const ProgramResult result = fascia(arguments);
+    EXPECT_EQ(result.status, status) << result.err;
+    return result.err;
+  }
+  std::vector<double> column(const std::string& name) const {
+    const std::vector<std::string> rows = lines_of(read_text(folder_ / "out/probes.csv"));
+    const auto cells = [](const std::string& row) {
+      std::vector<std::string> out;
+      for (std::size_t begin = 0; begin <= row.size();) {
+        const std::size_t end = std::min(row.find(',', begin), row.size());
+        out.push_back(row.substr(begin, end - begin));
+        begin = end + 1;
+      }
+      return out;
+    };
+    const std::vector<std::string> head = cells(rows.at(0));
+    const auto place = static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
+    EXPECT_LT(place, head.size()) << name;
+    std::vector<double> values;
+    for (std::size_t r = 1; r < rows.size() && place < head.size(); ++r)
+      values.push_back(std::stod(cells(rows[r])[place]));
+    return values;
+  }
+  nlohmann::json value(const std::string& probe) const { return summary("out").at("probes").at(probe).at("value"); }
+  bool warns(const std::string& name) const {
+    const nlohmann::json warnings = summary("out").at("warnings");
+    for (const auto& w : warnings)
+      if (w.get<std::string>().ends_with("[" + name + "]")) return true;
+    return false;
+  }
+};
+
+constexpr const char* kBar = R"([bodies.bar]
+MODEL
+density = 1000
+material = { young = 1e6, poisson = 0 }
+[[constraints]]
+body = "bar"
+where = { box = { min = [-1, -9, -9], max = [0.001, 9, 9] } }
+fix = "all"
+[[loads]]
+body = "bar"
+where = { box = { min = [0.999, -9, -9], max = [2, 9, 9] } }
+total_force = [100, 0, 0]
+[solver]
+kind = "static"
+)";
+constexpr const char* kHexahedra =
+    "model = \"hexahedra\"\ndomain = { box = { min = [0, 0, 0], max = [1, 0.1, 0.1], cells = [8, 2, 2] } }";
+constexpr const char* kFrames =
+    "model = \"meshless\"\ndomain = { box = { min = [0, 0, 0], max = [1, 0.1, 0.1] } }\nframes = { grid = [9, 2, 2] }";
+constexpr const char* kShell =
+    "model = \"shell\"\nthickness = 0.01\n"
+    "domain = { rectangle = { origin = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 1, 0], cells = [8, 8] } }";
+
+/// Nodes hold what they move of the points around them: regions without common nodes add up to the whole, and the nodes
+/// of a face of a bar hold half of a layer of cells.
+TEST_F(FormatRuns, EnergyAndVolumeOfARegion) {
+  std::string probes;
+  for (const char* quantity : {"volume", "energy", "total_energy", "mass"})
+    for (const auto& [part, where] :
+         {std::pair{"all", ""},
+          std::pair{"end", "where = { halfspace = { point = [0.99, 0, 0], normal = [-1, 0, 0] } }"},
+          std::pair{"rest", "where = { halfspace = { point = [0.99, 0, 0], normal = [1, 0, 0] } }"}})
+      probes += std::string("[probes.") + quantity + "_" + part + "]\nbody = \"bar\"\nquantity = \"" + quantity +
+                "\"\n" + where + "\n";
+  for (const char* model : {kHexahedra, kFrames, kShell}) {
+    run(with(kBar, "MODEL", model) + probes);
+    for (const std::string quantity : {"volume", "energy", "total_energy"}) {
+      const double all = value(quantity + "_all"), end = value(quantity + "_end"), rest = value(quantity + "_rest");
+      EXPECT_NEAR(end + rest, all, 1e-9 * std::abs(all)) << model << quantity;
+      EXPECT_NE(end, all) << model << quantity;
+    }
+    const double share = value("volume_end").get<double>() / value("volume_all").get<double>();
+    EXPECT_NEAR(share, 1.0 / 16, 0.002) << model;  // pulled by a few percent
+  }
+}
+
+constexpr const char* kRigid = R"([bodies.r]
+model = "rigid"
+domain = { box = { min = [-0.1, -0.1, -0.1], max = [0.1, 0.1, 0.1] } }
+mass = 2
+[solver]
+kind = "KIND"
+time_step = 0.01
+duration = 0.5
+[output]
+every_steps = 1
+)";
+
+/// A rigid body is led about one axis, and free about the others: a box about an axis of its inertia turns as told,
+/// with I w of momentum from the first step on, and no moment once it turns.
+TEST_F(FormatRuns, ARigidBodyIsLedAboutOneAxis) {
+  const std::string rest =
+      "[[constraints]]\nbody = \"r\"\nwhere = \"all\"\nmove = { rotate = { axis = [0, 0, 1], angle = 1 }, axes = "
+      "[\"rz\"] }\nover = 1\n[probes]\nM = { body = \"r\", where = \"all\", quantity = \"moment\" }\nL = { body = "
+      "\"r\", quantity = \"angular_momentum\" }\nE = { body = \"r\", quantity = \"kinetic_energy\" }\n";
+  const double inertia = 2 * 0.2 * 0.2 / 6;
+  for (const char* kind : {"implicit-euler", "bdf2", "newmark", "midpoint"}) {
+    run(with(kRigid, "KIND", kind) + rest);
+    const std::vector<double> L = column("L.z"), E = column("E"), M = column("M.z");
+    for (std::size_t i = 4; i < L.size(); ++i) {
+      EXPECT_NEAR(L[i], inertia, 1e-4 * inertia) << kind << i;
+      EXPECT_NEAR(E[i], inertia / 2, 1e-4 * inertia) << kind << i;
+      EXPECT_NEAR(M[i], 0, 0.02 * inertia) << kind << i;
+    }
+  }
+}
+
+/// Vertices of a rigid body's surface are what a region of it holds: probes and loads take them; a constraint takes its
+/// mass centre, and says so.
+TEST_F(FormatRuns, RegionsOfARigidBodyHoldVertices) {
+  const std::string turned =
+      "[[constraints]]\nbody = \"r\"\nwhere = \"all\"\nmove = { rotate = { axis = [0, 0, 1], angle = \"90 deg\" } "
+      "}\nover "
+      "= 0.5\n[probes]\nmean = { body = \"r\", where = { nearest = [0.1, 0.1, 0.1] }, quantity = \"mean_displacement\" "
+      "}\n"
+      "most = { body = \"r\", where = { nearest = [0.1, 0.1, 0.1] }, quantity = \"max_displacement\" }\n";
+  run(with(kRigid, "KIND", "implicit-euler") + turned);
+  EXPECT_NEAR(value("mean")[0].get<double>(), -0.2, 1e-12);
+  EXPECT_NEAR(value("mean")[1].get<double>(), 0, 1e-12);
+  EXPECT_NEAR(value("most").get<double>(), 0.2, 1e-12);
+
+  const std::string pushed =
+      "[[constraints]]\nbody = \"r\"\nwhere = \"all\"\nfix = \"all\"\n[[loads]]\nbody = \"r\"\nwhere = { box = { min = "
+      "[0.099, -1, -1], max = [0.101, 1, 1] } }\nforce_per_node = [0, 0, 1]\n[probes]\nM = { body = \"r\", where = "
+      "\"all\", quantity = \"moment\" }\nF = { body = \"r\", where = \"all\", quantity = \"force\" }\n";
+  run(with(kRigid, "KIND", "implicit-euler") + pushed);
+  EXPECT_NEAR(value("F")[2].get<double>(), -4, 1e-9);   // four vertices
+  EXPECT_NEAR(value("M")[1].get<double>(), 0.4, 1e-9);  // 0.1 m beside the centre
+
+  const std::string pinned = "[[constraints]]\nbody = \"r\"\nwhere = WHERE\nfix = \"position\"\n";
+  run(with(kRigid, "KIND", "implicit-euler") + with(pinned, "WHERE", "{ nearest = [0.1, 0.1, 0.1] }"));
+  EXPECT_TRUE(warns("rigid"));
+  run(with(kRigid, "KIND", "implicit-euler") + with(pinned, "WHERE", "\"all\""));
+  EXPECT_FALSE(warns("rigid"));
+}
+
+/// A face whose positions are held without rotations is softer than one that is clamped; an edge is a hinge.
+TEST_F(FormatRuns, PositionsWithoutRotationsAreWarnedOf) {
+  const std::string held = with(with(kBar, "MODEL", kFrames), "fix = \"all\"", "fix = \"position\"");
+  run(held);
+  EXPECT_TRUE(warns("rotations"));
+  run(with(kBar, "MODEL", kHexahedra));
+  EXPECT_FALSE(warns("rotations"));
+  const std::string hinged =
+      with(with(held, "max = [0.001, 9, 9]", "max = [0.001, 0.001, 9]"), "[[loads]]",
+           "[[constraints]]\nbody = \"bar\"\nwhere = { halfspace = { point = [0.999, 0, 0], normal = "
+           "[-1, 0, 0] } }\nfix = \"all\"\n[[loads]]");
+  run(hinged);
+  EXPECT_FALSE(warns("rotations"));
+}
+
+/// What regions and points of a scene have wrong is told in one go.
+TEST_F(FormatRuns, ErrorsOfTheGeometryAreToldTogether) {
+  const std::string text =
+      with(with(with(kBar, "MODEL", kHexahedra), "[-1, -9, -9]", "[-2, -9, -9]"), "[0.001, 9, 9]", "[-1.5, 9, 9]");
+  write("scene.toml", with(text, "[0.999, -9, -9]", "[1.5, -9, -9]") +
+                          "[probes.tip]\nbody = \"bar\"\nat = [3, 0, 0]\nquantity = \"displacement\"\n");
+  const ProgramResult result = fascia({"check", "scene.toml"});
+  EXPECT_EQ(result.status, 2);
+  const std::vector<std::string> lines = lines_of(result.err);
+  ASSERT_EQ(lines.size(), 3u) << result.err;
+  EXPECT_NE(lines[0].find("constraints[0].where: the region selects no node"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[1].find("loads[0].where: the region holds no material"), std::string::npos) << lines[1];
+  EXPECT_NE(lines[2].find("probes.tip.at: (3, 0, 0) lies 2 m outside"), std::string::npos) << lines[2];
+}
+
+/// Names of the format that this version does not have are refused as such, not as mistakes.
+TEST_F(FormatRuns, WhatIsNotSupportedYetIsSaid) {
+  write("scene.toml", with(kBar, "MODEL", kHexahedra));
+  for (const char* setting :
+       {"phases=[]", "contacts={gap=1}", "tools={}", "initial={from='out'}", "solver.accuracy='1 %'",
+        "output.checkpoint='60 s'", "constraints[0].until=1", "loads[0].from=1", "bodies.bar.inertia_kind='lumped'",
+        "bodies.bar.material.law='ogden'", "bodies.bar.material.law='yeoh'", "bodies.bar.material.incompressible=true",
+        "probes.c={quantity='contact_force',body='bar'}",
+        "couplings.s={kind='spring',body='bar',where='all',point=[0,0,0],stiffness=1,slack=0.1}",
+        "couplings.s={kind='spring',body='bar',where='all',point=[0,0,0],stiffness=1,to='bar'}",
+        "bodies.bar.material.fibres=[{cell_data='f'}]"}) {
+    const ProgramResult result = fascia({"check", "scene.toml", "--set", setting});
+    EXPECT_EQ(result.status, 2) << setting;
+    EXPECT_NE(result.err.find("not supported yet"), std::string::npos) << setting << ": " << result.err;
+  }
+  for (const char* command : {"resume", "fit"}) {
+    const ProgramResult result = fascia({command, "out"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("is not supported yet"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(FormatRuns, SummariesOfBodiesHaveTheirFrames) {
+  run(with(kBar, "MODEL", kHexahedra), {"world.gravity=[0,-1,0]"});
+  nlohmann::json bar = summary("out").at("bodies").at("bar");
+  EXPECT_EQ(bar.at("frames"), 0);
+  EXPECT_EQ(bar.at("nodes"), 81);
+  EXPECT_EQ(summary("out").at("up"), nlohmann::json({0.0, 1.0, 0.0}));
+  run(with(kBar, "MODEL", kFrames), {"world.up=[1,0,0]"});
+  bar = summary("out").at("bodies").at("bar");
+  EXPECT_EQ(bar.at("frames"), 36);
+  EXPECT_FALSE(bar.contains("nodes"));
+  EXPECT_EQ(summary("out").at("up"), nlohmann::json({1.0, 0.0, 0.0}));
+}
+
+TEST_F(FormatRuns, KeysWithoutEffectAreTold) {
+  run(with(kBar, "MODEL", kHexahedra), {"output.fields=['rotation']"});
+  EXPECT_TRUE(warns("no-effect"));
+  run(with(kBar, "MODEL", kFrames), {"output.fields=['rotation']"});
+  EXPECT_FALSE(warns("no-effect"));
+  run(with(kBar, "MODEL", kHexahedra), {"loads=", "solver={kind='modes',count=500}"});
+  EXPECT_TRUE(warns("no-effect"));
+}
+
+/// Frames of a cloud are not where their material is: what embeds them is told, and the gap is that of the material.
+TEST_F(FormatRuns, ScatteredFramesThatAreEmbeddedPart) {
+  const std::string pair = R"([bodies.host]
+model = "hexahedra"
+domain = { box = { min = [0, 0, 0], max = [1, 0.2, 0.2], cells = [4, 2, 2] } }
+density = 1000
+material = { young = 1e6, poisson = 0 }
+[bodies.rider]
+model = "meshless"
+domain = { box = { min = [1, 0, 0], max = [2, 0.2, 0.2] } }
+density = 1000
+material = { young = 5e5, poisson = 0 }
+frames = FRAMES
+[couplings.c]
+kind = "embed"
+body = "rider"
+where = { box = { min = [0.9999, -9, -9], max = [1.0001, 9, 9] } }
+to = "host"
+[[constraints]]
+body = "host"
+where = { box = { min = [-0.001, -9, -9], max = [0.001, 9, 9] } }
+fix = "all"
+[[loads]]
+body = "rider"
+where = { box = { min = [1.999, -9, -9], max = [2.001, 9, 9] } }
+total_force = [0.4, 0, 0]
+[solver]
+kind = "static"
+)";
+  run(with(pair, "FRAMES", "{ poisson_disk = 0.15 }"), {"silence=['load']"});
+  EXPECT_TRUE(warns("scattered"));
+  EXPECT_GT(summary("out").at("couplings").at("c").at("gap").get<double>(), 1e-6);  // the joint moves by 1e-5
+  run(with(pair, "FRAMES", "{ grid = [9, 3, 3] }"), {"silence=['load']"});
+  EXPECT_FALSE(warns("scattered"));
+  EXPECT_LT(summary("out").at("couplings").at("c").at("gap").get<double>(), 1e-7);
+}
+
+/// Nearly incompressible tetrahedra meet some indefinite tangents on the way from their first guess, and no buckle:
+/// they are stretched in few steps.
+TEST_F(FormatRuns, StretchesWithoutABuckleAreNotCut) {
+  const std::string stretched = R"([bodies.b]
+model = "tetrahedra"
+domain = { box = { min = [0, -0.1, -0.1], max = [1, 0.1, 0.1], cells = [8, 2, 2] } }
+material = { law = "neo-hookean", young = 1e5, poisson = 0.49 }
+density = 1000
+[[constraints]]
+body = "b"
+where = { box = { min = [-0.001, -9, -9], max = [0.001, 9, 9] } }
+fix = "all"
+[[constraints]]
+body = "b"
+where = { box = { min = [0.999, -9, -9], max = [1.001, 9, 9] } }
+move = { translate = [SHIFT, 0, 0] }
+[solver]
+kind = "static"
+)";
+  for (const auto& [shift, most] : {std::pair{"0.3", 20}, std::pair{"1", 60}}) {
+    run(with(stretched, "SHIFT", shift));
+    EXPECT_LE(summary("out").at("newton_iterations").get<int>(), most) << shift;  // 42 and 154 where each cuts a step
+    EXPECT_FALSE(warns("solver")) << shift;
+  }
+}
+
+/// Triangles that face against the directors of their corners are no physical state, as solids inside out are none: a
+/// ball of few triangles, blown to one and a half times its size.
+TEST_F(FormatRuns, ShellsThatAreInsideOutAreInverted) {
+  const std::string blown = R"([bodies.s]
+model = "shell"
+domain = { sphere = { center = [0, 0, 0], radius = 0.1, cells = [32] } }
+thickness = 0.002
+density = 1000
+material = { young = 1e6, poisson = 0.3 }
+fluid = { bulk_modulus = 1e8, volume = 0.0141372 }
+[[constraints]]
+body = "s"
+where = { box = { min = [-1e-6, -9, -9], max = [1e-6, 9, 9] } }
+fix = ["x"]
+[[constraints]]
+body = "s"
+where = { box = { min = [-9, -1e-6, -9], max = [9, 1e-6, 9] } }
+fix = ["y"]
+[[constraints]]
+body = "s"
+where = { box = { min = [-9, -9, -1e-6], max = [9, 9, 1e-6] } }
+fix = ["z"]
+)";
+  EXPECT_NE(run(blown, {}, 3).find("face against the directors"), std::string::npos);
+  EXPECT_EQ(summary("out").at("status"), "inverted");
+  run(blown, {"solver.accept=['inverted']"});
+  EXPECT_EQ(summary("out").at("status"), "converged");
+  EXPECT_TRUE(warns("inverted"));
+}
+
+}  // namespace
+}  // namespace fascia::format_runs_test
