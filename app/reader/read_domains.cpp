@@ -197,9 +197,10 @@ std::optional<Extent> read_extent(const TableReader& body) {
     return as == "sheet" ? Extent::surface : as == "strands" ? Extent::line : Extent::solid;
   }
   if (domain.has("rectangle")) return Extent::surface;
+  if (domain.has("annulus")) return Extent::thin_mesh;
   if (domain.has("line")) return Extent::line;
   if (domain.has("file")) return body.has("thickness") || body.has("radius") ? Extent::thin_mesh : Extent::solid;
-  for (const char* solid : {"box", "cylinder", "ellipsoid", "sphere"})
+  for (const char* solid : {"box", "block", "cylinder", "ellipsoid", "sphere"})
     if (domain.has(solid)) return Extent::solid;
   return std::nullopt;
 }
@@ -215,6 +216,10 @@ void read_section(const TableReader& table, Body& body) {
   if (extent == Extent::surface) {
     require(table, "thickness", "is missing for a rectangle; must be a length in m above 0, or a list by region");
     table.refuse({"radius"}, "is not used by a rectangle, which has thickness");
+  }
+  if (table.table("domain").has("annulus")) {
+    require(table, "thickness", "is missing for an annulus; must be a length in m above 0, or a list by region");
+    table.refuse({"radius"}, "is not used by an annulus, which has thickness");
   }
   if (extent == Extent::line) {
     require(table, "radius", "is missing for a line; must be a length in m above 0");

@@ -149,16 +149,8 @@ void refuse_element_keys(const TableReader& table) {
   table.refuse({"formulation", "order", "incompressibility", "locking"}, unused);
   const TableReader domain = table.table("domain");
   if (domain.has("file")) domain.refuse({"refine"}, unused + "; give more frames");
-  if (domain.has("block"))
-    return domain.error("block",
-                        "is for mesh models and rigid bodies; must be box, cylinder, ellipsoid, sphere, file, "
-                        "rectangle, line or between");
-  if (domain.has("annulus"))
-    return domain.error(
-        "annulus",
-        "is for shells and rigid bodies; must be box, cylinder, ellipsoid, sphere, file, rectangle, line or between");
   if (const char* kind = generated_kind(domain)) domain.table(kind).refuse({"cells", "split"}, unused);
-  domain.table("rectangle").refuse({"cells"}, unused);
+  for (const char* flat : {"rectangle", "annulus"}) domain.table(flat).refuse({"cells"}, unused);
   refuse_shell_keys(table);
 }
 

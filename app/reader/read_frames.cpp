@@ -44,8 +44,10 @@ GridFrames read_grid(const TableReader& frames, std::optional<Extent> extent, bo
     return {};
   }
   if (extent == Extent::thin_mesh) {
-    frames.error("grid",
-                 "cannot fill sheets and lines of a mesh (thickness or radius is given); use poisson_disk or count");
+    frames.error(
+        "grid",
+        "cannot fill an annulus, or sheets and lines of a mesh (thickness or radius is given); use poisson_disk or "
+        "count");
     return {};
   }
   const auto grid = read_per_direction(frames, "grid", extent);

@@ -37,7 +37,7 @@ enum class Extent {
   solid,
   surface,
   line,
-  thin_mesh  ///< sheets and lines of a mesh, perhaps beside solids
+  thin_mesh  ///< sheets and lines of a mesh, perhaps beside solids; or a ring
 };
 /// By the keys `domain`, `thickness` and `radius` of a body; none where the domain is missing or wrong.
 std::optional<Extent> read_extent(const TableReader& body);

@@ -129,8 +129,7 @@ Shape domain_schema() {
   return table(
       {key("box", box(), "An axis-aligned box; for rigid bodies and surfaces its skin."),
        key("block", block(),
-           "A tapered block between eight corners; for tetrahedra and hexahedra, and its skin for rigid bodies and "
-           "surfaces."),
+           "A tapered block between eight corners; for rigid bodies and surfaces its skin. Not for shells."),
        key("cylinder", cylinder(), "A solid cylinder; for shells, rigid bodies and surfaces its skin."),
        key("ellipsoid", ellipsoid(), "A solid ellipsoid; for shells, rigid bodies and surfaces its skin."),
        key("sphere", sphere(), "A solid ball; for shells, rigid bodies and surfaces its skin."),
@@ -146,7 +145,8 @@ Shape domain_schema() {
            "with their cells, the shape stays. Only for `model = \"tetrahedra\"`, `\"hexahedra\"` and `\"shell\"`.")
            .defaults("0"),
        key("rectangle", rectangle(), "A flat sheet between two edges; a meshless body or a shell needs `thickness`."),
-       key("annulus", annulus(), "A flat ring or a sector of it; for shells, rigid bodies and surfaces."),
+       key("annulus", annulus(),
+           "A flat ring or a sector of it; a meshless body of scattered frames or a shell needs `thickness`."),
        key("line", line(), "A straight line; the body needs `radius`."),
        key("between", array(text("the name of a body"), 2, 2),
            "Two bodies: the space between their surfaces, for a meshless body of scattered frames. It is where the "

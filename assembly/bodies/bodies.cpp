@@ -8,6 +8,7 @@
 #include "assembly/specification/errors.hpp"
 #include "coupling/rigid_body.hpp"
 #include "coupling/surface_body.hpp"
+#include "fem/generate.hpp"
 #include "meshless/cloud_parts.hpp"
 #include "meshless/grid_body.hpp"
 #include "shells/shell_body.hpp"
@@ -269,6 +270,10 @@ double measure_of(const Body& body) {
   if (const auto* r = std::get_if<RectangleDomain>(&body.domain))
     return norm(cross(r->edge_u, r->edge_v)) * scale * scale;
   if (const auto* l = std::get_if<LineDomain>(&body.domain)) return norm(l->to - l->from) * scale;
+  if (const auto* a = std::get_if<AnnulusDomain>(&body.domain))
+    return 0.5 * (a->angle[1] - a->angle[0]) * (a->outer * a->outer - a->inner * a->inner) * scale * scale;
+  if (const auto* b = std::get_if<BlockDomain>(&body.domain))
+    return element_volume(generate_block(b->corners, {1, 1, 1}, {}), 0) * std::pow(scale, 3);
   return 0;
 }
 

@@ -11,7 +11,9 @@
 #include "core/geometry/primitives.hpp"
 #include "core/geometry/surface.hpp"
 #include "core/math/rotation.hpp"
+#include "fem/generate.hpp"
 #include "meshless/cloud_parts.hpp"
+#include "shells/generate.hpp"
 
 #include <fmt/format.h>
 
@@ -118,6 +120,17 @@ SolidDomain make_solid(ClosedSurface closed, double scale) {
   return solid;
 }
 
+/// As many facets as carried faces have; the volume is that of the trilinear map.
+SolidDomain make_block(const BlockDomain& b, const Body& body) {
+  std::array<Vec3d, 8> corners = b.corners;
+  for (Vec3d& x : corners) x *= body.transform.scale;
+  const Bounds bounds = bounds_of(corners);
+  const ElementMesh mesh = generate_block(corners, face_cells(body, bounds.high - bounds.low), {});
+  double volume = 0;
+  for (std::size_t e = 0; e < mesh.size(); ++e) volume += element_volume(mesh, e);
+  return make_solid({boundary_faces(mesh).surface, volume, {}}, 1);
+}
+
 SheetPart make_sheet(TriangleMesh mesh, const Body& body, const MatterParts& placement) {
   SheetPart sheet;
   sheet.surface = std::move(mesh);
@@ -147,6 +160,18 @@ TriangleMesh rectangle_mesh(const RectangleDomain& r, const Body& body, double s
     }
   }
   return mesh;
+}
+
+/// A flat ring, whose thickness makes up for what facets leave of its area.
+SheetPart make_ring(const AnnulusDomain& a, const Body& body, const MatterParts& placement) {
+  constexpr int kOutward = 8, kAround = 192;
+  const double scale = body.transform.scale, turn = a.angle[1] - a.angle[0];
+  ShellMesh mesh = annulus(a.center * scale, a.normal, a.inner * scale, a.outer * scale,
+                           {a.angle[0], a.angle[1], a.closed}, {kOutward, kAround}, Diagonal::right);
+  SheetPart sheet = make_sheet({std::move(mesh.nodes), std::move(mesh.triangles)}, body, placement);
+  const double facet = turn / kAround;
+  for (double& thickness : sheet.thickness) thickness *= facet / std::sin(facet);
+  return sheet;
 }
 
 LinePart line_part(const LineDomain& l, const Body& body, double scale) {
@@ -267,6 +292,14 @@ Body near_origin(const Body& body) {
   if (auto* y = std::get_if<CylinderDomain>(&result.domain)) shift({y->from, y->to}, {&y->from, &y->to});
   if (auto* e = std::get_if<EllipsoidDomain>(&result.domain))
     shift({e->center - e->radii, e->center + e->radii}, {&e->center});
+  if (auto* b = std::get_if<BlockDomain>(&result.domain)) {
+    c = local_origin(bounds_of(b->corners));
+    for (Vec3d& x : b->corners) x -= c;
+  }
+  if (auto* a = std::get_if<AnnulusDomain>(&result.domain)) {
+    const Vec3d reach{{a->outer, a->outer, a->outer}};
+    shift({a->center - reach, a->center + reach}, {&a->center});
+  }
   if (auto* r = std::get_if<RectangleDomain>(&result.domain))
     shift({r->origin, r->origin + r->edge_u + r->edge_v}, {&r->origin});
   if (auto* l = std::get_if<LineDomain>(&result.domain)) shift({l->from, l->to}, {&l->from, &l->to});
@@ -280,11 +313,14 @@ MatterParts make_domain(const Body& body, std::vector<std::string>& messages) {
   parts.rotation = rotation_of(body.transform);
   parts.translation = body.transform.translate;
   if (const auto* box = std::get_if<BoxDomain>(&body.domain)) parts.solid = make_box(*box, body);
+  if (const auto* block = std::get_if<BlockDomain>(&body.domain)) parts.solid = make_block(*block, body);
   if (const auto* cylinder = std::get_if<CylinderDomain>(&body.domain)) parts.solid = make_cylinder(*cylinder, body);
   if (const auto* ellipsoid = std::get_if<EllipsoidDomain>(&body.domain))
     parts.solid = make_ellipsoid(*ellipsoid, scale);
   if (const auto* r = std::get_if<RectangleDomain>(&body.domain))
     parts.sheets.push_back(make_sheet(rectangle_mesh(*r, body, scale), body, parts));
+  if (const auto* ring = std::get_if<AnnulusDomain>(&body.domain))
+    parts.sheets.push_back(make_ring(*ring, body, parts));
   if (const auto* line = std::get_if<LineDomain>(&body.domain)) parts.lines.push_back(line_part(*line, body, scale));
   if (const auto* file = std::get_if<FileDomain>(&body.domain)) {
     Mesh mesh = read_for(file->place, file->path, file->read, MidNodes::drop);

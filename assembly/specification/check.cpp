@@ -29,10 +29,10 @@ std::size_t dimension(const Domain& d) {
 /// True where a body of a model can have a domain.
 bool fits(BodyModel model, const Domain& d) {
   const bool block = std::holds_alternative<BlockDomain>(d), box = std::holds_alternative<BoxDomain>(d);
-  const bool line = std::holds_alternative<LineDomain>(d), ring = std::holds_alternative<AnnulusDomain>(d);
+  const bool line = std::holds_alternative<LineDomain>(d);
   switch (model) {
     case BodyModel::meshless:
-      return !block && !ring;
+      return true;
     case BodyModel::tetrahedra:
     case BodyModel::hexahedra:
       return !is_flat(d) && !line && between(d) == nullptr;
@@ -85,6 +85,8 @@ class Check {
       return parts_.wrong(b.frames_place, "is missing; give GridFrames, CountedSamples, SpacedSamples or ListedFrames");
     if (grid && between(b.domain))
       return parts_.wrong(b.frames_place, "is a grid, and the space between two bodies needs scattered frames");
+    if (grid && std::holds_alternative<AnnulusDomain>(b.domain))
+      return parts_.wrong(b.frames_place, "is a grid, and rings need scattered frames");
     if (grid && size == 0 && (b.radius || !b.thickness.empty()))
       return parts_.wrong(b.frames_place, "is a grid, and sheets and lines of a file need scattered frames");
     if (grid) parts_.counts(grid->count, size == 0 ? 3 : size, 2, b.frames_place);

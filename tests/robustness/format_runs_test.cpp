@@ -323,5 +323,74 @@ fix = ["z"]
   EXPECT_TRUE(warns("inverted"));
 }
 
+/// A tapered block has the volume of its trilinear map, and bends as hexahedra of the same shape do.
+TEST_F(FormatRuns, FramesFillATaperedBlock) {
+  const std::string block = R"([world]
+gravity = [0, 0, -1]
+[bodies.b]
+MODEL
+density = 1000
+material = { young = 1e6, poisson = 0.3 }
+[[constraints]]
+body = "b"
+where = { box = { min = [-1, -1, -1], max = [0.001, 1, 1] } }
+fix = "all"
+[solver]
+kind = "static"
+[probes.tip]
+body = "b"
+at = [1, 0.1, 0.1]
+quantity = "displacement"
+)";
+  const std::string domain =
+      "domain = { block = { corners = [[0, 0, 0], [1, 0.05, 0.05], [1, 0.15, 0.05], [0, 0.2, 0], [0, 0, 0.2], [1, "
+      "0.05, "
+      "0.15], [1, 0.15, 0.15], [0, 0.2, 0.2]]CELLS } }\n";
+  run(with(block, "MODEL", with(domain, "CELLS", ", cells = [10, 3, 3]") + "model = \"hexahedra\"\norder = 2"));
+  const double sag = value("tip")[2];
+  for (const auto& [frames, allowed] :
+       {std::pair{"frames = { poisson_disk = 0.08 }", 0.03},
+        std::pair{"frames = { grid = [11, 4, 4] }\npoints = { per_cell = [3, 3, 3] }", 0.06}}) {
+    run(with(block, "MODEL", with(domain, "CELLS", "") + "model = \"meshless\"\n" + frames));
+    EXPECT_NEAR(summary("out").at("bodies").at("b").at("volume").get<double>(), 0.07 / 3, 1e-12);
+    EXPECT_NEAR(value("tip")[2].get<double>() / sag, 1, allowed) << frames;
+  }
+}
+
+/// A flat ring of scattered frames has the area of a ring, and sags as shells do that are held where it is held.
+TEST_F(FormatRuns, FramesFillARing) {
+  const std::string ring = R"([world]
+gravity = [0, 0, -1]
+[bodies.b]
+MODEL
+thickness = 0.05
+density = 1000
+material = { young = 1e7, poisson = 0.3 }
+[[constraints]]
+body = "b"
+where = { cylinder = { from = [0, 0, -1], to = [0, 0, 1], radius = 0.5001 } }
+fix = "all"
+[solver]
+kind = "static"
+[probes.rim]
+body = "b"
+at = [1, 0, 0]
+quantity = "displacement"
+)";
+  const std::string domain =
+      "domain = { annulus = { center = [0, 0, 0], normal = [0, 0, 1], inner = 0.5, outer = 1CELLS } }\n";
+  run(with(ring, "MODEL", with(domain, "CELLS", ", cells = [8, 48]") + "model = \"shell\""));
+  const double sag = value("rim")[2];
+  run(with(ring, "MODEL", with(domain, "CELLS", "") + "model = \"meshless\"\nframes = { poisson_disk = 0.05 }"));
+  EXPECT_NEAR(summary("out").at("bodies").at("b").at("volume").get<double>(), std::acos(-1.0) * 0.75 * 0.05, 1e-12);
+  std::printf("ring: shell %.6f m, frames %.6f m\n", sag, value("rim")[2].get<double>());
+  EXPECT_NEAR(value("rim")[2].get<double>() / sag, 1, 0.06);  // 0.19, 0.11, 0.04, 0.035 at 0.12, 0.08, 0.05, 0.035 m
+  write("scene.toml",
+        with(ring, "MODEL", with(domain, "CELLS", "") + "model = \"meshless\"\nframes = { grid = [4, 4] }"));
+  const ProgramResult refused = fascia({"check", "scene.toml"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("frames.grid: cannot fill an annulus"), std::string::npos) << refused.err;
+}
+
 }  // namespace
 }  // namespace fascia::format_runs_test

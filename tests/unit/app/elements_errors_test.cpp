@@ -59,9 +59,7 @@ TEST(ElementErrors, MeshlessBodiesTakeNoKeysOfElements) {
   EXPECT_EQ(errors_of(beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }",
                                 "block = { corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, "
                                 "1], [1, 1, 1], [0, 1, 1]], cells = [1, 1, 1] }")),
-            "a.toml:6:20: bodies.beam.domain.block: is for mesh models and rigid bodies; must be box, cylinder, "
-            "ellipsoid, sphere, file, "
-            "rectangle, line or between");
+            "a.toml:6:130: bodies.beam.domain.block.cells: is not used by model = \"meshless\"; remove it");
 }
 
 TEST(ElementErrors, Values) {

@@ -102,7 +102,8 @@ TEST(FrameErrors, GridsHaveANumberForEachDirection) {
 
 TEST(FrameErrors, MeshesOfSheetsAndLinesTakeNoGrid) {
   const char* message =
-      "cannot fill sheets and lines of a mesh (thickness or radius is given); use poisson_disk or count";
+      "cannot fill an annulus, or sheets and lines of a mesh (thickness or radius is given); use poisson_disk or "
+      "count";
   EXPECT_EQ(errors_of_mesh("thickness = 1\nframes = { grid = [5, 3] }\n"),
             std::string("a.toml:8:19: bodies.skin.frames.grid: ") + message);
   EXPECT_EQ(errors_of_mesh("radius = 1\nframes = { grid = [5, 3, 3] }\npoints = { per_cell = [2, 2, 2] }\n"),

@@ -123,9 +123,11 @@ TEST(ShellErrors, OthersTakeNoKeysOfSurfaces) {
             "a.toml:6:112: bodies.beam.domain.cylinder.caps: is not used by a solid; remove it");
   const std::string ring = "annulus = { center = [0, 0, 0], normal = [0, 0, 1], inner = 1, outer = 2, cells = [1, 8] }";
   EXPECT_EQ(errors_of(test::beam_with("box = { min = [0, 0, 0], max = [4, 1, 1] }", ring)),
-            "a.toml:6:22: bodies.beam.domain.annulus: is for shells and rigid bodies; must be box, cylinder, "
-            "ellipsoid, sphere, file, "
-            "rectangle, line or between");
+            "a.toml:4:1: bodies.beam.thickness: is missing for an annulus; must be a length in m above 0, or a list by "
+            "region\n"
+            "a.toml:6:94: bodies.beam.domain.annulus.cells: is not used by model = \"meshless\"; remove it\n"
+            "a.toml:9:19: bodies.beam.frames.grid: cannot fill an annulus, or sheets and lines of a mesh (thickness or "
+            "radius is given); use poisson_disk or count");
   EXPECT_EQ(errors_of(test::mesh_body("tetrahedra", ring)),
             "a.toml:6:22: bodies.block.domain.annulus: is no solid, which model = \"tetrahedra\" needs; must be box, "
             "block, cylinder, ellipsoid, sphere or file");
