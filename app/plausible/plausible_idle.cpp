@@ -67,7 +67,7 @@ void warn_of_absent(Simulation& s) {
     s.warnings.add("no-effect", s.scene.place_of("output.fields"),
                    "names \"rotation\", which bodies of elements do not have; remove it");
   const int free = s.model.free_dof_count(), asked = s.scene.solver.modes;
-  if (s.scene.solver.kind == SolverKind::modes && asked > free)
+  if (s.scene.solver.kind == SolverKind::modes && asked > free && s.scene.says("solver.count"))
     s.warnings.add(
         "no-effect", s.scene.place_of("solver.count"),
         fmt::format("asks for {} modes of a model with {} unknowns, which has no more of them", asked, free));

@@ -110,7 +110,8 @@ void check_vertex_rotations(const Simulation& s, int body, const Constraint& c) 
 }
 
 void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<int, Held>& held) {
-  if (!holds_positions(c) || holds_rotations(c)) return;
+  const bool place = c.fixed[0] && c.fixed[1] && c.fixed[2];
+  if (!(place || (is_moved(c) && holds_positions(c))) || holds_rotations(c)) return;
   const int body = body_index(s, c.body);
   if (s.scene.bodies[at(body)].model != BodyModel::meshless) return;
   const std::vector<int> nodes = find_nodes(s, body, c.where);
@@ -131,9 +132,10 @@ void warn_of_free_rotations(Simulation& s, const Constraint& c, const std::map<i
 }
 
 /// A rigid body is one frame at its mass centre: that is what a constraint holds, whatever points its region has.
-void warn_of_place(Simulation& s, const Constraint& c) {
+void warn_of_place(Simulation& s, const Constraint& c, const std::map<int, Held>& held) {
   const int body = body_index(s, c.body);
-  const bool turns = !(c.fixed[3] && c.fixed[4] && c.fixed[5]);
+  const auto found = held.find(s.bodies[at(body)].body->first_node());
+  const bool turns = found == held.end() || found->second.rotation.axis.size() < 3;
   if (s.scene.bodies[at(body)].model != BodyModel::rigid || !holds_positions(c) || !turns) return;
   const SimulatedBody& b = s.bodies[at(body)];
   if (b.body->surface().points.empty()) return;
@@ -212,7 +214,7 @@ void add_constraints(Simulation& s, PointSetBuilder& points) {
   check_shared(s, holds.shared, held);
   for (const Constraint& c : s.scene.constraints) {
     warn_of_free_rotations(s, c, held);
-    warn_of_place(s, c);
+    warn_of_place(s, c, held);
   }
   for (const auto& [node, h] : held) {
     FrameConstraint c;

@@ -304,8 +304,8 @@ void add_loads(Simulation& s) {
   add_gravity(s);
   SceneErrors errors;
   for (const Load& load : s.scene.loads) errors.gather([&] { add_load(s, load); });
+  errors.gather([&] { add_fluids(s); });
   errors.tell();
-  add_fluids(s);
 }
 
 }  // namespace fascia

@@ -192,7 +192,8 @@ Simulation build_simulation(Scene scene, const SampleStore* store) {
   if (!s.model.mass_damping.empty()) s.model.mass_damping.resize(s.model.rest_position.size());
   errors.gather([&] { give_inertia_to_hosts(s); });
   s.initial = State::at_rest(s.model);
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) set_initial_motion(s, s.scene.bodies[b], s.bodies[b]);
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    errors.gather([&] { set_initial_motion(s, s.scene.bodies[b], s.bodies[b]); });
   stop_held(s.model, s.initial);
   start_dependents(s);
   s.initial.turned.resize(s.model.constraints.size());

@@ -25,19 +25,28 @@ FASCIA_HD inline EndRates rates_at_end(const StepConstants& step, const StepNode
   return out;
 }
 
-/// The vector with another one's components along the first axes (rows) of a constraint.
-FASCIA_HD inline Vec3d with_components(const Vec3d& v, const Mat3d& axes, int count, const Vec3d& other) {
-  Vec3d out = v;
-  for (int k = 0; k < count; ++k) out += axes.row(k) * dot(axes.row(k), other - v);
-  return out;
+/// Whether inertia couples the rotations that a constraint leads with nothing that is free: they are about principal
+/// axes through the mass centre.
+FASCIA_HD inline bool leads_principal_axes(const FrameConstraint& c, const FrameInertia& inertia, const Mat3d& Q) {
+  constexpr double kNone = 1e-9;
+  const double size = trace(inertia.second);
+  if (squared_norm(inertia.first) > kNone * kNone * inertia.mass * size) return false;
+  const Mat3d S = Q * times_transpose(inertia.second, Q);
+  for (int a = 0; a < c.rotations; ++a)
+    for (int b = c.rotations; b < 3 && c.rotation_motion[at(a)] >= 0; ++b)
+      if (!(fabs(dot(c.rotation_axes.row(a), S * c.rotation_axes.row(b))) <= kNone * size)) return false;
+  return true;
 }
 
 /// Replaces velocity and acceleration of what a constraint prescribes by differences of its motion: those that the
-/// scheme would keep ring for ever after a boundary that starts at once.
+/// scheme would keep ring for ever after a boundary that starts at once. Rotations about one or two axes do so only
+/// where that takes nothing from what is free; else they keep the scheme's, whose momentum about the free axes is
+/// right.
 /// @param x     motion of the node in the step, last that in the step before, of the same length
 /// @param D     at the end
 FASCIA_HD inline void follow_boundary(const StepConstants& step, FrameKind kind, const FrameConstraint& c,
-                                      const PoseMotion& x, const PoseMotion& last, const Mat3d& D, EndRates& rates) {
+                                      const FrameInertia& inertia, const PoseMotion& x, const PoseMotion& last,
+                                      const Mat3d& D, EndRates& rates) {
   const double dt = step.step;
   const PoseMotion v = (x * 1.5 - last * 0.5) * (1 / dt), a = (x - last) * (1 / (dt * dt));
   for (int k = 0; k < c.translations; ++k) {
@@ -51,11 +60,20 @@ FASCIA_HD inline void follow_boundary(const StepConstants& step, FrameKind kind,
   }
   if (kind != FrameKind::rigid || c.rotations == 0) return;
   const Mat3d Q = Mat3d::identity() + D;
+  if (c.rotations < 3 && !leads_principal_axes(c, inertia, Q)) return;
   const Vec3d spin = spin_of(x.Q * (1 / dt), Q), spin_before = spin_of(last.Q * (1 / dt), Q - x.Q);  // means
   Vec3d w = spin * 1.5 - spin_before * 0.5, alpha = (spin - spin_before) * (1 / dt);
-  if (c.rotations < 3) {  // what is free keeps those of the scheme
-    w = with_components(spin_of(rates.v.Q, Q), c.rotation_axes, c.rotations, w);
-    alpha = with_components(spin_of(rates.a.Q, Q), c.rotation_axes, c.rotations, alpha);
+  if (c.rotations < 3) {
+    const Vec3d own = spin_of(rates.v.Q, Q), own_rate = spin_of(rates.a.Q, Q);
+    Vec3d led = own, led_rate = own_rate;
+    for (int k = 0; k < c.rotations; ++k) {
+      if (c.rotation_motion[at(k)] < 0) continue;
+      const Vec3d axis = c.rotation_axes.row(k);
+      led += axis * dot(axis, w - own);
+      led_rate += axis * dot(axis, alpha - own_rate);
+    }
+    w = led;
+    alpha = led_rate;
   }
   const Mat3d W = skew(w);
   rates.v.Q = W * Q;
@@ -69,12 +87,10 @@ struct MiddleEnd {
 
 /// Finishes a midpoint step of a rigid frame: Q turns by the same rotation again, and the mass centre goes on straight.
 /// The momentum is kept exactly, L₊ = L + dt τ with the torque in the middle of the step: about the mass centre, or of
-/// a held frame about its origin and its free axes, while it follows its boundary about the others.
-/// @param before  its motion in the step before, of the same length; null: none
-/// @param end     of a node whose motion and velocity go on straight
+/// a held frame about its origin and its free axes.
+/// @param end  of a node whose motion and velocity go on straight
 FASCIA_HD inline void finish_middle_of_frame(const StepConstants& step, const StepNode& node,
-                                             const FrameConstraint* held, const Mat3d& D_middle,
-                                             const PoseMotion* before, MiddleEnd& end) {
+                                             const FrameConstraint* held, const Mat3d& D_middle, MiddleEnd& end) {
   const double h = step.h;
   const FrameInertia& inertia = node.inertia;
   const PoseMotion x = motion_of(node);
@@ -92,14 +108,11 @@ FASCIA_HD inline void finish_middle_of_frame(const StepConstants& step, const St
     if (turning.regular) spin_end = turning.spin(Q_end, turning.momentum(Q, spin) + torque * step.step);
   } else if (const SpinInertia turning(inertia.second); turning.regular) {
     const Mat3d& R = held->rotation_axes;
-    const Vec3d mean = rotation_vector(node.Ds) * (1 / h),
-                mean_before = before == nullptr ? mean : spin_of(before->Q * (1 / step.step), Q),
-                led = mean * 1.5 - mean_before * 0.5;
     const Vec3d torque = axl(Q_middle * transpose(rest.Q * inertia.second));
     Vec3d momentum = R * (turning.momentum(Q, spin) + torque * step.step);
     Mat3d local = times_transpose(R * times_transpose(Q_end * turning.rest, Q_end), R);
     for (int a = 0; a < held->rotations; ++a) {
-      momentum[a] = dot(R.row(a), led);
+      momentum[a] = dot(R.row(a), spin_end);
       for (int k = 0; k < 3; ++k) local(a, k) = a == k ? 1 : 0;
     }
     spin_end = transpose(R) * (inverse(local) * momentum);
@@ -118,12 +131,11 @@ FASCIA_HD inline void finish_middle_of_frame(const StepConstants& step, const St
 /// From the middle of the step to its end.
 /// @param held      null: nothing holds the node
 /// @param D_middle  present D
-/// @param before    motion in the step before, of the same length; null: none
 FASCIA_HD inline MiddleEnd finish_middle(const StepConstants& step, const StepNode& node, const FrameConstraint* held,
-                                         const Mat3d& D_middle, const PoseMotion* before) {
+                                         const Mat3d& D_middle) {
   const PoseMotion x = motion_of(node);
   MiddleEnd end{x * 2, x * (2 / step.h) - node.v};
-  if (node.rigid()) finish_middle_of_frame(step, node, held, D_middle, before, end);
+  if (node.rigid()) finish_middle_of_frame(step, node, held, D_middle, end);
   return end;
 }
 

@@ -80,11 +80,12 @@ RunReport run_statics(System& system, typename System::Pose& state, const Factor
     unsolved = 0;
     system.finish_step(target, state);
     accept(run, report, settings, target);
-    if (definite && report.indefinite)
+    const bool met = report.led ? report.strays(LedSteps::kMany) : report.indefinite;
+    if (definite && met)
       run.events.push_back(passed_sentence(reached, target));
-    else if (report.indefinite)
+    else if (met)
       run.doubts.push_back(detour_sentence(target));
-    definite = !report.indefinite;
+    definite = !met;
     reached = target;
     increment = std::min(longest, 2 * increment);
     if (led.accepted(report)) increment = std::min(longest, std::max(increment, led.furthest() - reached));

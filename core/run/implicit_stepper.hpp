@@ -39,7 +39,8 @@ class ImplicitStepper {
     failures_ = 0;
     in_parts_ = false;
     watches_ = !budget_;
-    strayed_.reset();
+    strayed_ = false;
+    if (watches_) start_ = {system_.reached_factors(), system_.reached_pressures()};
     kept_.reset();
     const int solves = run.indefinite_solves;
     NewtonReport report = advanced(state, factors, end, dt, run);
@@ -117,7 +118,7 @@ class ImplicitStepper {
   NewtonReport taken_whole(Pose& state, const FactorFunction& factors, double end, double dt, RunReport& run) {
     state = before_;
     if (kept_) memory_ = Memory(StepMemory(*kept_));
-    system_.forget_steps(strayed_->factors, strayed_->pressures);
+    system_.forget_steps(start_.factors, start_.pressures);
     failures_ = 0;
     in_parts_ = watches_ = false;
     return advanced(state, factors, end, dt, run);
@@ -162,11 +163,12 @@ class ImplicitStepper {
     return solved_at;
   }
 
-  /// Whether a boundary moves in the step.
+  /// Whether a boundary moves in the step without a turn.
   bool leads() const {
     const std::vector<PrescribedMotion>& motions = system_.model().motions;
     return std::any_of(motions.begin(), motions.end(), [&](const PrescribedMotion& m) {
-      return system_.factors()[at(m.schedule)] != system_.reached_factors()[at(m.schedule)];
+      return m.angle == 0 && !m.driven &&
+             system_.factors()[at(m.schedule)] != system_.reached_factors()[at(m.schedule)];
     });
   }
 
@@ -208,7 +210,7 @@ class ImplicitStepper {
     NewtonReport report;
     if (depth == 0 || system_.prescribed_rotation() <= kRotationPerStep) {
       // The velocities lead what is free towards a boundary that has not moved yet, and press it flat. The first
-      // direction carries both.
+      // direction carries both, but for what turns, which it carries along a tangent.
       if (!leads()) system_.start_from_prediction();
       const bool watched = watches_ && depth > kMostHalvings - kWatchedHalvings && returns_ < kMostReturns;
       Newton newton(system_, settings_, {run.steps + 1, end, watched ? 1 : 0}, budget_ ? &*budget_ : nullptr);
@@ -226,7 +228,7 @@ class ImplicitStepper {
         // A motion that is applied at once is all in the first half.
         watches_ = factors(end - 0.5 * dt) != factors(end);
         if (!watches_) return advance(state, factors, end, dt, depth, run);
-        if (!strayed_) strayed_ = {system_.reached_factors(), system_.reached_pressures()};
+        strayed_ = true;
         ++returns_;
       } else if (depth == 0 || report.status == NewtonStatus::stopped || ++failures_ > kMostHalvings)
         return report;
@@ -264,7 +266,8 @@ class ImplicitStepper {
   struct Reached {
     std::vector<double> factors, pressures;
   };
-  std::optional<Reached> strayed_;  ///< what the system had reached before a step of which that is so
+  Reached start_;         ///< what the system had reached before the step
+  bool strayed_ = false;  ///< the step was left for halves
 };
 
 }  // namespace fascia

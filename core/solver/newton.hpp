@@ -125,7 +125,6 @@ class Newton {
         if (status != NewtonStatus::converged) return give_up(status);
       }
     }
-    if (step_.leaves_at > 0 && report_.strays(step_.leaves_at)) return finish(NewtonStatus::astray);
     report_.convergence = current_.by_rounding ? Convergence::rounding : Convergence::tolerance;
     return finish(NewtonStatus::converged);
   }
@@ -320,7 +319,8 @@ class Newton {
   }
 
   NewtonReport finish(NewtonStatus status) {
-    report_.status = status;
+    const bool strays = step_.leaves_at > 0 && report_.strays(step_.leaves_at);
+    report_.status = status == NewtonStatus::converged && strays ? NewtonStatus::astray : status;
     report_.indefinite = report_.indefinite || (in_doubt_ && turned_back_);
     report_.last = current_;
     return report_;

@@ -108,7 +108,7 @@ struct FinishStep {
     if (s.step.h > 0) rates = rates_at_end(s.step, n, D);
     const FrameConstraint* held = s.model.held(i);
     if (s.step.h > 0 && held != nullptr && s.step.scheme == TimeScheme::newmark)
-      follow_boundary(s.step, n.kind, *held, x, end.before != nullptr ? end.before[i] : x, D, rates);
+      follow_boundary(s.step, n.kind, *held, n.inertia, x, end.before != nullptr ? end.before[i] : x, D, rates);
     end.v[i] = rates.v.u;
     if (s.turning) {
       end.D[i] = D;
@@ -128,8 +128,7 @@ struct FinishMiddle {
   FASCIA_HD void operator()(int i) const {
     const StepNode n = s.node(i);
     const int c = s.model.constraint[i];
-    const MiddleEnd middle =
-        finish_middle(s.step, n, s.model.held(i), s.D_now(i), end.before == nullptr ? nullptr : end.before + i);
+    const MiddleEnd middle = finish_middle(s.step, n, s.model.held(i), s.D_now(i));
     end.motion[i] = middle.motion;
     end.velocity[i] = n.v;
     end.u[i] = s.u0[i] + middle.motion.u;
@@ -169,7 +168,7 @@ struct FinishHeld {
     if (k >= 0) {
       const PoseMotion last = end.before != nullptr ? end.before[i] : end.motion[i];
       EndRates rates{{end.v[i], s.turning ? end.Q_dot[i] : Mat3d{}}, {}};
-      follow_boundary(s.step, kind, m.constraints[k], end.motion[i], last, D, rates);
+      follow_boundary(s.step, kind, m.constraints[k], m.inertia[i], end.motion[i], last, D, rates);
       end.v[i] = rates.v.u;
       if (s.turning) end.Q_dot[i] = rates.v.Q;
     }

@@ -45,10 +45,10 @@ const WrongScene kWrongScenes[] = {
      "bodies.beam.domain.box.cells", "is not used"},
     {"meshless_with_formulation", "material = \"soft\"", "material = \"soft\"\nformulation = \"linear\"",
      "bodies.beam.formulation", "is not used"},
-    {"meshless_block", "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] }",
+    {"meshless_block_with_cells", "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] }",
      "block = { corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], "
      "cells = [1, 1, 1] }",
-     "bodies.beam.domain.block", "mesh models"},
+     "bodies.beam.domain.block.cells", "is not used"},
     {"block_inverted", "box = { min = [0, 0, 0], max = [1, 0.2, 0.2] }",
      "block = { corners = [[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0], [0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]], "
      "cells = [1, 1, 1] }",
