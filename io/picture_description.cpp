@@ -39,7 +39,7 @@ double apart_from_neighbours(const std::vector<double>& states, std::size_t stat
 
 nlohmann::json to_json(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
-/// What points up in the scene of a result, where its summary says so.
+/// Returns the direction that points up in the scene of a result, where its summary says so.
 std::optional<Vec3d> up_of_summary(const std::filesystem::path& directory) {
   const std::filesystem::path file = directory / "summary.json";
   if (!std::filesystem::exists(file)) return {};

@@ -85,7 +85,7 @@ void add_row(ProbeDifference& d, std::vector<double> a, std::vector<double> b, d
   d.b = std::move(b);
 }
 
-/// Whether the pairs are all rows of two tables, each with the row of its number.
+/// True where the pairs are all rows of two tables, each with the row of its number.
 bool are_rows(const TimePairs& times, std::size_t rows_of_a, std::size_t rows_of_b) {
   const auto is_row = [](const TimePair& t) {
     return t.a.fraction == 0 && t.b.fraction == 0 && t.a.below == t.b.below;

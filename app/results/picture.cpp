@@ -88,7 +88,7 @@ std::vector<std::string> files_of(const Simulation& s, const fs::path& directory
 
 std::optional<Vec3d> up_of(const World& world) {
   if (world.up || norm(world.gravity) == 0) return world.up;
-  return -normalized(world.gravity);
+  return Vec3d{} - normalized(world.gravity);  // no -0
 }
 
 void make_picture(const Simulation& s, const fs::path& directory, const std::vector<double>& states, RunStatus status) {

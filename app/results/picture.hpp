@@ -9,7 +9,7 @@
 
 namespace fascia::app {
 
-/// What points up in pictures: what the scene says, or against gravity.
+/// Returns the direction that points up in pictures: the scene's own, or the one against gravity.
 std::optional<Vec3d> up_of(const World& world);
 
 /// Draws the last saved state, of modes each of the first ones, into SCENE.png with the program fascia-picture beside

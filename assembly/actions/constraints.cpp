@@ -167,7 +167,7 @@ void check_shared(const Simulation& s, const std::vector<SharedHold>& shared, co
   }
 }
 
-/// What constraints hold, by node.
+/// Keeps what constraints hold, by node.
 struct Holds {
   std::map<int, Held> held;
   TiedPlaces places;

@@ -120,7 +120,7 @@ SolidDomain make_solid(ClosedSurface closed, double scale) {
   return solid;
 }
 
-/// As many facets as carried faces have; the volume is that of the trilinear map.
+/// Has as many facets as carried faces have; the volume is that of the trilinear map.
 SolidDomain make_block(const BlockDomain& b, const Body& body) {
   std::array<Vec3d, 8> corners = b.corners;
   for (Vec3d& x : corners) x *= body.transform.scale;

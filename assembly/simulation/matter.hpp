@@ -11,7 +11,7 @@ class MatterDisplacement {
   /// Of one place. @param volume  of an integration point [m³]; 0 elsewhere
   void add(const Vec3d& u, double volume);
   void add(const SimulatedBody& body, const State& state);
-  /// Of the points of a body's surface that a region holds.
+  /// Adds the points of a body's surface that a region holds.
   void add_surface(const SimulatedBody& body, const Region& region, const State& state);
 
   bool empty() const { return places_ == 0; }
@@ -38,8 +38,8 @@ struct FoldedPoints {
 };
 FoldedPoints folded_points(const SimulatedBody& body, const State& state);
 
-/// Of what a probe measures: the nodes of its region (of a rigid body the points of its surface there), or the matter
-/// of its body or of all bodies.
+/// Averages over what a probe measures: the nodes of its region (of a rigid body the points of its surface there), or
+/// the matter of its body or of all bodies.
 MatterDisplacement displacement_of_matter(const Simulation& simulation, const ResolvedProbe& probe, const State& state);
 
 }  // namespace fascia

@@ -25,8 +25,8 @@ FASCIA_HD inline EndRates rates_at_end(const StepConstants& step, const StepNode
   return out;
 }
 
-/// Whether inertia couples the rotations that a constraint leads with nothing that is free: they are about principal
-/// axes through the mass centre.
+/// True where inertia couples the rotations that a constraint leads with nothing that is free: they are about
+/// principal axes through the mass centre.
 FASCIA_HD inline bool leads_principal_axes(const FrameConstraint& c, const FrameInertia& inertia, const Mat3d& Q) {
   constexpr double kNone = 1e-9;
   const double size = trace(inertia.second);

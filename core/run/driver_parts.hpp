@@ -25,8 +25,9 @@ class LedSteps {
   /// @param smallest, from  the shortest step there is and the start, in load factors
   LedSteps(double smallest, double from) : smallest_(smallest), furthest_(from) {}
 
-  /// Whether a step is left where it strays. Not where a boundary turns: what goes with it as a whole is guessed along
-  /// the tangent of its circle, and comes to the path by itself. @param turn  of the boundary in this step [rad]
+  /// True where a step is left once it strays. It is not where a boundary turns: what goes with it as a whole is
+  /// guessed along the tangent of its circle, and comes to the path by itself. @param turn  of the boundary in this
+  /// step [rad]
   bool watches(double from, double to, double turn) const {
     return !ended_ && returns_ < kMostReturns && 0.5 * (to - from) >= smallest_ && turn == 0;
   }
@@ -34,7 +35,7 @@ class LedSteps {
     furthest_ = std::max(furthest_, target);
     ++returns_;
   }
-  /// Whether a step that failed has a longer one in its place, which was left: the next one.
+  /// True where a step that failed has a longer one in its place, which was left: the next one.
   bool gives_up(double failed) {
     if (ended_ || furthest_ <= failed) return false;
     return ended_ = true;

@@ -40,7 +40,10 @@ class ImplicitStepper {
     in_parts_ = false;
     watches_ = !budget_;
     strayed_ = false;
-    if (watches_) start_ = {system_.reached_factors(), system_.reached_pressures()};
+    if (watches_ && !system_.model().motions.empty()) {  // else no step is left
+      start_.factors = system_.reached_factors();
+      start_.pressures = system_.reached_pressures();
+    }
     kept_.reset();
     const int solves = run.indefinite_solves;
     NewtonReport report = advanced(state, factors, end, dt, run);
@@ -163,7 +166,7 @@ class ImplicitStepper {
     return solved_at;
   }
 
-  /// Whether a boundary moves in the step without a turn.
+  /// True where a boundary moves in the step without a turn.
   bool leads() const {
     const std::vector<PrescribedMotion>& motions = system_.model().motions;
     return std::any_of(motions.begin(), motions.end(), [&](const PrescribedMotion& m) {

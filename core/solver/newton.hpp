@@ -64,7 +64,7 @@ struct NewtonReport {
   bool led = false;            ///< a boundary motion was carried out
   int indefinite_tangents = 0;
 
-  /// Whether a boundary motion led astray: over so many tangents that are not positive definite, or to an end whose
+  /// True where a boundary motion led astray: over so many tangents that are not positive definite, or to an end whose
   /// last one is not.
   bool strays(int many) const { return led && (indefinite_tangents >= many || !trouble.empty()); }
 };

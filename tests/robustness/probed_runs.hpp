@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tests/robustness/scene_runs.hpp"
+#include "tests/support/table.hpp"
 
 #include <cmath>
 
@@ -19,22 +20,13 @@ class ProbedRuns : public SceneRuns {
     return result.err;
   }
   std::vector<double> column(const std::string& name) const {
-    const std::vector<std::string> rows = lines_of(read_text(folder_ / "out/probes.csv"));
-    const auto cells = [](const std::string& row) {
-      std::vector<std::string> out;
-      for (std::size_t begin = 0; begin <= row.size();) {
-        const std::size_t end = std::min(row.find(',', begin), row.size());
-        out.push_back(row.substr(begin, end - begin));
-        begin = end + 1;
-      }
-      return out;
-    };
-    const std::vector<std::string> head = cells(rows.at(0));
-    const auto place = static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
-    EXPECT_LT(place, head.size()) << name;
+    const Table probes = read_table(folder_ / "out/probes.csv");
+    const auto found = std::find(probes.columns.begin(), probes.columns.end(), name);
+    EXPECT_NE(found, probes.columns.end()) << name;
+    if (found == probes.columns.end()) return {};
+    const auto place = static_cast<std::size_t>(found - probes.columns.begin());
     std::vector<double> values;
-    for (std::size_t r = 1; r < rows.size() && place < head.size(); ++r)
-      values.push_back(std::stod(cells(rows[r])[place]));
+    for (const std::vector<double>& row : probes.rows) values.push_back(row.at(place));
     return values;
   }
   nlohmann::json value(const std::string& probe) const { return summary("out").at("probes").at(probe).at("value"); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "tests/support/table.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -37,9 +39,9 @@ class RunNumbers {
     return all;
   }
   /// Rows of probes.csv; the first column is the time.
-  const std::vector<std::vector<double>>& history() const { return rows_; }
+  const std::vector<std::vector<double>>& history() const { return table_.rows; }
   /// Names of its columns.
-  const std::vector<std::string>& columns() const { return columns_; }
+  const std::vector<std::string>& columns() const { return table_.columns; }
 
   static double as_number(const nlohmann::json& v) {
     return v.is_number() ? v.get<double>() : std::numeric_limits<double>::quiet_NaN();
@@ -52,8 +54,7 @@ class RunNumbers {
  protected:
   bool ok_ = false;
   nlohmann::json summary_ = nlohmann::json::object();
-  std::vector<std::string> columns_;
-  std::vector<std::vector<double>> rows_;
+  Table table_;
 };
 
 /// "bodies.beam.frames.grid=[9,3,3]".

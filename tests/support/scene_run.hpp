@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -39,7 +38,7 @@ class SceneRun : public RunNumbers {
     if (summary_.is_discarded()) summary_ = nlohmann::json::object();
     EXPECT_EQ(program_.status, 0) << scene << ": " << program_.err;
     ok_ = program_.status == 0 && summary_.contains("probes");
-    read_rows();
+    table_ = read_table(directory() / "probes.csv");
   }
   SceneRun(const SceneRun&) = delete;
   SceneRun& operator=(const SceneRun&) = delete;
@@ -61,18 +60,6 @@ class SceneRun : public RunNumbers {
   }
 
  private:
-  void read_rows() {
-    std::ifstream file(directory() / "probes.csv");
-    std::string line, name;
-    std::getline(file, line);
-    for (std::istringstream head(line); std::getline(head, name, ',');) columns_.push_back(name);
-    while (std::getline(file, line)) {
-      std::vector<double> row;
-      for (std::istringstream cells(line); std::getline(cells, name, ',');) row.push_back(std::stod(name));
-      rows_.push_back(std::move(row));
-    }
-  }
-
   TemporaryFolder folder_;
   ProgramResult program_;
 };

@@ -88,11 +88,11 @@ void SolvedScene::solve(const Read& read) {
                             end.processor_seconds, rows.seconds(),    {}};
   summary_ = nlohmann::json(app::summary(s, end, times, pool.size(), rows.values(), {}));
   ok_ = end.done();
-  columns_ = {"time"};
+  table_.columns = {"time"};
   for (const ResolvedProbe& probe : s.probes)
-    for (const std::string& name : probe_columns(probe)) columns_.push_back(name);
-  if (s.scene.solver.time_step_automatic) columns_.push_back("time_step");
-  rows_ = std::move(rows.rows());
+    for (const std::string& name : probe_columns(probe)) table_.columns.push_back(name);
+  if (s.scene.solver.time_step_automatic) table_.columns.push_back("time_step");
+  table_.rows = std::move(rows.rows());
   saved_ = rows.saved();
 }
 

@@ -320,7 +320,7 @@ TEST(ShellScenes, AStepWhoseHalvesFailIsTakenWhole) {
   EXPECT_EQ(run.status(), "converged") << run.message();
 }
 
-/// What is moved at once is all in the first half: shorter steps would only make it faster.
+/// A motion that is applied at once is all in the first half: shorter steps would only make it faster.
 TEST(ShellScenes, AMotionAppliedAtOnceIsTakenWhole) {
   const auto said = [](const std::string& over) {
     const SolvedScene run = shortened_strip(0.1, over, "kind = \"implicit-euler\"\ntime_step = 0.5\nsteps = 2\n");
