@@ -100,6 +100,31 @@ void warn_of_shared_mass(Simulation& s, const ResolvedProbe& r) {
                     s.bodies[at(r.body)].name));
 }
 
+/// The matter of a rigid body is at its one frame, which a region holds or does not.
+void warn_of_rigid_matter(Simulation& s, const ResolvedProbe& r) {
+  if (!r.probe->where || r.body < 0 || s.scene.bodies[at(r.body)].model != BodyModel::rigid) return;
+  const SimulatedBody& b = s.bodies[at(r.body)];
+  if (b.body->surface().points.empty()) return;
+  const std::vector<bool> chosen = select(*r.probe->where, b.selectable_surface());
+  if (std::all_of(chosen.begin(), chosen.end(), [](bool in) { return in; })) return;
+  switch (r.probe->quantity) {
+    case Quantity::volume:
+    case Quantity::mass:
+    case Quantity::energy:
+    case Quantity::kinetic_energy:
+    case Quantity::total_energy:
+    case Quantity::momentum:
+    case Quantity::angular_momentum:
+      s.warnings.add("rigid", r.probe->place,
+                     fmt::format("is that of the whole of rigid body \"{}\", whatever part of it the region holds; "
+                                 "leave where out",
+                                 b.name));
+      break;
+    default:
+      break;
+  }
+}
+
 }  // namespace
 
 Vec3d place_on_body(Simulation& s, int body, const Vec3d& X, const Place& place) {
@@ -148,6 +173,7 @@ void resolve_probe(Simulation& s, const Probe& probe) {
     r.nodes = nodes_of(s, r);
   }
   warn_of_shared_mass(s, r);
+  warn_of_rigid_matter(s, r);
   r.about = probe.about.value_or(Vec3d{});
   if (s.scene.solver.kind == SolverKind::statics && over_time_only(probe.quantity))
     s.warnings.add("no-effect", probe.place, "is zero in a static solve");

@@ -79,6 +79,13 @@ TEST_F(RigidRuns, RegionsOfARigidBodyHoldVertices) {
   EXPECT_NEAR(value("F")[2].get<double>(), -4, 1e-9);   // four vertices
   EXPECT_NEAR(value("M")[1].get<double>(), 0.4, 1e-9);  // 0.1 m beside the centre
 
+  const std::string matter =
+      "[probes.V]\nbody = \"r\"\nwhere = WHERE\nquantity = \"volume\"\n";  // all of it is at the one frame
+  run(with(kRigid, "KIND", "implicit-euler") + with(matter, "WHERE", "{ nearest = [0.1, 0.1, 0.1] }"));
+  EXPECT_TRUE(warns("rigid"));
+  run(with(kRigid, "KIND", "implicit-euler") + with(matter, "WHERE", "\"all\""));
+  EXPECT_FALSE(warns("rigid"));
+
   const std::string pinned = "[[constraints]]\nbody = \"r\"\nwhere = WHERE\nfix = \"position\"\n";
   run(with(kRigid, "KIND", "implicit-euler") + with(pinned, "WHERE", "{ nearest = [0.1, 0.1, 0.1] }"));
   EXPECT_TRUE(warns("rigid"));
