@@ -82,12 +82,12 @@ Stages measure(const PointSet& set, ThreadPool& pool, const State& state, double
   t.gradient = shortest([&] { executor.gradient(state, history, gradient); });
   t.linearize = shortest([&] { executor.linearize(state, history, tangent, lin); });
   BlockMatrix matrix(set);
-  DependentNodes dependents(set);
+  Dependents<PoolSpace> dependents(set, PoolSpace(pool));
   t.assemble = shortest([&] {
     executor.assemble(lin, matrix);
     if (dependents.empty()) return;
-    dependents.turn(lin.Q);
-    dependents.condense(matrix);
+    dependents.turn_to(lin.Q.data());
+    condense(dependents, matrix);
   });
   return t;
 }

@@ -10,6 +10,7 @@
 #include "core/geometry/bounds.hpp"
 #include "core/run/explicit_step.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/tangent/extrapolation.hpp"
 
 #include <fmt/format.h>
 

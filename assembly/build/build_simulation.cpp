@@ -13,7 +13,7 @@
 #include "core/solver/boundary_motion.hpp"
 #include "core/structure/dependent_inertia.hpp"
 #include "core/structure/inertia.hpp"
-#include "core/tangent/dependents.hpp"
+#include "core/step/dependents.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,5 @@
 #include "core/run/explicit_nodes.hpp"
 
-#include "core/tangent/dependents.hpp"
-
 namespace fascia {
 
 namespace {

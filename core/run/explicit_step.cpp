@@ -20,7 +20,7 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       space_(system.space()),
       seen_(system.nodes()),
       surfaces_(system.model()),
-      dependents_(system.model().points),
+      dependents_(system.model().points, system.space()),
       state_(state),
       last_step_(dt),
       times_{dt, dt},
@@ -43,7 +43,7 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
   increments_.resize(gradient_.size());
   last_increments_.resize(gradient_.size());
   place_dependents(state_);
-  place_dependent_rates(model_.points, state_);
+  dependents_.place_rates(state_.v.data(), state_.Q_dot.data());
   if (!remembers) keep_memory({});
   start_velocities();
 }
@@ -133,9 +133,9 @@ void ExplicitStepper::add_forces(const State& state, std::vector<double>& gradie
                    });
   surfaces_.add_forces(state, factors_, load);
   if (dependents_.empty()) return;
-  dependents_.turn(state.D);
-  dependents_.transfer(gradient);
-  dependents_.transfer(load);
+  dependents_.turn(state.D.data());
+  dependents_.transfer(seen_.nodes, gradient.data());
+  dependents_.transfer(seen_.nodes, load.data());
 }
 
 /// Strains are in the history. Points that remember stresses are taken as stiff as they are at once: what fades along a
@@ -225,7 +225,7 @@ void ExplicitStepper::report_velocities(std::span<const double> factors) {
     space_.for_each(model_.node_count(),
                     loops::ReportVelocity<ExplicitView, Frames>{view(), held_acceleration_.data()});
   });
-  place_dependent_rates(model_.points, state_);
+  dependents_.place_rates(state_.v.data(), state_.Q_dot.data());
 }
 
 bool ExplicitStepper::is_sound() const { return is_sound_energy(kinetic_, given_energy() + nodes_.rounding_energy); }

@@ -3,8 +3,8 @@
 #include "core/run/explicit_mode.hpp"
 #include "core/run/explicit_nodes.hpp"
 #include "core/solver/mechanical_system.hpp"
+#include "core/step/dependents.hpp"
 #include "core/step/explicit_view.hpp"
-#include "core/tangent/dependents.hpp"
 
 #include <optional>
 #include <span>
@@ -56,7 +56,7 @@ class ExplicitStepper {
   ExplicitView view();
   void keep_strain();
   void gather_acting(State& pose, double inverse_step, double* out);
-  void place_dependents(State& pose) { fascia::place_dependents(model_.points, pose); }
+  void place_dependents(State& pose) { dependents_.place(pose.u.data(), pose.D.data()); }
   /// Calls act.operator()<Frames>().
   template <class Act>
   void for_nodes(const Act& act) {
@@ -84,7 +84,7 @@ class ExplicitStepper {
   const PoolSpace& space_;
   const ModelView& seen_;
   SurfaceLoads surfaces_;
-  DependentNodes dependents_;
+  Dependents<PoolSpace> dependents_;
   State& state_;
   double last_step_;  ///< [s]
   LeapTimes times_;   ///< about the present step

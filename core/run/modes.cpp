@@ -8,7 +8,7 @@
 #include "core/node/dof_filter.hpp"
 #include "core/structure/blocks.hpp"
 #include "core/structure/inertia.hpp"
-#include "core/tangent/dependents.hpp"
+#include "core/tangent/condense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,11 @@ using Dense = Eigen::MatrixXd;
 class Problem {
  public:
   Problem(const Model& model, ThreadPool& pool)
-      : pool_(pool), filter_(model), dependents_(model.points), K_(model.points) {
+      : pool_(pool),
+        filter_(model),
+        nodes_(nodes_of(model.points)),
+        dependents_(model.points, PoolSpace(pool)),
+        K_(model.points) {
     CpuExecutor executor(model.points, pool);
     const State rest = State::at_rest(model);
     std::vector<double> gradient(static_cast<std::size_t>(model.dof_count()));
@@ -34,7 +38,7 @@ class Problem {
     Linearization lin;
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, K_);
-    dependents_.condense(K_);
+    condense(dependents_, K_);
     sum_stiffness(model.points);
     mass_.assign(dofs().block_total(), 0.0);
     for (int i = 0; i < model.node_count(); ++i)
@@ -44,7 +48,8 @@ class Problem {
   }
 
   const DofFilter& filter() const { return filter_; }
-  const DependentNodes& dependents() const { return dependents_; }
+  /// Entries of dependent nodes of a motion, from those of their hosts.
+  void expand(std::vector<double>& motion) const { dependents_.expand(nodes_, motion.data()); }
 
   /// Σ diag K / Σ diag M over the displacements, without tethers: the scale of the largest eigenvalues [1/s²].
   double stiffness_to_mass() const { return stiffness_ / mass_sum_; }
@@ -105,7 +110,8 @@ class Problem {
 
   ThreadPool& pool_;
   DofFilter filter_;
-  DependentNodes dependents_;  ///< at rest
+  NodesView nodes_;
+  Dependents<PoolSpace> dependents_;  ///< at rest
   BlockMatrix K_;
   std::vector<double> mass_;  ///< blocks of the frames
   double stiffness_ = 0, mass_sum_ = 0;
@@ -197,7 +203,7 @@ Modes natural_modes(const Model& model, ThreadPool& pool, int count) {
     modes.frequency.push_back(values[k] <= zero ? 0.0 : std::sqrt(values[k]) / (2 * std::numbers::pi));
     std::vector<double> shape(X.col(k).data(), X.col(k).data() + n);
     problem.filter().to_global(shape);
-    problem.dependents().expand(shape);
+    problem.expand(shape);
     double largest = 0;
     const DofLayout& dofs = model.points.dofs;
     for (int node = 0; node < dofs.node_count(); ++node)

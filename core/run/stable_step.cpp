@@ -3,7 +3,7 @@
 #include "core/node/node_inertia.hpp"
 #include "core/node/small_factor.hpp"
 #include "core/run/explicit_dynamics.hpp"
-#include "core/tangent/dependents.hpp"
+#include "core/step/dependents.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,8 @@ class HighestFrequency {
       : executor_(system.executor()),
         filter_(system.filter()),
         dofs_(system.model().points.dofs),
-        dependents_(system.model().points),
+        nodes_(system.nodes().nodes),
+        dependents_(system.model().points, system.space()),
         state_(state),
         fluids_(fluids_of(system.model(), state)) {
     const Model& model = system.model();
@@ -55,7 +56,7 @@ class HighestFrequency {
       }
     }
     executor_.store_strain(state, history_);
-    dependents_.turn(state.D);
+    dependents_.turn(state.D.data());
     dependent_forces_.resize(6 * model.points.dependents.size());
   }
 
@@ -66,8 +67,8 @@ class HighestFrequency {
     executor_.gradient(state_, history_, w);
     executor_.linearize(state_, history_, Tangent::full, lin_);
     lin_.low_rank = fluids_;
-    dependents_.transfer(w, dependent_forces_);
-    dependents_.add_turning(dependent_forces_, lin_.node_blocks);
+    dependents_.transfer(nodes_, w.data(), dependent_forces_.data());
+    dependents_.add_turning(nodes_, dependent_forces_.data(), lin_.node_blocks.data());
     found_ = iterate({});
     return found_.value;
   }
@@ -94,7 +95,7 @@ class HighestFrequency {
     }
     for (double& part : out.kinetic) part /= sum;
     filter_.to_global(x);
-    dependents_.expand(x);
+    dependents_.expand(nodes_, x.data());
     out.motion = std::move(x);
   }
 
@@ -128,9 +129,9 @@ class HighestFrequency {
   void multiply(const std::vector<double>& v, std::vector<double>& w) {
     global_ = v;
     filter_.to_global(global_);
-    dependents_.expand(global_);
+    dependents_.expand(nodes_, global_.data());
     executor_.multiply(lin_, global_, w);
-    dependents_.transfer(w);
+    dependents_.transfer(nodes_, w.data());
     filter_.to_local(w);
     filter_.clear_fixed(w);
   }
@@ -138,7 +139,8 @@ class HighestFrequency {
   CpuExecutor& executor_;
   const DofFilter& filter_;
   const DofLayout& dofs_;
-  DependentNodes dependents_;
+  NodesView nodes_;
+  Dependents<PoolSpace> dependents_;
   const State& state_;
   std::vector<RankOne> fluids_;
   StrainHistory history_;

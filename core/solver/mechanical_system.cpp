@@ -5,6 +5,7 @@
 #include "core/solver/part_forces.hpp"
 #include "core/solver/state_copies.hpp"
 #include "core/step/boundary_loops.hpp"
+#include "core/tangent/extrapolation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +44,7 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       node_parts_(model.points.node_part, model.points.part_count(), space_),
       executor_(model.points, pool),
       tangent_(model, executor_, filter_, settings),
-      dependents_(model.points),
+      dependents_(model.points, space_),
       conservative_(model.loads_are_conservative()),
       linear_(model.is_linear()),
       extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
@@ -118,18 +119,9 @@ void MechanicalSystem::rebuild_state() {
 
 /// In the present state, and their increments by those of their hosts, which keep the digits of small steps.
 void MechanicalSystem::place_dependents_of_step() {
-  for (const DependentNode& d : model_.points.dependents) {
-    Vec3d du;
-    for (std::size_t k = 0; k < d.hosts.size(); ++k) {
-      const std::size_t i = at(d.hosts[k]);
-      const PoseMotion host = motion_of(model_.frame_kind[i], increment_.du[i], increment_.Ds[i], start_.D[i]);
-      du += host.u * d.w[k] + host.Q * d.b[k];
-    }
-    increment_.du[at(d.node)] = du;
-    if (d.turns) increment_.Ds[at(d.node)] = increment_.Ds[at(d.hosts[0])];
-  }
-  place_dependents(model_.points, state_);
-  dependents_.turn(state_.D);
+  dependents_.place_increments(increment_.du.data(), increment_.Ds.data(), start_.D.data());
+  place_dependents(state_);
+  dependents_.turn(state_.D.data());
 }
 
 /// Energy of the step where it starts. The strain energy is what the step before left; nothing has flowed yet.
@@ -180,10 +172,10 @@ void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) {
           lin.torques.push_back({n.node, n.torque * factors_[at(load.schedule)]});
     for (const FollowerLoad& load : model_.followers)
       lin.followers.emplace_back(load, state_, factors_[at(load.schedule)]);
-    if (turning) dependents_.add_turning(dependent_forces_, lin.node_blocks);
+    if (turning) dependents_.add_turning(data_.view().nodes, dependent_forces_.data(), lin.node_blocks.data());
   }
   surfaces_.linearize(state_, factors_, lin);
-  for (RankOne& term : lin.low_rank) dependents_.transfer(term.g);
+  for (RankOne& term : lin.low_rank) dependents_.transfer(data_.view().nodes, term.g.data());
   if (form_.h > 0 || (full && !model_.loads.empty()))
     space_.for_each(model_.node_count(),
                     loops::AddLoadAndInertiaBlocks{step_view(), lin.Q.data(), lin.node_blocks.data(), full});
@@ -194,7 +186,7 @@ Evaluation MechanicalSystem::evaluate() {
   internal_ = executor_.gradient(state_, history_, gradient_);
   evaluate_loads();
   space_.for_each(model_.dof_count(), loops::AddInertiaAndLoads{force_view()});
-  dependents_.transfer(gradient_, dependent_forces_);
+  dependents_.transfer(data_.view().nodes, gradient_.data(), dependent_forces_.data());
   Evaluation e;
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
   e.energy_scale = internal_.size() + std::abs(load_energy_) + inertia_energy_;
@@ -213,7 +205,7 @@ std::vector<PartForces> MechanicalSystem::forces_of_parts() {
     const PartSizes sizes{.rounding = executor_.rounding(part),
                           .of_surfaces = surfaces_.rounding(part),
                           .tether = executor_.points().squared_tether_force(part),
-                          .leverage = dependents_.empty() ? 1.0 : dependents_.leverage()[p],
+                          .leverage = dependents_.leverage()[p],
                           .mass = masses_[p],
                           .driven = driven_[p] != 0};
     parts.push_back(
@@ -269,7 +261,7 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
   double* d = direction_.data();
   space_.sum<1, 2>(model_.node_count(), loops::TakeDirection<double>{data_.view(), d, nullptr, gradient_.data(), d},
                    loops::StoreSums<1, 2>{sums});
-  dependents_.expand(direction_);
+  dependents_.expand(data_.view().nodes, direction_.data());
   surfaces_.aim(lin_, direction_);
   report.slope = sums[0];
   report.largest_rotation = std::max(sums[1], executor_.largest_spin(direction_));
@@ -318,9 +310,9 @@ const Multigrid* MechanicalSystem::levels(bool material) {
 void MechanicalSystem::add_unsymmetric(std::span<const double> x, std::span<double> y) {
   std::vector<double> all(x.begin(), x.end()), product(x.size());
   filter_.to_global(all);
-  dependents_.expand(all);
+  dependents_.expand(data_.view().nodes, all.data());
   add_unsymmetric_product(lin_, model_.points.dofs, all, product);
-  dependents_.transfer(product);
+  dependents_.transfer(data_.view().nodes, product.data());
   filter_.to_local(product);
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += product[i];
 }
@@ -329,9 +321,9 @@ std::vector<double> MechanicalSystem::product(std::span<const double> d) {
   executor_.linearize(state_, history_, settings_.tangent, lin_);
   add_node_blocks(lin_);
   std::vector<double> all(d.begin(), d.end()), y(d.size());
-  dependents_.expand(all);
+  dependents_.expand(data_.view().nodes, all.data());
   executor_.multiply(lin_, all, y);
-  dependents_.transfer(y);
+  dependents_.transfer(data_.view().nodes, y.data());
   return y;
 }
 

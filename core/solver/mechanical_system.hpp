@@ -8,12 +8,12 @@
 #include "core/solver/surface_loads.hpp"
 #include "core/space/part_sums.hpp"
 #include "core/space/pool_space.hpp"
+#include "core/step/dependents.hpp"
 #include "core/step/model_data.hpp"
 #include "core/step/step_view.hpp"
 #include "core/step/stress_memory_steps.hpp"
 #include "core/structure/inertia.hpp"
 #include "core/structure/model.hpp"
-#include "core/tangent/dependents.hpp"
 #include "core/tangent/tangent_solver.hpp"
 
 #include <optional>
@@ -200,6 +200,8 @@ class MechanicalSystem {
   void note_step(double step);
   void evaluate_loads();
   double load_power() const;
+  void place_dependents(State& state) const { dependents_.place(state.u.data(), state.D.data()); }
+  void place_dependent_rates(State& state) const { dependents_.place_rates(state.v.data(), state.Q_dot.data()); }
   void place_dependents_of_step();
   void add_loads_and_inertia();
   void predict_strain(const StepMemory& memory);
@@ -231,7 +233,7 @@ class MechanicalSystem {
   PartSums<PoolSpace> node_parts_;
   CpuExecutor executor_;
   TangentSolver tangent_;
-  DependentNodes dependents_;  ///< at the present state
+  Dependents<PoolSpace> dependents_;  ///< at the present state
   bool conservative_, linear_, extrapolates_;
   SurfaceLoads surfaces_;
   MotionSizes motions_;

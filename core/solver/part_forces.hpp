@@ -13,7 +13,7 @@ struct PartSizes {
   double rounding = 0;     ///< that is left in the forces of its blocks [N]
   double of_surfaces = 0;  ///< likewise of surface loads [N]
   double tether = 0;       ///< square of the pull of tethers [N²]
-  double leverage = 1;     ///< DependentNodes::leverage()
+  double leverage = 1;     ///< Dependents::leverage()
   double mass = 0;         ///< part_masses() [kg]
   bool driven = false;     ///< driven_parts()
 };

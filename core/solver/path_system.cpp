@@ -52,7 +52,7 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
     place_tethers(model_, factors_, executor_.targets());
     act(factors_);
   }
-  dependents_.transfer(rhs);
+  dependents_.transfer(data_.view().nodes, rhs.data());
   filter_.to_local(rhs);
   find_prescribed(ahead, prescribed);
   find_prescribed(behind, other);
@@ -60,8 +60,8 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
   out.usable = tangent_.solve_as_is(prescribed, rhs, out.d_f) && out.usable;
   filter_.to_global(out.d_r);
   filter_.to_global(out.d_f);
-  dependents_.expand(out.d_r);
-  dependents_.expand(out.d_f);
+  dependents_.expand(data_.view().nodes, out.d_r.data());
+  dependents_.expand(data_.view().nodes, out.d_f.data());
   out.largest_rotation = largest_rotation_in(out.d_f);
   return out;
 }

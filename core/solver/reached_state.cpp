@@ -94,7 +94,7 @@ void MechanicalSystem::stand_in(const StepInProgress& step) {
 
 /// @param state  whose dependent nodes may not be placed yet
 void MechanicalSystem::store_strain_at(State state, StrainHistory& history) {
-  place_dependents(model_.points, state);
+  place_dependents(state);
   executor_.store_strain(state, history);
 }
 
@@ -114,7 +114,7 @@ void MechanicalSystem::evaluate_reached(std::span<const double> targets) {
     std::copy(targets.begin(), targets.end(), executor_.targets().begin());
     executor_.forces(state_, history_, gradient_);
     for (std::size_t i = 0; i < gradient_.size(); ++i) gradient_[i] -= load_[i];
-    dependents_.transfer(gradient_, dependent_forces_);
+    dependents_.transfer(data_.view().nodes, gradient_.data(), dependent_forces_.data());
   }
 }
 

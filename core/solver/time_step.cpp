@@ -20,8 +20,8 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   copy_matrices(pool, start.Q_dot, start_.Q_dot);
   start_.turned = start.turned;
   start_.turned.resize(model_.constraints.size());  // a state made before the constraints has none
-  place_dependents(model_.points, start_);
-  place_dependent_rates(model_.points, start_);
+  place_dependents(start_);
+  place_dependent_rates(start_);
   clear_as(pool, start_.u, increment_.du);
   clear_as(pool, start_.D, increment_.Ds);
   increment_.turned = start_.turned;
@@ -81,7 +81,7 @@ void MechanicalSystem::act(std::span<const double> factors) {
 State MechanicalSystem::moved_by_velocity(double time) {
   State moved = start_;
   space_.for_each(model_.node_count(), loops::MoveByVelocity{step_view(), time, moved.u.data(), moved.D.data()});
-  place_dependents(model_.points, moved);
+  place_dependents(moved);
   return moved;
 }
 
@@ -151,8 +151,8 @@ void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& e
                       .velocity = remembers ? memory.velocity.data() : nullptr,
                       .acceleration = form_.scheme == TimeScheme::newmark ? memory.acceleration.data() : nullptr,
                       .before = remembers && same_step ? before_.data() : nullptr});
-  place_dependents(model_.points, end);
-  place_dependent_rates(model_.points, end);
+  place_dependents(end);
+  place_dependent_rates(end);
   // Tethers have been led elsewhere when the next step starts, memory has faded, and muscle acts otherwise.
   if (form_.h > 0 && form_.scheme == TimeScheme::implicit_euler && memory_.empty() && model_.tethers.empty()) {
     copy_into(pool, end.u, reached.u);
@@ -182,7 +182,7 @@ void MechanicalSystem::start_acceleration(const State& start, double dt, StepMem
   const int nodes = model_.node_count();
   space_.for_each(model_.dof_count(), loops::AddInertiaAndLoads{force_view()});
   space_.for_each(nodes, loops::ForceOfAcceleration{step_view(), force_view(), work_.data()});
-  dependents_.transfer(work_);
+  dependents_.transfer(data_.view().nodes, work_.data());
   space_.for_each(nodes, loops::StartAcceleration{step_view(), work_.data(), memory.acceleration.data()});
 }
 

@@ -3,6 +3,7 @@
 #include "core/base/index.hpp"
 #include "core/base/parallel_copy.hpp"
 #include "core/node/positive_inverse.hpp"
+#include "core/tangent/condense.hpp"
 #include "core/tangent/stability.hpp"
 
 #include <algorithm>
@@ -21,7 +22,8 @@ TangentOperator::TangentOperator(const Model& model, CpuExecutor& executor, cons
       executor_(executor),
       filter_(filter),
       vectors_(executor.pool()),
-      dependents_(model.points),
+      nodes_(nodes_of(model.points)),
+      dependents_(model.points, PoolSpace(executor.pool())),
       work_(at(model.dof_count())) {}
 
 void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
@@ -36,7 +38,7 @@ void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
     material_rounded_ = false;
   }
   beside_.set(lin.low_rank, filter_);
-  if (!dependents_.empty()) dependents_.turn(lin.Q);
+  dependents_.turn_to(lin.Q.data());
 }
 
 void TangentOperator::tame(TamerTangent kind) {
@@ -47,7 +49,7 @@ void TangentOperator::tame(TamerTangent kind) {
 
 void TangentOperator::assemble(const Linearization& lin, BlockMatrix& out, Entries entries) {
   executor_.assemble(lin, out, dependents_.empty() ? entries : Entries::all);
-  if (!dependents_.empty()) dependents_.condense(out);
+  condense(dependents_, out);
 }
 
 BlockMatrix& TangentOperator::pattern() {
@@ -142,10 +144,10 @@ void TangentOperator::apply_whole(std::span<const double> x, std::span<double> y
 void TangentOperator::apply_by_blocks(std::span<const double> x, std::span<double> y, bool whole) {
   copy_parallel(pool(), x, std::span(work_));
   filter_.to_global(work_);
-  dependents_.expand(work_);
+  dependents_.expand(nodes_, work_.data());
   executor_.multiply(*at_, work_, y);
   if (whole) add_unsymmetric_product(*at_, model_.points.dofs, work_, y);
-  dependents_.transfer(y);
+  dependents_.transfer(nodes_, y.data());
   filter_.to_local(y);
 }
 

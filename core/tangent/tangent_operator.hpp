@@ -5,7 +5,7 @@
 #include "core/linear/block_matrix.hpp"
 #include "core/linear/vectors.hpp"
 #include "core/node/dof_filter.hpp"
-#include "core/tangent/dependents.hpp"
+#include "core/step/dependents.hpp"
 #include "core/tangent/low_rank.hpp"
 
 #include <functional>
@@ -97,7 +97,8 @@ class TangentOperator {
   CpuExecutor& executor_;
   const DofFilter& filter_;
   CpuVectors vectors_;
-  DependentNodes dependents_;
+  NodesView nodes_;
+  Dependents<PoolSpace> dependents_;
   const Linearization* at_ = nullptr;
   const Relinearize* tamer_ = nullptr;
   std::optional<BlockMatrix> matrix_, material_;

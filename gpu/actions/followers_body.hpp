@@ -2,8 +2,8 @@
 
 #include "core/base/index.hpp"
 #include "core/node/node_force.hpp"
+#include "core/space/node_rows.hpp"
 #include "gpu/actions/followers.hpp"
-#include "gpu/space/node_rows.hpp"
 
 /// The bodies of Followers, for the files that instantiate it.
 namespace fascia::gpu {

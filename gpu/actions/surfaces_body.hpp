@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/base/index.hpp"
+#include "core/space/node_rows.hpp"
 #include "gpu/actions/surface_kernels.hpp"
-#include "gpu/space/node_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "core/space/space.hpp"
-#include "gpu/blocks/dependents_body.hpp"
+#include "core/step/dependents_body.hpp"
 
-namespace fascia::gpu {
+namespace fascia {
 
 template class Dependents<HostSpace>;
 
-}  // namespace fascia::gpu
+}  // namespace fascia

@@ -1,8 +1,8 @@
-#include "gpu/blocks/dependents_body.hpp"
+#include "core/step/dependents_body.hpp"
 #include "gpu/space/cuda_space.cuh"
 
-namespace fascia::gpu {
+namespace fascia {
 
-template class Dependents<CudaSpace>;
+template class Dependents<gpu::CudaSpace>;
 
-}  // namespace fascia::gpu
+}  // namespace fascia

@@ -4,12 +4,12 @@
 #include "core/run/explicit_mode.hpp"
 #include "core/run/explicit_nodes.hpp"
 #include "core/run/explicit_plan.hpp"
+#include "core/step/dependents.hpp"
 #include "core/step/model_data.hpp"
 #include "core/step/stress_memory_steps.hpp"
 #include "gpu/actions/followers.hpp"
 #include "gpu/actions/surfaces.hpp"
 #include "gpu/blocks/blocks.hpp"
-#include "gpu/blocks/dependents.hpp"
 #include "gpu/explicit/explicit_kernels.hpp"
 #include "gpu/system/device_state.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "core/solver/part_forces.hpp"
 #include "core/step/boundary_loops.hpp"
+#include "core/tangent/extrapolation.hpp"
 #include "gpu/space/device.hpp"
 #include "gpu/system/system.hpp"
 

@@ -32,9 +32,9 @@ const Feature kElements{
 const Feature kMeshless{"meshless bodies", {"meshless/"}, {}};
 const Feature kCouplings{
     "couplings",
-    {"coupling/", "core/tangent/dependents", "core/executor/spring_executor", "core/structure/dependent_inertia",
+    {"coupling/", "core/step/dependents", "core/tangent/condense", "core/executor/spring_executor", "core/structure/dependent_inertia",
      "assembly/actions/couplings", "assembly/bodies/carried_surface", "app/results/coupling_report"},
-    {"DependentNodes", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "SpringExecutor",
+    {"Dependents", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "condense", "SpringExecutor",
      "add_couplings", "move_inertia_to_hosts", "move_idle_inertia_to_hosts", "coupling_report"}};
 const Feature kTethers{"tethers", {"assembly/actions/tethers"}, {}};
 const Feature kSurfaces{"fluids and pressure",

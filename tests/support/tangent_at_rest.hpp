@@ -3,7 +3,7 @@
 #include "core/executor/executor.hpp"
 #include "core/levels/multigrid.hpp"
 #include "core/node/positive_inverse.hpp"
-#include "core/tangent/dependents.hpp"
+#include "core/tangent/condense.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -32,9 +32,9 @@ struct TangentAtRest {
     executor.gradient(rest, {}, g);
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, matrix);
-    if (DependentNodes dependents(model.points); !dependents.empty()) {
-      dependents.turn(lin.Q);
-      dependents.condense(matrix);
+    if (Dependents<PoolSpace> dependents(model.points); !dependents.empty()) {
+      dependents.turn_to(lin.Q.data());
+      condense(dependents, matrix);
     }
     const DofLayout& dofs = model.points.dofs;
     inverse.resize(dofs.block_total());

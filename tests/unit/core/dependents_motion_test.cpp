@@ -3,7 +3,7 @@
 #include "core/run/explicit_dynamics.hpp"
 #include "core/run/modes.hpp"
 #include "core/run/path_following.hpp"
-#include "core/tangent/dependents.hpp"
+#include "core/step/dependents.hpp"
 #include "tests/support/dependent_models.hpp"
 
 #include <gtest/gtest.h>

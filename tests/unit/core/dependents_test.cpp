@@ -1,4 +1,4 @@
-#include "core/tangent/dependents.hpp"
+#include "core/tangent/condense.hpp"
 
 #include "core/base/errors.hpp"
 #include "core/executor/executor.hpp"
@@ -22,7 +22,8 @@ class DependentNodesTest : public testing::TestWithParam<std::string> {
       : built_(coupled_model(GetParam())),
         model_(built_->model),
         executor_(model_.points, pool_),
-        dependents_(model_.points),
+        nodes_(nodes_of(model_.points)),
+        dependents_(model_.points, PoolSpace(pool_)),
         forces_(6 * model_.points.dependents.size()),
         state_(placed(random_state(model_, 0.03, 0.7))) {}
 
@@ -39,22 +40,22 @@ class DependentNodesTest : public testing::TestWithParam<std::string> {
   std::vector<double> gradient(const State& state) {
     std::vector<double> g(d_.size());
     executor_.gradient(state, {}, g);
-    dependents_.turn(state.D);
-    dependents_.transfer(g, forces_);
+    dependents_.turn(state.D.data());
+    dependents_.transfer(nodes_, g.data(), forces_.data());
     return g;
   }
   Linearization linearization() {
     gradient(state_);
     Linearization lin;
     executor_.linearize(state_, {}, Tangent::full, lin);
-    dependents_.turn(lin.Q);
-    dependents_.add_turning(forces_, lin.node_blocks);
+    dependents_.turn_to(lin.Q.data());
+    dependents_.add_turning(nodes_, forces_.data(), lin.node_blocks.data());
     return lin;
   }
   BlockMatrix condensed() {
     BlockMatrix K(model_.points);
     executor_.assemble(linearization(), K);
-    dependents_.condense(K);
+    condense(dependents_, K);
     return K;
   }
   std::vector<double> product(const BlockMatrix& K, const std::vector<double>& d) {
@@ -67,7 +68,8 @@ class DependentNodesTest : public testing::TestWithParam<std::string> {
   const Model& model_;
   ThreadPool pool_{1};
   CpuExecutor executor_;
-  DependentNodes dependents_;
+  NodesView nodes_;
+  Dependents<PoolSpace> dependents_;
   std::vector<double> forces_;
   State state_;
   std::vector<double> d_ = random_direction(model_);
@@ -127,9 +129,9 @@ TEST_P(DependentNodesTest, CondensedMatrixIsTheProductOfItsFactors) {
   const BlockMatrix K = condensed();
   const Linearization lin = linearization();
   std::vector<double> expected(d_.size()), d = d_;
-  dependents_.expand(d);
+  dependents_.expand(nodes_, d.data());
   executor_.multiply(lin, d, expected);
-  dependents_.transfer(expected);
+  dependents_.transfer(nodes_, expected.data());
   std::vector<double> Kd = product(K, d_);
   for (std::size_t i = 0; i < Kd.size(); ++i) Kd[i] -= expected[i];
   EXPECT_LT(norm(Kd), 1e-13 * norm(expected));
@@ -142,9 +144,9 @@ TEST_P(DependentNodesTest, CondensedMatrixIsTheProductOfItsFactors) {
 
 /// What moves with its hosts moves likewise: J d against differences of places.
 TEST_P(DependentNodesTest, DirectionsAreThoseOfThePlaces) {
-  dependents_.turn(state_.D);
+  dependents_.turn(state_.D.data());
   std::vector<double> d = d_;
-  dependents_.expand(d);
+  dependents_.expand(nodes_, d.data());
   const double h = 1e-6;
   const State plus = moved_by(d_, h), minus = moved_by(d_, -h);
   for (const DependentNode& v : model_.points.dependents) {

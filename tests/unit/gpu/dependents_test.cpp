@@ -1,14 +1,15 @@
-#include "gpu/blocks/dependents.hpp"
+#include "core/step/dependents.hpp"
 
-#include "core/tangent/dependents.hpp"
+#include "core/tangent/condense.hpp"
 #include "tests/support/dependent_models.hpp"
+#include "tests/support/plain_dependents.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-/// Dependent nodes in a space against those of the solver.
+/// Dependent nodes in the spaces of the host against their formulas.
 namespace fascia::gpu::test::dependents_test {
 namespace {
 
@@ -24,10 +25,11 @@ class DependentsTest : public testing::TestWithParam<std::string> {
         model_(built_->model),
         state_(placed(model_)),
         host_(model_, state_),
-        reference_(model_.points),
-        dependents_(model_.points) {
-    reference_.turn(state_.D);
+        reference_(model_.points, state_),
+        dependents_(model_.points),
+        of_pool_(model_.points, PoolSpace(pool_)) {
     dependents_.turn(matrices(state_.D));
+    of_pool_.turn(matrices(state_.D));
   }
 
   static State placed(const Model& model) {
@@ -40,8 +42,10 @@ class DependentsTest : public testing::TestWithParam<std::string> {
   const Model& model_;
   State state_;
   HostModel host_;
-  DependentNodes reference_;
+  ThreadPool pool_{3};
+  PlainDependents reference_;
   Dependents<HostSpace> dependents_;
+  Dependents<PoolSpace> of_pool_;
   std::vector<double> d_ = random_direction(model_);
 };
 
@@ -65,12 +69,15 @@ TEST_P(DependentsTest, PlacesAndRates) {
   expected.v = rates.u;
   expected.Q_dot = rates.D;
   State state = expected;
-  place_dependents(model_.points, expected);
-  place_dependent_rates(model_.points, expected);
+  State on_pool = expected;
+  PlainDependents::place(model_.points, expected.u, expected.D);
+  PlainDependents::place(model_.points, expected.v, expected.Q_dot);
   dependents_.place(state.u.data(), matrices(state.D));
   dependents_.place_rates(state.v.data(), matrices(state.Q_dot));
   EXPECT_LE(relative(flat(state.u, state.D), flat(expected.u, expected.D)), 1e-15);
   EXPECT_LE(relative(flat(state.v, state.Q_dot), flat(expected.v, expected.Q_dot)), 1e-15);
+  of_pool_.place(on_pool.u.data(), matrices(on_pool.D));
+  EXPECT_EQ(flat(on_pool.u, on_pool.D), flat(state.u, state.D));
 }
 
 /// Where the hosts' increments take a dependent node is where their end takes it.
@@ -96,12 +103,14 @@ TEST_P(DependentsTest, Increments) {
 }
 
 TEST_P(DependentsTest, Directions) {
-  std::vector<double> expected = d_, d = d_;
+  std::vector<double> expected = d_, d = d_, on_pool = d_;
   reference_.expand(expected);
   std::vector<Vec3d> dx(state_.u.size());
   std::vector<Mat3d> dA(dx.size());
   dependents_.expand(host_.nodes(), d.data(), dx.data(), dA.data(), host_.Q());
   EXPECT_LE(relative(d, expected), 1e-15);
+  of_pool_.expand(host_.nodes(), on_pool.data());
+  EXPECT_EQ(on_pool, d);
   for (const DependentNode& v : model_.points.dependents) {
     const double* own = d.data() + model_.points.dofs.begin(v.node);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(dx[at(v.node)][k], own[k]);
@@ -116,7 +125,11 @@ TEST_P(DependentsTest, Forces) {
   dependents_.transfer(host_.nodes(), g.data(), forces.data());
   EXPECT_LE(relative(g, expected), 1e-14);
   EXPECT_LE(relative(forces, kept), 1e-14);
-  EXPECT_EQ(dependents_.leverage(), reference_.leverage());
+  std::vector<double> on_pool = d_, kept_on_pool = kept;
+  of_pool_.transfer(host_.nodes(), on_pool.data(), kept_on_pool.data());
+  EXPECT_EQ(on_pool, g);
+  EXPECT_EQ(kept_on_pool, forces);
+  EXPECT_EQ(dependents_.leverage(), of_pool_.leverage());
 
   std::vector<double> expected_blocks(model_.points.dofs.block_total()), blocks = expected_blocks;
   reference_.add_turning(kept, expected_blocks);
@@ -138,7 +151,7 @@ TEST_P(DependentsTest, OwnBlocks) {
       for (int c = 0; c <= r; ++c) block[n * r + c] = block[n * c + r] = r == c ? 20.0 : uniform(random);
     std::copy_n(block, n * n, K.block(K.diagonal(node)));
   }
-  reference_.condense(K);
+  condense(of_pool_, K);
   dependents_.add_diagonal(host_.nodes(), blocks.data());
   std::vector<double> expected(blocks.size());
   for (int node = 0; node < model_.node_count(); ++node)

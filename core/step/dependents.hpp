@@ -2,12 +2,11 @@
 
 #include "core/space/array.hpp"
 #include "core/space/row_sums.hpp"
-#include "core/structure/point_set.hpp"
-#include "gpu/space/views.hpp"
+#include "core/step/model_view.hpp"
 
 #include <vector>
 
-namespace fascia::gpu {
+namespace fascia {
 
 /// Dependent nodes, and pairs of one and a host of it. Both are sorted by level.
 struct DependentsView {
@@ -57,37 +56,51 @@ struct DependentsView {
   }
 };
 
-/// The dependent nodes of a model on the device, as in core/tangent/dependents.hpp. Hosts of a level depend on nodes of
-/// lower levels alone; a pass goes through the levels.
+/// The dependent nodes of a model at a state, where small motions of their hosts move them by
+///
+///   dx = Σ w dx_a + dA_a b_a,   and where they turn   dr = dr_a,   briefly d = J d_hosts.
+///
+/// Vectors of all degrees of freedom become those of the free ones: with d = T d', all of d from the rest, g' = Tᵀ g,
+/// in which the entries of what depends are zero; matrices likewise (core/tangent/condense.hpp). Hosts of a level
+/// depend on nodes of lower levels alone; a pass goes through the levels. All pointers point into the space.
 template <class Space>
 class Dependents {
  public:
-  explicit Dependents(const PointSet& set);
+  explicit Dependents(const PointSet& set, Space space = Space());
 
   bool empty() const { return levels_.empty(); }
-  /// By part; as DependentNodes::leverage(), 1 where nothing depends.
+  const DependentsView& view() const { return view_; }
+  int count() const { return levels_.empty() ? 0 : levels_.back().begin + levels_.back().count; }
+  /// How much larger than the rounding of forces that of torques is on a part's hosts, with torques over the part's
+  /// length; 1 where nothing depends. (parts)
   const std::vector<double>& leverage() const { return leverage_; }
 
   /// Puts dependent nodes where their hosts take them. @param D  null where no node turns, here and below
-  void place(Vec3d* u, Mat3d* D);
+  void place(Vec3d* u, Mat3d* D) const;
   /// Gives dependent nodes the velocities and dQ/dt that follow from those of their hosts.
-  void place_rates(Vec3d* v, Mat3d* Q_dot) { place(v, Q_dot); }
+  void place_rates(Vec3d* v, Mat3d* Q_dot) const { place(v, Q_dot); }
   /// Gives dependent nodes the motions since the start of a step that follow from those of their hosts: u = u₀ + du,
   /// and Q = (I + Ds) Q₀ or A = A₀ + Ds.
   /// @param start_D  D at the start
-  void place_increments(Vec3d* du, Mat3d* Ds, const Mat3d* start_D);
+  void place_increments(Vec3d* du, Mat3d* Ds, const Mat3d* start_D) const;
 
   /// Takes the rotations of a state, for all that follows.
   void turn(const Mat3d* D);
+  /// @param Q  I + D of each node
+  void turn_to(const Mat3d* Q);
 
   /// Entries of dependent nodes of a direction, from those of their hosts.
-  /// @param dx, dA  take the same as in DirectionView, where they are given
-  /// @param Q       I + D of each node
-  void expand(const NodesView& nodes, double* d, Vec3d* dx, Mat3d* dA, const Mat3d* Q);
-  /// Moves forces on dependent nodes to their hosts. @param forces  as DependentNodes::transfer() keeps them; or null
-  void transfer(const NodesView& nodes, double* g, double* forces);
-  /// Adds to the nodes' own blocks what forces on dependent nodes ask of turning hosts, as
-  /// DependentNodes::add_turning().
+  /// @param dx, dA  take the motion of each node by displacement and dA, where they are given
+  /// @param Q       I + D of each node; needed with dA
+  void expand(const NodesView& nodes, double* d, Vec3d* dx = nullptr, Mat3d* dA = nullptr,
+              const Mat3d* Q = nullptr) const;
+  /// Moves forces on dependent nodes to their hosts.
+  /// @param forces  (dependents × 6) takes what each hands on, with what it had from those that depend on it: force,
+  /// and
+  ///                where it turns the torque about it; or null
+  void transfer(const NodesView& nodes, double* g, double* forces = nullptr);
+  /// Adds to the nodes' own blocks the second derivative of the dependent nodes' places, f · Q b along rotations of
+  /// their hosts. @param forces  as transfer() kept them, of a gradient
   void add_turning(const NodesView& nodes, const double* forces, double* node_blocks);
 
   /// Moves the own blocks of dependent nodes to their hosts, each as Jᵀ K_vv J, and leaves the identity in their place.
@@ -103,6 +116,7 @@ class Dependents {
     RowSums<Space> by_host;  ///< pairs, from the first one on
   };
 
+  Space space_;
   std::vector<Level> levels_;
   int most_host_dofs_ = 0, pairs_ = 0;
   Array<Space, int> node_, pair_begin_, index_, dependent_, host_;
@@ -114,4 +128,9 @@ class Dependents {
   std::vector<double> leverage_;
 };
 
-}  // namespace fascia::gpu
+/// Puts dependent nodes of a state where their hosts take them.
+void place_dependents(const PointSet& set, State& state);
+/// Velocities of dependent nodes, du/dt = Σ w du_a/dt + dQ_a/dt b_a.
+void place_dependent_rates(const PointSet& set, State& state);
+
+}  // namespace fascia

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace fascia::gpu {
+namespace fascia {
 
 /// The nodes that a list names, without repetition, and of each entry which of them it is.
 struct NodeRows {
@@ -23,4 +23,4 @@ struct NodeRows {
   }
 };
 
-}  // namespace fascia::gpu
+}  // namespace fascia

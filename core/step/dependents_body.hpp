@@ -2,21 +2,24 @@
 
 #include "core/base/index.hpp"
 #include "core/node/node_force.hpp"
-#include "core/tangent/dependents.hpp"
-#include "gpu/blocks/dependents.hpp"
-#include "gpu/space/node_rows.hpp"
+#include "core/space/node_rows.hpp"
+#include "core/step/dependents.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 /// The bodies of Dependents, for the files that instantiate it.
-namespace fascia::gpu {
+namespace fascia {
 
 template <class Space>
-Dependents<Space>::Dependents(const PointSet& set) {
-  leverage_ = DependentNodes(set).leverage();
-  leverage_.resize(at(set.part_count()), 1.0);
+Dependents<Space>::Dependents(const PointSet& set, Space space) : space_(space), leverage_(at(set.part_count()), 1.0) {
   if (set.dependents.empty()) return;
+  for (const DependentNode& d : set.dependents) {
+    const auto part = at(set.node_part[at(d.node)]);
+    for (std::size_t a = 0; a < d.hosts.size(); ++a)
+      leverage_[part] = std::max(leverage_[part], std::hypot(d.w[a], norm(d.b[a]) / set.part_length[part]));
+  }
   // Hosts come before those that depend on them.
   std::vector<int> level_of_node(at(set.node_count()), 0), index(set.dependents.size());
   for (const DependentNode& d : set.dependents)
@@ -53,7 +56,7 @@ Dependents<Space>::Dependents(const PointSet& set) {
     while (k < static_cast<int>(index.size()) && level(index[at(k)]) == of) ++k;
     next.count = k - next.begin;
     const NodeRows rows({hosts.begin() + next.first_pair, hosts.begin() + pair_begin[at(k)]}, set.node_count());
-    next.by_host = RowSums<Space>(rows.row, static_cast<int>(rows.nodes.size()), kMostDofs);
+    next.by_host = RowSums<Space>(rows.row, static_cast<int>(rows.nodes.size()), kMostDofs, space_);
     next.hosts.upload(rows.nodes);
   }
   pairs_ = static_cast<int>(hosts.size());
@@ -71,7 +74,7 @@ Dependents<Space>::Dependents(const PointSet& set) {
            host_.data(), kind_.data(),       w_.data(),     b_.data(),     lever_.data()};
 }
 
-namespace kernels {
+namespace loops {
 
 struct PlaceDependent {
   DependentsView set;
@@ -257,49 +260,57 @@ struct ClearBlock {
   }
 };
 
-}  // namespace kernels
+}  // namespace loops
 
 template <class Space>
-void Dependents<Space>::place(Vec3d* u, Mat3d* D) {
-  for (const Level& level : levels_) Space::for_each(level.count, kernels::PlaceDependent{view_, level.begin, u, D});
+void Dependents<Space>::place(Vec3d* u, Mat3d* D) const {
+  for (const Level& level : levels_) space_.for_each(level.count, loops::PlaceDependent{view_, level.begin, u, D});
 }
 
 template <class Space>
-void Dependents<Space>::place_increments(Vec3d* du, Mat3d* Ds, const Mat3d* start_D) {
+void Dependents<Space>::place_increments(Vec3d* du, Mat3d* Ds, const Mat3d* start_D) const {
   for (const Level& level : levels_)
-    Space::for_each(level.count, kernels::PlaceIncrement{view_, level.begin, du, Ds, start_D});
+    space_.for_each(level.count, loops::PlaceIncrement{view_, level.begin, du, Ds, start_D});
 }
 
 template <class Space>
 void Dependents<Space>::turn(const Mat3d* D) {
   if (D == nullptr) return;
   const DependentsView set = view_;
-  Space::for_each(pairs_, [set, D] FASCIA_HD(int p) {
+  space_.for_each(pairs_, [set, D] FASCIA_HD(int p) {
     if (set.kind[p] == FrameKind::rigid) set.lever[p] = set.b[p] + D[set.host[p]] * set.b[p];
   });
 }
 
 template <class Space>
-void Dependents<Space>::expand(const NodesView& nodes, double* d, Vec3d* dx, Mat3d* dA, const Mat3d* Q) {
+void Dependents<Space>::turn_to(const Mat3d* Q) {
+  const DependentsView set = view_;
+  space_.for_each(pairs_, [set, Q] FASCIA_HD(int p) {
+    if (set.kind[p] == FrameKind::rigid) set.lever[p] = Q[set.host[p]] * set.b[p];
+  });
+}
+
+template <class Space>
+void Dependents<Space>::expand(const NodesView& nodes, double* d, Vec3d* dx, Mat3d* dA, const Mat3d* Q) const {
   for (const Level& level : levels_)
-    Space::for_each(level.count, kernels::ExpandDependent{view_, level.begin, nodes, d, dx, dA, Q});
+    space_.for_each(level.count, loops::ExpandDependent{view_, level.begin, nodes, d, dx, dA, Q});
 }
 
 template <class Space>
 void Dependents<Space>::transfer(const NodesView& nodes, double* g, double* forces) {
   for (std::size_t l = levels_.size(); l-- > 0;) {
     Level& level = levels_[l];
-    level.by_host.template sum<kMostDofs>(kernels::TransferredForce{view_, level.first_pair, nodes, g},
-                                          kernels::AddToHosts{level.hosts.data(), nodes, g});
-    Space::for_each(level.count, kernels::ClearForce{view_, level.begin, nodes, g, forces});
+    level.by_host.template sum<kMostDofs>(loops::TransferredForce{view_, level.first_pair, nodes, g},
+                                          loops::AddToHosts{level.hosts.data(), nodes, g});
+    space_.for_each(level.count, loops::ClearForce{view_, level.begin, nodes, g, forces});
   }
 }
 
 template <class Space>
 void Dependents<Space>::add_turning(const NodesView& nodes, const double* forces, double* node_blocks) {
   for (Level& level : levels_)
-    level.by_host.template sum<9>(kernels::TurningMoment{view_, level.first_pair, forces},
-                                  kernels::AddTurningBlock{level.hosts.data(), nodes, node_blocks});
+    level.by_host.template sum<9>(loops::TurningMoment{view_, level.first_pair, forces},
+                                  loops::AddTurningBlock{level.hosts.data(), nodes, node_blocks});
 }
 
 template <class Space>
@@ -307,10 +318,10 @@ void Dependents<Space>::add_diagonal(const NodesView& nodes, double* blocks) {
   for (std::size_t l = levels_.size(); l-- > 0;) {
     Level& level = levels_[l];
     for (int dof = 0; dof < most_host_dofs_; ++dof)
-      level.by_host.template sum<kMostDofs>(kernels::DiagonalColumn{view_, level.first_pair, dof, nodes, blocks},
-                                            kernels::AddDiagonalColumn{level.hosts.data(), dof, nodes, blocks});
-    Space::for_each(level.count, kernels::ClearBlock{view_, level.begin, nodes, blocks});
+      level.by_host.template sum<kMostDofs>(loops::DiagonalColumn{view_, level.first_pair, dof, nodes, blocks},
+                                            loops::AddDiagonalColumn{level.hosts.data(), dof, nodes, blocks});
+    space_.for_each(level.count, loops::ClearBlock{view_, level.begin, nodes, blocks});
   }
 }
 
-}  // namespace fascia::gpu
+}  // namespace fascia
