@@ -7,6 +7,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/run/drivers.hpp"
+#include "core/tangent/condense.hpp"
 
 #include <fmt/format.h>
 

@@ -22,9 +22,9 @@ namespace {
 std::string text(const Vec3d& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]); }
 
 /// Collects the nodes that depend on others, each with the coupling that made it.
-class Followers {
+class DependentNodes {
  public:
-  explicit Followers(const Simulation& s) : s_(s) {
+  explicit DependentNodes(const Simulation& s) : s_(s) {
     for (const FrameConstraint& c : s.model.constraints) held_[c.node] = &c;
   }
 
@@ -183,7 +183,7 @@ void turn_with_nearest(const Simulation& s, DependentNode& d) {
 }
 
 /// A tissue's own frames on the faces of another body, between the nodes that it shares there, follow that body.
-void attach_interfaces(const Simulation& s, const SimulatedBody& tissue, Followers& dependents) {
+void attach_interfaces(const Simulation& s, const SimulatedBody& tissue, DependentNodes& dependents) {
   constexpr double kOnFace = 0.05;  // spacings
   const double tolerance = tissue.interfaces.empty() ? 0 : kOnFace * mean_spacing(tissue);
   for (const Interface& face : tissue.interfaces) {
@@ -226,7 +226,7 @@ void add_springs(const Simulation& s, const Coupling& c, PointSetBuilder& points
 }
 
 /// @throws SceneError  a vertex of a surface that rides on nothing, which neither forces nor mass would move
-void check_surfaces_ride(const Simulation& s, const Followers& dependents) {
+void check_surfaces_ride(const Simulation& s, const DependentNodes& dependents) {
   for (const SimulatedBody& b : s.bodies) {
     const Body& described = s.scene.bodies[static_cast<std::size_t>(&b - s.bodies.data())];
     if (described.model != BodyModel::surface) continue;
@@ -242,7 +242,7 @@ void check_surfaces_ride(const Simulation& s, const Followers& dependents) {
   }
 }
 
-void add_coupling(Simulation& s, const Coupling& c, PointSetBuilder& points, Followers& dependents) {
+void add_coupling(Simulation& s, const Coupling& c, PointSetBuilder& points, DependentNodes& dependents) {
   const int body = body_index(s, c.body);
   if (c.kind != CouplingKind::spring && !s.bodies[at(body)].body->interpolates())
     s.warnings.add("scattered", c.place,
@@ -264,7 +264,7 @@ void add_coupling(Simulation& s, const Coupling& c, PointSetBuilder& points, Fol
 }  // namespace
 
 void add_couplings(Simulation& s, PointSetBuilder& points) {
-  Followers dependents(s);
+  DependentNodes dependents(s);
   SceneErrors errors;
   for (const Coupling& c : s.scene.couplings) errors.gather([&] { add_coupling(s, c, points, dependents); });
   errors.tell();

@@ -24,7 +24,7 @@ void turn(ThreadPool& pool, const FrameMatrices& D, std::vector<Mat3d>& Q) {
 
 bool Linearization::symmetric() const {
   return followers.empty() && torques.empty() &&
-         std::all_of(surfaces.begin(), surfaces.end(), [](const SurfaceTangent& s) { return s.load->has_potential; });
+         (surfaces == nullptr || !surface_tangent.curved || surfaces->conservative());
 }
 
 std::span<const Vec3d> CpuExecutor::translations_of(std::span<const double> d) {
@@ -57,7 +57,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
                             bool tethers_turn, const TakenStep* taken) {
   out.tangent = tangent;
   out.inverse_step = history.inverse_step;
-  out.surfaces.clear();
+  out.surfaces = nullptr;
   out.low_rank.clear();
   out.followers.clear();
   out.torques.clear();
@@ -155,7 +155,8 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
         for (int i = 0; i < 3; ++i) yn[3 + i] += sum.torque[i];
     }
   });
-  for (const SurfaceTangent& surface : lin.surfaces) add_product(surface, set_.dofs, lin.Q, x, y);
+  if (lin.surfaces != nullptr)
+    lin.surfaces->add_product(lin.surface_tangent, nodes_of(set_), lin.Q.data(), x.data(), y.data());
   for (const RankOne& term : lin.low_rank) add_product(term, x, y);
 }
 
@@ -168,7 +169,7 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out, En
       for (int k = 0; k < set_.dofs.size(node) * set_.dofs.size(node); ++k) diagonal[k] += own[k];
     }
   });
-  for (const SurfaceTangent& surface : lin.surfaces) add_blocks(surface, lin.Q, matrix_out);
+  if (lin.surfaces != nullptr) add_blocks(lin.surfaces->loads(), lin.surface_tangent, lin.Q, matrix_out);
   matrix_out.mirror_lower(pool_);
 }
 

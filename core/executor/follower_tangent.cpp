@@ -82,10 +82,12 @@ FollowerTangent::FollowerTangent(const FollowerLoad& follower, const State& stat
   if (std::abs(determinant(turning)) > kLeast) spin_of_change = inverse(turning);
 }
 
-void add_unsymmetric_product(const Linearization& lin, const DofLayout& dofs, std::span<const double> x,
+void add_unsymmetric_product(const Linearization& lin, const PointSet& set, std::span<const double> x,
                              std::span<double> y) {
-  for (const SurfaceTangent& surface : lin.surfaces)
-    if (!surface.load->has_potential) add_product(surface, dofs, lin.Q, x, y, TangentPart::antisymmetric);
+  const DofLayout& dofs = set.dofs;
+  if (lin.surfaces != nullptr && !lin.surfaces->conservative())
+    lin.surfaces->add_product(lin.surface_tangent, nodes_of(set), lin.Q.data(), x.data(), y.data(),
+                              TangentPart::antisymmetric);
   for (const FollowerTangent& follower : lin.followers) add_product(follower, dofs, lin.Q, x, y);
   for (const TorqueTangent& t : lin.torques) {
     const auto i = at(dofs.begin(t.node) + 3);

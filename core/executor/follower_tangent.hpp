@@ -29,7 +29,7 @@ struct TorqueTangent {
 /// y += what no symmetric matrix holds of K x, with K the derivative of what loads without a potential add to the
 /// gradient: pressure on surfaces with free edges, followers, torques. At rigid frames it is K − ½ [τ]×, as for all
 /// that acts on them (their torques τ cancel at equilibrium). Of surfaces it is the antisymmetric part, of others all.
-void add_unsymmetric_product(const Linearization& lin, const DofLayout& dofs, std::span<const double> x,
+void add_unsymmetric_product(const Linearization& lin, const PointSet& set, std::span<const double> x,
                              std::span<double> y);
 
 }  // namespace fascia

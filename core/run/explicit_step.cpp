@@ -19,7 +19,8 @@ ExplicitStepper::ExplicitStepper(MechanicalSystem& system, State& state, double 
       filter_(system.filter()),
       space_(system.space()),
       seen_(system.nodes()),
-      surfaces_(system.model()),
+      followers_(system.model(), system.space()),
+      surfaces_(system.model(), system.space()),
       dependents_(system.model().points, system.space()),
       state_(state),
       last_step_(dt),
@@ -125,13 +126,9 @@ void ExplicitStepper::add_forces(const State& state, std::vector<double>& gradie
   executor_.forces(state, history_, gradient);
   if (load.empty()) return;
   space_.for_each(model_.node_count(), loops::StoreDeadLoads{view().m, {state.u.data(), state.D.data()}, load.data()});
-  for (const FollowerLoad& follower : model_.followers)
-    for_each_share(follower, state, factors_[at(follower.schedule)],
-                   [&](int node, const Vec3d& force, const Mat3d& couple, const Vec3d& torque) {
-                     add_node_force(model_.kind(node), state.D[at(node)], force, couple, torque,
-                                    load.data() + model_.points.dofs.begin(node));
-                   });
-  surfaces_.add_forces(state, factors_, load);
+  const PoseView pose{state.u.data(), state.D.data()};
+  if (!followers_.empty()) followers_.add_forces(seen_.nodes, pose, factors_.data(), load.data());
+  if (!surfaces_.empty()) surfaces_.add_forces(seen_.nodes, pose, factors_.data(), load.data());
   if (dependents_.empty()) return;
   dependents_.turn(state.D.data());
   dependents_.transfer(seen_.nodes, gradient.data());

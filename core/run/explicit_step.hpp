@@ -83,7 +83,8 @@ class ExplicitStepper {
   const DofFilter& filter_;
   const PoolSpace& space_;
   const ModelView& seen_;
-  SurfaceLoads surfaces_;
+  Followers<PoolSpace> followers_;
+  Surfaces<PoolSpace> surfaces_;
   Dependents<PoolSpace> dependents_;
   State& state_;
   double last_step_;  ///< [s]

@@ -17,16 +17,24 @@ namespace fascia {
 namespace {
 
 /// Stiffness of enclosed volumes, the largest of their schedules.
-std::vector<RankOne> fluids_of(const Model& model, const State& state) {
+std::vector<RankOne> fluids_of(const MechanicalSystem& system, const State& state) {
+  const Model& model = system.model();
+  const NodesView& nodes = system.nodes().nodes;
   std::vector<RankOne> fluids;
-  SurfaceLoads surfaces(model);
-  std::vector<double> unused(at(model.dof_count()));
-  surfaces.add_forces(state, zero_factors(model), unused);
-  for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
-    const SurfaceLoad& load = model.surfaces[s];
-    if (load.bulk_modulus > 0)
-      fluids.push_back(
-          {load.bulk_modulus / std::min(load.rest_volume, load.volume), surfaces.volume_gradient(s, state)});
+  Surfaces<PoolSpace> surfaces(model, system.space());
+  if (surfaces.terms() == 0) return fluids;
+  const std::vector<double> factors = zero_factors(model);
+  std::vector<double> unused(at(model.dof_count())), blocks(model.points.dofs.block_total());
+  std::vector<Mat3d> Q;
+  for (int i = 0; i < model.node_count(); ++i) Q.push_back(Mat3d::identity() + state.D[at(i)]);
+  surfaces.add_forces(nodes, {state.u.data(), state.D.data()}, factors.data(), unused.data());
+  SurfaceTangent<PoolSpace> tangent;
+  surfaces.linearize(nodes, Q.data(), factors.data(), Tangent::material, tangent, blocks.data());
+  for (const SurfaceLoad& load : model.surfaces) {
+    if (!load.has_potential || !(load.bulk_modulus > 0)) continue;
+    const double* g = tangent.volume_gradient(static_cast<int>(fluids.size()));
+    fluids.push_back(
+        {load.bulk_modulus / std::min(load.rest_volume, load.volume), std::vector<double>(g, g + model.dof_count())});
   }
   return fluids;
 }
@@ -41,7 +49,7 @@ class HighestFrequency {
         nodes_(system.nodes().nodes),
         dependents_(system.model().points, system.space()),
         state_(state),
-        fluids_(fluids_of(system.model(), state)) {
+        fluids_(fluids_of(system, state)) {
     const Model& model = system.model();
     require_inertia(model, filter_);
     inverse_mass_.resize(dofs_.block_total());

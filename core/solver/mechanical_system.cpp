@@ -48,7 +48,8 @@ MechanicalSystem::MechanicalSystem(const Model& model, ThreadPool& pool, const S
       conservative_(model.loads_are_conservative()),
       linear_(model.is_linear()),
       extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
-      surfaces_(model),
+      followers_(model, space_),
+      surfaces_(model, space_),
       motions_(motion_sizes(model)),
       masses_(part_masses(model)),
       driven_(driven_parts(model)),
@@ -153,13 +154,12 @@ void MechanicalSystem::add_loads_and_inertia() {
                 loops::StoreSums<2, 0>{energies});
   load_energy_ = energies[0];
   inertia_energy_ = energies[1];
-  for (const FollowerLoad& load : model_.followers)
-    for_each_share(load, state_, factors_[at(load.schedule)],
-                   [&](int node, const Vec3d& force, const Mat3d& couple, const Vec3d& torque) {
-                     add_node_force(model_.kind(node), state_.D[at(node)], force, couple, torque,
-                                    load_.data() + model_.points.dofs.begin(node));
-                   });
-  load_energy_ += surfaces_.add_forces(state_, factors_, load_);
+  const NodesView& nodes = data_.view().nodes;
+  const PoseView pose{state_.u.data(), state_.D.data()};
+  if (!followers_.empty()) followers_.add_forces(nodes, pose, factors_.data(), load_.data());
+  if (surfaces_.empty()) return;
+  surfaces_.add_forces(nodes, pose, factors_.data(), load_.data());
+  load_energy_ += surfaces_.potential(surface_figures());
 }
 
 /// @param turning  false leaves out how forces on dependent nodes turn their hosts, tethers' pull among them
@@ -174,11 +174,24 @@ void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) {
       lin.followers.emplace_back(load, state_, factors_[at(load.schedule)]);
     if (turning) dependents_.add_turning(data_.view().nodes, dependent_forces_.data(), lin.node_blocks.data());
   }
-  surfaces_.linearize(state_, factors_, lin);
-  for (RankOne& term : lin.low_rank) dependents_.transfer(data_.view().nodes, term.g.data());
+  if (!surfaces_.empty()) add_surface_tangent(lin);
   if (form_.h > 0 || (full && !model_.loads.empty()))
     space_.for_each(model_.node_count(),
                     loops::AddLoadAndInertiaBlocks{step_view(), lin.Q.data(), lin.node_blocks.data(), full});
+}
+
+/// What the surface loads of the last evaluation are in a tangent there; volumes stand beside the matrix.
+void MechanicalSystem::add_surface_tangent(Linearization& lin) {
+  const NodesView& nodes = data_.view().nodes;
+  SurfaceTangent<PoolSpace>& tangent = lin.surface_tangent;
+  lin.surfaces = &surfaces_;
+  surfaces_.linearize(nodes, lin.Q.data(), factors_.data(), lin.tangent, tangent, lin.node_blocks.data());
+  for (int t = 0; t < surfaces_.terms(); ++t) {
+    double* g = tangent.volume_gradient(t);
+    dependents_.transfer(nodes, g);
+    const double stiffness = tangent.stiffness.data()[t];
+    if (stiffness > 0) lin.low_rank.push_back({stiffness, std::vector<double>(g, g + model_.dof_count())});
+  }
 }
 
 Evaluation MechanicalSystem::evaluate() {
@@ -203,7 +216,7 @@ std::vector<PartForces> MechanicalSystem::forces_of_parts() {
   for (std::size_t p = 0; p < masses_.size(); ++p) {
     const int part = static_cast<int>(p);
     const PartSizes sizes{.rounding = executor_.rounding(part),
-                          .of_surfaces = surfaces_.rounding(part),
+                          .of_surfaces = surfaces_.empty() ? 0.0 : surfaces_.rounding(part, surface_figures()),
                           .tether = executor_.points().squared_tether_force(part),
                           .leverage = dependents_.leverage()[p],
                           .mass = masses_[p],
@@ -262,7 +275,7 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
   space_.sum<1, 2>(model_.node_count(), loops::TakeDirection<double>{data_.view(), d, nullptr, gradient_.data(), d},
                    loops::StoreSums<1, 2>{sums});
   dependents_.expand(data_.view().nodes, direction_.data());
-  surfaces_.aim(lin_, direction_);
+  if (!surfaces_.empty()) surfaces_.aim(lin_.surface_tangent, direction_.data());
   report.slope = sums[0];
   report.largest_rotation = std::max(sums[1], executor_.largest_spin(direction_));
   if (!conservative_) {
@@ -274,7 +287,7 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
 
 void MechanicalSystem::linearize_loads() {
   lin_.tangent = settings_.tangent;
-  lin_.surfaces.clear();
+  lin_.surfaces = nullptr;
   lin_.low_rank.clear();
   lin_.followers.clear();
   lin_.torques.clear();
@@ -311,7 +324,7 @@ void MechanicalSystem::add_unsymmetric(std::span<const double> x, std::span<doub
   std::vector<double> all(x.begin(), x.end()), product(x.size());
   filter_.to_global(all);
   dependents_.expand(data_.view().nodes, all.data());
-  add_unsymmetric_product(lin_, model_.points.dofs, all, product);
+  add_unsymmetric_product(lin_, model_.points, all, product);
   dependents_.transfer(data_.view().nodes, product.data());
   filter_.to_local(product);
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += product[i];
@@ -344,7 +357,7 @@ double MechanicalSystem::largest_step(double wanted) {
 void MechanicalSystem::apply(double step) {
   note_step(step);
   if (!conservative_) applied_ = step;
-  surfaces_.approach(step);
+  if (!surfaces_.empty()) surfaces_.approach(step);
   known_.reset();
   space_.for_each(model_.node_count(), loops::Advance{step_view(), direction_.data(), step});
   if (!dependents_.empty()) place_dependents_of_step();
@@ -353,7 +366,7 @@ void MechanicalSystem::apply(double step) {
 void MechanicalSystem::save() {
   copy_increment(executor_.pool(), increment_, saved_);
   saved_work_ = load_work_;
-  surfaces_.save();
+  if (!surfaces_.empty()) surfaces_.save();
 }
 
 void MechanicalSystem::restore() {
@@ -361,7 +374,7 @@ void MechanicalSystem::restore() {
   copy_increment(executor_.pool(), saved_, increment_);
   load_work_ = saved_work_;
   applied_ = 0;
-  surfaces_.restore();
+  if (!surfaces_.empty()) surfaces_.restore();
   rebuild_state();
 }
 

@@ -5,13 +5,14 @@
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/newton.hpp"
 #include "core/solver/reached.hpp"
-#include "core/solver/surface_loads.hpp"
 #include "core/space/part_sums.hpp"
 #include "core/space/pool_space.hpp"
 #include "core/step/dependents.hpp"
+#include "core/step/followers.hpp"
 #include "core/step/model_data.hpp"
 #include "core/step/step_view.hpp"
 #include "core/step/stress_memory_steps.hpp"
+#include "core/step/surfaces.hpp"
 #include "core/structure/inertia.hpp"
 #include "core/structure/model.hpp"
 #include "core/tangent/tangent_solver.hpp"
@@ -76,7 +77,9 @@ class MechanicalSystem {
   /// Factors of schedules at the end of the last step.
   const std::vector<double>& reached_factors() const { return reached_factors_; }
   /// Newton's pressures of enclosed volumes at the end of the last step [Pa].
-  const std::vector<double>& reached_pressures() const { return surfaces_.reached(); }
+  std::vector<double> reached_pressures() const {
+    return surfaces_.empty() ? std::vector<double>{} : surfaces_.reached();
+  }
 
   /// The state at the end of the step, with its velocities. Of a midpoint step the factors must be set to those of the
   /// end before; what is prescribed then is on its target.
@@ -184,7 +187,7 @@ class MechanicalSystem {
   const PoolSpace& space() const { return space_; }
   const ModelView& nodes() const { return data_.view(); }
   /// At the state of the last evaluation.
-  const SurfaceLoads& surfaces() const { return surfaces_; }
+  const Surfaces<PoolSpace>& surfaces() const { return surfaces_; }
   TangentSolver& linear() { return tangent_; }
 
  private:
@@ -200,6 +203,8 @@ class MechanicalSystem {
   void note_step(double step);
   void evaluate_loads();
   double load_power() const;
+  std::span<const double> surface_figures() const { return {surfaces_.figures(), surfaces_.figure_count()}; }
+  void add_surface_tangent(Linearization& lin);
   void place_dependents(State& state) const { dependents_.place(state.u.data(), state.D.data()); }
   void place_dependent_rates(State& state) const { dependents_.place_rates(state.v.data(), state.Q_dot.data()); }
   void place_dependents_of_step();
@@ -235,7 +240,8 @@ class MechanicalSystem {
   TangentSolver tangent_;
   Dependents<PoolSpace> dependents_;  ///< at the present state
   bool conservative_, linear_, extrapolates_;
-  SurfaceLoads surfaces_;
+  Followers<PoolSpace> followers_;
+  Surfaces<PoolSpace> surfaces_;
   MotionSizes motions_;
   std::vector<double> masses_;  ///< part_masses()
   std::vector<char> driven_;    ///< driven_parts()

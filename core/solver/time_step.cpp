@@ -27,7 +27,7 @@ void MechanicalSystem::begin_step(const State& start, double dt, TimeScheme sche
   increment_.turned = start_.turned;
   has_taken_ = false;
   load_work_ = saved_work_ = applied_ = 0;
-  surfaces_.begin_step();
+  if (!surfaces_.empty()) surfaces_.begin_step();
   executor_.start_from(start_);
   static_cast<StepConstants&>(form_) = StepConstants::of(scheme, dt, memory.step);
   history_.inverse_step = 0;
@@ -117,13 +117,13 @@ void MechanicalSystem::forget_steps(std::span<const double> factors, const std::
   reached_factors_.assign(factors.begin(), factors.end());
   middles_ = {};
   static_cast<StepConstants&>(form_) = {};
-  surfaces_.begin_afresh(pressures);
+  if (!surfaces_.empty()) surfaces_.begin_afresh(pressures);
   tangent_.forget_kept_factor();
 }
 
 void MechanicalSystem::finish_step(double end_time, StepMemory& memory, State& end) {
   reached_factors_ = factors_;
-  surfaces_.finish_step();
+  if (!surfaces_.empty()) surfaces_.finish_step();
   Reached reached = reached_ ? *std::exchange(reached_, std::nullopt) : Reached{};
   const std::size_t n = start_.u.size();
   ThreadPool& pool = executor_.pool();

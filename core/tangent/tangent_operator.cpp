@@ -146,7 +146,7 @@ void TangentOperator::apply_by_blocks(std::span<const double> x, std::span<doubl
   filter_.to_global(work_);
   dependents_.expand(nodes_, work_.data());
   executor_.multiply(*at_, work_, y);
-  if (whole) add_unsymmetric_product(*at_, model_.points.dofs, work_, y);
+  if (whole) add_unsymmetric_product(*at_, model_.points, work_, y);
   dependents_.transfer(nodes_, y.data());
   filter_.to_local(y);
 }

@@ -6,10 +6,10 @@
 #include "core/solver/boundary_motion.hpp"
 #include "core/space/part_sums.hpp"
 #include "core/step/dependents.hpp"
+#include "core/step/followers.hpp"
 #include "core/step/model_data.hpp"
 #include "core/step/stress_memory_steps.hpp"
-#include "gpu/actions/followers.hpp"
-#include "gpu/actions/surfaces.hpp"
+#include "core/step/surfaces.hpp"
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/system/cg.hpp"
 #include "gpu/system/device_state.hpp"
@@ -207,6 +207,7 @@ class System {
   Dependents<Space> dependents_;
   Followers<Space> followers_;
   Surfaces<Space> surfaces_;
+  SurfaceTangent<Space> surface_tangent_;
   PartSums<Space> node_parts_;
   ConjugateGradients<Space, double> cg_;
   ConjugateGradients<Space, float> narrow_cg_;

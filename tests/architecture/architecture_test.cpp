@@ -44,7 +44,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
      {"base", "space", "math", "geometry", "physics", "structure", "body", "node", "step", "linear", "levels",
       "executor", "tangent", "solver", "run"}},
     {"assembly", {"specification", "simulation", "bodies", "actions", "build"}},
-    {"gpu", {"space", "tiles", "elements", "blocks", "actions", "system", "explicit", "run"}}};
+    {"gpu", {"space", "tiles", "elements", "blocks", "step", "system", "explicit", "run"}}};
 
 /// Sources and headers of a room.
 constexpr std::size_t kMostFiles = 33;

@@ -32,15 +32,16 @@ const Feature kElements{
 const Feature kMeshless{"meshless bodies", {"meshless/"}, {}};
 const Feature kCouplings{
     "couplings",
-    {"coupling/", "core/step/dependents", "core/tangent/condense", "core/executor/spring_executor", "core/structure/dependent_inertia",
-     "assembly/actions/couplings", "assembly/bodies/carried_surface", "app/results/coupling_report"},
+    {"coupling/", "core/step/dependents", "core/tangent/condense", "core/executor/spring_executor",
+     "core/structure/dependent_inertia", "assembly/actions/couplings", "assembly/bodies/carried_surface",
+     "app/results/coupling_report"},
     {"Dependents", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "condense", "SpringExecutor",
      "add_couplings", "move_inertia_to_hosts", "move_idle_inertia_to_hosts", "coupling_report"}};
 const Feature kTethers{"tethers", {"assembly/actions/tethers"}, {}};
 const Feature kSurfaces{"fluids and pressure",
-                        {"core/structure/surface_load", "core/structure/face_rule", "core/executor/surface_tangent",
-                         "core/solver/surface_loads", "assembly/actions/surface_loads"},
-                        {"SurfaceLoads", "add_fluids"}};
+                        {"core/structure/surface_load", "core/structure/face_rule", "core/executor/surface_blocks",
+                         "core/step/surface", "assembly/actions/surface_loads"},
+                        {"Surfaces", "add_fluids"}};
 const Feature kPaths{"paths and imperfections",
                      {"core/solver/path_", "core/run/path_", "core/run/limit_point", "assembly/actions/imperfection"},
                      {"largest_rotation_in", "add_imperfection"}};

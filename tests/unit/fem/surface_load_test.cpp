@@ -1,6 +1,6 @@
 // Pressure on surfaces that nodes move: forces and tangents against differences, resultants, volumes.
 #include "core/body/body_surface.hpp"
-#include "core/solver/surface_loads.hpp"
+#include "core/executor/executor.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/unit/fem/surface_models.hpp"
 
@@ -45,8 +45,7 @@ class SurfaceLoadTest : public testing::TestWithParam<Case> {
   }
   std::vector<double> forces(const State& state, double* energy = nullptr) {
     std::vector<double> out(at(built_.model.dof_count()));
-    SurfaceLoads loads(built_.model);
-    const double e = loads.add_forces(state, factors_, out);
+    const double e = add_surface_forces(loads_, built_.model, state, factors_, out);
     if (energy != nullptr) *energy = e;
     return out;
   }
@@ -61,9 +60,8 @@ class SurfaceLoadTest : public testing::TestWithParam<Case> {
     executor_.gradient(state_, {}, unused);
     Linearization lin;
     executor_.linearize(state_, {}, Tangent::full, lin);
-    SurfaceLoads loads(built_.model);
-    loads.add_forces(state_, factors_, unused);
-    loads.linearize(state_, factors_, lin);
+    forces(state_);
+    add_surface_tangent(loads_, built_.model, factors_, lin);
     return lin;
   }
   std::vector<double> product(const Linearization& lin, const std::vector<double>& d) {
@@ -82,6 +80,7 @@ class SurfaceLoadTest : public testing::TestWithParam<Case> {
   CpuExecutor executor_;
   State state_;
   std::vector<double> factors_{0.7, 0.9};
+  Surfaces<PoolSpace> loads_{built_.model, PoolSpace(pool_)};
 };
 
 TEST_P(SurfaceLoadTest, ForcesAreTheGradientOfTheEnergy) {
@@ -239,7 +238,8 @@ TEST(OpenSurfaces, HaveAnEnergyWhereTheirEdgesAreHeld) {
   evaluate(load, moved(built.model, state, d, h), factors, plus);
   evaluate(load, moved(built.model, state, d, -h), factors, minus);
   std::vector<double> force(d.size());
-  gather_forces(load, f.force, state, built.model.points.dofs, force);
+  Surfaces<PoolSpace> loads(built.model);
+  add_surface_forces(loads, built.model, state, factors, force);
   EXPECT_NEAR((minus.energy - plus.energy) / (2 * h), test::dot(force, d), 1e-8 * test::norm(force) * test::norm(d));
 }
 

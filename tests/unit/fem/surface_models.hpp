@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/executor/executor.hpp"
 #include "tests/unit/fem/element_models.hpp"
 
 #include <array>
@@ -52,6 +53,25 @@ inline Loaded scattered() {
   built.body = std::make_shared<CloudBody>(spec, built.model, points);
   built.model.points = std::move(points).finish(built.model.frame_kind);
   return built;
+}
+
+/// Adds the forces of surface loads. @return  their potential
+inline double add_surface_forces(Surfaces<PoolSpace>& loads, const Model& model, const State& state,
+                                 const std::vector<double>& factors, std::vector<double>& out) {
+  loads.add_forces(nodes_of(model.points), {state.u.data(), state.D.data()}, factors.data(), out.data());
+  return loads.potential({loads.figures(), loads.figure_count()});
+}
+
+/// Adds the tangent of surface loads at their last forces, in a model without dependent nodes.
+inline void add_surface_tangent(Surfaces<PoolSpace>& loads, const Model& model, const std::vector<double>& factors,
+                                Linearization& lin) {
+  SurfaceTangent<PoolSpace>& tangent = lin.surface_tangent;
+  lin.surfaces = &loads;
+  loads.linearize(nodes_of(model.points), lin.Q.data(), factors.data(), lin.tangent, tangent, lin.node_blocks.data());
+  for (int t = 0; t < loads.terms(); ++t) {
+    const double* g = tangent.volume_gradient(t);
+    lin.low_rank.push_back({tangent.stiffness.data()[t], std::vector<double>(g, g + model.dof_count())});
+  }
 }
 
 }  // namespace fascia::test

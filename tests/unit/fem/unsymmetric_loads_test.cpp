@@ -90,8 +90,7 @@ class UnsymmetricLoads : public testing::TestWithParam<Case> {
     for (const DeadLoad& load : model.loads)
       for (const NodeLoad& n : load.nodes) add(n.node, n.force * 0.7, n.couple * 0.7, n.torque * 0.7);
     for (const FollowerLoad& load : model.followers) for_each_share(load, state, 0.7, add);
-    SurfaceLoads loads(model);
-    loads.add_forces(state, factors_, out);
+    add_surface_forces(loads_, model, state, factors_, out);
     return out;
   }
   /// Of the loads alone.
@@ -102,15 +101,14 @@ class UnsymmetricLoads : public testing::TestWithParam<Case> {
     Linearization lin;
     executor_.linearize(state_, {}, Tangent::full, lin);
     executor_.multiply(lin, d, without);
-    SurfaceLoads loads(model);
-    loads.add_forces(state_, factors_, unused);
-    loads.linearize(state_, factors_, lin);
+    add_surface_forces(loads_, model, state_, factors_, unused);
+    add_surface_tangent(loads_, model, factors_, lin);
     for (const FollowerLoad& load : model.followers) lin.followers.emplace_back(load, state_, 0.7);
     for (const DeadLoad& load : model.loads)
       for (const NodeLoad& n : load.nodes) lin.torques.push_back({n.node, n.torque * 0.7});
     EXPECT_FALSE(lin.symmetric());
     executor_.multiply(lin, d, with);
-    add_unsymmetric_product(lin, model.points.dofs, d, with);
+    add_unsymmetric_product(lin, model.points, d, with);
     for (std::size_t i = 0; i < size(); ++i) with[i] -= without[i];
     return with;
   }
@@ -120,6 +118,7 @@ class UnsymmetricLoads : public testing::TestWithParam<Case> {
   CpuExecutor executor_;
   State state_;
   std::vector<double> factors_{0.7, 0.7};
+  Surfaces<PoolSpace> loads_{built_.model, PoolSpace(pool_)};
 };
 
 TEST_P(UnsymmetricLoads, ProductIsTheDerivativeOfTheForces) {
@@ -203,10 +202,10 @@ int negative_eigenvalues(const Model& model, ThreadPool& pool, const State& stat
   executor.gradient(state, {}, unused);
   Linearization lin;
   executor.linearize(state, {}, Tangent::full, lin);
-  SurfaceLoads loads(model);
+  Surfaces<PoolSpace> loads(model);
   const std::vector<double> factors{1, 1};
-  loads.add_forces(state, factors, unused);
-  loads.linearize(state, factors, lin);
+  add_surface_forces(loads, model, state, factors, unused);
+  add_surface_tangent(loads, model, factors, lin);
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < n; ++i)
     if (!filter.is_fixed(i)) free.push_back(i);
@@ -216,7 +215,7 @@ int negative_eigenvalues(const Model& model, ThreadPool& pool, const State& stat
     std::fill(d.begin(), d.end(), 0.0);
     d[free[at(c)]] = 1;
     executor.multiply(lin, d, Kd);
-    add_unsymmetric_product(lin, model.points.dofs, d, Kd);
+    add_unsymmetric_product(lin, model.points, d, Kd);
     for (int r = 0; r < size; ++r) K(r, c) = Kd[free[at(r)]];
   }
   const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(K, false).eigenvalues();

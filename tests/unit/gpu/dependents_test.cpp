@@ -77,7 +77,7 @@ TEST_P(DependentsTest, PlacesAndRates) {
   EXPECT_LE(relative(flat(state.u, state.D), flat(expected.u, expected.D)), 1e-15);
   EXPECT_LE(relative(flat(state.v, state.Q_dot), flat(expected.v, expected.Q_dot)), 1e-15);
   of_pool_.place(on_pool.u.data(), matrices(on_pool.D));
-  EXPECT_EQ(flat(on_pool.u, on_pool.D), flat(state.u, state.D));
+  EXPECT_LE(relative(flat(on_pool.u, on_pool.D), flat(expected.u, expected.D)), 1e-15);
 }
 
 /// Where the hosts' increments take a dependent node is where their end takes it.
@@ -110,7 +110,7 @@ TEST_P(DependentsTest, Directions) {
   dependents_.expand(host_.nodes(), d.data(), dx.data(), dA.data(), host_.Q());
   EXPECT_LE(relative(d, expected), 1e-15);
   of_pool_.expand(host_.nodes(), on_pool.data());
-  EXPECT_EQ(on_pool, d);
+  EXPECT_LE(relative(on_pool, expected), 1e-15);
   for (const DependentNode& v : model_.points.dependents) {
     const double* own = d.data() + model_.points.dofs.begin(v.node);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(dx[at(v.node)][k], own[k]);
@@ -127,8 +127,8 @@ TEST_P(DependentsTest, Forces) {
   EXPECT_LE(relative(forces, kept), 1e-14);
   std::vector<double> on_pool = d_, kept_on_pool = kept;
   of_pool_.transfer(host_.nodes(), on_pool.data(), kept_on_pool.data());
-  EXPECT_EQ(on_pool, g);
-  EXPECT_EQ(kept_on_pool, forces);
+  EXPECT_LE(relative(on_pool, expected), 1e-14);
+  EXPECT_LE(relative(kept_on_pool, kept), 1e-14);
   EXPECT_EQ(dependents_.leverage(), of_pool_.leverage());
 
   std::vector<double> expected_blocks(model_.points.dofs.block_total()), blocks = expected_blocks;

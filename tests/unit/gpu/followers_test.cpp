@@ -1,4 +1,4 @@
-#include "gpu/actions/followers.hpp"
+#include "core/step/followers.hpp"
 
 #include "core/node/node_force.hpp"
 #include "tests/support/models.hpp"
@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <numeric>
 
-/// Followers in a space against those of the model.
+/// Followers in the spaces of the host against those of the model.
 namespace fascia::gpu::test::followers_test {
 namespace {
 
@@ -51,8 +51,13 @@ void expect_same_forces(Model model, bool vertices, double turn) {
   const HostModel host(model, state);
   std::vector<double> load = random_direction(model), expected = reference_forces(model, state, factors);
   for (std::size_t i = 0; i < load.size(); ++i) expected[i] += load[i];
+  std::vector<double> on_pool = load;
   Followers<HostSpace>(model).add_forces(host.nodes(), host.pose(), factors.data(), load.data());
   EXPECT_LE(relative(load, expected), 1e-14);
+  ThreadPool pool(3);
+  Followers<PoolSpace> followers(model, PoolSpace(pool));
+  followers.add_forces(host.nodes(), host.pose(), factors.data(), on_pool.data());
+  EXPECT_LE(relative(on_pool, expected), 1e-14);
 }
 
 TEST(FollowersTest, OnRigidFrames) {

@@ -1,8 +1,7 @@
-#include "gpu/actions/surfaces.hpp"
-#include "assembly/actions/actions.hpp"
+#include "core/step/surfaces.hpp"
 
 #include "core/body/body_surface.hpp"
-#include "core/solver/surface_loads.hpp"
+#include "core/node/node_force.hpp"
 #include "tests/unit/fem/surface_models.hpp"
 #include "tests/unit/gpu/host_model.hpp"
 
@@ -11,7 +10,8 @@
 #include <functional>
 #include <memory>
 
-/// Surface loads in a space against those of the solver.
+/// Surface loads in the spaces of the host: forces against plain sums, tangents against one another. Derivatives are
+/// held in tests/unit/fem/surface_load_test.cpp.
 namespace fascia::surfaces_test {
 namespace {
 
@@ -42,14 +42,31 @@ struct Case {
   std::function<Loaded()> build;
 };
 
+/// Forces as the formulas say them, one share after the other. @return  the potential
+double plain_forces(const Model& model, const State& state, const std::vector<double>& factors,
+                    std::vector<SurfaceForces>& forces, std::vector<double>& out) {
+  double energy = 0;
+  forces.resize(model.surfaces.size());
+  for (std::size_t s = 0; s < forces.size(); ++s) {
+    const SurfaceLoad& load = model.surfaces[s];
+    evaluate(load, state, factors, forces[s]);
+    energy += forces[s].energy;
+    for (int v = 0; v < load.vertex_count(); ++v)
+      for (const SurfaceShare& share : load.shares_of(v)) {
+        const Vec3d& f = forces[s].force[at(v)];
+        add_node_force(model.kind(share.node), state.D[at(share.node)], f * share.w, outer(f, share.b), {},
+                       out.data() + model.points.dofs.begin(share.node));
+      }
+  }
+  return energy;
+}
+
 class SurfacesTest : public testing::TestWithParam<Case> {
  protected:
-  using Own = gpu::Surfaces<HostSpace>;
   SurfacesTest()
       : built_(make()),
-        executor_(built_.model.points, pool_),
         host_(built_.model, random_state(built_.model, 0.06, 0.4)),
-        cpu_(built_.model),
+        pooled_(built_.model, PoolSpace(pool_)),
         own_(built_.model) {}
   static Loaded make() {
     Loaded built = GetParam().build();
@@ -57,112 +74,102 @@ class SurfacesTest : public testing::TestWithParam<Case> {
     return built;
   }
 
-  const State& state() const { return host_.state(); }
   std::vector<double> zeros() const { return std::vector<double>(at(built_.model.dof_count())); }
-  std::vector<double> figures() const { return {own_.figures(), own_.figures() + own_.figure_count()}; }
-  double evaluate(std::vector<double>& expected, std::vector<double>& load) {
-    own_.add_forces(host_.nodes(), host_.pose(), factors_.data(), load.data());
-    return cpu_.add_forces(state(), factors_, expected);
+  template <class Surfaces>
+  static std::vector<double> figures(const Surfaces& s) {
+    return {s.figures(), s.figures() + s.figure_count()};
   }
-  /// Of the loads alone.
-  Linearization linearize(Tangent tangent) {
-    std::vector<double> unused = zeros();
-    Linearization lin;
-    executor_.gradient(state(), {}, unused);
-    executor_.linearize(state(), {}, tangent, lin);
-    std::fill(lin.node_blocks.begin(), lin.node_blocks.end(), 0.0);
-    cpu_.linearize(state(), factors_, lin);
-    return lin;
+  template <class Surfaces>
+  std::vector<double> forces(Surfaces& surfaces, const HostModel& at_pose) {
+    std::vector<double> load = zeros();
+    surfaces.add_forces(host_.nodes(), at_pose.pose(), factors_.data(), load.data());
+    return load;
   }
-  void expect_same_tangent(Tangent tangent) {
-    const Linearization lin = linearize(tangent);
-    std::vector<double> blocks(lin.node_blocks.size());
-    own_.linearize(host_.nodes(), host_.Q(), factors_.data(), tangent, blocks.data());
-    if (tangent == Tangent::full && built_.model.frame_kind[0] == FrameKind::rigid)
-      expect_near(blocks, lin.node_blocks, "node blocks");
-    else
-      EXPECT_EQ(blocks, lin.node_blocks);
-    ASSERT_EQ(at(own_.terms()), lin.low_rank.size());
-    for (int t = 0; t < own_.terms(); ++t)
-      expect_near(std::vector<double>(own_.volume_gradient(t), own_.volume_gradient(t) + built_.model.dof_count()),
-                  lin.low_rank[at(t)].g, "volume gradient");
-    // At another pose since, the products are those of the linearisation.
-    std::vector<double> unused = zeros(), expected = zeros(), y = zeros();
-    own_.add_forces(host_.nodes(), rest_.pose(), factors_.data(), unused.data());
+  /// All that a tangent gives, one after the other: blocks, volumes, products at another pose since.
+  template <class Space>
+  std::vector<double> tangent(Surfaces<Space>& surfaces, Tangent kind) {
+    std::vector<double> all(built_.model.points.dofs.block_total()), y = zeros();
+    SurfaceTangent<Space> tangent;
+    forces(surfaces, host_);
+    surfaces.linearize(host_.nodes(), host_.Q(), factors_.data(), kind, tangent, all.data());
+    forces(surfaces, rest_);
     const std::vector<double> d = random_direction(built_.model);
-    for (const SurfaceTangent& term : lin.surfaces) add_product(term, built_.model.points.dofs, lin.Q, d, expected);
-    own_.add_product(host_.nodes(), host_.Q(), host_.direction(d), y.data());
-    expect_near(y, expected, "product");
-    expected = y = zeros();
-    for (const RankOne& term : lin.low_rank) add_product(term, d, expected);
-    own_.add_volume_product(d.data(), y.data());
-    expect_near(y, expected, "volumes");
+    for (const TangentPart part : {TangentPart::symmetric, TangentPart::antisymmetric})
+      surfaces.add_product(tangent, host_.nodes(), host_.Q(), d.data(), y.data(), part);
+    all.insert(all.end(), y.begin(), y.end());
+    y = zeros();
+    surfaces.add_volume_product(tangent, d.data(), y.data());
+    all.insert(all.end(), y.begin(), y.end());
+    all.insert(all.end(), tangent.g.data(), tangent.g.data() + tangent.g.size());
+    return all;
+  }
+  void expect_same_tangents() {
+    for (const Tangent kind : {Tangent::full, Tangent::material})
+      expect_near(tangent(own_, kind), tangent(pooled_, kind), "tangent");
+  }
+  /// An iteration of Newton's method that goes a part of the way, after a line search went back.
+  template <class Space>
+  void iterate(Surfaces<Space>& surfaces, bool back, const std::vector<double>& d) {
+    std::vector<double> blocks(built_.model.points.dofs.block_total());
+    SurfaceTangent<Space> tangent;
+    forces(surfaces, host_);
+    surfaces.linearize(host_.nodes(), host_.Q(), factors_.data(), Tangent::full, tangent, blocks.data());
+    surfaces.aim(tangent, d.data());
+    surfaces.save();
+    surfaces.approach(1);
+    if (back) surfaces.restore();
+    surfaces.approach(0.4);
   }
 
   Loaded built_;
-  ThreadPool pool_{1};
-  CpuExecutor executor_;
+  ThreadPool pool_{3};
   HostModel host_, rest_{built_.model, State::at_rest(built_.model)};
-  SurfaceLoads cpu_;
-  Own own_;
+  Surfaces<PoolSpace> pooled_;
+  Surfaces<HostSpace> own_;
   std::vector<double> factors_{0.7, 0.9};
 };
 
 TEST_P(SurfacesTest, Forces) {
-  std::vector<double> expected = zeros(), load = zeros();
-  const double energy = evaluate(expected, load);
-  expect_near(load, expected, "forces");
-  EXPECT_NEAR(own_.potential(figures()), energy, 1e-12 * std::abs(energy));
-  for (int part = 0; part < built_.model.points.part_count(); ++part)
-    EXPECT_NEAR(own_.rounding(part, figures()), cpu_.rounding(part), 1e-12 * cpu_.rounding(part));
-  EXPECT_GT(cpu_.rounding(0), 0);
-  const std::vector<double> own = figures();
-  for (std::size_t s = 0; s < built_.model.surfaces.size(); ++s) {
-    const SurfaceForces& f = cpu_.forces(s);
-    const double* figure = own.data() + s * gpu::kSurfaceFigures;
-    EXPECT_NEAR(figure[gpu::kVolumeInside], f.volume, 1e-13 * std::abs(f.volume));
-    EXPECT_NEAR(figure[gpu::kPressure], f.pressure, 1e-12 * std::abs(f.pressure));
-    EXPECT_NEAR(figure[gpu::kStiffness], f.stiffness, 1e-13 * f.stiffness);
-  }
+  std::vector<SurfaceForces> plain;
+  std::vector<double> expected = zeros();
+  const double energy = plain_forces(built_.model, host_.state(), factors_, plain, expected);
+  const auto check = [&](auto& surfaces) {
+    expect_near(forces(surfaces, host_), expected, "forces");
+    const std::vector<double> own = figures(surfaces);
+    EXPECT_NEAR(surfaces.potential(own), energy, 1e-12 * std::abs(energy));
+    double squared = 0;
+    for (std::size_t s = 0; s < plain.size(); ++s) {
+      const SurfaceForces& f = plain[s];
+      const double* figure = own.data() + s * kSurfaceFigures;
+      EXPECT_NEAR(figure[kVolumeInside], f.volume, 1e-13 * std::abs(f.volume));
+      EXPECT_NEAR(figure[kPressure], f.pressure, 1e-12 * std::abs(f.pressure));
+      EXPECT_NEAR(figure[kStiffness], f.stiffness, 1e-13 * f.stiffness);
+      squared += f.rounding * f.rounding;
+    }
+    EXPECT_GT(squared, 0);
+    EXPECT_NEAR(surfaces.rounding(0, own), std::sqrt(squared), 1e-12 * std::sqrt(squared));
+  };
+  check(own_);
+  check(pooled_);
 }
 
-TEST_P(SurfacesTest, Tangents) {
-  for (const Tangent tangent : {Tangent::full, Tangent::material}) {
-    std::vector<double> unused = zeros(), other = zeros();
-    evaluate(unused, other);
-    expect_same_tangent(tangent);
-  }
-}
+TEST_P(SurfacesTest, Tangents) { expect_same_tangents(); }
 
-/// Newton's pressures of two steps, with a line search that goes back once: the products show them.
+/// Newton's pressures of two steps, with a line search that goes back once: the tangents show them.
 TEST_P(SurfacesTest, PressuresOfNewton) {
   for (int step = 0; step < 2; ++step) {
-    cpu_.begin_step();
     own_.begin_step();
+    pooled_.begin_step();
     for (int iteration = 0; iteration < 2; ++iteration) {
-      std::vector<double> unused = zeros(), other = zeros();
-      evaluate(unused, other);
-      const Linearization lin = linearize(Tangent::full);
-      std::vector<double> blocks(lin.node_blocks.size());
-      own_.linearize(host_.nodes(), host_.Q(), factors_.data(), Tangent::full, blocks.data());
       std::vector<double> d = random_direction(built_.model, static_cast<unsigned>(3 + iteration));
       for (double& v : d) v *= 0.01;
-      cpu_.aim(lin, d);
-      own_.aim(d.data());
-      cpu_.save();
-      own_.save();
-      cpu_.approach(1);
-      own_.approach(1);
-      if (iteration == 0) {
-        cpu_.restore();
-        own_.restore();
-      }
-      cpu_.approach(0.4);
-      own_.approach(0.4);
-      expect_same_tangent(Tangent::full);
+      iterate(own_, iteration == 0, d);
+      iterate(pooled_, iteration == 0, d);
+      expect_near(own_.followed(), pooled_.followed(), "pressures");
+      expect_same_tangents();
     }
-    cpu_.finish_step();
     own_.finish_step();
+    pooled_.finish_step();
   }
 }
 
@@ -180,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(, SurfacesTest, testing::ValuesIn(cases()),
 
 TEST(Surfaces, AreNone) {
   const Loaded built = elements(ElementShape::hex8);
-  gpu::Surfaces<HostSpace> none(built.model);
+  Surfaces<HostSpace> none(built.model);
   EXPECT_TRUE(none.empty());
   EXPECT_EQ(none.terms(), 0);
   EXPECT_EQ(none.potential({}), 0);

@@ -2,29 +2,26 @@
 
 #include "core/base/index.hpp"
 #include "core/space/node_rows.hpp"
-#include "gpu/actions/surface_kernels.hpp"
+#include "core/step/surface_loops.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 /// The bodies of Surfaces, for the files that instantiate it.
-namespace fascia::gpu {
+namespace fascia {
 
 template <class Space>
-Surfaces<Space>::Surfaces(const Model& model) : dofs_(at(model.dof_count())) {
+Surfaces<Space>::Surfaces(const Model& model, Space space)
+    : space_(space), loads_(model.surfaces), dofs_(at(model.dof_count())) {
   upload(model);
-  const auto vertices = at(view_.vertices), surfaces = at(view_.surfaces), terms = at(terms_);
-  for (auto* array : {&u_, &x_, &area_, &weight_, &linear_x_, &dx_, &pull_}) array->resize(vertices);
+  const auto vertices = at(view_.vertices), surfaces = at(view_.surfaces);
+  for (auto* array : {&u_, &x_, &area_, &weight_, &dx_, &pull_}) array->resize(vertices);
   for (auto* array : {&corner_area_, &corner_weight_, &corner_pull_}) array->resize(face_vertex_.size());
-  gradient_.resize(surfaces);
-  pressure_.resize(surfaces);
   face_sums_.resize(3 * at(view_.faces));
+  along_.resize(at(terms_));
   surface_sums_.resize(3 * surfaces);
   figures_.resize(surfaces * kSurfaceFigures);
   figures_.set_zero();
-  stiffness_.resize(terms);
-  along_.resize(terms);
-  gradients_.resize(terms * dofs_);
   for (auto* array : {&newton_, &aimed_, &saved_, &reached_}) {
     array->resize(surfaces);
     array->set_zero();
@@ -38,8 +35,6 @@ Surfaces<Space>::Surfaces(const Model& model) : dofs_(at(model.dof_count())) {
   view_.weight = weight_.data();
   view_.surface_sums = surface_sums_.data();
   view_.figures = figures_.data();
-  tangent_ = {linear_x_.data(),  pressure_.data(), gradient_.data(),
-              stiffness_.data(), along_.data(),    gradients_.data()};
 }
 
 /// Uploads what does not change.
@@ -54,6 +49,7 @@ void Surfaces<Space>::upload(const Model& model) {
     const int surface = static_cast<int>(rules.size()), first_vertex = static_cast<int>(X.size());
     rules.push_back({load.schedule, load.weight_schedule, load.has_potential, load.pressure, load.bulk_modulus,
                      load.rest_volume, load.volume, load.weight});
+    conservative_ = conservative_ && load.has_potential;
     part_.push_back(model.points.node_part[at(load.shares[0].node)]);
     datum.push_back(load.datum);
     std::vector<int> own;
@@ -92,11 +88,11 @@ void Surfaces<Space>::upload(const Model& model) {
   }
   const int surfaces = static_cast<int>(rules.size()), vertices = static_cast<int>(X.size());
   const NodeRows rows(node, model.node_count());
-  by_vertex_ = RowSums<Space>(face_vertex, vertices, 6);
-  by_surface_ = RowSums<Space>(face_surface, surfaces);
-  vertices_by_surface_ = RowSums<Space>(vertex_surface, surfaces);
-  by_node_ = RowSums<Space>(rows.row, static_cast<int>(rows.nodes.size()), 12);
-  by_term_node_ = RowSums<Space>(term_row, static_cast<int>(row_node.size()));
+  by_vertex_ = RowSums<Space>(face_vertex, vertices, 6, space_);
+  by_surface_ = RowSums<Space>(face_surface, surfaces, 0, space_);
+  vertices_by_surface_ = RowSums<Space>(vertex_surface, surfaces, 0, space_);
+  by_node_ = RowSums<Space>(rows.row, static_cast<int>(rows.nodes.size()), 12, space_);
+  by_term_node_ = RowSums<Space>(term_row, static_cast<int>(row_node.size()), 0, space_);
   rule_.upload(rules);
   vertex_surface_.upload(vertex_surface);
   face_surface_.upload(face_surface);
@@ -130,12 +126,12 @@ void Surfaces<Space>::upload(const Model& model) {
 
 template <class Space>
 void Surfaces<Space>::add_forces(const NodesView& nodes, const PoseView& pose, const double* factors, double* load) {
-  Space::for_each(view_.vertices, kernels::MoveVertex{view_, pose});
-  Space::for_each(view_.faces, kernels::FaceForces{view_, factors});
-  by_vertex_.template sum<6>(kernels::CornerForces{view_}, kernels::KeepVertexForces{view_});
-  by_surface_.template sum<3>(kernels::FaceSums{view_}, kernels::KeepSurfaceSums{view_});
-  vertices_by_surface_.template sum<1>(kernels::SquaredArea{view_}, kernels::FindPressure{view_, factors});
-  by_node_.template sum<12>(kernels::ShareForces{view_}, kernels::AddNodeForces{loaded_.data(), nodes, pose, load});
+  space_.for_each(view_.vertices, loops::MoveVertex{view_, pose});
+  space_.for_each(view_.faces, loops::FaceForces{view_, factors});
+  by_vertex_.template sum<6>(loops::CornerForces{view_}, loops::KeepVertexForces{view_});
+  by_surface_.template sum<3>(loops::FaceSums{view_}, loops::KeepSurfaceSums{view_});
+  vertices_by_surface_.template sum<1>(loops::SquaredArea{view_}, loops::FindPressure{view_, factors});
+  by_node_.template sum<12>(loops::ShareForces{view_}, loops::AddNodeForces{loaded_.data(), nodes, pose, load});
 }
 
 template <class Space>
@@ -157,53 +153,60 @@ double Surfaces<Space>::rounding(int part, std::span<const double> figures) cons
 
 template <class Space>
 void Surfaces<Space>::linearize(const NodesView& nodes, const Mat3d* Q, const double* factors, Tangent tangent,
-                                double* node_blocks) {
-  curved_ = tangent == Tangent::full;
-  gradients_.set_zero();
-  by_term_node_.template sum<12>(
-      kernels::ShareAreas{view_},
-      kernels::KeepVolumeGradient{row_term_.data(), row_node_.data(), nodes, Q, dofs_, gradients_.data()});
-  Space::for_each(terms_, kernels::TakeStiffness{view_, tangent_, term_surface_.data()});
-  if (!curved_) return;
-  linear_x_.copy_from(x_);
-  Space::for_each(view_.surfaces, kernels::TakeTangent{view_, tangent_, stepping_ ? newton_.data() : nullptr, factors});
-  by_node_.template sum<9>(kernels::ShareMoments{view_, tangent_},
-                           kernels::AddNodeBlocks{loaded_.data(), nodes, Q, node_blocks});
+                                SurfaceTangent<Space>& out, double* node_blocks) {
+  const auto surfaces = at(view_.surfaces), terms = at(terms_);
+  out.curved = tangent == Tangent::full;
+  out.stiffness.resize(terms);
+  out.g.resize(terms * dofs_);
+  out.g.set_zero();
+  out.x.resize(at(view_.vertices));
+  out.pressure.resize(surfaces);
+  out.gradient.resize(surfaces);
+  by_term_node_.template sum<12>(loops::ShareAreas{view_}, loops::KeepVolumeGradient{row_term_.data(), row_node_.data(),
+                                                                                     nodes, Q, dofs_, out.g.data()});
+  space_.for_each(terms_, loops::TakeStiffness{view_, term_surface_.data(), out.stiffness.data()});
+  if (!out.curved) return;
+  out.x.copy_from(x_);
+  space_.for_each(view_.surfaces, loops::TakeTangent{view_, stepping_ ? newton_.data() : nullptr, factors,
+                                                     out.pressure.data(), out.gradient.data()});
+  by_node_.template sum<9>(loops::ShareMoments{view_, out.pressure.data()},
+                           loops::AddNodeBlocks{loaded_.data(), nodes, Q, node_blocks});
 }
 
 template <class Space>
-void Surfaces<Space>::add_product(const NodesView& nodes, const Mat3d* Q, const DirectionView& direction, double* y) {
-  if (!curved_) return;
-  Space::for_each(view_.vertices, kernels::MoveVertexAlong{view_, direction, dx_.data()});
-  Space::for_each(view_.faces, kernels::FaceProduct{view_, tangent_, dx_.data(), corner_pull_.data()});
-  by_vertex_.template sum<3>(kernels::CornerVectors{corner_pull_.data()}, kernels::KeepVertexVectors{pull_.data()});
-  by_node_.template sum<12>(kernels::ShareVectors{view_, pull_.data()},
-                            kernels::AddNodeProduct{loaded_.data(), nodes, Q, y});
+void Surfaces<Space>::add_product(const SurfaceTangent<Space>& tangent, const NodesView& nodes, const Mat3d* Q,
+                                  const double* d, double* y, TangentPart part) {
+  if (!tangent.curved) return;
+  space_.for_each(view_.vertices, loops::MoveVertexAlong{view_, nodes, Q, d, dx_.data()});
+  space_.for_each(view_.faces, loops::FaceProduct{view_, tangent.x.data(), tangent.pressure.data(),
+                                                  tangent.gradient.data(), dx_.data(), corner_pull_.data(), part});
+  by_vertex_.template sum<3>(loops::CornerVectors{corner_pull_.data()}, loops::KeepVertexVectors{pull_.data()});
+  by_node_.template sum<12>(loops::ShareVectors{view_, pull_.data()},
+                            loops::AddNodeProduct{loaded_.data(), nodes, Q, y});
 }
 
-/// along ← stiffness · (g · d) of each term.
 template <class Space>
-void Surfaces<Space>::change_volumes(const double* d) {
+void Surfaces<Space>::change_volumes(const SurfaceTangent<Space>& tangent, const double* d) {
   constexpr int kTogether = 8;
   const int dofs = static_cast<int>(dofs_);
+  const double *g = tangent.g.data(), *stiffness = tangent.stiffness.data();
   if (terms_ == 1) {
-    Space::template sum<1>(dofs, kernels::VolumeChange<1>{gradients_.data(), d, dofs_, 1},
-                           kernels::KeepAlong<1>{stiffness_.data(), along_.data(), 1});
+    space_.template sum<1>(dofs, loops::VolumeChange<1>{g, d, dofs_, 1},
+                           loops::KeepAlong<1>{stiffness, along_.data(), 1});
     return;
   }
   for (int first = 0; first < terms_; first += kTogether) {
     const int count = std::min(kTogether, terms_ - first);
-    Space::template sum<kTogether>(
-        dofs, kernels::VolumeChange<kTogether>{volume_gradient(first), d, dofs_, count},
-        kernels::KeepAlong<kTogether>{stiffness_.data() + first, along_.data() + first, count});
+    space_.template sum<kTogether>(dofs, loops::VolumeChange<kTogether>{g + at(first) * dofs_, d, dofs_, count},
+                                   loops::KeepAlong<kTogether>{stiffness + first, along_.data() + first, count});
   }
 }
 
 template <class Space>
-void Surfaces<Space>::add_volume_product(const double* d, double* y) {
+void Surfaces<Space>::add_volume_product(const SurfaceTangent<Space>& tangent, const double* d, double* y) {
   if (terms_ == 0) return;
-  change_volumes(d);
-  Space::for_each(static_cast<int>(dofs_), kernels::AddVolumes{gradients_.data(), along_.data(), dofs_, terms_, y});
+  change_volumes(tangent, d);
+  space_.for_each(static_cast<int>(dofs_), loops::AddVolumes{tangent.g.data(), along_.data(), dofs_, terms_, y});
 }
 
 template <class Space>
@@ -213,15 +216,16 @@ void Surfaces<Space>::begin_step() {
 }
 
 template <class Space>
-void Surfaces<Space>::aim(const double* direction) {
-  change_volumes(direction);
-  Space::for_each(terms_, kernels::AimPressure{view_, term_surface_.data(), along_.data(), aimed_.data()});
+void Surfaces<Space>::aim(const SurfaceTangent<Space>& tangent, const double* direction) {
+  if (terms_ == 0) return;
+  change_volumes(tangent, direction);
+  space_.for_each(terms_, loops::AimPressure{view_, term_surface_.data(), along_.data(), aimed_.data()});
 }
 
 template <class Space>
 void Surfaces<Space>::approach(double step) {
   if (!stepping_) return;
-  Space::for_each(view_.surfaces, kernels::ApproachPressure{aimed_.data(), newton_.data(), step});
+  space_.for_each(view_.surfaces, loops::ApproachPressure{aimed_.data(), newton_.data(), step});
 }
 
-}  // namespace fascia::gpu
+}  // namespace fascia

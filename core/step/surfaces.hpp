@@ -3,14 +3,14 @@
 #include "core/physics/point_physics.hpp"
 #include "core/space/array.hpp"
 #include "core/space/row_sums.hpp"
-#include "core/structure/model.hpp"
+#include "core/step/model_view.hpp"
 #include "core/structure/surface_face.hpp"
-#include "gpu/space/views.hpp"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
-namespace fascia::gpu {
+namespace fascia {
 
 /// Constants of a surface load beside its faces.
 struct SurfaceRule {
@@ -52,24 +52,41 @@ struct SurfacesView {
   FASCIA_HD Vec3d force(int vertex, double pressure) const { return area[vertex] * pressure + weight[vertex]; }
 };
 
-/// Data of the surfaces that products need, as SurfaceTangent and RankOne.
-struct SurfaceTangentView {
-  const Vec3d* x = nullptr;
-  double* pressure = nullptr;  ///< of each surface
-  Vec3d* gradient = nullptr;
-  double *stiffness = nullptr, *along = nullptr;  ///< of each term: K / V*, and that times the change of volume
-  double* g = nullptr;                            ///< (terms × degrees of freedom)
-};
+/// A linearisation of surface loads: of each surface what products and matrices need, and of each enclosed volume with
+/// a bulk modulus a term stiffness · g gᵀ.
+template <class Space>
+struct SurfaceTangent {
+  bool curved = false;             ///< there is more than volumes
+  Array<Space, Vec3d> x;           ///< of vertices, relative to the datum [m]
+  Array<Space, double> pressure;   ///< at the datum of each surface [Pa]
+  Array<Space, Vec3d> gradient;    ///< of its pressure [N/m³]
+  Array<Space, double> stiffness;  ///< K / V* of each term [Pa/m³]
+  /// dV by degrees of freedom (terms × degrees of freedom) [m²], [m³]. What acts on dependent nodes may be moved to
+  /// their hosts in it.
+  Array<Space, double> g;
 
-/// The surface loads of a model on the device, as SurfaceLoads (core/solver/surface_loads.hpp), which says what
-/// Newton's pressures are. A pass over faces leaves something on their corners; vertices gather that, and nodes from
-/// vertices.
+  /// dV of one term.
+  double* volume_gradient(int term) {
+    return g.data() + static_cast<std::size_t>(term) * (g.size() / std::max<std::size_t>(stiffness.size(), 1));
+  }
+};
+/// The surface loads of a model at a state. A pass over faces leaves something on their corners; vertices gather that,
+/// and nodes from vertices.
+///
+/// Within Newton's method the geometric stiffness of an enclosed volume takes, in the place of p(V), the pressure that
+/// the last linearised step led to: that of Newton's method for displacements and pressures together. A step leaves the
+/// volume wrong to second order, and a large bulk modulus makes of that a pressure without meaning.
 template <class Space>
 class Surfaces {
  public:
-  explicit Surfaces(const Model& model);
+  /// @param model  stays where it is
+  explicit Surfaces(const Model& model, Space space = Space());
 
   bool empty() const { return view_.surfaces == 0; }
+  std::span<const SurfaceLoad> loads() const { return loads_; }
+  /// Every surface has a potential.
+  bool conservative() const { return conservative_; }
+  const SurfacesView& view() const { return view_; }
 
   /// Adds forces to the degrees of freedom. @param factors  of schedules, in the space, here and below
   void add_forces(const NodesView& nodes, const PoseView& pose, const double* factors, double* load);
@@ -82,27 +99,31 @@ class Surfaces {
   double potential(std::span<const double> figures) const;
   double rounding(int part, std::span<const double> figures) const;
 
-  /// Takes the tangent at the last forces, and adds what the loads are on nodes alone.
-  /// @param Q  I + D of each node, here and below
-  void linearize(const NodesView& nodes, const Mat3d* Q, const double* factors, Tangent tangent, double* node_blocks);
-  /// Volumes with a bulk modulus, each of which is stiffness · g gᵀ in the tangent.
+  /// Takes the tangent at the last forces, and adds what the loads are on nodes alone: nothing but the volumes where
+  /// the tangent leaves out the geometric stiffness.
+  /// @param Q    I + D of each node, here and below
+  /// @param out  keeps its memory from call to call
+  void linearize(const NodesView& nodes, const Mat3d* Q, const double* factors, Tangent tangent,
+                 SurfaceTangent<Space>& out, double* node_blocks);
+  /// Volumes with a bulk modulus.
   int terms() const { return terms_; }
-  /// dV of the linearisation by degrees of freedom. What acts on dependent nodes may be moved to their hosts in it.
-  double* volume_gradient(int term) { return gradients_.data() + static_cast<std::size_t>(term) * dofs_; }
-  /// y += K x, but for the volumes.
-  void add_product(const NodesView& nodes, const Mat3d* Q, const DirectionView& direction, double* y);
+  /// y += K d, but for the volumes, or what the antisymmetric part of open surfaces makes of d.
+  void add_product(const SurfaceTangent<Space>& tangent, const NodesView& nodes, const Mat3d* Q, const double* d,
+                   double* y, TangentPart part = TangentPart::symmetric);
   /// y += Σ stiffness · g (g · d)
-  void add_volume_product(const double* d, double* y);
+  void add_volume_product(const SurfaceTangent<Space>& tangent, const double* d, double* y);
 
-  // Newton's pressures.
+  // Newton's pressures: from the last step's end on, towards what a direction leads to, back to those saved.
   void begin_step();
   /// @param direction  by degrees of freedom, the solution of a system with the linearisation
-  void aim(const double* direction);
+  void aim(const SurfaceTangent<Space>& tangent, const double* direction);
   void approach(double step);
   std::vector<double> followed() const { return newton_.downloaded(); }
+  void follow(const std::vector<double>& pressures) { newton_.upload(pressures); }
   void save() { saved_.copy_from(newton_); }
   void restore() { newton_.copy_from(saved_); }
   void finish_step() { reached_.copy_from(newton_); }
+  /// Newton's pressures at the end of the last step [Pa].
   std::vector<double> reached() const { return reached_.downloaded(); }
   /// @param reached  empty: none
   void begin_afresh(const std::vector<double>& reached) {
@@ -112,8 +133,11 @@ class Surfaces {
 
  private:
   void upload(const Model& model);
-  void change_volumes(const double* d);
+  void change_volumes(const SurfaceTangent<Space>& tangent, const double* d);
 
+  Space space_;
+  std::span<const SurfaceLoad> loads_;
+  bool conservative_ = true;
   std::size_t dofs_ = 0;
   int terms_ = 0;
   std::vector<int> part_;                                        ///< connected part of each surface
@@ -130,13 +154,11 @@ class Surfaces {
   Array<Space, double> face_sums_, surface_sums_, figures_;
   SurfacesView view_;
 
-  bool curved_ = false;  ///< the linearisation has more than volumes
-  Array<Space, Vec3d> linear_x_, gradient_, dx_, corner_pull_, pull_;
-  Array<Space, double> pressure_, stiffness_, along_, gradients_;
-  SurfaceTangentView tangent_;
+  Array<Space, Vec3d> dx_, corner_pull_, pull_;  ///< of a product
+  Array<Space, double> along_;                   ///< stiffness · (g · d) of each term
 
   bool stepping_ = false;
   Array<Space, double> newton_, aimed_, saved_, reached_;
 };
 
-}  // namespace fascia::gpu
+}  // namespace fascia

@@ -2,10 +2,9 @@
 
 #include "core/space/array.hpp"
 #include "core/space/row_sums.hpp"
-#include "core/structure/model.hpp"
-#include "gpu/space/views.hpp"
+#include "core/step/model_view.hpp"
 
-namespace fascia::gpu {
+namespace fascia {
 
 /// A follower without its nodes.
 struct FollowerRule {
@@ -23,11 +22,11 @@ struct FollowersView {
   const Vec3d *b = nullptr, *g = nullptr;
 };
 
-/// The follower loads of a model on the device: their rotations first, then the forces of each node.
+/// The follower loads of a model: their rotations first, then the forces of each node.
 template <class Space>
 class Followers {
  public:
-  explicit Followers(const Model& model);
+  explicit Followers(const Model& model, Space space = Space());
 
   bool empty() const { return by_follower_.rows() == 0; }
 
@@ -44,4 +43,4 @@ class Followers {
   FollowersView view_;
 };
 
-}  // namespace fascia::gpu
+}  // namespace fascia

@@ -1,8 +1,6 @@
-#include "core/executor/surface_tangent.hpp"
+#include "core/executor/surface_blocks.hpp"
 
 #include "core/base/index.hpp"
-#include "core/math/rotation.hpp"
-#include "core/structure/model.hpp"
 #include "core/structure/surface_face.hpp"
 
 #include <algorithm>
@@ -21,47 +19,9 @@ double* filled_block(BlockMatrix& matrix, int row, int column) {
   return place < columns.size() && columns[place] == column ? matrix.block(index) : nullptr;
 }
 
-}  // namespace
-
-void gather_forces(const SurfaceLoad& load, const std::vector<Vec3d>& force, const State& state, const DofLayout& dofs,
-                   std::span<double> out) {
-  for (int v = 0; v < load.vertex_count(); ++v) {
-    const Vec3d& f = force[at(v)];
-    for (const SurfaceShare& share : load.shares_of(v)) {
-      add_share_force(share, dofs.kind(share.node), f, Mat3d::identity() + state.D[at(share.node)],
-                      out.data() + dofs.begin(share.node));
-    }
-  }
-}
-
-void add_product(const SurfaceTangent& tangent, const DofLayout& dofs, const std::vector<Mat3d>& Q,
-                 std::span<const double> x, std::span<double> y, TangentPart part) {
-  const SurfaceLoad& load = *tangent.load;
-  std::vector<Vec3d> dx(load.X.size()), force(load.X.size());
-  for (int v = 0; v < load.vertex_count(); ++v)
-    for (const SurfaceShare& share : load.shares_of(v)) {
-      const double* d = x.data() + dofs.begin(share.node);
-      dx[at(v)] += share_variation(share, dofs.kind(share.node), d, Q[at(share.node)]);
-    }
-  for (int f = 0; f < load.face_count(); ++f) {
-    const SurfaceFace face = SurfaceFace::of(load, f);
-    add_face_product(face, tangent.x.data(), tangent.pressure, tangent.gradient, dx.data(), part,
-                     [&](int a, const Vec3d& term) { force[at(face.vertex[a])] += term; });
-  }
-  for (int v = 0; v < load.vertex_count(); ++v)
-    for (const SurfaceShare& share : load.shares_of(v))
-      add_share_force(share, dofs.kind(share.node), force[at(v)], Q[at(share.node)], y.data() + dofs.begin(share.node));
-}
-
-void add_product(const RankOne& update, std::span<const double> x, std::span<double> y) {
-  double along = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) along += update.g[i] * x[i];
-  along *= update.stiffness;
-  for (std::size_t i = 0; i < x.size(); ++i) y[i] += update.g[i] * along;
-}
-
-void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, BlockMatrix& matrix) {
-  const SurfaceLoad& load = *tangent.load;
+/// @param x  of the surface's vertices
+void add_blocks(const SurfaceLoad& load, const Vec3d* x, double pressure, const Vec3d& gradient,
+                const std::vector<Mat3d>& Q, BlockMatrix& matrix) {
   const DofLayout& dofs = matrix.dofs();
   FaceBlocks K;
   std::vector<int> nodes;                         // of a face
@@ -86,7 +46,7 @@ void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, Bloc
         J[k * n + i] = share_columns(share, dofs.kind(share.node), Q[at(share.node)]);
         moves[k * n + i] = 1;
       }
-    face_blocks(SurfaceFace::of(load, f), tangent.x.data(), tangent.pressure, tangent.gradient, K);
+    face_blocks(SurfaceFace::of(load, f), x, pressure, gradient, K);
     for (std::size_t b = 0; b < nodes.size(); ++b) {
       const int column = nodes[b], m = dofs.size(column);
       for (std::size_t i = 0; i < n; ++i)
@@ -105,6 +65,18 @@ void add_blocks(const SurfaceTangent& tangent, const std::vector<Mat3d>& Q, Bloc
         }
       }
     }
+  }
+}
+
+}  // namespace
+
+void add_blocks(std::span<const SurfaceLoad> loads, const SurfaceTangent<PoolSpace>& tangent,
+                const std::vector<Mat3d>& Q, BlockMatrix& matrix) {
+  if (!tangent.curved) return;
+  const Vec3d* x = tangent.x.data();
+  for (std::size_t s = 0; s < loads.size(); ++s) {
+    add_blocks(loads[s], x, tangent.pressure.data()[s], tangent.gradient.data()[s], Q, matrix);
+    x += loads[s].vertex_count();
   }
 }
 

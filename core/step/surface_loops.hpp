@@ -1,12 +1,12 @@
 #pragma once
 
 #include "core/node/node_force.hpp"
-#include "gpu/actions/surfaces.hpp"
+#include "core/step/surfaces.hpp"
 
 #include <cmath>
 
 /// Loops over the vertices, faces and shares of surface loads.
-namespace fascia::gpu::kernels {
+namespace fascia::loops {
 
 struct MoveVertex {
   SurfacesView set;
@@ -143,32 +143,33 @@ struct AddNodeForces {
 /// @param newton  Newton's pressures within a step, else null
 struct TakeTangent {
   SurfacesView set;
-  SurfaceTangentView tangent;
   const double *newton, *factors;
+  double* pressure;
+  Vec3d* gradient;
   FASCIA_HD void operator()(int s) const {
-    tangent.pressure[s] = newton != nullptr && set.figure(s, kStiffness) > 0 ? newton[s] : set.figure(s, kPressure);
-    tangent.gradient[s] = set.rule[s].weight * factors[set.rule[s].weight_schedule];
+    pressure[s] = newton != nullptr && set.figure(s, kStiffness) > 0 ? newton[s] : set.figure(s, kPressure);
+    gradient[s] = set.rule[s].weight * factors[set.rule[s].weight_schedule];
   }
 };
 
 /// Takes K / V* of a term into the tangent. @param surface  of each term
 struct TakeStiffness {
   SurfacesView set;
-  SurfaceTangentView tangent;
   const int* surface;
+  double* stiffness;
   FASCIA_HD void operator()(int term) const {
-    const double stiffness = set.figure(surface[term], kStiffness);
-    tangent.stiffness[term] = stiffness > 0 ? stiffness : 0;
+    const double own = set.figure(surface[term], kStiffness);
+    stiffness[term] = own > 0 ? own : 0;
   }
 };
 
 /// Σ f bᵀ of a rigid frame, with the pressure of the tangent.
 struct ShareMoments {
   SurfacesView set;
-  SurfaceTangentView tangent;
+  const double* pressure;
   FASCIA_HD void operator()(int share, Sums<9>& sums) const {
     const int v = set.share_vertex[share];
-    const Vec3d force = set.force(v, tangent.pressure[set.vertex_surface[v]]);
+    const Vec3d force = set.force(v, pressure[set.vertex_surface[v]]);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) sums.v[3 * i + j] += force[i] * set.share[share].b[j];
   }
@@ -211,14 +212,18 @@ struct KeepVolumeGradient {
 
 struct MoveVertexAlong {
   SurfacesView set;
-  DirectionView direction;
+  NodesView nodes;
+  const Mat3d* Q;
+  const double* d;
   Vec3d* dx;
   FASCIA_HD void operator()(int v) const {
     Vec3d moved;
     for (int k = set.share_begin[v]; k < set.share_begin[v + 1]; ++k) {
-      const int node = set.share[k].node;
-      moved +=
-          share_displacement(set.share[k], direction.dx[node], direction.dA == nullptr ? Mat3d{} : direction.dA[node]);
+      const SurfaceShare& share = set.share[k];
+      const double* own = d + nodes.dof[share.node];
+      const FrameKind kind = nodes.kind[share.node];
+      moved += Vec3d{{own[0], own[1], own[2]}} * share.w;
+      if (kind != FrameKind::vertex) moved += frame_variation(kind, own + 3, Q[share.node]) * share.b;
     }
     dx[v] = moved;
   }
@@ -226,15 +231,18 @@ struct MoveVertexAlong {
 
 struct FaceProduct {
   SurfacesView set;
-  SurfaceTangentView tangent;
-  const Vec3d* dx;
+  const Vec3d* x;
+  const double* pressure;
+  const Vec3d *gradient, *dx;
   Vec3d* corner;
+  TangentPart part;
   FASCIA_HD void operator()(int f) const {
     const SurfaceFace face = set.face(f);
     const int s = set.face_surface[f];
     Vec3d force[kMostFaceNodes];
-    add_face_product(face, tangent.x, tangent.pressure[s], tangent.gradient[s], dx, TangentPart::symmetric,
-                     [&](int a, const Vec3d& term) { force[a] += term; });
+    if (part == TangentPart::symmetric || !set.rule[s].has_potential)
+      add_face_product(face, x, pressure[s], gradient[s], dx, part,
+                       [&](int a, const Vec3d& term) { force[a] += term; });
     for (int a = 0; a < face.nodes; ++a) corner[set.face_begin[f] + a] = force[a];
   }
 };
@@ -327,4 +335,4 @@ struct ApproachPressure {
   FASCIA_HD void operator()(int s) const { newton[s] += step * (aimed[s] - newton[s]); }
 };
 
-}  // namespace fascia::gpu::kernels
+}  // namespace fascia::loops

@@ -3,13 +3,13 @@
 #include "core/base/index.hpp"
 #include "core/node/node_force.hpp"
 #include "core/space/node_rows.hpp"
-#include "gpu/actions/followers.hpp"
+#include "core/step/followers.hpp"
 
 /// The bodies of Followers, for the files that instantiate it.
-namespace fascia::gpu {
+namespace fascia {
 
 template <class Space>
-Followers<Space>::Followers(const Model& model) {
+Followers<Space>::Followers(const Model& model, Space space) {
   std::vector<FollowerRule> rules;
   std::vector<int> follower, node;
   std::vector<double> w;
@@ -26,8 +26,8 @@ Followers<Space>::Followers(const Model& model) {
     g.resize(node.size());
   }
   const NodeRows rows(node, model.node_count());
-  by_follower_ = RowSums<Space>(follower, static_cast<int>(rules.size()));
-  by_node_ = RowSums<Space>(rows.row, static_cast<int>(rows.nodes.size()));
+  by_follower_ = RowSums<Space>(follower, static_cast<int>(rules.size()), 0, space);
+  by_node_ = RowSums<Space>(rows.row, static_cast<int>(rows.nodes.size()), 0, space);
   rule_.upload(rules);
   turned_.resize(rules.size());
   follower_.upload(follower);
@@ -39,7 +39,7 @@ Followers<Space>::Followers(const Model& model) {
   view_ = {rule_.data(), turned_.data(), follower_.data(), node_.data(), w_.data(), b_.data(), g_.data()};
 }
 
-namespace kernels {
+namespace loops {
 
 /// Σ w D or Σ u gᵀ.
 struct FollowerMotion {
@@ -105,12 +105,12 @@ struct AddFollowers {
   }
 };
 
-}  // namespace kernels
+}  // namespace loops
 
 template <class Space>
 void Followers<Space>::add_forces(const NodesView& nodes, const PoseView& pose, const double* factors, double* load) {
-  by_follower_.template sum<9>(kernels::FollowerMotion{view_, pose}, kernels::TurnFollower{view_, factors});
-  by_node_.template sum<15>(kernels::FollowerShare{view_}, kernels::AddFollowers{loaded_.data(), nodes, pose, load});
+  by_follower_.template sum<9>(loops::FollowerMotion{view_, pose}, loops::TurnFollower{view_, factors});
+  by_node_.template sum<15>(loops::FollowerShare{view_}, loops::AddFollowers{loaded_.data(), nodes, pose, load});
 }
 
-}  // namespace fascia::gpu
+}  // namespace fascia

@@ -1,8 +1,0 @@
-#include "core/space/space.hpp"
-#include "gpu/actions/followers_body.hpp"
-
-namespace fascia::gpu {
-
-template class Followers<HostSpace>;
-
-}  // namespace fascia::gpu
