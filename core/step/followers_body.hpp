@@ -10,6 +10,7 @@ namespace fascia {
 
 template <class Space>
 Followers<Space>::Followers(const Model& model, Space space) {
+  if (model.followers.empty()) return;
   std::vector<FollowerRule> rules;
   std::vector<int> follower, node;
   std::vector<double> w;

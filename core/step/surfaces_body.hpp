@@ -13,6 +13,7 @@ namespace fascia {
 template <class Space>
 Surfaces<Space>::Surfaces(const Model& model, Space space)
     : space_(space), loads_(model.surfaces), dofs_(at(model.dof_count())) {
+  if (loads_.empty()) return;
   upload(model);
   const auto vertices = at(view_.vertices), surfaces = at(view_.surfaces);
   for (auto* array : {&u_, &x_, &area_, &weight_, &dx_, &pull_}) array->resize(vertices);
