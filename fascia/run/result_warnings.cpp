@@ -3,6 +3,7 @@
 #include "assembly/simulation/matter.hpp"
 
 #include "core/base/index.hpp"
+#include "fascia/run/edge_bulges.hpp"
 
 #include <fmt/format.h>
 
@@ -234,6 +235,7 @@ void add_result_warnings(const Simulation& s, const State& end, RunReport& run, 
     const auto index = static_cast<std::size_t>(&b - s.bodies.data());
     if (is_shell(s.scene.bodies[index])) {
       add_shell_warnings(b, end, judged, run, warnings, inside_out);
+      warn_of_edge_bulges(s, b, end, warnings);
       continue;
     }
     const FoldedPoints folded = folded_points(b, end);

@@ -197,6 +197,45 @@ kind = "static"
   }
 }
 
+/// The ends of an inflated tube of coarse triangles bulge, unless they are held; a strip that is pulled has flat edges.
+TEST_F(FormatRuns, EdgesThatBulgeAreTold) {
+  const std::string tube = R"([bodies.tube]
+model = "shell"
+domain = { cylinder = { from = [0, 0, 0], to = [0, 0, 0.1], radius = 0.02, cells = [20, 12], caps = false } }
+thickness = 0.0002
+density = 1000
+material = { young = 1e6, poisson = 0.3 }
+[[constraints]]
+body = "tube"
+where = { box = { min = [-1, -1, -1e-6], max = [1, 1, 1e-6] } }
+fix = "all"
+[[loads]]
+body = "tube"
+where = "all"
+pressure = -1
+)";
+  run(tube);
+  EXPECT_TRUE(warns("resolution"));
+  run(tube + "[[constraints]]\nbody='tube'\nwhere={box={min=[-1,-1,0.0999],max=[1,1,1]}}\nfix=['x','y']\n");
+  EXPECT_FALSE(warns("resolution"));
+  run(R"([bodies.strip]
+model = "shell"
+domain = { rectangle = { origin = [0, 0, 0], edge_u = [0.1, 0, 0], edge_v = [0, 0.04, 0], cells = [10, 4] } }
+thickness = 0.0002
+density = 1000
+material = { young = 1e6, poisson = 0.3 }
+[[constraints]]
+body = "strip"
+where = { box = { min = [-1, -1, -1], max = [1e-6, 1, 1] } }
+fix = "all"
+[[loads]]
+body = "strip"
+where = { box = { min = [0.0999, -1, -1], max = [1, 1, 1] } }
+total_force = [0.001, 0, 0]
+)");
+  EXPECT_FALSE(warns("resolution"));
+}
+
 /// Triangles that face against the directors of their corners are no physical state, as solids inside out are none: a
 /// ball of few triangles, blown to one and a half times its size.
 TEST_F(FormatRuns, ShellsThatAreInsideOutAreInverted) {
