@@ -1,6 +1,5 @@
 #include "app/results/coupling_report.hpp"
 
-#include "assembly/simulation/held_forces.hpp"
 #include "assembly/simulation/mechanisms.hpp"
 #include "core/base/index.hpp"
 #include "core/executor/point_executor.hpp"
@@ -15,7 +14,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <set>
 
 namespace fascia::app {
 
@@ -129,11 +127,17 @@ nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b
   return j;
 }
 
-/// Distance between a body's material and its host's field at points of the faces that follow it [m].
+/// Distance between a body's material and its host's field [m]: at points of the faces that follow it, and at the
+/// frames that follow it where these are not where their material is.
 double gap_of(const Simulation& s, const Coupling& c, const BuiltCoupling& built, const State& state) {
   const SimulatedBody& b = s.bodies[at(body_index(s, c.body))];
   const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
   double gap = 0;
+  if (!b.body->interpolates())
+    for (const int node : built.nodes) {
+      const Vec3d& X = s.model.rest_position[at(node)];
+      gap = std::max(gap, norm(field_at(b.body->attach(X), state).u - field_at(host.body->attach(X), state).u));
+    }
   for (const FacePoint& p : b.body->face_points()) {
     const bool follows = std::all_of(p.attachment.nodes.begin(), p.attachment.nodes.end(), [&](int node) {
       return std::binary_search(built.nodes.begin(), built.nodes.end(), node);
@@ -144,25 +148,8 @@ double gap_of(const Simulation& s, const Coupling& c, const BuiltCoupling& built
   return gap;
 }
 
-/// What tied material feels, how far it is from its host's at most, and what the springs between them store.
-nlohmann::ordered_json report_ties(const Simulation& s, const BuiltCoupling& built, const ReachedForces& acting,
-                                   const State& state) {
-  Wrench sum;
-  double gap = 0, energy = 0;
-  std::set<int> groups;
-  for (const TiedMaterial& t : built.ties) {
-    const Tether& tether = s.model.tethers[at(t.tether)];
-    sum += held_material(s, state, acting, t, {});
-    groups.insert(tether.group);
-    if (tether.arm == Vec3d{}) gap = std::max(gap, norm(field_at(t.field, state).u - field_at(t.host, state).u));
-  }
-  for (const int group : groups) energy += acting.energies.stabilization[at(group)];
-  return entry(sum, gap, energy);
-}
-
 nlohmann::ordered_json report_coupling(const Simulation& s, const Coupling& c, const BuiltCoupling& built,
                                        const ReachedForces& acting, const State& state) {
-  if (!built.ties.empty()) return report_ties(s, built, acting, state);
   Wrench sum;
   if (c.kind == CouplingKind::spring) {
     double energy = 0;
@@ -258,10 +245,6 @@ std::string coupling_layout(const Simulation& s) {
     if (c.kind == CouplingKind::spring)
       fmt::format_to(std::back_inserter(out), "coupling {}: {} of \"{}\" on springs of {:.4g} N/m in all\n", c.name,
                      nodes, b.name, c.stiffness);
-    else if (!s.couplings[k].ties.empty())
-      fmt::format_to(std::back_inserter(out), "coupling {}: material of \"{}\" {} \"{}\" by {} tethers\n", c.name,
-                     b.name, c.kind == CouplingKind::weld ? "welded to frames of" : "embedded in", c.to,
-                     s.couplings[k].ties.size());
     else
       fmt::format_to(std::back_inserter(out), "coupling {}: {} of \"{}\" {} \"{}\"\n", c.name, nodes, b.name,
                      c.kind == CouplingKind::weld ? "welded to frames of" : "embedded in", c.to);

@@ -20,6 +20,7 @@ const std::vector<Choice>& warning_names() {
       {"duration", "A run that ends before anything happens, or takes too many steps."},
       {"overlap", "Bodies that intersect at rest and are not coupled."},
       {"apart", "A coupling joins what is far apart."},
+      {"scattered", "A coupling holds scattered frames, and not the material at them."},
       {"held", "A body is held at all its nodes, or at none and falls."},
       {"no-effect", "A key does nothing in this scene."},
       {"initial", "An initial motion is lost on nodes that follow others."},

@@ -1,6 +1,5 @@
 #include "assembly/actions/actions.hpp"
 #include "assembly/actions/directions.hpp"
-#include "assembly/actions/tethers.hpp"
 #include "assembly/simulation/regions.hpp"
 #include "assembly/simulation/simulation.hpp"
 #include "assembly/specification/errors.hpp"

@@ -1,5 +1,4 @@
 #include "assembly/actions/actions.hpp"
-#include "assembly/actions/tethers.hpp"
 #include "assembly/simulation/regions.hpp"
 #include "assembly/simulation/simulation.hpp"
 #include "assembly/specification/errors.hpp"
@@ -128,13 +127,14 @@ DependentNode welded(const Simulation& s, const Coupling& c, int node, const Wel
   return {node, {nearest}, {1.0}, {X - s.model.rest_position[at(nearest)]}, kind == FrameKind::rigid};
 }
 
-/// A place in the field of a body, without what does not move it.
-Attachment carried(const Simulation& s, const Vec3d& X, const SimulatedBody& host) {
+/// The node in the field of a body, without what does not move it.
+DependentNode follower(const Simulation& s, int node, const SimulatedBody& host) {
   constexpr double kNothing = 1e-14;
-  const Attachment a = host.body->attach(X);
-  Attachment out;
+  const Attachment a = host.body->attach(s.model.rest_position[at(node)]);
+  DependentNode d;
+  d.node = node;
   // A place beside the host's matter moves with its frames: with the full lever.
-  Vec3d beside = X;
+  Vec3d beside = s.model.rest_position[at(node)];
   double turning = 0;
   for (std::size_t k = 0; k < a.nodes.size(); ++k) {
     const Influence& i = a.influences[k];
@@ -145,27 +145,15 @@ Attachment carried(const Simulation& s, const Vec3d& X, const SimulatedBody& hos
     Influence i = a.influences[k];
     if (turning > 0.5) i.b += beside * (i.w / turning);
     if (std::abs(i.w) <= kNothing && norm(i.b) <= kNothing * host.body->size()) continue;
-    out.nodes.push_back(a.nodes[k]);
-    out.influences.push_back({i.w, {}, s.model.kind(a.nodes[k]) == FrameKind::vertex ? Vec3d{} : i.b, {}});
-  }
-  return out;
-}
-
-/// The node in the field of a body.
-DependentNode follower(const Simulation& s, int node, const SimulatedBody& host) {
-  const Attachment a = carried(s, s.model.rest_position[at(node)], host);
-  DependentNode d{node, a.nodes, {}, {}};
-  for (const Influence& i : a.influences) {
+    d.hosts.push_back(a.nodes[k]);
     d.w.push_back(i.w);
-    d.b.push_back(i.b);
+    d.b.push_back(s.model.kind(a.nodes[k]) == FrameKind::vertex ? Vec3d{} : i.b);
   }
   return d;
 }
 
-/// Places of a body count as inside of another one within this distance [of the other one's size].
-constexpr double kOnBody = 1e-3;
-
 DependentNode embedded(const Simulation& s, const Coupling& c, int node, const SimulatedBody& host) {
+  constexpr double kOnBody = 1e-3;
   const Vec3d& X = s.model.rest_position[at(node)];
   const double distance = host.body->distance(X);
   if (distance > kOnBody * host.body->size())
@@ -254,29 +242,16 @@ void check_surfaces_ride(const Simulation& s, const DependentNodes& dependents) 
   }
 }
 
-/// Frames whose weights do not interpolate are not where their material is, which is tied in their place.
-void add_ties(Simulation& s, const Coupling& c, PointSetBuilder& points, BuiltCoupling& built) {
-  const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
-  if (c.kind == CouplingKind::weld) {
-    const WeldHosts hosts(s, c, host);
-    return tie_material(s, points, c, built, [&](const Vec3d& X) -> std::optional<Attachment> {
-      const int frame = hosts.nearest(X);
-      return Attachment{{frame}, {{1, {}, X - s.model.rest_position[at(frame)], {}}}};
-    });
-  }
-  for (const int node : built.nodes) embedded(s, c, node, host);  // an error where one is outside
-  tie_material(s, points, c, built, [&](const Vec3d& X) -> std::optional<Attachment> {
-    if (host.body->distance(X) > kOnBody * host.body->size()) return std::nullopt;
-    return carried(s, X, host);
-  });
-}
-
 void add_coupling(Simulation& s, const Coupling& c, PointSetBuilder& points, DependentNodes& dependents) {
   const int body = body_index(s, c.body);
+  if (c.kind != CouplingKind::spring && !s.bodies[at(body)].body->interpolates())
+    s.warnings.add("scattered", c.place,
+                   "holds scattered frames, whose weights do not interpolate: the material between them parts from the "
+                   "other body (the gap in the results tells how far); let the body share the frames of the other one "
+                   "(frames.share), or take a grid or finer frames");
   BuiltCoupling& built = s.couplings.emplace_back();
   built.nodes = select_nodes(s, body, c.where);
   if (c.kind == CouplingKind::spring) return add_springs(s, c, points, built);
-  if (!s.bodies[at(body)].body->interpolates()) return add_ties(s, c, points, built);
   const SimulatedBody& host = s.bodies[at(body_index(s, c.to))];
   if (c.kind == CouplingKind::weld) {
     const WeldHosts hosts(s, c, host);

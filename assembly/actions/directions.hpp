@@ -23,6 +23,13 @@ struct HeldDirections {
 /// What is tied of a body's matter already: by body and rest position.
 using TiedPlaces = std::map<std::pair<int, std::array<double, 3>>, HeldDirections>;
 
+/// Ties the positions of a region's material, for bodies whose weights do not interpolate, and of thin ones the
+/// rotations (tethers.cpp).
+/// @returns how many places it ties
+/// @throws SceneError  a place that an earlier constraint takes elsewhere
+int add_tethers(Simulation& simulation, PointSetBuilder& points, int body, const Constraint& constraint, int motion,
+                TiedPlaces& tied);
+
 /// Adds a direction; one that is already there must ask for the same.
 /// @param motion    index into Model::motions, −1: held
 /// @param rotation  the directions are axes of rotation

@@ -1,12 +1,10 @@
-#include "assembly/actions/tethers.hpp"
-
+#include "assembly/actions/directions.hpp"
 #include "assembly/simulation/regions.hpp"
 #include "assembly/simulation/simulation.hpp"
 #include "core/base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 namespace fascia {
@@ -16,8 +14,6 @@ namespace {
 /// Stiffness of a tether over that of the matter of one frame: what is held gives way by about a ten-thousandth of the
 /// deformation around it, and the linear system stays well conditioned.
 constexpr double kPenalty = 1e4;
-/// The same of couplings under central differences, whose steps shorten with its root.
-constexpr double kExplicitPenalty = 100;
 /// Places nearer than this to another one add nothing [spacings].
 constexpr double kApart = 0.3;
 
@@ -72,36 +68,30 @@ PointSample tether_sample(const Attachment& a, const std::vector<int>& nodes, co
   return sample;
 }
 
-/// The stiffest of a body's materials [Pa]; 0 of a rigid one.
-double young_of(const Body& body) {
-  double young = 0;
-  for (const MaterialUse& use : body.materials) young = std::max(young, use.material.young());
-  return young;
-}
-
 /// Collects tethers into groups of points.
 class TetherBuilder {
  public:
-  /// @param modulus  of the springs: Young's of what is tied, times the penalty [Pa]
-  TetherBuilder(Simulation& s, PointSetBuilder& points, int body, int motion, double modulus)
-      : s_(s), points_(points), motion_(motion), spacing_(mean_spacing(s.bodies[at(body)])) {
+  TetherBuilder(Simulation& s, PointSetBuilder& points, int body, int motion)
+      : s_(s), points_(points), body_(body), motion_(motion), spacing_(mean_spacing(s.bodies[at(body)])) {
     const SimulatedBody& b = s.bodies[at(body)];
-    stiffness_ = modulus * b.body->volume() / (static_cast<double>(b.nodes.size()) * spacing_ * spacing_);
+    double young = 0;
+    for (const MaterialUse& use : s.scene.bodies[at(body)].materials) young = std::max(young, use.material.young());
+    stiffness_ = kPenalty * young * b.body->volume() / (static_cast<double>(b.nodes.size()) * spacing_ * spacing_);
   }
 
   double spacing() const { return spacing_; }
 
-  /// @param shape  selects the directions, a sum of projectors
-  /// @return  its number in the model
-  int add(const Vec3d& X, const Vec3d& arm, Attachment a, const Mat3d& shape) {
+  /// @param shape  selects the directions, a sum of projectors; axes: the same for the check of supports
+  void add(const Vec3d& X, const Vec3d& arm, Attachment a, const Mat3d& shape, std::vector<Vec3d> axes) {
     std::set<int> joined = nodes_;
     joined.insert(a.nodes.begin(), a.nodes.end());
     if (!pending_.empty() && (pending_.size() == kGroupSize || joined.size() > kMaxSlots)) flush();
     nodes_.insert(a.nodes.begin(), a.nodes.end());
+    s_.tethered.push_back(
+        {static_cast<int>(s_.model.tethers.size()), body_, nearest_frame(s_.bodies[at(body_)], X), std::move(axes), a});
     s_.model.tethers.push_back({0, 0, X, motion_, arm});
     pending_.push_back(std::move(a));
     shapes_.push_back(shape * stiffness_);
-    return static_cast<int>(s_.model.tethers.size()) - 1;
   }
 
   void flush() {
@@ -123,7 +113,7 @@ class TetherBuilder {
  private:
   Simulation& s_;
   PointSetBuilder& points_;
-  int motion_;
+  int body_, motion_;
   double spacing_, stiffness_ = 0;
   std::vector<Attachment> pending_;
   std::vector<Mat3d> shapes_;
@@ -149,40 +139,23 @@ Attachment director(const Attachment& field, const Vec3d& arm) {
 
 /// All rotations: three arms, which hold every entry of the blended rotation. Single ones: arms across each held axis;
 /// one that turns far keeps the plane of its turn, one that is held only its direction.
-template <class Hold>
-void hold_rotations(const Constraint& c, const Vec3d& X, const Attachment& field, double length, const Hold& hold) {
+void add_rotation_tethers(TetherBuilder& builder, const Constraint& c, const Vec3d& X, const Attachment& field,
+                          double length) {
   const bool turns = c.motion && c.motion->angle != 0, all = c.fixed[3] && c.fixed[4] && c.fixed[5];
   for (int k = 0; k < 3; ++k) {
     if (!c.fixed[at(3 + k)]) continue;
     if (all) {
       const Vec3d arm = c.axes.row(k) * length;
-      hold(X, arm, director(field, arm), Mat3d::identity(), {c.axes.row(k)});
+      builder.add(X, arm, director(field, arm), Mat3d::identity(), {c.axes.row(k)});
       continue;
     }
     const Vec3d axis = c.axes.row(k);
     for (const int other : {(k + 1) % 3, (k + 2) % 3}) {
       const Vec3d arm = c.axes.row(other) * length, across = normalized(cross(axis, arm));
       const Mat3d shape = turns ? Mat3d::identity() - outer(axis, axis) : outer(across, across);
-      hold(X, arm, director(field, arm), shape, {axis});
+      builder.add(X, arm, director(field, arm), shape, {axis});
     }
   }
-}
-
-/// Their motion apart: nodes of one less those of the other.
-Attachment difference(const Attachment& one, const Attachment& other) {
-  std::map<int, Influence> influences;
-  for (std::size_t k = 0; k < one.nodes.size(); ++k) influences[one.nodes[k]] = one.influences[k];
-  for (std::size_t k = 0; k < other.nodes.size(); ++k) {
-    Influence& i = influences[other.nodes[k]];
-    i.w -= other.influences[k].w;
-    i.b -= other.influences[k].b;
-  }
-  Attachment a;
-  for (const auto& [node, influence] : influences) {
-    a.nodes.push_back(node);
-    a.influences.push_back(influence);
-  }
-  return a;
 }
 
 }  // namespace
@@ -196,11 +169,7 @@ int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constrai
     axes.push_back(c.axes.row(k));
     shape += outer(c.axes.row(k), c.axes.row(k));
   }
-  TetherBuilder builder(s, points, body, motion, kPenalty * young_of(s.scene.bodies[at(body)]));
-  const auto hold = [&](const Vec3d& X, const Vec3d& along, const Attachment& a, const Mat3d& directions,
-                        const std::vector<Vec3d>& held) {
-    s.tethered.push_back({builder.add(X, along, a, directions), body, nearest_frame(b, X), held, a});
-  };
+  TetherBuilder builder(s, points, body, motion);
   const double arm = arm_length(s.scene.bodies[at(body)]);
   const std::vector<Vec3d> places = places_in(b, c.where, builder.spacing());
   for (const Vec3d& X : places) {
@@ -209,43 +178,11 @@ int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constrai
     for (int k = 0; k < 3 && arm > 0; ++k)
       if (c.fixed[at(3 + k)]) add_direction(s, known.rotation, c.axes.row(k), motion, true, X, c);
     const Attachment field = b.body->attach(X);
-    if (!axes.empty()) hold(X, {}, field, shape, axes);
-    if (arm > 0) hold_rotations(c, X, field, arm, hold);
+    if (!axes.empty()) builder.add(X, {}, field, shape, axes);
+    if (arm > 0) add_rotation_tethers(builder, c, X, field, arm);
   }
   builder.flush();
   return static_cast<int>(places.size());
-}
-
-void tie_material(Simulation& s, PointSetBuilder& points, const Coupling& c, BuiltCoupling& built,
-                  const HostOf& host_of) {
-  const int body = body_index(s, c.body);
-  const SimulatedBody& b = s.bodies[at(body)];
-  const Body &own = s.scene.bodies[at(body)], &other = s.scene.bodies[at(body_index(s, c.to))];
-  const double young = young_of(own), of_host = young_of(other);
-  const double penalty = s.scene.solver.kind == SolverKind::central_differences ? kExplicitPenalty : kPenalty;
-  TetherBuilder builder(s, points, body, -1, penalty * (of_host > 0 ? std::min(young, of_host) : young));
-  const auto tie = [&](const Vec3d& X, const Vec3d& arm, const Attachment& field, const Attachment& host) {
-    built.ties.push_back({{builder.add(X, arm, difference(field, host), Mat3d::identity()),
-                           body,
-                           nearest_frame(b, X),
-                           {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}},
-                           field},
-                          host});
-  };
-  // Welds hold rotations too, of solids by arms within the reach of a frame.
-  const double thin = arm_length(own), length = thin > 0 ? thin : 0.5 * builder.spacing();
-  for (const Vec3d& X : places_in(b, c.where, builder.spacing())) {
-    const std::optional<Attachment> host = host_of(X);
-    if (!host) continue;
-    const Attachment field = b.body->attach(X);
-    tie(X, {}, field, *host);
-    for (int k = 0; k < 3 && c.kind == CouplingKind::weld; ++k) {
-      Vec3d arm;
-      arm[k] = length;
-      tie(X, arm, director(field, arm), director(*host, arm));
-    }
-  }
-  builder.flush();
 }
 
 }  // namespace fascia

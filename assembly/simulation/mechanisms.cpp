@@ -141,14 +141,6 @@ class Finder {
       const int piece = piece_in(t.field.nodes[0], t.body);
       for (const Vec3d& axis : t.axes) add(piece, -1, tether.X, axis, squared_norm(tether.arm) > 0);
     }
-    for (const BuiltCoupling& coupling : s_.couplings)
-      for (const TiedMaterial& t : coupling.ties) {
-        const Tether& tether = s_.model.tethers[at(t.tether)];
-        const int piece = piece_in(t.field.nodes[0], t.body);
-        int host = -1;
-        for (const int node : t.host.nodes) host = std::max(host, carrier(node));
-        if (host >= 0 && host != piece) add_all(piece, host, tether.X, squared_norm(tether.arm) > 0);
-      }
   }
 
   /// The piece that a node belongs to, or that it rides on through a surface without matter; −1: none.

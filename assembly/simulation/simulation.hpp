@@ -61,11 +61,6 @@ struct TetheredMaterial {
   Attachment field;
 };
 
-/// Material that a coupling ties to another body's.
-struct TiedMaterial : TetheredMaterial {
-  Attachment host;  ///< of the other body, at the same place
-};
-
 /// A probe with what it selects resolved.
 struct ResolvedProbe {
   const Probe* probe = nullptr;
@@ -79,9 +74,8 @@ struct ResolvedProbe {
 
 /// A weld, embedding or spring of the scene in the model.
 struct BuiltCoupling {
-  std::vector<int> nodes;          ///< of the model, that it couples
-  std::vector<int> springs;        ///< of the point set
-  std::vector<TiedMaterial> ties;  ///< of a body whose weights do not interpolate, in the place of its nodes
+  std::vector<int> nodes;    ///< of the model, that it couples
+  std::vector<int> springs;  ///< of the point set
 };
 
 /// What fills a body.
