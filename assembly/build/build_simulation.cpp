@@ -11,9 +11,9 @@
 #include "core/geometry/bounds.hpp"
 #include "core/math/rotation.hpp"
 #include "core/solver/boundary_motion.hpp"
+#include "core/step/dependents.hpp"
 #include "core/structure/dependent_inertia.hpp"
 #include "core/structure/inertia.hpp"
-#include "core/step/dependents.hpp"
 
 #include <fmt/format.h>
 

@@ -25,8 +25,8 @@ std::vector<RankOne> fluids_of(const MechanicalSystem& system, const State& stat
   if (surfaces.terms() == 0) return fluids;
   const std::vector<double> factors = zero_factors(model);
   std::vector<double> unused(at(model.dof_count())), blocks(model.points.dofs.block_total());
-  std::vector<Mat3d> Q;
-  for (int i = 0; i < model.node_count(); ++i) Q.push_back(Mat3d::identity() + state.D[at(i)]);
+  std::vector<Mat3d> Q(at(model.node_count()), Mat3d::identity());
+  for (std::size_t i = 0; i < Q.size(); ++i) Q[i] += state.D[i];
   surfaces.add_forces(nodes, {state.u.data(), state.D.data()}, factors.data(), unused.data());
   SurfaceTangent<PoolSpace> tangent;
   surfaces.linearize(nodes, Q.data(), factors.data(), Tangent::material, tangent, blocks.data());
