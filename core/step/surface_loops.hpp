@@ -42,7 +42,7 @@ struct FaceForces {
     sums[2] = moment;
     for (int a = 0; a < face.nodes; ++a) {
       set.corner_area[set.face_begin[f] + a] = area[a];
-      set.corner_weight[set.face_begin[f] + a] = force[a];
+      if (set.corner_weight != nullptr) set.corner_weight[set.face_begin[f] + a] = force[a];
     }
   }
 };

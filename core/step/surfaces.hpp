@@ -38,7 +38,7 @@ struct SurfacesView {
 
   // At the last forces.
   Vec3d *u = nullptr, *x = nullptr;                        ///< of vertices; x relative to the datum
-  Vec3d *corner_area = nullptr, *corner_weight = nullptr;  ///< of the corners of faces
+  Vec3d *corner_area = nullptr, *corner_weight = nullptr;  ///< of the corners of faces; where none weighs no weight
   double* face_sums = nullptr;               ///< (faces × 3): change of volume, size of its terms, ∫ w · x dV
   Vec3d *area = nullptr, *weight = nullptr;  ///< of vertices: ∫ N n dA, force of the weight
   double* surface_sums = nullptr;            ///< (surfaces × 3)
@@ -137,7 +137,7 @@ class Surfaces {
 
   Space space_;
   std::span<const SurfaceLoad> loads_;
-  bool conservative_ = true;
+  bool conservative_ = true, weighs_ = false;
   std::size_t dofs_ = 0;
   int terms_ = 0;
   std::vector<int> part_;                                        ///< connected part of each surface

@@ -17,7 +17,9 @@ Surfaces<Space>::Surfaces(const Model& model, Space space)
   upload(model);
   const auto vertices = at(view_.vertices), surfaces = at(view_.surfaces);
   for (auto* array : {&u_, &x_, &area_, &weight_, &dx_, &pull_}) array->resize(vertices);
-  for (auto* array : {&corner_area_, &corner_weight_, &corner_pull_}) array->resize(face_vertex_.size());
+  for (auto* array : {&corner_area_, &corner_pull_}) array->resize(face_vertex_.size());
+  corner_weight_.resize(weighs_ ? face_vertex_.size() : 0);
+  weight_.set_zero();
   face_sums_.resize(3 * at(view_.faces));
   along_.resize(at(terms_));
   surface_sums_.resize(3 * surfaces);
@@ -51,6 +53,7 @@ void Surfaces<Space>::upload(const Model& model) {
     rules.push_back({load.schedule, load.weight_schedule, load.has_potential, load.pressure, load.bulk_modulus,
                      load.rest_volume, load.volume, load.weight});
     conservative_ = conservative_ && load.has_potential;
+    weighs_ = weighs_ || squared_norm(load.weight) > 0;
     part_.push_back(model.points.node_part[at(load.shares[0].node)]);
     datum.push_back(load.datum);
     std::vector<int> own;
@@ -129,7 +132,10 @@ template <class Space>
 void Surfaces<Space>::add_forces(const NodesView& nodes, const PoseView& pose, const double* factors, double* load) {
   space_.for_each(view_.vertices, loops::MoveVertex{view_, pose});
   space_.for_each(view_.faces, loops::FaceForces{view_, factors});
-  by_vertex_.template sum<6>(loops::CornerForces{view_}, loops::KeepVertexForces{view_});
+  if (weighs_)
+    by_vertex_.template sum<6>(loops::CornerForces{view_}, loops::KeepVertexForces{view_});
+  else
+    by_vertex_.template sum<3>(loops::CornerVectors{corner_area_.data()}, loops::KeepVertexVectors{area_.data()});
   by_surface_.template sum<3>(loops::FaceSums{view_}, loops::KeepSurfaceSums{view_});
   vertices_by_surface_.template sum<1>(loops::SquaredArea{view_}, loops::FindPressure{view_, factors});
   by_node_.template sum<12>(loops::ShareForces{view_}, loops::AddNodeForces{loaded_.data(), nodes, pose, load});
