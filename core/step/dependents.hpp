@@ -95,9 +95,8 @@ class Dependents {
   void expand(const NodesView& nodes, double* d, Vec3d* dx = nullptr, Mat3d* dA = nullptr,
               const Mat3d* Q = nullptr) const;
   /// Moves forces on dependent nodes to their hosts.
-  /// @param forces  (dependents × 6) takes what each hands on, with what it had from those that depend on it: force,
-  /// and
-  ///                where it turns the torque about it; or null
+  /// @param forces  (dependents × 6) takes what each hands on, with what it had from those that depend on it: the
+  ///                force, and where it turns the torque about it; or null
   void transfer(const NodesView& nodes, double* g, double* forces = nullptr);
   /// Adds to the nodes' own blocks the second derivative of the dependent nodes' places, f · Q b along rotations of
   /// their hosts. @param forces  as transfer() kept them, of a gradient

@@ -70,6 +70,7 @@ struct SurfaceTangent {
     return g.data() + static_cast<std::size_t>(term) * (g.size() / std::max<std::size_t>(stiffness.size(), 1));
   }
 };
+
 /// The surface loads of a model at a state. A pass over faces leaves something on their corners; vertices gather that,
 /// and nodes from vertices.
 ///
