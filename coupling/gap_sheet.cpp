@@ -2,10 +2,10 @@
 #include "core/base/index.hpp"
 #include "core/geometry/bounds.hpp"
 #include "core/geometry/text.hpp"
+#include "core/math/principal_axes.hpp"
 #include "coupling/gap_sides.hpp"
 #include "coupling/rigid_body.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -21,17 +21,13 @@ using message::text;
 Vec3d length_axis(const TriangleMesh& faces, const std::string& body) {
   constexpr double least_ratio = 1.2;  // of a strip's length to its width
   const MassProperties area = properties_of_area(faces);
-  Eigen::Matrix3d S;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) S(i, j) = area.second(i, j);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(S);
-  const double ratio = std::sqrt(eigen.eigenvalues()[2] / std::max(eigen.eigenvalues()[1], 0.0));
+  const PrincipalAxes spread = principal_axes(area.second);
+  const double ratio = std::sqrt(spread.values[2] / std::max(spread.values[1], 0.0));
   if (!(ratio >= least_ratio))
     throw InputError("the selected part of body \"" + body + "\" is only " + text(ratio) +
                      " times as long as it is wide: a sheet needs a strip to start from; select one with where, or "
                      "use as = \"volume\"");
-  Vec3d axis;
-  for (int i = 0; i < 3; ++i) axis[i] = eigen.eigenvectors()(i, 2);
+  const Vec3d axis = spread.axes[2];
   // Of its two ways the one along the coordinate axis that it is nearest to.
   int main = 0;
   for (int i = 1; i < 3; ++i)

@@ -1,8 +1,7 @@
 #include "app/run/recovery.hpp"
 
 #include "core/base/index.hpp"
-
-#include <Eigen/Eigenvalues>
+#include "core/math/principal_axes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +18,6 @@ constexpr double kFarthest = 9;
 /// Points lie in a plane or on a line where their spread along an axis is this part of the largest; rounding leaves
 /// 1e-16.
 constexpr double kFlat = 1e-10;
-
-using Vector = Eigen::Vector3d;
-
-Vector vector_of(const Vec3d& v) { return {v[0], v[1], v[2]}; }
 
 bool of_one_material(const BodyPoint& a, const BodyPoint& b) {
   const LawConstants& constants = a;
@@ -72,10 +67,10 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
   const ModelBody& body = *b.body;
   const bool uniform = std::all_of(body.points().begin(), body.points().end(),
                                    [&](const BodyPoint& p) { return of_one_material(body.points()[0], p); });
-  std::vector<Vector> X;  // read often, and points hold much more
+  std::vector<Vec3d> X;  // read often, and points hold much more
   X.reserve(body.points().size());
-  for (const BodyPoint& p : body.points()) X.push_back(vector_of(p.X));
-  const auto place = [&](const Share& s) -> const Vector& { return X[at(s.point)]; };
+  for (const BodyPoint& p : body.points()) X.push_back(p.X);
+  const auto place = [&](const Share& s) -> const Vec3d& { return X[at(s.point)]; };
   std::size_t kept = 0;  // shares of the nodes before
   for (std::size_t i = 0; i < b.nodes.size(); ++i) {
     std::span<Share> patch = std::span(shares_).subspan(begin_[i], begin_[i + 1] - begin_[i]);
@@ -83,23 +78,23 @@ NodalRecovery::NodalRecovery(const SimulatedBody& b) : begin_(b.nodes.size() + 1
     if (!uniform) patch = of_nearest_material(body, b.nodes[i], patch);
     double sum = 0;
     for (const Share& s : patch) sum += s.weight;
-    Vector centre = Vector::Zero();
+    Vec3d centre;
     for (Share& s : patch) {
       s.weight /= sum;
-      centre += s.weight * place(s);
+      centre += place(s) * s.weight;
     }
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Share& s : patch) spread += s.weight * (place(s) - centre) * (place(s) - centre).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-    const Vector offset = vector_of(b.nodes[i]) - centre;
-    Vector slope = Vector::Zero();
+    Mat3d spread;
+    for (const Share& s : patch) spread += outer(place(s) - centre, place(s) - centre) * s.weight;
+    const PrincipalAxes principal = principal_axes(spread);
+    const Vec3d offset = b.nodes[i] - centre;
+    Vec3d slope;
     for (int k = 0; k < 3; ++k) {
-      const Vector axis = axes.eigenvectors().col(k);
-      const double o = axis.dot(offset), o2 = o * o;
-      const double reach = std::max({axes.eigenvalues()[k], o2 / kFarthest, kFlat * axes.eigenvalues()[2]});
+      const Vec3d axis = principal.axes[k];
+      const double o = dot(axis, offset), o2 = o * o;
+      const double reach = std::max({principal.values[k], o2 / kFarthest, kFlat * principal.values[2]});
       if (o2 > 0) slope += axis * (o / reach);
     }
-    for (const Share& s : patch) shares_[kept++] = {s.point, s.weight * (1 + slope.dot(place(s) - centre))};
+    for (const Share& s : patch) shares_[kept++] = {s.point, s.weight * (1 + dot(slope, place(s) - centre))};
   }
   begin_.back() = kept;
   shares_.resize(kept);

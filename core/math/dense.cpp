@@ -1,8 +1,20 @@
 #include "core/math/dense.hpp"
+#include "core/math/principal_axes.hpp"
 
 #include <Eigen/Dense>
 
 namespace fascia {
+
+PrincipalAxes principal_axes(const Mat3d& S) {
+  const Eigen::Matrix3d A = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&S.m[0][0]);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(A);
+  PrincipalAxes principal;
+  for (int k = 0; k < 3; ++k) {
+    principal.values[k] = solver.eigenvalues()[k];
+    for (int i = 0; i < 3; ++i) principal.axes[k][i] = solver.eigenvectors()(i, k);
+  }
+  return principal;
+}
 
 Eigenpairs symmetric_eigen(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);

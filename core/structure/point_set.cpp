@@ -144,6 +144,12 @@ void PointSetBuilder::add_shell(ShellBlock shell) {
   set_.shells.push_back(std::move(shell));
 }
 
+void PointSetBuilder::add_spring(const Spring& spring) { set_.springs.push_back(spring); }
+
+void PointSetBuilder::add_dependent(DependentNode node) { set_.dependents.push_back(std::move(node)); }
+
+void PointSetBuilder::join(std::vector<int> nodes, double length) { joints_.push_back({std::move(nodes), length}); }
+
 void PointSetBuilder::add_user_block(std::shared_ptr<const UserBlock> block) {
   if (!block) throw InputError("a user block is missing; give one");
   set_.user_blocks.push_back(std::move(block));

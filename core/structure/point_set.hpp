@@ -152,12 +152,12 @@ class PointSetBuilder {
 
   int spring_count() const { return static_cast<int>(set_.springs.size()); }
 
-  void add_spring(const Spring& spring) { set_.springs.push_back(spring); }
+  void add_spring(const Spring& spring);
 
   /// @pre no circle of nodes that depend on one another; a node depends at most once
-  void add_dependent(DependentNode node) { set_.dependents.push_back(std::move(node)); }
+  void add_dependent(DependentNode node);
 
-  void join(std::vector<int> nodes, double length) { joints_.push_back({std::move(nodes), length}); }
+  void join(std::vector<int> nodes, double length);
 
   /// @throws InputError  where a user block names a node that there is not
   PointSet finish(std::vector<FrameKind> frames) &&;

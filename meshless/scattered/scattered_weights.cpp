@@ -1,9 +1,8 @@
 #include "meshless/scattered/scattered_weights.hpp"
 
 #include "core/base/index.hpp"
+#include "core/math/principal_axes.hpp"
 #include "meshless/kernels.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cassert>
@@ -95,15 +94,13 @@ struct KeptDirections {
   double narrowest = 0;  ///< least eigenvalue of those that the matter has
 
   KeptDirections(const Mat3d& spread, double least, int dimension) {
-    const Eigen::Matrix3d C = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&spread.m[0][0]);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(C);
-    narrowest = eigen.eigenvalues()[3 - dimension];
+    const PrincipalAxes principal = principal_axes(spread);
+    narrowest = principal.values[3 - dimension];
     for (int k = 0; k < 3; ++k) {
-      const double value = eigen.eigenvalues()[k];
+      const double value = principal.values[k];
       if (!(value > least)) continue;
       ++count;
-      const auto v = eigen.eigenvectors().col(k);
-      const Vec3d direction{{v[0], v[1], v[2]}};
+      const Vec3d direction = principal.axes[k];
       projector += outer(direction, direction);
       inverse += outer(direction, direction) * (1 / value);
     }
