@@ -7,7 +7,7 @@
 #include "core/base/clock.hpp"
 #include "core/base/errors.hpp"
 #include "core/run/drivers.hpp"
-#include "core/tangent/condense.hpp"
+#include "core/tangent/condensation.hpp"
 
 #include <fmt/format.h>
 
@@ -84,11 +84,12 @@ Stages measure(const PointSet& set, ThreadPool& pool, const State& state, double
   t.linearize = shortest([&] { executor.linearize(state, history, tangent, lin); });
   BlockMatrix matrix(set);
   Dependents<PoolSpace> dependents(set, PoolSpace(pool));
+  Condensation condensation(dependents, set.dofs, pool);
   t.assemble = shortest([&] {
     executor.assemble(lin, matrix);
     if (dependents.empty()) return;
     dependents.turn_to(lin.Q.data());
-    condense(dependents, matrix);
+    condensation.condense(matrix);
   });
   return t;
 }

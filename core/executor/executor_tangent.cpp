@@ -161,6 +161,7 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
 }
 
 void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out, Entries entries) {
+  matrix_out.set_condensed(false);
   for_each_block([&](auto& block, std::size_t b) { block.assemble(state_of(lin, b), matrix_out, entries); });
   pool_.for_ranges(set_.node_count(), kNodeGrain, [&](int begin, int end) {
     for (int node = begin; node < end; ++node) {

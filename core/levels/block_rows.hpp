@@ -33,8 +33,8 @@ struct BlockRows {
   }
 };
 
-/// Whole rows of a BlockMatrix in constraint axes, without prescribed degrees of freedom, whichever of its blocks are
-/// stored.
+/// Whole rows of a BlockMatrix in constraint axes, without prescribed degrees of freedom and nodes that depend on
+/// others, whichever of its blocks are stored.
 class FineRows {
  public:
   FineRows(const BlockMatrix& matrix, const DofFilter& filter) : matrix_(matrix), filter_(filter), fixed_(at(rows())) {
@@ -61,7 +61,7 @@ class FineRows {
       for (const int column : matrix_.columns(row))
         if (column >= row) act(column);
     } else {
-      for (const int column : matrix_.columns(row)) act(column);
+      matrix_.for_each_left(row, [&](int k) { act(matrix_.column(k)); });
     }
   }
 
@@ -78,11 +78,11 @@ class FineRows {
           for (int j = 0; j < m; ++j) block[m * i + j] = above[n * j + i];
         act(column, block);
       }
-    const std::span<const int> columns = matrix_.columns(row);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      if (matrix_.fills_upper() && columns[k] < row) continue;
-      act(columns[k], taken(row, columns[k], matrix_.block(matrix_.row_begin(row) + static_cast<int>(k)), block));
-    }
+    matrix_.for_each_left(row, [&](int k) {
+      const int column = matrix_.column(k);
+      if (matrix_.fills_upper() && column < row) return;
+      act(column, taken(row, column, matrix_.block(k), block));
+    });
   }
 
  private:

@@ -167,9 +167,9 @@ namespace {
 class MoreBlocks {
  public:
   explicit MoreBlocks(int rows) : columns_(at(rows)), known_(at(rows), 0) {}
-  void add(int a, int b) {
-    add_column(a, b);
-    if (a != b) add_column(b, a);
+  void add(int row, int column) {
+    columns_[at(row)].push_back(column);
+    if (columns_[at(row)].size() > 2 * known_[at(row)] + 64) sorted(row);
   }
   const std::vector<int>& sorted(int row) {
     std::vector<int>& columns = columns_[at(row)];
@@ -180,33 +180,50 @@ class MoreBlocks {
   }
 
  private:
-  void add_column(int row, int column) {
-    columns_[at(row)].push_back(column);
-    if (columns_[at(row)].size() > 2 * known_[at(row)] + 64) sorted(row);
-  }
   std::vector<std::vector<int>> columns_;
   std::vector<std::size_t> known_;
 };
 
 }  // namespace
 
-/// As elimination does: hosts have blocks with each other and with all with which their dependent node has any. Those
-/// that are gone by then, because all of them depends, bring none.
+/// The pattern of Tᵀ K T beside that of K: the nodes that move a node, itself or in the end its hosts, have blocks with
+/// those that move each neighbour of it.
 void BlockMatrix::add_blocks_of_hosts(const PointSet& set) {
-  MoreBlocks more(rows());
+  std::vector<std::vector<int>> movers(at(rows()));  // of what depends; itself too, where some of it is free
   std::vector<char> gone(at(rows()), 0);
-  std::vector<int> near;
-  for (auto d = set.dependents.rbegin(); d != set.dependents.rend(); ++d) {
-    gone[at(d->node)] = dependent_dofs(*d, dofs_) == dofs_.size(d->node) ? 1 : 0;
-    const std::span<const int> known = columns(d->node);
-    near.assign(known.begin(), known.end());
-    const std::vector<int>& added = more.sorted(d->node);
-    near.insert(near.end(), added.begin(), added.end());
-    near.insert(near.end(), d->hosts.begin(), d->hosts.end());
-    for (const int node : near) {
-      if (gone[at(node)] != 0) continue;
-      for (const int host : d->hosts) more.add(host, node);
+  for (const DependentNode& d : set.dependents) {  // hosts that depend come before
+    std::vector<int>& own = movers[at(d.node)];
+    gone[at(d.node)] = dependent_dofs(d, dofs_) == dofs_.size(d.node) ? 1 : 0;
+    if (gone[at(d.node)] == 0) own.push_back(d.node);
+    for (const int host : d.hosts) {
+      const std::vector<int>& in_turn = movers[at(host)];
+      if (in_turn.empty()) own.push_back(host);
+      own.insert(own.end(), in_turn.begin(), in_turn.end());
     }
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+  }
+  MoreBlocks more(rows());
+  std::vector<int> near;
+  for (int row = 0; row < rows(); ++row) {
+    const std::span<const int> known = columns(row);
+    const auto depends = [&](int node) { return !movers[at(node)].empty(); };
+    if (!depends(row) && std::none_of(known.begin(), known.end(), depends)) continue;
+    near.clear();
+    for (const int column : known) {
+      const std::vector<int>& by = movers[at(column)];
+      if (by.empty()) near.push_back(column);
+      near.insert(near.end(), by.begin(), by.end());
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    const auto add = [&](int mover) {
+      for (const int column : near) more.add(mover, column);
+    };
+    if (depends(row))
+      std::for_each(movers[at(row)].begin(), movers[at(row)].end(), add);
+    else
+      add(row);
   }
   std::vector<int> columns_of_all, begin{0};
   for (int row = 0; row < rows(); ++row) {
@@ -218,6 +235,12 @@ void BlockMatrix::add_blocks_of_hosts(const PointSet& set) {
   column_ = std::move(columns_of_all);
   row_begin_ = std::move(begin);
   for (int row = 0; row < rows(); ++row) diagonal_[at(row)] = find(row, row);
+  left_begin_.assign(1, 0);
+  for (int row = 0; row < rows(); ++row) {
+    for (int k = row_begin(row); k < row_begin(row + 1); ++k)
+      if (k == diagonal(row) || (gone[at(row)] == 0 && gone[at(column_[at(k)])] == 0)) left_.push_back(k);
+    left_begin_.push_back(static_cast<int>(left_.size()));
+  }
 }
 
 std::span<const int> BlockMatrix::columns(int row) const {
@@ -266,7 +289,7 @@ template <class T>
 double BlockMatrix::multiply_row(const T* values, int row, std::span<const double> x, std::span<double> y) const {
   double sum[kMostDofs] = {};
   const int n = dofs_.size(row);
-  for (int k = row_begin(row); k < row_begin(row + 1); ++k) {
+  const auto add = [&](int k) {
     const int column = column_[at(k)], m = dofs_.size(column);
     const double* xc = x.data() + dofs_.begin(column);
     const T* b = values + value_begin_[at(k)];
@@ -279,7 +302,11 @@ double BlockMatrix::multiply_row(const T* values, int row, std::span<const doubl
     else
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < m; ++j) sum[i] += static_cast<double>(b[m * i + j]) * xc[j];
-  }
+  };
+  if (condensed_)
+    for_each_left(row, add);
+  else
+    for (int k = row_begin(row); k < row_begin(row + 1); ++k) add(k);
   const double* own = x.data() + dofs_.begin(row);
   std::copy(sum, sum + n, y.data() + dofs_.begin(row));
   return std::inner_product(sum, sum + n, own, 0.0);

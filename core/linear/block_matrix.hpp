@@ -5,6 +5,7 @@
 #include "core/structure/point_set.hpp"
 #include "core/structure/surface_load.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -15,7 +16,8 @@ namespace fascia {
 /// Symmetric matrix of blocks, one for each pair of nodes that share a point or an element, as large as the nodes have
 /// degrees of freedom and stored by rows, columns ascending. The pattern is fixed. Where all nodes are vertices, or all
 /// rigid frames, only the blocks on and above the diagonal are stored: half as much to read in a product. Where nodes
-/// depend on others, all are stored, and the hosts have the blocks that their dependent nodes bring them.
+/// depend on others, all are stored, and the hosts have the blocks that their dependent nodes bring them when the
+/// matrix is condensed (core/tangent/condensation.hpp): then products leave out what is zero by that.
 class BlockMatrix {
  public:
   BlockMatrix() = default;
@@ -41,6 +43,22 @@ class BlockMatrix {
   std::uint64_t pattern() const { return pattern_; }
   int find(int row, int column) const;  ///< index of a block that is in the pattern
   int diagonal(int row) const { return diagonal_[static_cast<std::size_t>(row)]; }
+
+  /// Column of a stored block.
+  int column(int index) const { return column_[static_cast<std::size_t>(index)]; }
+  /// Calls act(index) for the stored blocks of a row that have entries once the matrix is condensed, and the
+  /// diagonal's.
+  template <class Act>
+  void for_each_left(int row, const Act& act) const {
+    if (left_begin_.empty()) {
+      for (int k = row_begin(row); k < row_begin(row + 1); ++k) act(k);
+    } else {
+      const auto begin = left_.begin() + left_begin_[static_cast<std::size_t>(row)];
+      std::for_each(begin, left_.begin() + left_begin_[static_cast<std::size_t>(row) + 1], act);
+    }
+  }
+  /// Whether the blocks are those of the condensed matrix; only where nodes depend on others.
+  void set_condensed(bool condensed) { condensed_ = condensed && !left_begin_.empty(); }
 
   /// Sets the blocks of a row to zero.
   void clear_row(int row);
@@ -94,7 +112,9 @@ class BlockMatrix {
 
   DofLayout dofs_;
   std::vector<int> row_begin_{0}, column_, diagonal_;
-  std::vector<int> mirror_;  ///< of each block below the diagonal, the one above it
+  bool condensed_ = false;
+  std::vector<int> left_begin_, left_;  ///< of each row: blocks that a condensed matrix has; empty: all
+  std::vector<int> mirror_;             ///< of each block below the diagonal, the one above it
   std::uint64_t pattern_ = 0;
   int uniform_ = 0;                       ///< every block is 3 × 3, or 6 × 6; 0: neither
   std::vector<std::size_t> value_begin_;  ///< of each block, and of all

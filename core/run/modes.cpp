@@ -8,7 +8,7 @@
 #include "core/node/dof_filter.hpp"
 #include "core/structure/blocks.hpp"
 #include "core/structure/inertia.hpp"
-#include "core/tangent/condense.hpp"
+#include "core/tangent/condensation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ class Problem {
     Linearization lin;
     executor.linearize(rest, {}, Tangent::full, lin);
     executor.assemble(lin, K_);
-    condense(dependents_, K_);
+    Condensation(dependents_, dofs(), pool).condense(K_);
     sum_stiffness(model.points);
     mass_.assign(dofs().block_total(), 0.0);
     for (int i = 0; i < model.node_count(); ++i)

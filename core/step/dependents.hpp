@@ -61,7 +61,7 @@ struct DependentsView {
 ///   dx = Σ w dx_a + dA_a b_a,   and where they turn   dr = dr_a,   briefly d = J d_hosts.
 ///
 /// Vectors of all degrees of freedom become those of the free ones: with d = T d', all of d from the rest, g' = Tᵀ g,
-/// in which the entries of what depends are zero; matrices likewise (core/tangent/condense.hpp). Hosts of a level
+/// in which the entries of what depends are zero; matrices likewise (core/tangent/condensation.hpp). Hosts of a level
 /// depend on nodes of lower levels alone; a pass goes through the levels. All pointers point into the space.
 template <class Space>
 class Dependents {

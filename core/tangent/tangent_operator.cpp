@@ -3,7 +3,7 @@
 #include "core/base/index.hpp"
 #include "core/base/parallel_copy.hpp"
 #include "core/node/positive_inverse.hpp"
-#include "core/tangent/condense.hpp"
+#include "core/tangent/condensation.hpp"
 #include "core/tangent/stability.hpp"
 
 #include <algorithm>
@@ -24,6 +24,7 @@ TangentOperator::TangentOperator(const Model& model, CpuExecutor& executor, cons
       vectors_(executor.pool()),
       nodes_(nodes_of(model.points)),
       dependents_(model.points, PoolSpace(executor.pool())),
+      condensation_(dependents_, model.points.dofs, executor.pool()),
       work_(at(model.dof_count())) {}
 
 void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
@@ -49,7 +50,7 @@ void TangentOperator::tame(TamerTangent kind) {
 
 void TangentOperator::assemble(const Linearization& lin, BlockMatrix& out, Entries entries) {
   executor_.assemble(lin, out, dependents_.empty() ? entries : Entries::all);
-  condense(dependents_, out);
+  condensation_.condense(out);
 }
 
 BlockMatrix& TangentOperator::pattern() {

@@ -6,6 +6,7 @@
 #include "core/linear/vectors.hpp"
 #include "core/node/dof_filter.hpp"
 #include "core/step/dependents.hpp"
+#include "core/tangent/condensation.hpp"
 #include "core/tangent/low_rank.hpp"
 
 #include <functional>
@@ -99,6 +100,7 @@ class TangentOperator {
   CpuVectors vectors_;
   NodesView nodes_;
   Dependents<PoolSpace> dependents_;
+  Condensation condensation_;
   const Linearization* at_ = nullptr;
   const Relinearize* tamer_ = nullptr;
   std::optional<BlockMatrix> matrix_, material_;

@@ -3,7 +3,7 @@
 #include "core/executor/executor.hpp"
 #include "core/levels/multigrid.hpp"
 #include "core/node/positive_inverse.hpp"
-#include "core/tangent/condense.hpp"
+#include "core/tangent/condensation.hpp"
 #include "tests/support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ struct TangentAtRest {
     executor.assemble(lin, matrix);
     if (Dependents<PoolSpace> dependents(model.points); !dependents.empty()) {
       dependents.turn_to(lin.Q.data());
-      condense(dependents, matrix);
+      Condensation(dependents, matrix.dofs(), pool).condense(matrix);
     }
     const DofLayout& dofs = model.points.dofs;
     inverse.resize(dofs.block_total());

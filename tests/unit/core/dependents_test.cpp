@@ -1,4 +1,4 @@
-#include "core/tangent/condense.hpp"
+#include "core/tangent/condensation.hpp"
 
 #include "core/base/errors.hpp"
 #include "core/executor/executor.hpp"
@@ -55,7 +55,7 @@ class DependentNodesTest : public testing::TestWithParam<std::string> {
   BlockMatrix condensed() {
     BlockMatrix K(model_.points);
     executor_.assemble(linearization(), K);
-    condense(dependents_, K);
+    Condensation(dependents_, K.dofs(), pool_).condense(K);
     return K;
   }
   std::vector<double> product(const BlockMatrix& K, const std::vector<double>& d) {
@@ -140,6 +140,30 @@ TEST_P(DependentNodesTest, CondensedMatrixIsTheProductOfItsFactors) {
   for (const DependentNode& v : model_.points.dependents)
     for (int k = 0; k < dependent_dofs(v, model_.points.dofs); ++k)
       EXPECT_EQ(product(K, d_)[at(model_.points.dofs.begin(v.node) + k)], 0);
+}
+
+/// Of rows of dependent nodes two are kept at the same time, or all.
+TEST_P(DependentNodesTest, BitsOfTheMatrixDependOnNeitherThreadsNorRowsAtOnce) {
+  const BlockMatrix K = condensed();
+  const Linearization lin = linearization();
+  for (const int at_once : {2, 1024}) {
+    ThreadPool threads(3);
+    BlockMatrix other(model_.points);
+    executor_.assemble(lin, other);
+    Condensation(dependents_, other.dofs(), threads, at_once).condense(other);
+    EXPECT_TRUE(std::equal(K.values(), K.values() + K.value_count(), other.values()));
+  }
+}
+
+TEST_P(DependentNodesTest, BothHalvesOfTheMatrixAreEqual) {
+  const BlockMatrix K = condensed();
+  for (int row = 0; row < K.rows(); ++row)
+    for (const int column : K.columns(row)) {
+      const double *block = K.block(K.find(row, column)), *mirror = K.block(K.find(column, row));
+      const int n = K.dofs().size(row), m = K.dofs().size(column);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < m; ++j) ASSERT_EQ(block[m * i + j], mirror[n * j + i]) << row << " " << column;
+    }
 }
 
 /// What moves with its hosts moves likewise: J d against differences of places.

@@ -1,6 +1,6 @@
 #include "core/step/dependents.hpp"
 
-#include "core/tangent/condense.hpp"
+#include "core/tangent/condensation.hpp"
 #include "tests/support/dependent_models.hpp"
 #include "tests/support/plain_dependents.hpp"
 #include "tests/unit/gpu/host_model.hpp"
@@ -151,7 +151,7 @@ TEST_P(DependentsTest, OwnBlocks) {
       for (int c = 0; c <= r; ++c) block[n * r + c] = block[n * c + r] = r == c ? 20.0 : uniform(random);
     std::copy_n(block, n * n, K.block(K.diagonal(node)));
   }
-  condense(of_pool_, K);
+  Condensation(of_pool_, dofs, pool_).condense(K);
   dependents_.add_diagonal(host_.nodes(), blocks.data());
   std::vector<double> expected(blocks.size());
   for (int node = 0; node < model_.node_count(); ++node)
