@@ -17,8 +17,9 @@ namespace {
 constexpr int pair_count(int nodes) { return nodes * (nodes + 1) / 2; }
 
 /// Adds the stiffness of a batch, by columns: each unit motion gives the forces on the nodes that come after.
-template <Law L, int N>
-void add_columns(BatchTangent<L, N>& tangent, const ElementBlock& block, int batch, int half, Mat3<Lanes>* K) {
+template <class BatchTangent>
+void add_columns(BatchTangent& tangent, const ElementBlock& block, int batch, int half, Mat3<Lanes>* K) {
+  constexpr int N = BatchTangent::kNodes;
   const int n = nodes_of<N>(block), points = tangent.points.count();
   Mat3<Lanes> dF[BatchPoints<N>::kPoints], dP[BatchPoints<N>::kPoints];
   for (int b = 0; b < n; ++b) {
@@ -92,13 +93,30 @@ inline void ElementExecutor::prefetch_pair(std::size_t place, const double* valu
   for (int lane = 0; lane < kBatchWidth; ++lane) prefetch_to_add(values + pair_slot_[place + at(lane)], kVertexBlock);
 }
 
+/// Adds the blocks of a batch to the matrix. Inlined always: as a call, tetrahedra of ten nodes took a third longer.
+template <int N>
+[[gnu::always_inline]] inline void ElementExecutor::add_pairs(const Mat3<Lanes>* K, int batch, int half,
+                                                              BlockMatrix& matrix) const {
+  const int pairs = pair_count(nodes_of<N>(block_));
+  const std::size_t first_pair = at(batch) * at(pairs) * kElementLanes + half * kBatchWidth;
+  const std::uint32_t* slot = pair_slot_.data() + first_pair;
+  for (int pair = 0; pair < pairs; ++pair) {
+    prefetch_pair(first_pair + at(pair + kPairsAhead) * kElementLanes, matrix.values());
+    const std::uint8_t* stride =
+        pair_stride_.empty() ? nullptr : pair_stride_.data() + first_pair + pair * kElementLanes;
+    if (stride == nullptr || std::all_of(stride, stride + kBatchWidth, [](std::uint8_t length) { return length == 3; }))
+      add_pair(K[pair], slot + pair * kElementLanes, matrix.fills_upper(), matrix.values());
+    else
+      add_wide_pair(K[pair], slot + pair * kElementLanes, stride, matrix.fills_upper(), matrix.values());
+  }
+}
+
 /// K has room for the pairs of the largest element only where it must: a linear tetrahedron's stay in registers' reach.
 template <Law L, int N>
 [[gnu::flatten]] void ElementExecutor::assemble_patch(const BlockState& state, int patch, BlockMatrix& matrix) {
   gather_patch(state.u, patch, slot_u_);
   const auto first = at(block_.patch_begin[at(patch)]);
   const auto nodes = block_.nodes_of_patch(patch);
-  const int n = nodes_of<N>(block_), pairs = pair_count(n);
   for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
     for (int half = 0; half < kBatches; ++half) {
       Vec3<Lanes> u[kRoom<N>];
@@ -106,24 +124,27 @@ template <Law L, int N>
       const Lanes pressure = block_.averaged ? mean_pressure(block_, batch, half, nodes, node_pressure_) : Lanes(0);
       BatchTangent<L, N> tangent(block_, batch, half, u, state, pressure);
       Mat3<Lanes> K[pair_count(kRoom<N>)];
-      constexpr bool kOfPoints = ElementStiffness<L, Lanes>::kOfPoints;
-      const bool by_columns = !kOfPoints || block_.penalised;
-      if constexpr (kOfPoints) {
-        if (!by_columns) add_blocks(tangent, block_, batch, half, state.tangent == Tangent::full, K);
-      }
-      if (by_columns) add_columns(tangent, block_, batch, half, K);
-      const std::size_t first_pair = at(batch) * at(pairs) * kElementLanes + half * kBatchWidth;
-      const std::uint32_t* slot = pair_slot_.data() + first_pair;
-      for (int pair = 0; pair < pairs; ++pair) {
-        prefetch_pair(first_pair + at(pair + kPairsAhead) * kElementLanes, matrix.values());
-        const std::uint8_t* stride =
-            pair_stride_.empty() ? nullptr : pair_stride_.data() + first_pair + pair * kElementLanes;
-        if (stride == nullptr ||
-            std::all_of(stride, stride + kBatchWidth, [](std::uint8_t length) { return length == 3; }))
-          add_pair(K[pair], slot + pair * kElementLanes, matrix.fills_upper(), matrix.values());
-        else
-          add_wide_pair(K[pair], slot + pair * kElementLanes, stride, matrix.fills_upper(), matrix.values());
-      }
+      if constexpr (ElementStiffness<L, Lanes>::kOfPoints)
+        add_blocks(tangent, block_, batch, half, state.tangent == Tangent::full, K);
+      else
+        add_columns(tangent, block_, batch, half, K);
+      add_pairs<N>(K, batch, half, matrix);
+    }
+  }
+}
+
+/// Beside assemble_patch(), which gathered the patch.
+template <int N>
+void ElementExecutor::assemble_penalty(const BlockState& state, int patch, BlockMatrix& matrix) {
+  const auto first = at(block_.patch_begin[at(patch)]);
+  for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
+    for (int half = 0; half < kBatches; ++half) {
+      Vec3<Lanes> u[kRoom<N>];
+      gather<N>(block_, batch, half, slot_u_.data() + first, u);
+      const PenaltyTangent<N> tangent(block_, batch, half, u, state.tangent == Tangent::full);
+      Mat3<Lanes> K[pair_count(kRoom<N>)];
+      add_columns(tangent, block_, batch, half, K);
+      add_pairs<N>(K, batch, half, matrix);
     }
   }
 }
@@ -162,8 +183,11 @@ void ElementExecutor::assemble(const BlockState& state, BlockMatrix& matrix, Ent
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
     for (std::size_t c = 0; c + 1 < block_.color_begin.size(); ++c) {
       const int first = block_.color_begin[c];
-      pool_.for_ranges(block_.color_begin[c + 1] - first, 1,
-                       [&](int i, int) { assemble_patch<L, N>(state, block_.color_patch[at(first + i)], matrix); });
+      pool_.for_ranges(block_.color_begin[c + 1] - first, 1, [&](int i, int) {
+        const int patch = block_.color_patch[at(first + i)];
+        assemble_patch<L, N>(state, patch, matrix);
+        if (block_.penalised) assemble_penalty<N>(state, patch, matrix);
+      });
     }
   });
   if (block_.averaged) assemble_average(state, matrix);

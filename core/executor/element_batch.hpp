@@ -8,7 +8,7 @@ namespace fascia::kernels {
 template <Law L, int N>
 class BatchTangent {
  public:
-  static constexpr int kPoints = BatchPoints<N>::kPoints;
+  static constexpr int kNodes = N, kPoints = BatchPoints<N>::kPoints;
   static constexpr bool kTurns = L == Law::corotational;
 
   BatchPoints<N> points;
@@ -50,7 +50,7 @@ class BatchTangent {
   /// k of dp; it is 0 where p is an average.
   const Lanes& volumetric_modulus() const { return k_; }
 
-  /// dP of each point for its dF; without what node averages add.
+  /// dP of each point for its dF; without what node averages and the penalty on volumes add.
   void differential(const Mat3<Lanes>* dF, Mat3<Lanes>* dP) {
     if constexpr (kTurns) {
       element_.begin_direction(points.mean(dF));
@@ -65,7 +65,6 @@ class BatchTangent {
     } else {
       for (int q = 0; q < points.count(); ++q) dP[q] = point_[q].differential(dF[q], m, k_, full_);
     }
-    if (points.block.penalised) add_penalty(dF, dP);
   }
 
  private:
@@ -73,24 +72,41 @@ class BatchTangent {
     Nothing(const Mat3<Lanes>&, const Lanes&, bool) {}
   };
 
-  void add_penalty(const Mat3<Lanes>* dF, Mat3<Lanes>* dP) const {
-    const Lanes s = points.swelling;
+  bool full_;
+  Lanes k_;
+  std::conditional_t<kTurns, CorotationalElement<Lanes>, Nothing> element_;
+  Mat3<Lanes> sigma_[kTurns ? kPoints : 1];
+  ElasticPoint<L, Lanes> point_[kTurns ? 1 : kPoints];
+};
+
+/// What the penalty on the cells' volumes adds to that, whatever the law: ψ = κ |s|³/3 by volume, s = (V − V₀)/V₀.
+template <int N>
+class PenaltyTangent {
+ public:
+  static constexpr int kNodes = N;
+  BatchPoints<N> points;
+
+  PenaltyTangent(const ElementBlock& block, int batch, int half, const Vec3<Lanes>* u, bool full)
+      : points(block, batch, half, u),
+        penalty_(row(block.material_of(batch), ElementBlock::kPenalty, half)),
+        swelling_(swelling(points)),
+        full_(full) {}
+
+  void differential(const Mat3<Lanes>* dF, Mat3<Lanes>* dP) const {
     Lanes ds;
     for (int q = 0; q < points.count(); ++q)
       ds += points.v(q) * contract(cofactor(Mat3<Lanes>::identity() + points.H[q]), dF[q]);
     ds = ds / points.safe_volume();
     for (int q = 0; q < points.count(); ++q) {
       const Mat3<Lanes> F = Mat3<Lanes>::identity() + points.H[q];
-      dP[q] += cofactor(F) * (Lanes(2) * m.penalty * abs(s) * ds);
-      if (full_) dP[q] += cofactor_differential(F, dF[q]) * (m.penalty * s * abs(s));
+      dP[q] = cofactor(F) * (Lanes(2) * penalty_ * abs(swelling_) * ds);
+      if (full_) dP[q] += cofactor_differential(F, dF[q]) * (penalty_ * swelling_ * abs(swelling_));
     }
   }
 
+ private:
+  Lanes penalty_, swelling_;
   bool full_;
-  Lanes k_;
-  std::conditional_t<kTurns, CorotationalElement<Lanes>, Nothing> element_;
-  Mat3<Lanes> sigma_[kTurns ? kPoints : 1];
-  ElasticPoint<L, Lanes> point_[kTurns ? 1 : kPoints];
 };
 
 }  // namespace fascia::kernels

@@ -50,7 +50,13 @@ class ElementExecutor {
   void product_of_patch(const BlockState& state, int patch, std::span<const Vec3d> dx);
   template <Law L, int N>
   void assemble_patch(const BlockState& state, int patch, BlockMatrix& matrix);
+  template <int N>
+  void add_pairs(const Mat3<Lanes>* K, int batch, int half, BlockMatrix& matrix) const;
   void prefetch_pair(std::size_t place, const double* values) const;
+  template <int N>
+  void add_penalty_product(const BlockState& state, int patch);
+  template <int N>
+  void assemble_penalty(const BlockState& state, int patch, BlockMatrix& matrix);
   template <Law L, int N>
   void strain_of_patch(int patch, std::span<double> E) const;
   template <Law L, int N>

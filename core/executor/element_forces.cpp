@@ -112,9 +112,9 @@ template <Law L, int N>
         sums.elastic -= lane_sum(points.v(q) * fading);
         sums.viscous += lane_sum(points.v(q) * (fading + contract(given, strain)));
       };
-      const Lanes swelling = points.swelling, pull = m.penalty * swelling * abs(swelling);
+      const Lanes s = block_.penalised ? swelling(points) : Lanes(0), pull = m.penalty * s * abs(s);
       if (block_.penalised && energies)
-        sums.elastic += lane_sum(points.volume * m.penalty * swelling * swelling * abs(swelling) * Lanes(1.0 / 3));
+        sums.elastic += lane_sum(points.volume * m.penalty * s * s * abs(s) * Lanes(1.0 / 3));
       const auto with_penalty = [&](int q, const Mat3<Lanes>& P) {
         return block_.penalised ? P + cofactor(Mat3<Lanes>::identity() + points.H[q]) * pull : P;
       };

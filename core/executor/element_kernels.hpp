@@ -106,24 +106,21 @@ inline Lanes mean_pressure(const ElementBlock& block, int batch, int half, std::
   return sum * Lanes(0.25);
 }
 
-/// The points of a batch of elements at a state: displacement gradients, volumes, and the cell's change of volume.
+/// The points of a batch of elements at a state: displacement gradients and volumes.
 template <int N>
 struct BatchPoints {
   static constexpr int kPoints = N == 4 ? 1 : kMostElementPoints;
   const ElementBlock& block;
   int batch, half;
   Mat3<Lanes> H[kPoints];
-  Lanes volume;    ///< of the element at rest [m³]
-  Lanes swelling;  ///< s = (V − V₀)/V₀; where it is penalised
+  Lanes volume;  ///< of the element at rest [m³]
 
   BatchPoints(const ElementBlock& b, int batch_number, int half_number, const Vec3<Lanes>* u)
       : block(b), batch(batch_number), half(half_number) {
     for (int q = 0; q < count(); ++q) {
       H[q] = displacement_gradient<N>(block, block.gradient_of(batch, q), half, u);
       volume += v(q);
-      if (block.penalised) swelling += v(q) * volume_change(H[q]);
     }
-    if (block.penalised) swelling = swelling / safe_volume();
   }
   /// Not 0 in lanes that are not used.
   Lanes safe_volume() const { return where_positive(volume, volume, Lanes(1)); }
@@ -136,5 +133,13 @@ struct BatchPoints {
     return sum * (Lanes(1) / safe_volume());
   }
 };
+
+/// s = (V − V₀)/V₀ of the cells.
+template <int N>
+Lanes swelling(const BatchPoints<N>& points) {
+  Lanes sum;
+  for (int q = 0; q < points.count(); ++q) sum += points.v(q) * volume_change(points.H[q]);
+  return sum / points.safe_volume();
+}
 
 }  // namespace fascia::kernels

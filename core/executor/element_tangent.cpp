@@ -40,6 +40,29 @@ template <Law L, int N>
   }
 }
 
+/// Beside product_of_patch(), which gathered the patch.
+template <int N>
+void ElementExecutor::add_penalty_product(const BlockState& state, int patch) {
+  const auto first = at(block_.patch_begin[at(patch)]);
+  for (int batch = block_.patch_batch[at(patch)]; batch < block_.patch_batch[at(patch) + 1]; ++batch) {
+    for (int half = 0; half < kBatches; ++half) {
+      Vec3<Lanes> u[kRoom<N>], d[kRoom<N>], f[kRoom<N>];
+      gather<N>(block_, batch, half, slot_u_.data() + first, u);
+      gather<N>(block_, batch, half, slot_d_.data() + first, d);
+      const PenaltyTangent<N> tangent(block_, batch, half, u, state.tangent == Tangent::full);
+      Mat3<Lanes> dH[BatchPoints<N>::kPoints], dP[BatchPoints<N>::kPoints];
+      for (int q = 0; q < tangent.points.count(); ++q)
+        dH[q] = displacement_gradient<N>(block_, block_.gradient_of(batch, q), half, d);
+      tangent.differential(dH, dP);
+      for (int q = 0; q < tangent.points.count(); ++q) {
+        const Mat3<Lanes> force = dP[q] * tangent.points.v(q);
+        for (int a = 0; a < nodes_of<N>(block_); ++a) f[a] += force * gradient(block_.gradient_of(batch, q), a, half);
+      }
+      scatter<N>(block_, batch, half, f, slot_sum_.data() + first);
+    }
+  }
+}
+
 template <Law L, int N>
 void ElementExecutor::extrapolate_patch(const BlockState& start, int patch, std::span<double> S) const {
   const auto first = at(block_.patch_begin[at(patch)]);
@@ -107,8 +130,10 @@ void ElementExecutor::compute_product(const BlockState& state, const BlockDirect
   slot_d_.resize(slot_u_.size());
   if (block_.averaged) average_direction(state, direction.dx);
   with_element_kind(block_.law, block_.nodes, [&]<Law L, int N>() {
-    pool_.for_ranges(block_.patch_count(), 1,
-                     [&](int patch, int) { product_of_patch<L, N>(state, patch, direction.dx); });
+    pool_.for_ranges(block_.patch_count(), 1, [&](int patch, int) {
+      product_of_patch<L, N>(state, patch, direction.dx);
+      if (block_.penalised) add_penalty_product<N>(state, patch);
+    });
   });
 }
 
