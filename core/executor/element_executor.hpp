@@ -81,6 +81,11 @@ class ElementExecutor {
   template <class Theta>
   void average_of(const BlockState& state, std::span<const Vec3d> dx, std::vector<double>& out, const Theta& theta);
   void assemble_average(const BlockState& state, BlockMatrix& matrix);
+  void find_reach();
+  template <Law L>
+  void average_gradients_of_patch(const BlockState& state, int patch);
+  void sum_average_gradient(int a);
+  void assemble_average_row(int i, double factor, BlockMatrix& matrix) const;
 
   const ElementBlock& block_;
   const PointSet& set_;
@@ -99,6 +104,22 @@ class ElementExecutor {
   std::vector<double> slot_theta_;                  ///< Σ V θ/4 by patch
   std::vector<double> node_pressure_, node_theta_;  ///< k times the mean of θ, and of its derivative [Pa]
   std::vector<double> kept_pressure_;               ///< while stresses are stored
+  /// Nodes whose places change the mean about each node: those of the elements around it. Empty until it is assembled.
+  struct Reach {
+    std::vector<int> begin, node;           ///< (nodes + 1), ascending
+    std::vector<int> corner_begin, corner;  ///< of the elements around each node: corner 4 e + c of element e is it
+    std::vector<std::uint16_t> slot;        ///< (corners × 4): place of its element's corners among `node`
+    std::vector<Vec3d> element_gradient;    ///< (corners) V/4 ∂θ/∂x of each element [m²]
+    std::vector<Vec3d> gradient;            ///< of `node`, Σ of these over the elements around
+
+    std::span<const int> nodes(int a) const {
+      return std::span(node).subspan(at(begin[at(a)]), at(begin[at(a) + 1] - begin[at(a)]));
+    }
+    std::span<const int> corners(int a) const {
+      return std::span(corner).subspan(at(corner_begin[at(a)]), at(corner_begin[at(a) + 1] - corner_begin[at(a)]));
+    }
+  };
+  Reach reach_;
 };
 
 }  // namespace fascia
