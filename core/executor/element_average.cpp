@@ -127,7 +127,7 @@ void ElementExecutor::find_reach() {
   reach_.gradient.resize(reach_.node.size());
 }
 
-/// V/4 ∂θ/∂x of the elements of a patch.
+/// Finds V/4 ∂θ/∂x of the elements of a patch.
 template <Law L>
 void ElementExecutor::average_gradients_of_patch(const BlockState& state, int patch) {
   gather_patch(state.u, patch, slot_u_);
@@ -150,7 +150,7 @@ void ElementExecutor::average_gradients_of_patch(const BlockState& state, int pa
   }
 }
 
-/// G_a of one node.
+/// Sums G_a of one node.
 void ElementExecutor::sum_average_gradient(int a) {
   Vec3d* sum = reach_.gradient.data() + reach_.begin[at(a)];
   std::fill_n(sum, reach_.nodes(a).size(), Vec3d{});
@@ -158,7 +158,7 @@ void ElementExecutor::sum_average_gradient(int a) {
     for (int b = 0; b < 4; ++b) sum[reach_.slot[at(4 * corner + b)]] += reach_.element_gradient[at(corner / 4 * 4 + b)];
 }
 
-/// Adds a row of blocks: those with the nodes of all means that reach it, of which both have the row.
+/// Adds a row of blocks: what the means that reach its node have for it and the other nodes that they reach.
 void ElementExecutor::assemble_average_row(int i, double factor, BlockMatrix& matrix) const {
   const std::span<const int> columns = matrix.columns(i);
   for (const int a : reach_.nodes(i)) {

@@ -79,7 +79,8 @@ class BatchTangent {
   ElasticPoint<L, Lanes> point_[kTurns ? 1 : kPoints];
 };
 
-/// What the penalty on the cells' volumes adds to that, whatever the law: ψ = κ |s|³/3 by volume, s = (V − V₀)/V₀.
+/// Gives what the penalty on the cells' volumes adds to that, whatever the law: ψ = κ |s|³/3 by volume, with
+/// s = (V − V₀)/V₀.
 template <int N>
 class PenaltyTangent {
  public:

@@ -44,10 +44,10 @@ void add_transposed_product(const double* A, int m, int n, const double* B, int 
   });
 }
 
-/// T: what depends by the nodes that are left in the end, whose hosts do not depend on others.
+/// Writes T out: rows of dependent nodes by the nodes that are left in the end, through hosts that depend in turn.
 class Expansion {
  public:
-  /// The rows of one dependent node that follow one node: m × the other's degrees of freedom.
+  /// Holds how one dependent node follows one other node: m × the other's degrees of freedom.
   struct Term {
     int dependent, node;
     std::size_t values;  ///< where they begin
@@ -121,7 +121,7 @@ class Expansion {
   std::vector<double> values_;
 };
 
-/// The rows of K T of one dependent node that follow others.
+/// Keeps the rows of K T of one dependent node, of its degrees of freedom that follow others.
 struct DependentRows {
   std::vector<int> column;  ///< ascending
   std::vector<std::size_t> begin;
@@ -185,7 +185,7 @@ class Condensation::Impl {
   /// First degree of freedom of a node that does not depend.
   int first_own(int node) const { return T_.place(node) < 0 ? 0 : T_.dofs(T_.place(node)); }
 
-  /// K_rs += K_rd T_ds of the row's own degrees of freedom.
+  /// Adds K_rd T_ds to K_rs, of the row's own degrees of freedom.
   void replace_columns(int row, BlockMatrix& K) const {
     const int first = first_own(row), n = dofs_.size(row);
     for (int index = K.row_begin(row); index < K.row_begin(row + 1) && first < n; ++index) {
@@ -226,7 +226,7 @@ class Condensation::Impl {
     }
   }
 
-  /// K_rs += T_drᵀ (K T)_ds of the dependent nodes d from `first` to `end` that follow the row's.
+  /// Adds T_drᵀ (K T)_ds to K_rs, of the dependent nodes d from `first` to `end` that follow the row's.
   void add_followers(int row, int first, int end, BlockMatrix& K) const {
     const std::span<const Expansion::Term> all = std::span(by_node_).subspan(
         at(by_node_begin_[at(row)]), at(by_node_begin_[at(row) + 1] - by_node_begin_[at(row)]));

@@ -34,7 +34,7 @@ const Feature kElements{
 const Feature kMeshless{"meshless bodies", {"meshless/"}, {}};
 const Feature kCouplings{
     "couplings",
-    {"coupling/", "core/step/dependents", "core/tangent/condense", "core/executor/spring_executor",
+    {"coupling/", "core/step/dependents", "core/tangent/condensation", "core/executor/spring_executor",
      "core/structure/dependent_inertia", "assembly/actions/couplings", "assembly/bodies/carried_surface",
      "app/results/coupling_report"},
     {"Dependents", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "condense", "SpringExecutor",
