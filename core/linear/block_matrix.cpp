@@ -98,6 +98,8 @@ BlockMatrix::BlockMatrix(const PointSet& set, std::span<const SurfaceLoad> surfa
     }
   }
   value_begin_.push_back(next);
+  for (int row = 0; row < rows(); ++row)
+    for_each_left(row, [&](int k) { read_count_ += value_begin_[at(k + 1)] - value_begin_[at(k)]; });
   pattern_ = pattern_of(row_begin_, column_);
   values_.assign(next + 1, 0.0);  // one more: rows of three are read four at a time
   if (uniform_ > 0)

@@ -79,6 +79,8 @@ class BlockMatrix {
                                std::span<double> y) const;
 
   std::size_t value_count() const { return value_begin_.back(); }
+  /// Numbers that a product reads, of the condensed matrix where nodes depend on others.
+  std::size_t read_count() const { return read_count_; }
   double* values() { return values_.data(); }
   const double* values() const { return values_.data(); }
 
@@ -118,6 +120,7 @@ class BlockMatrix {
   std::uint64_t pattern_ = 0;
   int uniform_ = 0;                       ///< every block is 3 × 3, or 6 × 6; 0: neither
   std::vector<std::size_t> value_begin_;  ///< of each block, and of all
+  std::size_t read_count_ = 0;
   AlignedVector<double> values_;
   AlignedVector<float> rounded_;  ///< these of 32 bits; empty where nobody asked
 

@@ -153,6 +153,8 @@ class Condensation::Impl {
     by_node_begin_.assign(at(dofs.node_count()) + 1, 0);
     for (const Expansion::Term& t : T_.terms()) ++by_node_begin_[at(t.node) + 1];
     for (int i = 0; i < dofs.node_count(); ++i) by_node_begin_[at(i) + 1] += by_node_begin_[at(i)];
+    for (int i = 0; i < dofs.node_count(); ++i)
+      if (by_node_begin_[at(i)] < by_node_begin_[at(i) + 1]) followed_.push_back(i);
     by_node_.resize(T_.terms().size());
     std::vector<int> next(by_node_begin_.begin(), by_node_begin_.end() - 1);
     for (const Expansion::Term& t : T_.terms()) by_node_[at(next[at(t.node)]++)] = t;
@@ -172,7 +174,8 @@ class Condensation::Impl {
       pool_.for_ranges(end - first, kGrain, [&](int begin, int last) {
         for (int k = begin; k < last; ++k) take_rows(first + k, K, rows_[at(k)]);
       });
-      pool_.for_ranges(K.rows(), 1, [&](int row, int) { add_followers(row, first, end, K); });
+      pool_.for_ranges(static_cast<int>(followed_.size()), 1,
+                       [&](int i, int) { add_followers(followed_[at(i)], first, end, K); });
     }
     for_rows([&](int row) { mirror_diagonal(row, K); });
     K.mirror_lower(pool_);
@@ -251,8 +254,8 @@ class Condensation::Impl {
   Expansion T_;
   const DofLayout& dofs_;
   ThreadPool& pool_;
-  std::vector<int> by_node_begin_;
-  std::vector<Expansion::Term> by_node_;  ///< by the node that is followed, then in their order
+  std::vector<int> by_node_begin_, followed_;  ///< followed_: nodes that others follow
+  std::vector<Expansion::Term> by_node_;       ///< by the node that is followed, then in their order
   std::vector<DependentRows> rows_;
 };
 

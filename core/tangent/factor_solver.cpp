@@ -42,7 +42,7 @@ BlockCholesky& FactorSolver::cholesky() {
 
 double FactorSolver::matrix_numbers() {
   const BlockMatrix& matrix = K_.pattern();
-  return static_cast<double>(matrix.value_count()) * (matrix.fills_upper() ? 2 : 1);
+  return static_cast<double>(matrix.read_count()) * (matrix.fills_upper() ? 2 : 1);
 }
 
 bool FactorSolver::fits() {
