@@ -37,7 +37,7 @@ const Feature kCouplings{
     {"coupling/", "core/step/dependents", "core/tangent/condensation", "core/executor/spring_executor",
      "core/structure/dependent_inertia", "assembly/actions/couplings", "assembly/bodies/carried_surface",
      "app/results/coupling_report"},
-    {"Dependents", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "condense", "SpringExecutor",
+    {"Dependents", "place_dependents", "place_dependent_rates", "forces_turn_hosts", "Condensation", "SpringExecutor",
      "add_couplings", "move_inertia_to_hosts", "move_idle_inertia_to_hosts", "coupling_report"}};
 const Feature kTethers{"tethers", {"assembly/actions/tethers"}, {}};
 const Feature kSurfaces{"fluids and pressure",
