@@ -127,12 +127,12 @@ struct DependentRows {
   std::vector<std::size_t> begin;
   std::vector<double> values;
 
-  template <class Size>
-  void clear(const Size& size_of, int rows) {
+  /// Makes room for so many rows of blocks in the columns that were added, all zero.
+  void make_room(const DofLayout& dofs, int rows) {
     std::sort(column.begin(), column.end());
     column.erase(std::unique(column.begin(), column.end()), column.end());
     begin.assign(1, 0);
-    for (const int c : column) begin.push_back(begin.back() + at(rows * size_of(c)));
+    for (const int c : column) begin.push_back(begin.back() + at(rows * dofs.size(c)));
     values.assign(begin.back(), 0.0);
   }
   double* block(int c) {
@@ -213,7 +213,7 @@ class Condensation::Impl {
       if (other < 0) continue;
       for (const Expansion::Term& t : T_.terms(other)) rows.column.push_back(t.node);
     }
-    rows.clear([&](int c) { return dofs_.size(c); }, m);
+    rows.make_room(dofs_, m);
     for (int index = K.row_begin(node); index < K.row_begin(node + 1); ++index) {
       const int c = K.column(index), size = dofs_.size(c), own = first_own(c);
       double* block = K.block(index);
