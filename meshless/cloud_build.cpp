@@ -60,8 +60,9 @@ Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool fr
   s.matter = matter_for(parts, s.spacing, frames, pool);
   if (counted && counted->count == 0 && others > 0) return s;
   if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames, pool, occupied);
-  s.places =
-      listed ? places_at(s.matter, listed->position) : poisson_disk(s.matter, s.spacing, seed, frames, pool, occupied);
+  s.places = listed ? places_at(s.matter, listed->position)
+                    : poisson_disk(s.matter, s.spacing, seed, frames, pool, occupied,
+                                   counted ? PointAim::count : PointAim::spacing);
   return s;
 }
 

@@ -1,6 +1,7 @@
 #include "app/diagnosis/failure.hpp"
 
 #include "app/scene/laws.hpp"
+#include "assembly/simulation/matter.hpp"
 #include "assembly/simulation/places.hpp"
 #include "core/base/index.hpp"
 #include "core/node/dof_filter.hpp"
@@ -154,6 +155,7 @@ class Search {
     else
       text += fmt::format("{:.0f} % of the {} is at its nodes", 100 * share, quantity);
     text += remedy(s_.scene.bodies[at(worst_.body)], b.body->points()[worst_.point]);
+    if (!crushed_ && !dynamic_) describe_yielding();
     const Vec3d X = point_place(b, worst_.point);
     const int cell = b.groups() == nullptr ? -1 : b.body->points()[worst_.point].cell;
     found_.summary["body"] = b.name;
@@ -162,6 +164,15 @@ class Search {
     found_.summary["quantity"] = quantity;
     found_.summary["value"] = crushed_ ? J : share;
     found_.summary["suspects"] = suspects;
+  }
+
+  /// What the law itself does not bear is the cause, however good the mesh and the steps.
+  void describe_yielding() {
+    for (std::size_t b = 0; b < s_.bodies.size(); ++b) {
+      if (s_.scene.bodies[b].formulation != Formulation::large_strain) continue;
+      if (const std::string sentence = yielding_sentence(s_.bodies[b], found_.state); !sentence.empty())
+        found_.text += "; " + sentence;
+    }
   }
 
   double share_at(const SimulatedBody& b, std::size_t point) const {

@@ -16,9 +16,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 bool always(const Specimen&) { return true; }
 bool in_dynamics(const Specimen& s) { return s.dynamic; }
-bool of_cells(const Specimen& s) {
-  return is_element(s.model) || s.model == BeamModel::shell || s.model == BeamModel::sheet;
-}
+bool of_cells(const Specimen& s) { return is_element(s.model) || s.model == BeamModel::shell; }
 bool with_end_face(const Specimen& s) { return !is_thin(s.model); }
 bool of_laws(const Specimen& s) {
   return !is_thin(s.model) && s.model != BeamModel::linear_tetrahedra && s.model != BeamModel::corotational_tetrahedra;
@@ -47,8 +45,10 @@ std::vector<Specimen> all_rows() {
 
 ExtremeCell cell_of(const Specimen& s, const std::string& axis, const std::string& value) {
   const bool end_is_led = s.action == Action::stretch || s.action == Action::twist;
-  return {
-      row_of(s), axis, value, s.text(), s.theory(), s.young * s.section(), s.length, s.dynamic || s.held || end_is_led};
+  ExtremeCell cell{row_of(s), axis, value, s.text(), s.theory(), s.young * s.section(), s.length};
+  cell.is_borne = s.is_borne();
+  cell.has_equilibrium = s.dynamic || s.held || end_is_led;
+  return cell;
 }
 
 }  // namespace

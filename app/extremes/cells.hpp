@@ -17,7 +17,10 @@ struct ExtremeCell {
   std::string text;              ///< the scene, TOML
   std::optional<double> theory;  ///< size of the probe "tip" by the theory of beams [m]
   double force = 0, length = 0;  ///< of the beam: E A [N], and its length [m]; 0: not known
-  bool has_equilibrium = true;   ///< else nothing holds a body at rest: to refuse it is right, and to converge wrong
+  /// False where the law gives way by a closed form (Specimen::is_borne()): to stop for that reason is as good as an
+  /// answer.
+  bool is_borne = true;
+  bool has_equilibrium = true;  ///< else nothing holds a body at rest: to refuse it is right, and to converge wrong
 
   std::string name() const { return row + ": " + axis + " " + value; }
 };

@@ -14,8 +14,8 @@
 namespace fascia::app {
 namespace {
 
-constexpr std::array kVerdicts{"right",   "sensitive",   "branch", "warned", "refused",
-                               "stopped", "unconfirmed", "limit",  "wrong",  "crashed"};
+constexpr std::array kVerdicts{"right",   "beyond",      "sensitive", "branch", "warned", "refused",
+                               "stopped", "unconfirmed", "limit",     "wrong",  "crashed"};
 
 /// All numbers of a value, in their order; what is null is no number.
 void flatten(const nlohmann::ordered_json& value, std::vector<double>& numbers) {
@@ -108,6 +108,13 @@ std::string first_doubt(const nlohmann::ordered_json& summary) {
   return found == summary.end() || found->empty() ? "" : found->front().get<std::string>();
 }
 
+/// Whether a run that stopped names its law as the cause.
+bool names_law(const std::string& message) {
+  return message.find("materials give way") != std::string::npos ||
+         message.find("do not resist") != std::string::npos ||
+         message.find("law = \"neo-hookean\"") != std::string::npos;
+}
+
 CellVerdict of_failure(const ChildResult& run) {
   if (run.timed_out) return CellVerdict::limit;
   if (run.message.find("out of memory") != std::string::npos) return CellVerdict::limit;
@@ -135,6 +142,8 @@ CellOutcome judge(const ExtremeCell& cell, const CellRuns& runs) {
   if (run.exit_status != kDone) {
     const bool says_so = run.exit_status == kWrongInput && run.message.find("nothing holds") != std::string::npos;
     outcome.verdict = !cell.has_equilibrium && says_so ? CellVerdict::right : of_failure(run);
+    if (outcome.verdict == CellVerdict::stopped && !cell.is_borne && names_law(run.message))
+      outcome.verdict = CellVerdict::beyond;
     return outcome;
   }
   if (!cell.has_equilibrium) {

@@ -12,6 +12,7 @@ namespace fascia::app {
 /// How a cell ended, from the best to the worst. Up to `stopped` nobody is led astray.
 enum class CellVerdict {
   right,        ///< converged, and the twin agrees; of what nothing holds: refused, with that reason
+  beyond,       ///< exit 3 where the law bears less than the cell asks, by a closed form, and says so
   sensitive,    ///< converged and differs from the twin, as it does when forces change by the residual allowed
   branch,       ///< converged to another solution than the twin: it stays where it is when the tolerance is smaller
   warned,       ///< converged and differs from the twin, and the run itself warns that there may be other solutions

@@ -22,6 +22,7 @@ bool is_starred(const CellOutcome& o) {
 ResultState state_of(CellVerdict verdict) {
   switch (verdict) {
     case CellVerdict::right:
+    case CellVerdict::beyond:
     case CellVerdict::sensitive:
     case CellVerdict::branch:
       return ResultState::right;
@@ -42,6 +43,8 @@ std::string sign_of(const CellOutcome& o) {
   switch (o.verdict) {
     case CellVerdict::right:
       return is_starred(o) ? "✓*" : "✓";
+    case CellVerdict::beyond:
+      return "✓L";
     case CellVerdict::sensitive:
       return "✓~";
     case CellVerdict::branch:
@@ -157,7 +160,8 @@ std::string html_of(const ExtremesMap& map, const std::filesystem::path& scenes)
       "A cell is right where its run converged and a twin agrees to 1e-6 in every probe: the same scene in other units "
       "of mass, length and time, by Cholesky, to a hundredth of the tolerance; in statics what nothing holds is right "
       "where it is refused for that reason. ✓ right, ✓* right but more than 10 % from the "
-      "theory of slender beams (coarse or locking), ✓~ differs from the twin no more than the scene answers a "
+      "theory of slender beams (coarse or locking), ✓L stopped where a closed form says that the law gives way, and "
+      "names the law as the cause, ✓~ differs from the twin no more than the scene answers a "
       "disturbance of 1e-8 of its forces, ✓2 another solution of the same equations than that of the twin, W differs "
       "from the twin and warns itself that there may be other solutions, R refused before the run with a reason, "
       "S stopped by the program with a reason, ? converged but the twin did not, T took too long or too much memory, ✗ "

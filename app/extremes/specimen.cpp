@@ -1,7 +1,10 @@
 #include "app/extremes/specimen.hpp"
 
+#include "assembly/simulation/matter.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -28,8 +31,21 @@ std::string slice(const Specimen& s, double from, double to) {
   const double l = s.length;
   return "{ " + box(from * l, -l, -l, to * l, l, l) + " } }";
 }
-std::string near_end(const Specimen& s) { return slice(s, -kSlice, kSlice); }
-std::string far_end(const Specimen& s) { return slice(s, 1 - kSlice, 1 + kSlice); }
+/// A shell whose cells become slivers is a sector of a ring.
+bool is_sector(const Specimen& s) { return s.model == BeamModel::shell && s.taper != 1; }
+std::string near_end(const Specimen& s) { return is_sector(s) ? R"({ group = "outer" })" : slice(s, -kSlice, kSlice); }
+std::string far_end(const Specimen& s) {
+  return is_sector(s) ? R"({ group = "inner" })" : slice(s, 1 - kSlice, 1 + kSlice);
+}
+
+/// A sector of a ring about a place beyond the far end, of which the near end is as wide as the beam.
+std::string sector(const Specimen& s) {
+  const double inner = s.length / (s.taper - 1), outer = inner + s.length, half = 0.5 * s.width() / outer;
+  return fmt::format(
+      "{{ annulus = {{ center = {}, normal = [0, 0, 1], inner = {:.17g}, outer = {:.17g}, angle = [{:.17g}, {:.17g}], "
+      "cells = [{}, 2] }} }}",
+      point(outer, 0.5 * s.width(), 0), inner, outer, std::numbers::pi - half, std::numbers::pi + half, kCells);
+}
 
 /// Cuboid part of the beam; of elements one that grows thinner.
 std::string solid_domain(const Specimen& s, double from, double to) {
@@ -76,9 +92,11 @@ std::string bodies_text(const Specimen& s) {
     return body_text("beam", model, solid_domain(s, 0, 1), both_materials(s), more, s.density);
   };
   const auto surface = [&](const char* model, const std::string& more, const std::string& cells) {
-    const std::string rectangle = fmt::format("{{ rectangle = {{ origin = [0, 0, 0], edge_u = {}, edge_v = {}{} }} }}",
-                                              point(l, 0, 0), point(0, w, 0), cells);
-    return body_text("beam", model, rectangle, both_materials(s), more + fmt::format("thickness = {:.17g}\n", h),
+    const std::string domain =
+        is_sector(s) ? sector(s)
+                     : fmt::format("{{ rectangle = {{ origin = [0, 0, 0], edge_u = {}, edge_v = {}{} }} }}",
+                                   point(l, 0, 0), point(0, w, 0), cells);
+    return body_text("beam", model, domain, both_materials(s), more + fmt::format("thickness = {:.17g}\n", h),
                      s.density);
   };
   switch (s.model) {
@@ -173,7 +191,7 @@ double Specimen::thickness() const {
   return length / (slenderness > 0 ? slenderness : usual);
 }
 
-double Specimen::width() const { return is_thin(model) ? 0.25 * length / taper : 0.3 * length; }
+double Specimen::width() const { return (is_thin(model) ? 0.25 : 0.3) * length; }
 
 double Specimen::section() const {
   const double h = thickness();
@@ -211,6 +229,26 @@ std::string Specimen::text() const {
                         model == BeamModel::coupled ? "root" : "beam", near_end(*this));
   // Fields are not looked at, and what is extreme is meant.
   return text + "[output]\nfields = [\"displacement\"]\n";
+}
+
+bool Specimen::is_borne() const {
+  const bool corotational = model == BeamModel::corotational_tetrahedra;
+  if (neo_hookean || model == BeamModel::linear_tetrahedra) return true;
+  double along = 1, across = 1;  // stretches
+  if (action == Action::stretch) along = amount;
+  if (action == Action::pull) {
+    if (corotational) along = 1 + amount;
+    // λ (λ² − 1) / 2 = amount, by Newton's method from above.
+    for (int k = 0; k < 60 && !corotational; ++k)
+      along = k == 0 ? 1 + amount : along - (0.5 * along * (along * along - 1) - amount) / (1.5 * along * along - 0.5);
+  }
+  if (action == Action::twist && !is_thin(model)) {
+    const double shear = amount * 0.5 * std::hypot(width(), thickness()) / length;
+    across = std::hypot(1, 0.5 * shear) - 0.5 * shear;
+  }
+  if (action == Action::stretch || action == Action::pull)
+    across = corotational ? 1 - poisson * (along - 1) : std::sqrt(std::max(0.0, 1 - poisson * (along * along - 1)));
+  return std::min(along, across) > (corotational ? 0 : kYields);
 }
 
 std::optional<double> Specimen::theory() const {

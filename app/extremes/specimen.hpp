@@ -64,8 +64,8 @@ struct Specimen {
   double time_step = 0.01;        ///< [s]
   double stiffness_contrast = 1;  ///< Young's modulus of the far half / of the near one
   double density_contrast = 1;    ///< likewise; of the coupled model
-  double taper = 1;               ///< thickness at the near end / at the far one, of elements; of surfaces what the
-                                  ///< width is divided by: cells become slivers
+  double taper = 1;               ///< thickness at the near end / at the far one, of elements; of shells the width
+                                  ///< likewise: cells become slivers
   Action action = Action::bend;
   double amount = 0.01;
   bool held = true;
@@ -78,6 +78,10 @@ struct Specimen {
 
   /// The scene, a TOML text in SI.
   std::string text() const;
+
+  /// False where matter would be pressed to less than its law bears, by the closed form of a uniform bar (sections of
+  /// twisted ones stay plane): 1/√3 of its length of St Venant-Kirchhoff's, nothing of the co-rotational one.
+  bool is_borne() const;
 
   /// Size of the far end's displacement in the theory of slender beams [m], where it holds: small strain, one material.
   std::optional<double> theory() const;

@@ -2,8 +2,10 @@
 
 #include "assembly/simulation/regions.hpp"
 #include "core/base/index.hpp"
+#include "core/math/principal_axes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fascia {
 
@@ -54,6 +56,25 @@ FoldedPoints folded_points(const SimulatedBody& b, const State& state) {
     folded.unresolved += determinant(Mat3d::identity() + f.D) < kResolved ? 1 : 0;
   }
   return folded;
+}
+
+int yielding_points(const SimulatedBody& b, const State& state) {
+  int count = 0;
+  for (std::size_t q = 0; q < b.body->points().size(); ++q) {
+    if (b.body->points()[q].law != Law::st_venant_kirchhoff) continue;
+    const Mat3d F = Mat3d::identity() + field_at(b.body->attach_point(q), state).H;
+    const Mat3d C = transpose_times(F, F);
+    if (std::isfinite(contract(C, C)) && principal_axes(C).values[0] < kYields * kYields) ++count;
+  }
+  return count;
+}
+
+std::string yielding_sentence(const SimulatedBody& b, const State& state) {
+  const int count = yielding_points(b, state);
+  if (count == 0) return "";
+  return "body \"" + b.name + "\" is pressed to less than 0.577 of its length at " + std::to_string(count) + " of " +
+         std::to_string(b.body->points().size()) +
+         " integration points, where St Venant-Kirchhoff materials give way (law = \"neo-hookean\" does not)";
 }
 
 MatterDisplacement displacement_of_matter(const Simulation& s, const ResolvedProbe& probe, const State& state) {

@@ -38,6 +38,16 @@ struct FoldedPoints {
 };
 FoldedPoints folded_points(const SimulatedBody& body, const State& state);
 
+/// The stretch at which the stress of a bar of St Venant-Kirchhoff's law, E λ (λ² − 1) / 2, is largest under pressure:
+/// pressed further it gives way, 1/√3.
+inline constexpr double kYields = 0.57735026918962576;
+
+/// Integration points of a body whose matter has this law in three dimensions, and is pressed to less in some
+/// direction.
+int yielding_points(const SimulatedBody& body, const State& state);
+/// A sentence that names such points; empty where there are none.
+std::string yielding_sentence(const SimulatedBody& body, const State& state);
+
 /// Averages over what a probe measures: the nodes of its region (of a rigid body the points of its surface there), or
 /// the matter of its body or of all bodies.
 MatterDisplacement displacement_of_matter(const Simulation& simulation, const ResolvedProbe& probe, const State& state);

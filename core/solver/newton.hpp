@@ -22,6 +22,9 @@ struct DirectionReport {
   bool unsolved = false;       ///< conjugate gradients ended at their limit of iterations
   double linear_residual = 0;  ///< |r| / |b| that conjugate gradients left; 0 of a direct solve
   double cg_seconds = 0;       ///< in conjugate gradients
+  /// Largest of the parts of which rounding leaves more than a share of the loads: energy that the direction gains in
+  /// it, of the work of its loads. Infinite where that was not asked for.
+  double gain_of_part = std::numeric_limits<double>::infinity();
 };
 
 /// stopped: as SolverSettings::stops asked for; out_of_time: the step's budget holds no further iteration; astray: left
@@ -116,6 +119,10 @@ class Newton {
       if (moving) first_residual_ = std::max(first_residual_, current_.residual);
       if (!moving) count_standing(before);
       if (!moving && !current_.converged() && stagnates(d)) return finish_at_best(Convergence::stagnation);
+      if (!moving && step == 1 && !current_.converged() && rounding_alone(d)) {
+        report_.convergence = Convergence::rounding;
+        return finish(NewtonStatus::converged);
+      }
       if (!moving && d.unsolved && !settled() && standing_ >= kUnsolvedStands) return give_up(NewtonStatus::unsolved);
       if (current_.finite() && (moving || better_than_mark())) {
         mark();
@@ -137,6 +144,7 @@ class Newton {
   static constexpr int kDetour = 4, kHalvings = 14;
   static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
   static constexpr double kNoDecrement = 1e-12;    ///< the same of a correction of 1e-6 of the motion
+  static constexpr double kNoGain = 1e-14;         ///< the same within a part, of 1e-7
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
   static constexpr int kCorrections = 4;           ///< small ones, each to a residual that rounding excuses
@@ -195,6 +203,14 @@ class Newton {
   bool stagnates(const DirectionReport& d) const {
     return !d.unsolved && system_.conservative() && standing_ >= kStands && is_small(d, kSmallDecrement) &&
            marked_.left_of_load <= kLargestShare;
+  }
+
+  /// True where rounding leaves much of the loads before a correction and after it, and nothing of the answer: slender
+  /// bodies of solid cells have forces across that are larger than their loads by length over thickness and more, and
+  /// stiff enough that what rounding leaves of them moves nothing. Only a factor of a definite tangent can tell.
+  bool rounding_alone(const DirectionReport& d) const {
+    return current_.within_rounding && d.gain_of_part <= kNoGain && d.linear_residual == 0 && d.trouble.empty() &&
+           system_.conservative();
   }
 
   /// @param part  of the energies at play that the correction would gain

@@ -40,6 +40,9 @@ struct Evaluation {
   double relative_floor = 0;  ///< what rounding leaves of it, likewise
   double left_of_load = 0;    ///< largest of the parts: residual over its loads, or over what acts where there are none
   bool by_rounding = false;   ///< some part is above the tolerance and allowed by its rounding alone
+  /// No part that is not allowed has more left than rounding may leave, and each of them is loaded: where corrections
+  /// are small too, the state is as good as these numbers can make it.
+  bool within_rounding = false;
 
   bool finite() const { return std::isfinite(energy) && std::isfinite(residual); }
   bool converged() const { return excess <= 1; }
@@ -59,6 +62,9 @@ std::vector<double> part_masses(const Model& model);
 /// Parts whose whole a boundary motion moves (true), by a support or by a tether. What moves them shows in reactions
 /// alone. Where loads do, reactions say less: bending makes them larger than the load by length over thickness.
 std::vector<char> driven_parts(const Model& model);
+
+/// True of a loaded part where more is left than the share of its loads that rounding excuses.
+bool exceeds_share(const PartForces& f);
 
 /// Judges the residuals of all parts; fills what Evaluation says of them.
 ///

@@ -8,6 +8,7 @@
 #include "core/structure/stress_memory.hpp"
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -58,14 +59,21 @@ struct ShellBlock {
   const int* nodes_of(int batch) const { return node.data() + static_cast<std::size_t>(batch) * 3 * kElementLanes; }
   static constexpr bool averaged = false;  ///< as ElementBlock has it
   static constexpr int nodes = 3;          ///< of a triangle
-  /// Calls act(nodes, membrane stiffness by volume [Pa]) for each triangle, as all blocks do (blocks.hpp).
+  /// Calls act(nodes, membrane stiffness of its area over the mean length [Pa]) for each triangle, as all blocks do
+  /// (blocks.hpp): small triangles are as stiff as large ones.
   template <class Act>
   void for_each_cell(const Act& act) const {
     for (int e = 0; e < count; ++e) {
       const std::array<int, 3> corners = element(e);
-      const double membrane = constants_of(e / kElementLanes)[kMembrane * kElementLanes + e % kElementLanes];
-      act(std::span<const int>(corners), membrane / (length * length * length));
+      act(std::span<const int>(corners), membrane_by_area(e) / length);
     }
+  }
+  /// C t of a triangle, C the stiffness of plane stress [N/m].
+  double membrane_by_area(int triangle) const {
+    const double* rows = constants_of(triangle / kElementLanes) + triangle % kElementLanes;
+    const auto g = [&](int k) { return rows[(kGradients + k) * kElementLanes]; };
+    const double twice_area = 1 / std::abs(g(0) * g(3) - g(1) * g(2));
+    return 2 * rows[kMembrane * kElementLanes] / twice_area;
   }
   /// Σ C |g|² over triangles and nodes, C the membrane stiffness: as that of elements [N/m].
   double stiffness_sum() const;

@@ -189,8 +189,11 @@ void judge_stability(const Simulation& s, const State& end, RunReport& run, Warn
       "the end state is an unstable equilibrium" + where + ": the smallest disturbance makes the body leave it";
   if (s.scene.solver.accept_unstable) return warnings.add("stability", message);
   run.status = RunStatus::unstable;
+  std::string yielding;
+  for (const SimulatedBody& b : s.bodies)
+    if (const std::string sentence = yielding_sentence(b, end); !sentence.empty()) yielding += "; " + sentence;
   run.message =
-      message +
+      message + yielding +
       "; try solver.imperfection = 1e-4, control = \"arc-length\", or solver.accept = [\"unstable\"] to keep it";
 }
 

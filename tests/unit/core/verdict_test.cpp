@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace fascia::verdict_test {
 namespace {
@@ -54,6 +55,16 @@ TEST(Verdict, RoundingNeverExcusesMoreThanAShareOfTheLoad) {
 }
 
 /// A body that was moved rigidly and rests: its reactions are rounding.
+/// What is left is within the rounding of a loaded part, if not within what rounding excuses by itself.
+TEST(Verdict, SaysWhereRoundingIsAllThereIs) {
+  EXPECT_TRUE(judged({part(1e-3, 1, 0, 1e-2)}, {0}).within_rounding);
+  EXPECT_FALSE(judged({part(1e-3, 1, 0, 1e-4)}, {0}).within_rounding);
+  EXPECT_FALSE(judged({part(1e-3, 1, 0, 1e-2), part(1e-3, 1, 0, 0)}, {0, 0}).within_rounding) << "another part";
+  EXPECT_FALSE(judged({part(2e-3, 0, 10, 1e-2)}, {0}).within_rounding) << "nothing loads it";
+  EXPECT_TRUE(exceeds_share(part(1.1e-4, 1, 0, 1)));
+  EXPECT_FALSE(exceeds_share(part(0.9e-4, 1, 0, 1)));
+}
+
 TEST(Verdict, WhereNothingActsRoundingIsEnough) {
   const Evaluation e = judged({part(1e-9, 0, 1e-9, 1e-8)}, {0});
   EXPECT_TRUE(e.converged());
@@ -128,10 +139,12 @@ struct OneSpring {
     report.slope = force(x) * d;
     report.unsolved = unsolved;
     report.linear_residual = left;
+    report.gain_of_part = gain;
     return report;
   }
   bool unsolved = false;  ///< conjugate gradients end at their limit
-  double left = 0;        ///< of the right-hand side, by conjugate gradients
+  double gain = std::numeric_limits<double>::infinity();
+  double left = 0;  ///< of the right-hand side, by conjugate gradients
   static double largest_step(double wanted) { return wanted; }
   void apply(double step) { x += step * d; }
   void save() { saved = x; }
@@ -241,6 +254,29 @@ TEST(NewtonVerdict, RoundingIsNotReachedByALargeCorrection) {
   EXPECT_EQ(r.convergence, Convergence::rounding);
   EXPECT_GE(r.iterations, 2);
   EXPECT_NEAR(system.x, 1, 1e-15) << "the second correction takes away what the first left";
+}
+
+/// A residual that rounding keeps at a hundredth of the load, ten times what it may excuse by itself: where a factor's
+/// correction gains next to no energy of the part's, the answer is as good as numbers can make it.
+TEST(NewtonVerdict, RoundingAloneIsConvergedWhereCorrectionsGainNothing) {
+  OneSpring system{[](double x) { return std::abs(x - 1) < 1e-2 ? 1e-2 : x - 1; }, [](double) { return 1.0; }, 3e-2};
+  system.has_potential = true;
+  system.gain = 1e-15;
+  const NewtonReport r = solve(system, 50);
+  EXPECT_EQ(r.status, NewtonStatus::converged);
+  EXPECT_EQ(r.convergence, Convergence::rounding);
+  EXPECT_LE(r.iterations, 2);
+  const auto fails = [](OneSpring changed) {
+    changed.x = 0;
+    return solve(changed, 50).status != NewtonStatus::converged;
+  };
+  OneSpring large = system, iterated = system, followed = system;
+  large.gain = 1e-13;
+  iterated.left = 1e-10;
+  followed.has_potential = false;
+  EXPECT_TRUE(fails(large)) << "a correction that still gains energy";
+  EXPECT_TRUE(fails(iterated)) << "conjugate gradients leave what is soft";
+  EXPECT_TRUE(fails(followed)) << "loads without a potential";
 }
 
 /// The same of corrections that are small: what conjugate gradients leave is smooth, so that it sums up to more than
