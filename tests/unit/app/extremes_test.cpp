@@ -149,6 +149,51 @@ TEST(CellVerdicts, OfWhatHasNoEquilibrium) {
   EXPECT_EQ(without, 24);  // twelve models, two solvers
 }
 
+/// By closed forms: the stress of a bar falls from 0.577 of its length on, its section vanishes at a stretch of 2.08.
+TEST(ExtremeCells, KnowWhatTheirLawBears) {
+  const auto borne = [](BeamModel model, Action action, double amount, bool neo_hookean = false) {
+    Specimen s;
+    s.model = model;
+    s.action = action;
+    s.amount = amount;
+    s.neo_hookean = neo_hookean;
+    return s.is_borne();
+  };
+  constexpr double kTurn = 6.283185307179586;
+  for (const BeamModel m : {BeamModel::grid, BeamModel::hexahedra, BeamModel::line, BeamModel::shell}) {
+    EXPECT_TRUE(borne(m, Action::stretch, 0.6));
+    EXPECT_FALSE(borne(m, Action::stretch, 0.5));
+    EXPECT_TRUE(borne(m, Action::stretch, 1.7));
+    EXPECT_FALSE(borne(m, Action::stretch, 2));
+    EXPECT_TRUE(borne(m, Action::pull, 1)) << "a stretch of 1.52";
+    EXPECT_FALSE(borne(m, Action::pull, 10)) << "of 2.83";
+    EXPECT_TRUE(borne(m, Action::stretch, 0.2, true));
+    EXPECT_TRUE(borne(m, Action::compress, 10));
+  }
+  EXPECT_TRUE(borne(BeamModel::grid, Action::twist, 0.5 * kTurn));
+  EXPECT_FALSE(borne(BeamModel::grid, Action::twist, kTurn)) << "pressed to 0.56 along a diagonal";
+  EXPECT_TRUE(borne(BeamModel::shell, Action::twist, 2 * kTurn));
+  EXPECT_TRUE(borne(BeamModel::linear_tetrahedra, Action::stretch, 0.2));
+  EXPECT_TRUE(borne(BeamModel::corotational_tetrahedra, Action::pull, 3));
+  EXPECT_FALSE(borne(BeamModel::corotational_tetrahedra, Action::pull, 3.5)) << "a stretch of 4.33 leaves no section";
+}
+
+/// To stop is as good as an answer where the law gives way, and the run says that it does.
+TEST(CellVerdicts, OfWhatALawDoesNotBear) {
+  const ChildResult none, twin = ended(kDone, 2);
+  const auto of = [&](const ChildResult& run, bool borne) {
+    ExtremeCell cell{"row", "axis", "1", "", std::nullopt};
+    cell.is_borne = borne;
+    return judge(cell, {&run, &twin, &none, &none, {1, 2, 1}}).verdict;
+  };
+  const ChildResult told = ended(kNotConverged, 1, "where St Venant-Kirchhoff materials give way");
+  EXPECT_EQ(of(told, false), CellVerdict::beyond);
+  EXPECT_EQ(of(told, true), CellVerdict::stopped);
+  EXPECT_EQ(of(ended(kNotConverged, 1, "step 3"), false), CellVerdict::stopped);
+  EXPECT_EQ(of(ended(kDone, 1), false), CellVerdict::right);
+  EXPECT_EQ(of(ended(kDone, 3), false), CellVerdict::wrong);
+}
+
 TEST(CellVerdicts, OfRunsThatFail) {
   const ChildResult twin = ended(kDone, 2);
   EXPECT_EQ(verdict(ended(kWrongInput, 1, "young: too small"), twin), CellVerdict::refused);
