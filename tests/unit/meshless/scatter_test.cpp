@@ -43,6 +43,7 @@ Matter square(double size, double piece) {
 
 std::vector<Vec3d> positions(const std::vector<SamplePlace>& places) {
   std::vector<Vec3d> x;
+  x.reserve(places.size());
   for (const SamplePlace& p : places) x.push_back(p.x);
   return x;
 }
