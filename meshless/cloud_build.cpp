@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 namespace fascia {
 
@@ -60,9 +61,8 @@ Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool fr
   s.matter = matter_for(parts, s.spacing, frames, pool);
   if (counted && counted->count == 0 && others > 0) return s;
   if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames, pool, occupied);
-  s.places = listed ? places_at(s.matter, listed->position)
-                    : poisson_disk(s.matter, s.spacing, seed, frames, pool, occupied,
-                                   counted ? PointAim::count : PointAim::spacing);
+  s.places =
+      listed ? places_at(s.matter, listed->position) : poisson_disk(s.matter, s.spacing, seed, frames, pool, occupied);
   return s;
 }
 
@@ -230,6 +230,21 @@ void check_inside(const CloudSpec& spec, double size) {
   }
 }
 
+/// A layer or two of points across a solid feel next to none of its bending, as points on the middle of a sheet do.
+void check_layers(const MatterParts& parts, std::size_t points, std::vector<std::string>& messages) {
+  constexpr double kLayers = 1.5;
+  if (!parts.solid) return;
+  const double thickness = thickness_of(*parts.solid);
+  if (thickness > kLayers * std::cbrt(parts.solid->volume / static_cast<double>(points))) return;
+  std::ostringstream out;
+  out.precision(2);
+  out << "the body is about " << thickness << " m thick, and its " << points
+      << " integration points lie in a layer or two across that: they feel little of its bending, so that the body "
+         "bends far too much; use several times as many points, frames on a grid, or a rectangle, annulus or line with "
+         "thickness or radius";
+  messages.push_back(out.str());
+}
+
 }  // namespace
 
 void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::string>& messages) {
@@ -254,6 +269,7 @@ void scatter_cloud(const ScatterSpec& choice, CloudSpec& spec, std::vector<std::
   finish_cloud(choice.parts, spec);
   if (std::holds_alternative<ListedChoice>(choice.points)) check_inside(spec, size);
   check_curvature(spec.points, messages);
+  check_layers(choice.parts, spec.points.size(), messages);
   add_shared(choice.shared, spec.points, set);
   if (!set.shared.empty()) spacing = spacing_around(set.frames, set.own);
   set.reach = reach_of(choice, spacing);

@@ -134,6 +134,14 @@ double size_of(const MatterParts& parts) {
   return bounds.diagonal();
 }
 
+double thickness_of(const SolidDomain& solid) {
+  double area = 0;
+  for (const auto& t : solid.surface.triangles) area += triangle_area(solid.surface, t);
+  double thickness = area > 0 ? 4 * solid.volume / area : INFINITY;
+  for (int a = 0; a < 3; ++a) thickness = std::min(thickness, solid.max[a] - solid.min[a]);
+  return thickness;
+}
+
 std::vector<CloudPoint> gauss_cells(const ThinGridSpec& choice, const Mat3d& axes) {
   const ThinGrid& grid = choice.grid;
   const std::size_t directions = grid.edge.size();

@@ -14,6 +14,9 @@ Matter matter_for(const MatterParts& parts, double spacing, bool features, Threa
 /// Spacing at which a body without features would have `count` samples [m].
 double rough_spacing(const MatterParts& parts, int count);
 double size_of(const MatterParts& parts);  ///< diagonal of the bounding box [m]
+/// Smallest side of the bounding box, or 4 volume / area where that is less: of a rod its thickness, of a curved plate
+/// twice that [m].
+double thickness_of(const SolidDomain& solid);
 inline Vec3d to_world(const MatterParts& parts, const Vec3d& x) { return parts.rotation * x + parts.translation; }
 /// Gauss points of the cells of a thin grid. @param axes  of the matter, before placement
 std::vector<CloudPoint> gauss_cells(const ThinGridSpec& choice, const Mat3d& axes);

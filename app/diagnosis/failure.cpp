@@ -155,7 +155,10 @@ class Search {
     else
       text += fmt::format("{:.0f} % of the {} is at its nodes", 100 * share, quantity);
     text += remedy(s_.scene.bodies[at(worst_.body)], b.body->points()[worst_.point]);
-    if (!crushed_ && !dynamic_) describe_yielding();
+    // What the law itself does not bear is the cause, however good the mesh and the steps.
+    const bool whole = s_.scene.bodies[at(worst_.body)].formulation == Formulation::large_strain;
+    if (const std::string cause = crushed_ || !whole ? "" : yielding_sentence(b, found_.state); !cause.empty())
+      text += "; " + cause;
     const Vec3d X = point_place(b, worst_.point);
     const int cell = b.groups() == nullptr ? -1 : b.body->points()[worst_.point].cell;
     found_.summary["body"] = b.name;
@@ -164,15 +167,6 @@ class Search {
     found_.summary["quantity"] = quantity;
     found_.summary["value"] = crushed_ ? J : share;
     found_.summary["suspects"] = suspects;
-  }
-
-  /// What the law itself does not bear is the cause, however good the mesh and the steps.
-  void describe_yielding() {
-    for (std::size_t b = 0; b < s_.bodies.size(); ++b) {
-      if (s_.scene.bodies[b].formulation != Formulation::large_strain) continue;
-      if (const std::string sentence = yielding_sentence(s_.bodies[b], found_.state); !sentence.empty())
-        found_.text += "; " + sentence;
-    }
   }
 
   double share_at(const SimulatedBody& b, std::size_t point) const {

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -234,21 +233,16 @@ std::string Specimen::text() const {
 bool Specimen::is_borne() const {
   const bool corotational = model == BeamModel::corotational_tetrahedra;
   if (neo_hookean || model == BeamModel::linear_tetrahedra) return true;
-  double along = 1, across = 1;  // stretches
-  if (action == Action::stretch) along = amount;
+  if (action != Action::stretch && action != Action::pull) return true;
+  double along = amount;
   if (action == Action::pull) {
-    if (corotational) along = 1 + amount;
+    along = 1 + amount;
     // λ (λ² − 1) / 2 = amount, by Newton's method from above.
     for (int k = 0; k < 60 && !corotational; ++k)
-      along = k == 0 ? 1 + amount : along - (0.5 * along * (along * along - 1) - amount) / (1.5 * along * along - 0.5);
+      along -= (0.5 * along * (along * along - 1) - amount) / (1.5 * along * along - 0.5);
   }
-  if (action == Action::twist && !is_thin(model)) {
-    const double shear = amount * 0.5 * std::hypot(width(), thickness()) / length;
-    across = std::hypot(1, 0.5 * shear) - 0.5 * shear;
-  }
-  if (action == Action::stretch || action == Action::pull)
-    across = corotational ? 1 - poisson * (along - 1) : std::sqrt(std::max(0.0, 1 - poisson * (along * along - 1)));
-  return std::min(along, across) > (corotational ? 0 : kYields);
+  const bool section_is_left = poisson * (corotational ? along - 1 : along * along - 1) < 1;
+  return section_is_left && (corotational || along > kYields);
 }
 
 std::optional<double> Specimen::theory() const {

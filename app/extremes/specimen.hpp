@@ -79,8 +79,8 @@ struct Specimen {
   /// The scene, a TOML text in SI.
   std::string text() const;
 
-  /// False where matter would be pressed to less than its law bears, by the closed form of a uniform bar (sections of
-  /// twisted ones stay plane): 1/√3 of its length of St Venant-Kirchhoff's, nothing of the co-rotational one.
+  /// False where a uniform bar would ask more than its law bears: of St Venant-Kirchhoff's to be pressed to less than
+  /// 1/√3 of its length, or pulled until no section is left, of the co-rotational one the latter.
   bool is_borne() const;
 
   /// Size of the far end's displacement in the theory of slender beams [m], where it holds: small strain, one material.

@@ -42,8 +42,8 @@ FoldedPoints folded_points(const SimulatedBody& body, const State& state);
 /// pressed further it gives way, 1/√3.
 inline constexpr double kYields = 0.57735026918962576;
 
-/// Integration points of a body whose matter has this law in three dimensions, and is pressed to less in some
-/// direction.
+/// Integration points of a body whose matter has this law in three dimensions, and is pressed so far along its shortest
+/// principal direction n that a bar along n would give way: S_nn + λ_n² E < 0. Contraction across a pull is none of it.
 int yielding_points(const SimulatedBody& body, const State& state);
 /// A sentence that names such points; empty where there are none.
 std::string yielding_sentence(const SimulatedBody& body, const State& state);

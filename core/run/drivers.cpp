@@ -16,6 +16,7 @@ std::string convergence_sentence(const NewtonReport& r, const SolverSettings& se
     case Convergence::rounding:
       out << "residual " << r.last.relative << " of what acts, which is what rounding leaves (" << r.last.relative_floor
           << ")";
+      if (r.last.left_of_load > kLargestShare) out << " and moves nothing: the last correction gained no strain energy";
       break;
     case Convergence::stagnation:
       out << "residual " << r.last.left_of_load

@@ -203,17 +203,17 @@ Evaluation MechanicalSystem::evaluate() {
   Evaluation e;
   e.energy = internal_.total() + load_energy_ - load_work_ + inertia_energy_;
   e.energy_scale = internal_.size() + std::abs(load_energy_) + inertia_energy_;
-  find_forces_of_parts();
-  judge(parts_, model_.points.part_whole, settings_.tolerance, e);
+  e.strain_energy = form_.h <= 0 && !model_.points.memory.acts() ? internal_.elastic : 0.0;
+  judge(forces_of_parts(), model_.points.part_whole, settings_.tolerance, e);
   relative_ = e.relative;
-  within_rounding_ = form_.h <= 0 && e.within_rounding && !e.converged();
   return e;
 }
 
 /// Collects what the verdict on the present state is made from.
-void MechanicalSystem::find_forces_of_parts() {
+std::vector<PartForces> MechanicalSystem::forces_of_parts() {
   node_parts_.sum<kNodeQuantities>(loops::NodeReport{data_.view(), force_view()}, node_sums_.data());
-  parts_.clear();
+  std::vector<PartForces> parts;
+  parts.reserve(masses_.size());
   for (std::size_t p = 0; p < masses_.size(); ++p) {
     const int part = static_cast<int>(p);
     const PartSizes sizes{.rounding = executor_.rounding(part),
@@ -222,23 +222,11 @@ void MechanicalSystem::find_forces_of_parts() {
                           .leverage = dependents_.leverage()[p],
                           .mass = masses_[p],
                           .driven = driven_[p] != 0};
-    parts_.push_back(
+    parts.push_back(
         part_forces(node_sums_.data() + p * kNodeQuantities, sizes, form_.h, [&] { return executor_.motion(part); }));
-    if (!kept_loads_.empty()) parts_.back().load = std::max(parts_.back().load, kept_loads_[p]);
+    if (!kept_loads_.empty()) parts.back().load = std::max(parts.back().load, kept_loads_[p]);
   }
-}
-
-/// DirectionReport::gain_of_part of the direction, before dependent nodes follow it.
-double MechanicalSystem::largest_gain() {
-  std::vector<double> sums(2 * parts_.size());
-  node_parts_.sum<2>(
-      loops::NodeGain{data_.view().nodes, state_.u.data(), gradient_.data(), load_.data(), direction_.data()},
-      sums.data());
-  double largest = 0;
-  for (std::size_t p = 0; p < parts_.size(); ++p)
-    if (exceeds_share(parts_[p]))
-      largest = std::max(largest, std::abs(sums[2 * p]) / std::max(std::abs(sums[2 * p + 1]), 1e-300));
-  return largest;
+  return parts;
 }
 
 /// After a step, the work that its loads did and that their potential does not show.
@@ -287,7 +275,6 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
   double* d = direction_.data();
   space_.sum<1, 2>(model_.node_count(), loops::TakeDirection<double>{data_.view(), d, nullptr, gradient_.data(), d},
                    loops::StoreSums<1, 2>{sums});
-  if (within_rounding_ && solved.iterations == 0) report.gain_of_part = largest_gain();
   dependents_.expand(data_.view().nodes, direction_.data());
   if (!surfaces_.empty()) surfaces_.aim(lin_.surface_tangent, direction_.data());
   report.slope = sums[0];

@@ -197,8 +197,7 @@ class MechanicalSystem {
     FrameMatrices Ds;
     std::vector<std::array<double, 3>> turned;  ///< as in State
   };
-  void find_forces_of_parts();
-  double largest_gain();
+  std::vector<PartForces> forces_of_parts();
   double energy_at_start();
   void rebuild_state();
   void note_step(double step);
@@ -265,8 +264,6 @@ class MechanicalSystem {
   std::vector<double> node_sums_;    ///< (parts × kNodeQuantities)
   std::vector<double> prescribed_;   ///< what is still to go, in constraint axes
   std::vector<PoseMotion> before_;   ///< motion in the step before
-  std::vector<PartForces> parts_;    ///< of the last evaluation
-  bool within_rounding_ = false;     ///< likewise: Evaluation::within_rounding, of what is not converged
   std::vector<double> kept_loads_;   ///< by part, see keep_loads(); empty: none [N²]
   /// Where the last step of implicit Euler ended, and the energy there of what does not fade [J].
   struct Reached {

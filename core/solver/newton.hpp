@@ -22,9 +22,6 @@ struct DirectionReport {
   bool unsolved = false;       ///< conjugate gradients ended at their limit of iterations
   double linear_residual = 0;  ///< |r| / |b| that conjugate gradients left; 0 of a direct solve
   double cg_seconds = 0;       ///< in conjugate gradients
-  /// Largest of the parts of which rounding leaves more than a share of the loads: energy that the direction gains in
-  /// it, of the work of its loads. Infinite where that was not asked for.
-  double gain_of_part = std::numeric_limits<double>::infinity();
 };
 
 /// stopped: as SolverSettings::stops asked for; out_of_time: the step's budget holds no further iteration; astray: left
@@ -113,13 +110,14 @@ class Newton {
         return finish(NewtonStatus::astray);
       if (!d.usable) return give_up(NewtonStatus::linear_failure);
       const double before = current_.residual;
+      const bool within = current_.within_rounding;
       const double step = system_.largest_step(capped(d));
       system_.apply(step);
       current_ = evaluate();
       if (moving) first_residual_ = std::max(first_residual_, current_.residual);
       if (!moving) count_standing(before);
       if (!moving && !current_.converged() && stagnates(d)) return finish_at_best(Convergence::stagnation);
-      if (!moving && step == 1 && !current_.converged() && rounding_alone(d)) {
+      if (!moving && within && step == 1 && !current_.converged() && rounding_alone(d)) {
         report_.convergence = Convergence::rounding;
         return finish(NewtonStatus::converged);
       }
@@ -144,7 +142,7 @@ class Newton {
   static constexpr int kDetour = 4, kHalvings = 14;
   static constexpr double kSmallDecrement = 1e-8;  ///< energy that a step would gain, of the energies at play
   static constexpr double kNoDecrement = 1e-12;    ///< the same of a correction of 1e-6 of the motion
-  static constexpr double kNoGain = 1e-14;         ///< the same within a part, of 1e-7
+  static constexpr double kNoGain = 1e-14;         ///< of the strain energy: an error of 1e-7 in its norm
   static constexpr double kFalls = 0.5;            ///< a residual that falls by less in an iteration stands
   static constexpr int kStands = 2;                ///< iterations in which it does
   static constexpr int kCorrections = 4;           ///< small ones, each to a residual that rounding excuses
@@ -205,12 +203,13 @@ class Newton {
            marked_.left_of_load <= kLargestShare;
   }
 
-  /// True where rounding leaves much of the loads before a correction and after it, and nothing of the answer: slender
+  /// True where rounding leaves much of the loads after a correction, as before it, and nothing of the answer: slender
   /// bodies of solid cells have forces across that are larger than their loads by length over thickness and more, and
-  /// stiff enough that what rounding leaves of them moves nothing. Only a factor of a definite tangent can tell.
+  /// stiff enough that what rounding leaves of them moves nothing. Only a factor of a definite tangent can tell. The
+  /// measure is the strain energy: work of loads has that of rigid motion too, which excuses no strain.
   bool rounding_alone(const DirectionReport& d) const {
-    return current_.within_rounding && d.gain_of_part <= kNoGain && d.linear_residual == 0 && d.trouble.empty() &&
-           system_.conservative();
+    return current_.within_rounding && std::abs(d.slope) <= kNoGain * current_.strain_energy &&
+           d.linear_residual == 0 && d.trouble.empty() && system_.conservative();
   }
 
   /// @param part  of the energies at play that the correction would gain

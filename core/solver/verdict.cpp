@@ -8,13 +8,12 @@ namespace {
 
 double largest_root(std::initializer_list<double> squares) { return std::sqrt(std::max(squares)); }
 
-double largest_excused(const PartForces& f) { return kLargestShare * largest_root({f.load, f.inertia, f.momentum}); }
-
 /// The rounding floor as far as it excuses a residual: never more than a small share of the loads, of inertia and
 /// momentum, or, where there is no load, of reactions that stand out of the rounding. Where nothing but rounding acts
 /// (a body that was moved rigidly and rests) all of it.
 double excused(const PartForces& f) {
-  if (f.load > 0 || f.adrift) return std::min(f.rounding, largest_excused(f));
+  if (f.load > 0 || f.adrift)
+    return std::min(f.rounding, kLargestShare * largest_root({f.load, f.inertia, f.momentum}));
   const double acting = largest_root({f.inertia, f.reaction, f.tether});
   return acting > kAboveRounding * f.rounding ? std::min(f.rounding, kLargestShare * acting) : f.rounding;
 }
@@ -74,8 +73,6 @@ std::vector<char> driven_parts(const Model& model) {
   return parts;
 }
 
-bool exceeds_share(const PartForces& f) { return f.load > 0 && std::sqrt(f.residual) > largest_excused(f); }
-
 void judge(std::span<const PartForces> parts, std::span<const int> whole, double tolerance, Evaluation& e) {
   std::vector<PartForces> wholes(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -89,7 +86,7 @@ void judge(std::span<const PartForces> parts, std::span<const int> whole, double
   double total = 0;
   e.excess = e.relative = e.relative_floor = e.left_of_load = 0;
   e.by_rounding = false;
-  e.within_rounding = true;
+  e.within_rounding = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const PartForces& f = parts[p];
     const PartForces& all = wholes[at(whole[p])];
@@ -101,7 +98,7 @@ void judge(std::span<const PartForces> parts, std::span<const int> whole, double
     allowed = std::max(allowed, tolerance * largest_root({f.load, f.inertia}));
     e.by_rounding = e.by_rounding || residual > allowed;
     allowed = std::max(allowed, excused(f));
-    e.within_rounding = e.within_rounding && residual <= (f.load > 0 ? std::max(allowed, f.rounding) : allowed);
+    e.within_rounding = parts.size() == 1 && residual <= f.rounding && f.rounding <= kMostRounding * std::sqrt(f.load);
     const double excess = residual == 0 ? 0.0 : residual / std::max(allowed, 1e-300);
     const double own = f.load > 0 ? largest_root({f.load, f.inertia, f.momentum})
                                   : largest_root({f.inertia, f.momentum, f.reaction, f.tether});

@@ -40,8 +40,9 @@ struct Evaluation {
   double relative_floor = 0;  ///< what rounding leaves of it, likewise
   double left_of_load = 0;    ///< largest of the parts: residual over its loads, or over what acts where there are none
   bool by_rounding = false;   ///< some part is above the tolerance and allowed by its rounding alone
-  /// No part that is not allowed has more left than rounding may leave, and each of them is loaded: where corrections
-  /// are small too, the state is as good as these numbers can make it.
+  double strain_energy = 0;   ///< elastic, of statics [J]; 0: not known
+  /// There is one part, loads act on it, and rounding, which may leave what is left, is less than a tenth of them:
+  /// where corrections are small too, the state is as good as these numbers can make it.
   bool within_rounding = false;
 
   bool finite() const { return std::isfinite(energy) && std::isfinite(residual); }
@@ -50,6 +51,8 @@ struct Evaluation {
 
 /// No residual above this part of a part's loads is called converged for another reason than the tolerance itself.
 inline constexpr double kLargestShare = 1e-4;
+/// Rounding that is a larger part of the loads hides how a structure resists them: stiffness has no digits left.
+inline constexpr double kMostRounding = 0.1;
 /// Factor by which what acts exceeds the rounding floor where it is told from rounding.
 inline constexpr double kAboveRounding = 100;
 
@@ -62,9 +65,6 @@ std::vector<double> part_masses(const Model& model);
 /// Parts whose whole a boundary motion moves (true), by a support or by a tether. What moves them shows in reactions
 /// alone. Where loads do, reactions say less: bending makes them larger than the load by length over thickness.
 std::vector<char> driven_parts(const Model& model);
-
-/// True of a loaded part where more is left than the share of its loads that rounding excuses.
-bool exceeds_share(const PartForces& f);
 
 /// Judges the residuals of all parts; fills what Evaluation says of them.
 ///

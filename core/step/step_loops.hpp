@@ -100,18 +100,6 @@ struct NodeReport {
   }
 };
 
-/// Energy that a direction gains at a node, and the work of its load since rest: forces times displacements.
-struct NodeGain {
-  NodesView nodes;
-  const Vec3d* u;
-  const double *gradient, *load, *direction;
-  FASCIA_HD void operator()(int i, Sums<2, 0>& sums) const {
-    const int first = nodes.dof[i];
-    for (int k = 0; k < nodes.size(i); ++k) sums.v[0] -= gradient[first + k] * direction[first + k];
-    for (int k = 0; k < 3; ++k) sums.v[1] += load[first + k] * u[i][k];
-  }
-};
-
 /// Largest rotation of a frame in a vector by degrees of freedom [rad].
 struct LargestRotation {
   NodesView nodes;

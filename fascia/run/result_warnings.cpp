@@ -156,14 +156,28 @@ bool is_judged(const Simulation& s, const RunReport& run) {
          run.status == RunStatus::converged;
 }
 
+/// The body that a node belongs to; null: none.
+const SimulatedBody* body_of(const Simulation& s, int node) {
+  for (const SimulatedBody& b : s.bodies)
+    if (node >= b.body->first_node() && node < b.body->first_node() + b.body->node_count()) return &b;
+  return nullptr;
+}
+
 /// The body whose node moves most in the softest direction, and where that is.
 std::string softest_place(const Simulation& s, const State& end, int node) {
-  if (node < 0) return "";
+  const SimulatedBody* b = body_of(s, node);
+  if (b == nullptr) return "";
   const Vec3d x = s.model.rest_position[at(node)] + end.u[at(node)];
-  for (const SimulatedBody& b : s.bodies)
-    if (node >= b.body->first_node() && node < b.body->first_node() + b.body->node_count())
-      return fmt::format(" (body \"{}\" moves most, near ({:.4g}, {:.4g}, {:.4g}))", b.name, x[0], x[1], x[2]);
-  return "";
+  return fmt::format(" (body \"{}\" moves most, near ({:.4g}, {:.4g}, {:.4g}))", b->name, x[0], x[1], x[2]);
+}
+
+/// Whether its law gives way there.
+std::string softest_yields(const Simulation& s, const State& end, int node) {
+  const SimulatedBody* b = body_of(s, node);
+  if (b == nullptr) return "";
+  const Body& body = s.scene.bodies[static_cast<std::size_t>(b - s.bodies.data())];
+  const std::string cause = body.formulation == Formulation::large_strain ? yielding_sentence(*b, end) : "";
+  return cause.empty() ? "" : "; " + cause;
 }
 
 void judge_stability(const Simulation& s, const State& end, RunReport& run, Warnings& warnings) {
@@ -189,11 +203,8 @@ void judge_stability(const Simulation& s, const State& end, RunReport& run, Warn
       "the end state is an unstable equilibrium" + where + ": the smallest disturbance makes the body leave it";
   if (s.scene.solver.accept_unstable) return warnings.add("stability", message);
   run.status = RunStatus::unstable;
-  std::string yielding;
-  for (const SimulatedBody& b : s.bodies)
-    if (const std::string sentence = yielding_sentence(b, end); !sentence.empty()) yielding += "; " + sentence;
   run.message =
-      message + yielding +
+      message + softest_yields(s, end, found.node) +
       "; try solver.imperfection = 1e-4, control = \"arc-length\", or solver.accept = [\"unstable\"] to keep it";
 }
 

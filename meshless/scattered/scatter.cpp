@@ -50,10 +50,10 @@ std::vector<SamplePlace> in_order(const std::vector<SamplePlace>& places) {
 }  // namespace
 
 std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features,
-                                      ThreadPool& pool, std::span<const Vec3d> occupied, PointAim aim) {
+                                      ThreadPool& pool, std::span<const Vec3d> occupied) {
   check_spacing(matter, spacing);
   return in_order(with_features ? FrameSampler(matter, seed, occupied, pool).places(spacing, true)
-                                : point_places(matter, spacing, seed, aim, pool));
+                                : point_places(matter, spacing, seed, pool));
 }
 
 double spacing_for_count(const Matter& matter, int count, int seed, bool with_features, ThreadPool& pool,

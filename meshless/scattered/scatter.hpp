@@ -20,10 +20,6 @@ struct SamplePlace {
   double extent = 0;               ///< thickness of a sheet, radius of a line [m]
 };
 
-/// What counts where matter is thinner than the spacing of its integration points: that no two are much farther apart,
-/// or that there are as many as the volume over the spacing's cube, which a count asks for.
-enum class PointAim { spacing, count };
-
 /// Places for samples; the same for the same seed, whatever the number of threads.
 ///
 /// With features (frames): corners first, then edges and lines at even intervals, faces and sheets, insides. Samples of
@@ -34,10 +30,9 @@ enum class PointAim { spacing, count };
 /// @param occupied  places that keep frames off as samples of lower features do [m]
 /// @throws InputError  a spacing that is not positive, or matter without pieces
 std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features,
-                                      ThreadPool& pool, std::span<const Vec3d> occupied = {},
-                                      PointAim aim = PointAim::spacing);
+                                      ThreadPool& pool, std::span<const Vec3d> occupied = {});
 
-/// The spacing at which poisson_disk places about `count` samples, integration points with PointAim::count.
+/// The spacing at which poisson_disk places about `count` samples.
 ///
 /// @throws InputError  a count that is not positive
 double spacing_for_count(const Matter& matter, int count, int seed, bool with_features, ThreadPool& pool,

@@ -203,7 +203,7 @@ class FrameSampler {
   Darts face_darts_, inside_darts_;
 };
 
-std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed, PointAim aim, ThreadPool& pool);
+std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed, ThreadPool& pool);
 /// How many point_places aims at.
 double expected_points(const Matter& matter, double spacing);
 

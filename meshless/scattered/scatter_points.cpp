@@ -30,12 +30,9 @@ std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces,
   return samples;
 }
 
-/// Darts about as many as wanted: samples gather at the boundary, so the distance depends on the shape. Where so many
-/// more fit at the spacing, the matter is thinner than that, and its volume counts no layer of samples: all of these
-/// are taken, unless a count was asked for.
+/// Darts about as many as wanted: samples gather at the boundary, so the distance depends on the shape.
 std::vector<SamplePlace> throw_about(const Matter& matter, const PieceList& pieces, const Darts& darts, double spacing,
-                                     double count, PointAim aim, ThreadPool& pool) {
-  constexpr double kThin = 2;
+                                     double count, ThreadPool& pool) {
   constexpr int most_trials = 8;
   const int dimension = pieces.solid() ? 3 : 2;
   double least = spacing / kSaturated[at(dimension)];
@@ -44,7 +41,6 @@ std::vector<SamplePlace> throw_about(const Matter& matter, const PieceList& piec
   for (int trial = 0; trial < most_trials && best_error > 0.01 * count; ++trial) {
     std::vector<SamplePlace> samples = throw_at(matter, pieces, darts, least, pool);
     const double n = static_cast<double>(samples.size());
-    if (trial == 0 && aim == PointAim::spacing && n > kThin * count) return samples;
     least *= std::pow(n / count, 1.0 / dimension);
     if (std::abs(n - count) >= best_error) continue;
     best_error = std::abs(n - count);
@@ -78,7 +74,7 @@ double expected_points(const Matter& matter, double spacing) {
   return count;
 }
 
-std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed, PointAim aim, ThreadPool& pool) {
+std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int seed, ThreadPool& pool) {
   std::mt19937 random(static_cast<std::uint32_t>(seed));
   std::vector<SamplePlace> all;
   for (const FeatureChain& chain : matter.chains) {
@@ -97,7 +93,7 @@ std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int 
     const Darts darts = random_darts(pieces, random, pool);
     const int dimension = pieces.solid() ? 3 : 2;
     const double count = wanted(matter.measure[at(dimension)], dimension, spacing);
-    std::vector<SamplePlace> samples = throw_about(matter, pieces, darts, spacing, count, aim, pool);
+    std::vector<SamplePlace> samples = throw_about(matter, pieces, darts, spacing, count, pool);
     relax(matter, pieces, samples, pool);
     all.insert(all.end(), samples.begin(), samples.end());
   }

@@ -121,7 +121,7 @@ newton = { max_iterations = 15 }
 )";
   ASSERT_EQ(run(bar), kNotConverged);
   const std::string message = summary_.at("message");
-  EXPECT_NE(message.find("materials give way (law = \"neo-hookean\" does not)"), std::string::npos) << message;
+  EXPECT_NE(message.find("materials give way"), std::string::npos) << message;
 }
 
 TEST_F(FailedRun, TimeStepsToo) {

@@ -19,9 +19,6 @@ using namespace test;
 std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features) {
   return fascia::poisson_disk(matter, spacing, seed, with_features, one_thread());
 }
-std::vector<SamplePlace> points_by_count(const Matter& matter, double spacing) {
-  return fascia::poisson_disk(matter, spacing, 1, false, one_thread(), {}, PointAim::count);
-}
 double spacing_for_count(const Matter& matter, int count, int seed, bool with_features) {
   return fascia::spacing_for_count(matter, count, seed, with_features, one_thread());
 }
@@ -298,31 +295,7 @@ TEST(SpacingForCount, IsMetWithinThreePercent) {
         EXPECT_NEAR(found, count, 0.03 * count) << features;
       }
   EXPECT_EQ(poisson_disk(beam, spacing_for_count(beam, 1, 1, true), 1, true).size(), 1U);
-  EXPECT_EQ(points_by_count(beam, spacing_for_count(beam, 1, 1, false)).size(), 1U);
-}
-
-/// Points keep their spacing where there is less than that across: one layer of them or one row. What is as thick as
-/// their spacing has as many as its volume says.
-TEST(PoissonDisk, PointsOfThinBodiesKeepTheirSpacing) {
-  const auto solid = [](const Vec3d& size, double piece) {
-    Matter m;
-    add_solid(m, box_domain({}, size), piece);
-    return m;
-  };
-  for (const double thickness : {0.3, 0.01, 1e-5}) {
-    const Matter slab = solid({{20, 10, thickness}}, 1 / 6.0), rod = solid({{40, thickness, thickness}}, 1 / 6.0);
-    const auto layer = poisson_disk(slab, 1, 1, false), row = poisson_disk(rod, 1, 1, false);
-    EXPECT_NEAR(static_cast<double>(layer.size()), 200, 40) << thickness;
-    EXPECT_NEAR(static_cast<double>(row.size()), 40, 10) << thickness;
-    EXPECT_GT(nearest_distances(layer).least, 0.6) << thickness;
-    double most = 0;
-    for (const Share& s : voronoi_shares(slab, layer)) most = std::max(most, s.volume);
-    EXPECT_LT(most, 2.5 * thickness) << "no share much larger than the others";
-    for (const SamplePlace& p : layer) EXPECT_TRUE(p.x[2] >= 0 && p.x[2] <= thickness) << thickness;
-    EXPECT_NEAR(static_cast<double>(points_by_count(slab, spacing_for_count(slab, 50, 1, false)).size()), 50, 2);
-  }
-  EXPECT_NEAR(static_cast<double>(poisson_disk(cube(10, 1 / 6.0), 1, 1, false).size()), 1000, 10);
-  EXPECT_NEAR(static_cast<double>(poisson_disk(solid({{20, 20, 1}}, 1 / 6.0), 1, 1, false).size()), 400, 4);
+  EXPECT_EQ(poisson_disk(beam, spacing_for_count(beam, 1, 1, false), 1, false).size(), 1U);
 }
 
 /// A block with a sheet on its top face, larger than it, and a line that leaves the sheet.
