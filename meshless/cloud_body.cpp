@@ -154,7 +154,9 @@ void CloudBody::check_points(const CloudSpec& spec, const Model& model) const {
                        (spec.affine ? " affine" : "") + " frames" +
                        (turned > 0 ? " and the rotations of " + std::to_string(turned) + " shared vertices" : "") +
                        "; use at least " + std::to_string((dofs + 5) / 6) +
-                       (thin ? ", those through the matter included" : "") + ", and several times as many for accuracy",
+                       (thin ? ", those through the matter included"
+                             : ", and several times as many for accuracy; of a solid thinner than their spacing take "
+                               "a rectangle, annulus or line with thickness or radius"),
                    Blame::points);
 }
 

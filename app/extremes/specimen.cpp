@@ -1,7 +1,5 @@
 #include "app/extremes/specimen.hpp"
 
-#include "assembly/simulation/matter.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -233,6 +231,8 @@ std::string Specimen::text() const {
 bool Specimen::is_borne() const {
   const bool corotational = model == BeamModel::corotational_tetrahedra;
   if (neo_hookean || model == BeamModel::linear_tetrahedra) return true;
+  if (action == Action::twist && !is_thin(model) && !corotational)
+    return amount * 0.5 * std::hypot(width(), thickness()) / length < 1;
   if (action != Action::stretch && action != Action::pull) return true;
   double along = amount;
   if (action == Action::pull) {
@@ -242,7 +242,7 @@ bool Specimen::is_borne() const {
       along -= (0.5 * along * (along * along - 1) - amount) / (1.5 * along * along - 0.5);
   }
   const bool section_is_left = poisson * (corotational ? along - 1 : along * along - 1) < 1;
-  return section_is_left && (corotational || along > kYields);
+  return section_is_left && (corotational || along > 1 / std::numbers::sqrt3);
 }
 
 std::optional<double> Specimen::theory() const {

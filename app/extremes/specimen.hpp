@@ -79,8 +79,9 @@ struct Specimen {
   /// The scene, a TOML text in SI.
   std::string text() const;
 
-  /// False where a uniform bar would ask more than its law bears: of St Venant-Kirchhoff's to be pressed to less than
-  /// 1/√3 of its length, or pulled until no section is left, of the co-rotational one the latter.
+  /// False where a uniform bar would ask more than its law bears: of St Venant-Kirchhoff's, which loses ellipticity, to
+  /// be pressed to less than 1/√3 of its length, or to shear the faces at its edges by 1; or to be pulled until no
+  /// section is left, which the co-rotational law does not bear either.
   bool is_borne() const;
 
   /// Size of the far end's displacement in the theory of slender beams [m], where it holds: small strain, one material.

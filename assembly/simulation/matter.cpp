@@ -2,10 +2,9 @@
 
 #include "assembly/simulation/regions.hpp"
 #include "core/base/index.hpp"
-#include "core/math/principal_axes.hpp"
+#include "core/physics/ellipticity.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace fascia {
 
@@ -63,12 +62,7 @@ int yielding_points(const SimulatedBody& b, const State& state) {
   for (std::size_t q = 0; q < b.body->points().size(); ++q) {
     const BodyPoint& p = b.body->points()[q];
     if (p.law != Law::st_venant_kirchhoff) continue;
-    const Mat3d F = Mat3d::identity() + field_at(b.body->attach_point(q), state).H;
-    const Mat3d C = transpose_times(F, F);
-    if (!std::isfinite(contract(C, C))) continue;
-    const double squared = principal_axes(C).values[0];
-    const double stress = p.lambda * 0.5 * (trace(C) - 3) + p.mu * (squared - 1);
-    if (stress + squared * p.young() < 0) ++count;
+    if (!is_strongly_elliptic(p, Mat3d::identity() + field_at(b.body->attach_point(q), state).H)) ++count;
   }
   return count;
 }
@@ -76,10 +70,10 @@ int yielding_points(const SimulatedBody& b, const State& state) {
 std::string yielding_sentence(const SimulatedBody& b, const State& state) {
   const int count = yielding_points(b, state);
   if (count == 0) return "";
-  return "body \"" + b.name + "\" is pressed so far at " + std::to_string(count) + " of " +
+  return "body \"" + b.name + "\" is deformed so far at " + std::to_string(count) + " of " +
          std::to_string(b.body->points().size()) +
-         " integration points that St Venant-Kirchhoff materials give way, as a bar does at 0.577 of its length "
-         "(law = \"neo-hookean\" does not)";
+         " integration points that St Venant-Kirchhoff materials give way, as where a bar is pressed to 0.59 of its "
+         "length or its faces are sheared by 1 (law = \"neo-hookean\" does not)";
 }
 
 MatterDisplacement displacement_of_matter(const Simulation& s, const ResolvedProbe& probe, const State& state) {

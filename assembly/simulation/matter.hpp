@@ -38,12 +38,8 @@ struct FoldedPoints {
 };
 FoldedPoints folded_points(const SimulatedBody& body, const State& state);
 
-/// The stretch at which the stress of a bar of St Venant-Kirchhoff's law, E λ (λ² − 1) / 2, is largest under pressure:
-/// pressed further it gives way, 1/√3.
-inline constexpr double kYields = 0.57735026918962576;
-
-/// Integration points of a body whose matter has this law in three dimensions, and is pressed so far along its shortest
-/// principal direction n that a bar along n would give way: S_nn + λ_n² E < 0. Contraction across a pull is none of it.
+/// Integration points of a body whose matter has St Venant-Kirchhoff's law in three dimensions, and is deformed so far
+/// that the law gives way: is_strongly_elliptic().
 int yielding_points(const SimulatedBody& body, const State& state);
 /// A sentence that names such points; empty where there are none.
 std::string yielding_sentence(const SimulatedBody& body, const State& state);

@@ -168,8 +168,11 @@ TEST(ExtremeCells, KnowWhatTheirLawBears) {
     EXPECT_FALSE(borne(m, Action::pull, 10)) << "of 2.83";
     EXPECT_TRUE(borne(m, Action::stretch, 0.2, true));
     EXPECT_TRUE(borne(m, Action::compress, 10));
-    EXPECT_TRUE(borne(m, Action::twist, 6.28));
   }
+  EXPECT_TRUE(borne(BeamModel::grid, Action::twist, 5.1));
+  EXPECT_FALSE(borne(BeamModel::grid, Action::twist, 5.2)) << "edges are sheared by 1 at 5.12";
+  EXPECT_TRUE(borne(BeamModel::shell, Action::twist, 12.6));
+  EXPECT_TRUE(borne(BeamModel::corotational_tetrahedra, Action::twist, 12.6));
   EXPECT_TRUE(borne(BeamModel::linear_tetrahedra, Action::stretch, 0.2));
   EXPECT_TRUE(borne(BeamModel::corotational_tetrahedra, Action::pull, 3));
   EXPECT_FALSE(borne(BeamModel::corotational_tetrahedra, Action::pull, 3.5)) << "a stretch of 4.33 leaves no section";
