@@ -156,9 +156,8 @@ class Search {
       text += fmt::format("{:.0f} % of the {} is at its nodes", 100 * share, quantity);
     text += remedy(s_.scene.bodies[at(worst_.body)], b.body->points()[worst_.point]);
     // What the law itself does not bear is the cause, however good the mesh and the steps.
-    const bool whole = s_.scene.bodies[at(worst_.body)].formulation == Formulation::large_strain;
-    if (const std::string cause = crushed_ || !whole ? "" : yielding_sentence(b, found_.state); !cause.empty())
-      text += "; " + cause;
+    const std::string cause = crushed_ ? "" : yielding_sentence(s_, at(worst_.body), found_.state);
+    if (!cause.empty()) text += "; " + cause;
     const Vec3d X = point_place(b, worst_.point);
     const int cell = b.groups() == nullptr ? -1 : b.body->points()[worst_.point].cell;
     found_.summary["body"] = b.name;

@@ -57,23 +57,23 @@ FoldedPoints folded_points(const SimulatedBody& b, const State& state) {
   return folded;
 }
 
-int yielding_points(const SimulatedBody& b, const State& state) {
+std::string yielding_sentence(const Simulation& s, std::size_t body, const State& state) {
+  constexpr double kCompressible = 0.4;
+  const SimulatedBody& b = s.bodies[body];
+  const Body& described = s.scene.bodies[body];
+  const bool own = described.formulation == Formulation::large_strain && described.locking != Locking::f_bar &&
+                   !b.body->selective() && s.model.points.memory.empty();
   int count = 0;
-  for (std::size_t q = 0; q < b.body->points().size(); ++q) {
+  for (std::size_t q = 0; own && q < b.body->points().size(); ++q) {
     const BodyPoint& p = b.body->points()[q];
-    if (p.law != Law::st_venant_kirchhoff) continue;
-    if (!is_strongly_elliptic(p, Mat3d::identity() + field_at(b.body->attach_point(q), state).H)) ++count;
+    if (p.law != Law::st_venant_kirchhoff || p.poisson() > kCompressible) continue;
+    const Mat3d F = Mat3d::identity() + field_at(b.body->attach_point(q), state).H;
+    count += is_strongly_elliptic(p, F) ? 0 : 1;
   }
-  return count;
-}
-
-std::string yielding_sentence(const SimulatedBody& b, const State& state) {
-  const int count = yielding_points(b, state);
   if (count == 0) return "";
-  return "body \"" + b.name + "\" is deformed so far at " + std::to_string(count) + " of " +
+  return "body \"" + b.name + "\" is pressed or sheared so far at " + std::to_string(count) + " of " +
          std::to_string(b.body->points().size()) +
-         " integration points that St Venant-Kirchhoff materials give way, as where a bar is pressed to 0.59 of its "
-         "length or its faces are sheared by 1 (law = \"neo-hookean\" does not)";
+         " integration points that St Venant-Kirchhoff materials give way (law = \"neo-hookean\" does not)";
 }
 
 MatterDisplacement displacement_of_matter(const Simulation& s, const ResolvedProbe& probe, const State& state) {

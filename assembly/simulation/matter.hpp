@@ -38,11 +38,10 @@ struct FoldedPoints {
 };
 FoldedPoints folded_points(const SimulatedBody& body, const State& state);
 
-/// Integration points of a body whose matter has St Venant-Kirchhoff's law in three dimensions, and is deformed so far
-/// that the law gives way: is_strongly_elliptic().
-int yielding_points(const SimulatedBody& body, const State& state);
-/// A sentence that names such points; empty where there are none.
-std::string yielding_sentence(const SimulatedBody& body, const State& state);
+/// A sentence that says at how many points of a body St Venant-Kirchhoff's law gives way (is_strongly_elliptic());
+/// empty where it does at none, or where what a point has by itself is not all: with averaged or selective volumetric
+/// strain, nearly incompressible matter (ν above 0.4), and stresses that fade or act.
+std::string yielding_sentence(const Simulation& simulation, std::size_t body, const State& state);
 
 /// Averages over what a probe measures: the nodes of its region (of a rigid body the points of its surface there), or
 /// the matter of its body or of all bodies.

@@ -175,8 +175,7 @@ std::string softest_place(const Simulation& s, const State& end, int node) {
 std::string softest_yields(const Simulation& s, const State& end, int node) {
   const SimulatedBody* b = body_of(s, node);
   if (b == nullptr) return "";
-  const Body& body = s.scene.bodies[static_cast<std::size_t>(b - s.bodies.data())];
-  const std::string cause = body.formulation == Formulation::large_strain ? yielding_sentence(*b, end) : "";
+  const std::string cause = yielding_sentence(s, static_cast<std::size_t>(b - s.bodies.data()), end);
   return cause.empty() ? "" : "; " + cause;
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 
 namespace fascia::verdict_test {
 namespace {
@@ -138,10 +139,12 @@ struct OneSpring {
     report.slope = force(x) * d;
     report.unsolved = unsolved;
     report.linear_residual = left;
+    report.trouble = trouble;
     return report;
   }
   bool unsolved = false;  ///< conjugate gradients end at their limit
   double strain_energy = 0;
+  std::string trouble;
   double left = 0;  ///< of the right-hand side, by conjugate gradients
   static double largest_step(double wanted) { return wanted; }
   void apply(double step) { x += step * d; }
@@ -276,6 +279,9 @@ TEST(NewtonVerdict, RoundingAloneIsConvergedWhereCorrectionsGainNothing) {
   EXPECT_TRUE(fails(large)) << "a correction that still gains energy";
   EXPECT_TRUE(fails(iterated)) << "conjugate gradients leave what is soft";
   EXPECT_TRUE(fails(followed)) << "loads without a potential";
+  OneSpring shifted = system;
+  shifted.trouble = "it was shifted";
+  EXPECT_TRUE(fails(shifted)) << "a tangent that is not definite";
 }
 
 /// The same of corrections that are small: what conjugate gradients leave is smooth, so that it sums up to more than
