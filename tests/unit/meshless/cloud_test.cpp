@@ -287,6 +287,29 @@ TEST(CloudErrors, AreNamedBeforeAnythingIsBuilt) {
             std::string::npos);
 }
 
+/// Frames 0.2 apart, and points 0.08: a slab and a rod as thin as a point's spacing are told of, those several points
+/// thick are not.
+TEST(CloudMessages, TellOfASolidWhosePointsLieInALayer) {
+  const auto told = [](const Vec3d& size) {
+    ScatterSpec scatter;
+    scatter.parts.solid = SolidDomain{{}, size, size[0] * size[1] * size[2], {}, {}, {}, {}};
+    scatter.parts.solid->surface = box_surface({}, size, 4, 4, 4);
+    scatter.frames = SpacedChoice{0.2, 1};
+    CloudSpec spec;
+    static_cast<BodyMatter&>(spec) = block_spec({});
+    std::vector<std::string> messages;
+    scatter_cloud(scatter, spec, messages);
+    return std::any_of(messages.begin(), messages.end(), [](const std::string& message) {
+      return message.find("lie in a layer or two") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told({{2, 2, 0.08}}));
+  EXPECT_TRUE(told({{4, 0.1, 0.1}}));
+  EXPECT_FALSE(told({{2, 2, 0.3}}));
+  EXPECT_FALSE(told({{2, 0.3, 0.3}}));
+  EXPECT_FALSE(told({{1, 1, 1}}));
+}
+
 TEST(CloudErrors, ASheetThickerThanItIsCurvedIsRefused) {
   ScatterSpec scatter;
   SheetPart sheet;
