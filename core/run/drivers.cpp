@@ -61,11 +61,14 @@ bool is_left_by_rounding(const Evaluation& last, const SolverSettings& settings)
 
 /// The residual that was left, against what it should be.
 void describe_residual(const Evaluation& last, const SolverSettings& settings, std::ostream& out) {
-  if (last.relative > settings.tolerance)
+  if (last.relative > settings.tolerance) {
     out << ", residual " << last.relative << " > " << settings.tolerance;
-  else
+    // Relative to what acts in all of a whole, or to rounding where that is more.
+    if (last.left_of_load > 2 * last.relative) out << " (" << last.left_of_load << " of the loads on a part)";
+  } else {
     out << ", residual " << last.left_of_load << " > " << kLargestShare
         << " of the loads on a part that is soft or light beside the others";
+  }
   if (is_left_by_rounding(last, settings))
     out << ", where rounding leaves up to " << last.relative_floor
         << ": the body is too thin for its elements or frames, or its parts too unlike (check tells the digits left); "
