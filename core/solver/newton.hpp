@@ -205,9 +205,9 @@ class Newton {
 
   /// True where rounding leaves much of the loads after a correction, as before it, and nothing of the answer: slender
   /// bodies of solid cells have forces across that are larger than their loads by length over thickness and more, and
-  /// stiff enough that what rounding leaves of them moves nothing. Only factors of definite tangents can tell, and a way
-  /// over others may lead elsewhere. The measure is the strain energy: work of loads has that of rigid motion too, which
-  /// excuses no strain.
+  /// stiff enough that what rounding leaves of them moves nothing. Only factors of definite tangents can tell, and a
+  /// way over others may lead elsewhere. The measure is the strain energy: work of loads has that of rigid motion too,
+  /// which excuses no strain.
   bool rounding_alone(const DirectionReport& d) const {
     return current_.within_rounding && std::abs(d.slope) <= kNoGain * current_.strain_energy &&
            d.linear_residual == 0 && report_.indefinite_tangents == 0 && system_.conservative();
