@@ -155,7 +155,7 @@ class Search {
     else
       text += fmt::format("{:.0f} % of the {} is at its nodes", 100 * share, quantity);
     text += remedy(s_.scene.bodies[at(worst_.body)], b.body->points()[worst_.point]);
-    // What the law itself does not bear is the cause, however good the mesh and the steps.
+    // The law itself is the cause where it gives way, however good the mesh and the steps.
     const std::string cause = crushed_ ? "" : yielding_sentence(s_, at(worst_.body), found_.state);
     if (!cause.empty()) text += "; " + cause;
     const Vec3d X = point_place(b, worst_.point);

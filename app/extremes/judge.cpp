@@ -108,7 +108,7 @@ std::string first_doubt(const nlohmann::ordered_json& summary) {
   return found == summary.end() || found->empty() ? "" : found->front().get<std::string>();
 }
 
-/// Whether a run that stopped names its law as the cause.
+/// Returns true where a run that stopped names its law as the cause.
 bool names_law(const std::string& message) {
   return message.find("materials give way") != std::string::npos ||
          message.find("do not resist") != std::string::npos ||

@@ -1,5 +1,7 @@
 #include "app/extremes/specimen.hpp"
 
+#include "core/physics/ellipticity.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -231,8 +233,14 @@ std::string Specimen::text() const {
 bool Specimen::is_borne() const {
   const bool corotational = model == BeamModel::corotational_tetrahedra;
   if (neo_hookean || model == BeamModel::linear_tetrahedra) return true;
-  if (action == Action::twist && !is_thin(model) && !corotational)
-    return amount * 0.5 * std::hypot(width(), thickness()) / length < 1;
+  const Lame lame = Lame::from_young(young, poisson);
+  if (action == Action::twist && !is_thin(model) && !corotational) {
+    const double shear = amount * 0.5 * std::hypot(width(), thickness()) / length, height = 1 / std::hypot(1, shear);
+    Mat3d F = Mat3d::diagonal(1);
+    F(0, 1) = shear * height;
+    F(1, 1) = height;
+    return is_strongly_elliptic(lame, F);
+  }
   if (action != Action::stretch && action != Action::pull) return true;
   double along = amount;
   if (action == Action::pull) {
@@ -241,8 +249,11 @@ bool Specimen::is_borne() const {
     for (int k = 0; k < 60 && !corotational; ++k)
       along -= (0.5 * along * (along * along - 1) - amount) / (1.5 * along * along - 0.5);
   }
-  const bool section_is_left = poisson * (corotational ? along - 1 : along * along - 1) < 1;
-  return section_is_left && (corotational || along > 1 / std::numbers::sqrt3);
+  const double left = 1 - poisson * (corotational ? along - 1 : along * along - 1);  // of the section
+  if (left <= 0 || corotational) return left > 0;
+  Mat3d F = Mat3d::diagonal(std::sqrt(left));
+  F(0, 0) = along;
+  return is_strongly_elliptic(lame, F);
 }
 
 std::optional<double> Specimen::theory() const {

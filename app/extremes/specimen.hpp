@@ -79,9 +79,9 @@ struct Specimen {
   /// The scene, a TOML text in SI.
   std::string text() const;
 
-  /// False where a uniform bar would ask more than its law bears: of St Venant-Kirchhoff's, which loses ellipticity, to
-  /// be pressed to less than 1/√3 of its length, or to shear the faces at its edges by 1; or to be pulled until no
-  /// section is left, which the co-rotational law does not bear either.
+  /// False where a uniform bar would ask more than its law bears: where St Venant-Kirchhoff's is not strongly elliptic
+  /// in the bar that is pressed, or at the edges of the one that is twisted, whose free faces are in pure shear strain;
+  /// or where the bar is pulled until no section is left, which the co-rotational law does not bear either.
   bool is_borne() const;
 
   /// Size of the far end's displacement in the theory of slender beams [m], where it holds: small strain, one material.

@@ -57,7 +57,7 @@ class BlockMatrix {
       std::for_each(begin, left_.begin() + left_begin_[static_cast<std::size_t>(row) + 1], act);
     }
   }
-  /// Whether the blocks are those of the condensed matrix; only where nodes depend on others.
+  /// True where the blocks are those of the condensed matrix; only where nodes depend on others.
   void set_condensed(bool condensed) { condensed_ = condensed && !left_begin_.empty(); }
 
   /// Sets the blocks of a row to zero.

@@ -104,7 +104,7 @@ class Expansion {
   static void add(double* to, const double* values, int count) {
     for (int i = 0; i < count; ++i) to[i] += values[i];
   }
-  /// Of a dependent node that is being added.
+  /// Returns the values of a dependent node that is being added.
   double* values_of(int k, int node) {
     for (auto t = terms_.begin() + begin_[at(k)]; t != terms_.end(); ++t)
       if (t->node == node) return values_.data() + t->values;

@@ -1,6 +1,7 @@
 #include "fascia/run/result_warnings.hpp"
 
 #include "assembly/simulation/matter.hpp"
+#include "assembly/simulation/places.hpp"
 
 #include "core/base/index.hpp"
 #include "fascia/run/edge_bulges.hpp"
@@ -156,26 +157,19 @@ bool is_judged(const Simulation& s, const RunReport& run) {
          run.status == RunStatus::converged;
 }
 
-/// The body that a node belongs to; null: none.
-const SimulatedBody* body_of(const Simulation& s, int node) {
-  for (const SimulatedBody& b : s.bodies)
-    if (node >= b.body->first_node() && node < b.body->first_node() + b.body->node_count()) return &b;
-  return nullptr;
-}
-
 /// The body whose node moves most in the softest direction, and where that is.
 std::string softest_place(const Simulation& s, const State& end, int node) {
-  const SimulatedBody* b = body_of(s, node);
-  if (b == nullptr) return "";
+  const int body = body_of_node(s, node);
+  if (body < 0) return "";
   const Vec3d x = s.model.rest_position[at(node)] + end.u[at(node)];
-  return fmt::format(" (body \"{}\" moves most, near ({:.4g}, {:.4g}, {:.4g}))", b->name, x[0], x[1], x[2]);
+  return fmt::format(" (body \"{}\" moves most, near ({:.4g}, {:.4g}, {:.4g}))", s.bodies[at(body)].name, x[0], x[1],
+                     x[2]);
 }
 
-/// Whether its law gives way there.
+/// A clause that says so where the law of that body gives way.
 std::string softest_yields(const Simulation& s, const State& end, int node) {
-  const SimulatedBody* b = body_of(s, node);
-  if (b == nullptr) return "";
-  const std::string cause = yielding_sentence(s, static_cast<std::size_t>(b - s.bodies.data()), end);
+  const int body = body_of_node(s, node);
+  const std::string cause = body < 0 ? "" : yielding_sentence(s, at(body), end);
   return cause.empty() ? "" : "; " + cause;
 }
 

@@ -142,7 +142,7 @@ TEST_P(DependentNodesTest, CondensedMatrixIsTheProductOfItsFactors) {
       EXPECT_EQ(product(K, d_)[at(model_.points.dofs.begin(v.node) + k)], 0);
 }
 
-/// Of rows of dependent nodes two are kept at the same time, or all.
+/// Two rows of dependent nodes are kept at the same time, or all.
 TEST_P(DependentNodesTest, BitsOfTheMatrixDependOnNeitherThreadsNorRowsAtOnce) {
   const BlockMatrix K = condensed();
   const Linearization lin = linearization();

@@ -55,7 +55,7 @@ TEST(Verdict, RoundingNeverExcusesMoreThanAShareOfTheLoad) {
 }
 
 /// A body that was moved rigidly and rests: its reactions are rounding.
-/// What is left is within the rounding of the only part, which is less than a tenth of its loads.
+/// The residual is within the rounding of the only part, which is less than a tenth of its loads.
 TEST(Verdict, SaysWhereRoundingIsAllThereIs) {
   EXPECT_TRUE(judged({part(1e-3, 1, 0, 1e-2)}, {0}).within_rounding);
   EXPECT_FALSE(judged({part(1e-3, 1, 0, 1e-4)}, {0}).within_rounding);
