@@ -58,7 +58,7 @@ Samples samples_of(const MatterParts& parts, const SampleChoice& choice, bool fr
   } else if (listed) {
     s.spacing = rough_spacing(parts, static_cast<int>(listed->position.size()) + others);
   }
-  s.matter = matter_for(parts, s.spacing, frames, pool);
+  s.matter = matter_for(parts, s.spacing, frames ? PieceUse::frames : PieceUse::points, pool);
   if (counted && counted->count == 0 && others > 0) return s;
   if (counted) s.spacing = spacing_for_count(s.matter, counted->count, seed, frames, pool, occupied);
   s.places =

@@ -99,15 +99,23 @@ std::string text(const Vec3d& x) {
   return out.str();
 }
 
-Matter matter_for(const MatterParts& parts, double spacing, bool features, ThreadPool& pool) {
-  constexpr int kMostPieces = 4'000'000;
-  constexpr double kFinest = 6, kCoarsest = 2.5;
-  const double affordable = rough_spacing(parts, kMostPieces);
-  const double piece_size = std::clamp(affordable, spacing / kFinest, spacing / kCoarsest);
+Matter matter_for(const MatterParts& parts, double spacing, PieceUse use, ThreadPool& pool) {
+  constexpr int kManyFrames = 400'000, kManyPoints = 50'000, kMost = 4'000'000;  // pieces in all
+  constexpr double kFine = 6, kFrames = 4, kPoints = 3, kCoarsest = 2.5;         // pieces a spacing
+  const double fine = spacing / kFine;
+  const auto affordable = [&](double finest) {
+    return std::clamp(rough_spacing(parts, kMost), finest, spacing / kCoarsest);
+  };
   Matter matter;
-  if (parts.solid) add_solid(matter, *parts.solid, piece_size, features, pool);
-  for (const SheetPart& s : parts.sheets) add_sheet(matter, s, piece_size);
-  for (const LinePart& l : parts.lines) add_line(matter, l, piece_size);
+  if (parts.solid) {
+    // Few samples want to be even. Where a solid is thinner than its pieces, tests of them might miss it.
+    const bool frames = use == PieceUse::frames;
+    const double wide = std::max(rough_spacing(parts, frames ? kManyFrames : kManyPoints), fine);
+    const double finest = std::min(wide, spacing / (frames ? kFrames : kPoints));
+    add_solid(matter, *parts.solid, affordable(std::clamp(0.5 * thickness_of(*parts.solid), fine, finest)), use, pool);
+  }
+  for (const SheetPart& s : parts.sheets) add_sheet(matter, s, affordable(fine));
+  for (const LinePart& l : parts.lines) add_line(matter, l, affordable(fine));
   return matter;
 }
 

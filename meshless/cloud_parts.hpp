@@ -8,9 +8,9 @@ namespace fascia {
 
 std::string text(const Vec3d& x);  ///< "(x, y, z)", for messages
 
-/// Pieces fine enough for samples of this spacing: a sixth of it, more where there would be too many.
-/// @param features  corners, edges and faces of solids are sampled too
-Matter matter_for(const MatterParts& parts, double spacing, bool features, ThreadPool& pool);
+/// Pieces fine enough for samples of this spacing: a quarter of it for frames in solids, a third for points there, a
+/// sixth in sheets and lines; larger where there would be too many.
+Matter matter_for(const MatterParts& parts, double spacing, PieceUse use, ThreadPool& pool);
 /// Spacing at which a body without features would have `count` samples [m].
 double rough_spacing(const MatterParts& parts, int count);
 double size_of(const MatterParts& parts);  ///< diagonal of the bounding box [m]

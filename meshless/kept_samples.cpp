@@ -8,7 +8,7 @@ namespace fascia {
 namespace {
 
 /// Changes with what this file writes and with how samples are made.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 /// Places at which the functions of a domain are asked, in each direction of its bounding box.
 constexpr int kAsked = 8;
 

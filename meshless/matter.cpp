@@ -48,6 +48,7 @@ class VoxelGrid {
     }
   }
   double expected() const { return expected_; }
+  const Vec3d& cell() const { return cell_; }
   std::size_t size() const { return at(count_[0]) * at(count_[1]) * at(count_[2]); }
   const std::array<int, 3>& count() const { return count_; }
   std::size_t number(int i, int j, int k) const { return at(i) + at(count_[0]) * (at(j) + at(count_[1]) * at(k)); }
@@ -69,12 +70,6 @@ class VoxelGrid {
       for (int row = begin; row < end; ++row) act(row % count_[1], row / count_[1]);
     });
   }
-  template <class Act>
-  void for_each(Act&& act) const {
-    for (int k = 0; k < count_[2]; ++k)
-      for (int j = 0; j < count_[1]; ++j)
-        for (int i = 0; i < count_[0]; ++i) act(i, j, k);
-  }
 
  private:
   Vec3d min_{}, cell_{};
@@ -82,57 +77,70 @@ class VoxelGrid {
   double expected_ = 1;
 };
 
-/// Marks the voxels that the surface passes: a neighbour on the other side, or a piece of the surface inside.
-std::vector<char> cut_voxels(const VoxelGrid& grid, const std::vector<char>& inside,
-                             std::span<const MatterPiece> surface) {
-  const auto& n = grid.count();
+/// Marks the voxels that the surface passes: a neighbour on the other side, or a place of the surface inside.
+std::vector<char> cut_voxels(const VoxelGrid& grid, const std::vector<char>& inside, std::span<const Vec3d> surface,
+                             ThreadPool& pool) {
+  const std::array<int, 3> n = grid.count();
   std::vector<char> cut(grid.size(), 0);
-  for (const MatterPiece& p : surface) cut[grid.voxel_of(p.x)] = 1;
-  grid.for_each([&](int i, int j, int k) {
-    const std::size_t here = grid.number(i, j, k);
-    const bool outer = i == 0 || j == 0 || k == 0 || i == n[0] - 1 || j == n[1] - 1 || k == n[2] - 1;
-    if (outer && inside[here] != 0) cut[here] = 1;
-    for (int neighbour = 14; neighbour < 27; ++neighbour) {
-      const int a = i + neighbour % 3 - 1, b = j + neighbour / 3 % 3 - 1, c = k + neighbour / 9 - 1;
-      if (a < 0 || b < 0 || a >= n[0] || b >= n[1] || c >= n[2]) continue;
-      const std::size_t there = grid.number(a, b, c);
-      if (inside[here] != inside[there]) cut[here] = cut[there] = 1;
-    }
+  grid.for_each_row(pool, [&](int j, int k) {
+    const int length = n[0];
+    char* row = &cut[grid.number(0, j, k)];
+    const char* here = &inside[grid.number(0, j, k)];
+    const auto differ = [&](const char* other, int first, int last) {
+      for (int i = first; i < last; ++i) row[i] |= static_cast<char>(here[i] ^ other[i]);
+    };
+    for (int c = std::max(0, k - 1); c <= std::min(n[2] - 1, k + 1); ++c)
+      for (int b = std::max(0, j - 1); b <= std::min(n[1] - 1, j + 1); ++b) {
+        const char* there = &inside[grid.number(0, b, c)];
+        differ(there, 0, length);
+        differ(there + 1, 0, length - 1);
+        differ(there - 1, 1, length);
+      }
+    const bool outer = j == 0 || k == 0 || j == n[1] - 1 || k == n[2] - 1;
+    for (int i = 0; i < length; i += outer ? 1 : std::max(1, length - 1)) row[i] |= here[i];
   });
+  for (const Vec3d& x : surface) cut[grid.voxel_of(x)] = 1;
   return cut;
 }
 
-/// The part of a voxel inside of a solid, in fine tests: whole numbers, whose sum is exact; 0: none.
+/// The part of a voxel inside of a solid, in fine tests: whole numbers, whose sum is exact.
 struct VoxelPart {
   Vec3d x{};  ///< its centroid, or where that is outside the test next to it
-  double tests = 0;
+  int tests = 0;
+};
+
+/// What a row of voxels has inside of a solid.
+struct VoxelRow {
+  std::vector<VoxelPart> parts;
+  std::vector<Vec3d> tests;  ///< of the parts of voxels that are not whole, one after the other
 };
 
 /// @param inside  of the voxel's fine tests
-VoxelPart voxel_part(const VoxelGrid& grid, int i, int j, int k, const std::array<char, kParts>& inside,
-                     const std::function<bool(const Vec3d&)>& contains) {
-  std::array<Vec3d, kParts> found;
-  std::size_t count = 0;
+void add_part(VoxelRow& row, const VoxelGrid& grid, int i, int j, int k, const std::array<char, kParts>& inside,
+              const std::function<bool(const Vec3d&)>& contains) {
+  const std::size_t first = row.tests.size();
   Vec3d sum{};
   for (int n = 0; n < kParts; ++n) {
     if (inside[at(n)] == 0) continue;
-    const Vec3d x = grid.place(i, j, k, fine_place(n), fine_place(n / kSubdivisions),
-                               fine_place(n / (kSubdivisions * kSubdivisions)));
-    found[count++] = x;
-    sum += x;
+    row.tests.push_back(grid.place(i, j, k, fine_place(n), fine_place(n / kSubdivisions),
+                                   fine_place(n / (kSubdivisions * kSubdivisions))));
+    sum += row.tests.back();
   }
-  if (count == 0) return {};
+  const std::size_t count = row.tests.size() - first;
+  if (count == 0) return;
   const Vec3d centroid = sum * (1.0 / static_cast<double>(count));
-  VoxelPart part{centroid, static_cast<double>(count)};
-  if (contains(centroid)) return part;
-  double least = std::numeric_limits<double>::max();
-  for (std::size_t n = 0; n < count; ++n) {
-    const double squared = squared_norm(found[n] - centroid);
-    if (squared >= least * (1 - kTie)) continue;
-    least = squared;
-    part.x = found[n];
+  VoxelPart part{centroid, static_cast<int>(count)};
+  if (!contains(centroid)) {
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t n = first; n < row.tests.size(); ++n) {
+      const double squared = squared_norm(row.tests[n] - centroid);
+      if (squared >= least * (1 - kTie)) continue;
+      least = squared;
+      part.x = row.tests[n];
+    }
   }
-  return part;
+  if (part.tests == kParts) row.tests.resize(first);
+  row.parts.push_back(part);
 }
 
 void contains_on_line(const SolidDomain& domain, double y, double z, std::span<const double> x,
@@ -171,56 +179,91 @@ std::vector<std::array<char, kParts>> fine_tests(const VoxelGrid& grid, const So
   return tests;
 }
 
-/// The voxels of a domain that is not a box.
-void add_voxels(VoxelPieces& voxels, const VoxelGrid& grid, const SolidDomain& domain,
-                std::span<const MatterPiece> surface, ThreadPool& pool) {
-  const std::vector<char> inside = inner_voxels(grid, domain, pool), cut = cut_voxels(grid, inside, surface);
+/// The voxels of a domain that is not a box, by row.
+std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, const SolidDomain& domain, std::span<const Vec3d> surface,
+                                 ThreadPool& pool) {
+  const std::vector<char> inside = inner_voxels(grid, domain, pool), cut = cut_voxels(grid, inside, surface, pool);
   const int length = grid.count()[0];
-  std::vector<std::vector<VoxelPart>> rows(grid.size() / at(length));
+  std::vector<VoxelRow> rows(grid.size() / at(length));
   grid.for_each_row(pool, [&](int j, int k) {
     const std::size_t begin = grid.number(0, j, k);
     std::vector<int> at_surface;
     for (int i = 0; i < length; ++i)
       if (cut[begin + at(i)] != 0) at_surface.push_back(i);
     const std::vector<std::array<char, kParts>> tests = fine_tests(grid, domain, at_surface, j, k);
-    std::vector<VoxelPart>& parts = rows[begin / at(length)];
+    VoxelRow& row = rows[begin / at(length)];
     std::size_t taken = 0;
     for (int i = 0; i < length; ++i) taken += cut[begin + at(i)] != 0 || inside[begin + at(i)] != 0 ? 1 : 0;
-    parts.reserve(taken);
+    row.parts.reserve(taken);
     std::size_t next = 0;
     for (int i = 0; i < length; ++i) {
       if (cut[begin + at(i)] != 0)
-        parts.push_back(voxel_part(grid, i, j, k, tests[next++], domain.contains));
+        add_part(row, grid, i, j, k, tests[next++], domain.contains);
       else if (inside[begin + at(i)] != 0)
-        parts.push_back({grid.place(i, j, k), kParts});
+        row.parts.push_back({grid.place(i, j, k), kParts});
     }
   });
-  std::size_t count = voxels.size();
-  for (const std::vector<VoxelPart>& parts : rows) count += parts.size();
-  voxels.x.reserve(count);
-  voxels.volume.reserve(count);
-  for (const std::vector<VoxelPart>& parts : rows)
-    for (const VoxelPart& part : parts) {
-      if (part.tests == 0) continue;
-      voxels.x.push_back(part.x);
-      voxels.volume.push_back(part.tests);
-    }
+  return rows;
 }
 
-void add_faces(Matter& matter, const TriangleMesh& surface, double piece_size) {
+/// The voxels of a box, by row.
+std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, ThreadPool& pool) {
+  const int length = grid.count()[0];
+  std::vector<VoxelRow> rows(grid.size() / at(length));
+  grid.for_each_row(pool, [&](int j, int k) {
+    VoxelRow& row = rows[grid.number(0, j, k) / at(length)];
+    row.parts.reserve(at(length));
+    for (int i = 0; i < length; ++i) row.parts.push_back({grid.place(i, j, k), kParts});
+  });
+  return rows;
+}
+
+/// @param test_volume  of one fine test
+void take_voxels(Matter& matter, std::span<const VoxelRow> rows, double test_volume, bool with_parts) {
+  std::size_t count = 0, tests = 0;
+  for (const VoxelRow& row : rows) {
+    count += row.parts.size();
+    tests += row.tests.size();
+  }
+  const auto add = [](VoxelPieces& pieces, const Vec3d& x, double volume) {
+    pieces.x.push_back(x);
+    pieces.volume.push_back(volume);
+  };
+  const auto reserve = [](VoxelPieces& pieces, std::size_t size) {
+    pieces.x.reserve(size);
+    pieces.volume.reserve(size);
+  };
+  reserve(matter.voxels, count);
+  for (const bool whole : {true, false}) {
+    for (const VoxelRow& row : rows)
+      for (const VoxelPart& part : row.parts)
+        if ((part.tests == kParts) == whole) add(matter.voxels, part.x, part.tests * test_volume);
+    if (whole) matter.whole_voxels = matter.voxels.size();
+  }
+  if (!with_parts) return;
+  reserve(matter.surface_parts, tests);
+  for (const VoxelRow& row : rows)
+    for (const Vec3d& x : row.tests) add(matter.surface_parts, x, test_volume);
+}
+
+/// Small parts of a surface.
+std::vector<TrianglePart> surface_parts(const TriangleMesh& surface, double piece_size) {
+  std::vector<TrianglePart> parts;
+  for (const auto& t : surface.triangles) {
+    std::array<Vec3d, 3> corners;
+    for (std::size_t n = 0; n < 3; ++n) corners[n] = surface.points[at(t[n])];
+    const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    if (!(squared_norm(normal) > 0)) continue;
+    cut_triangle(corners, {normal, normal, normal}, 0.5 * norm(normal), piece_size, parts);
+  }
+  return parts;
+}
+
+void add_faces(Matter& matter, const TriangleMesh& surface, std::span<const TrianglePart> parts) {
   const SurfaceFeatures features = find_features(surface);
   std::vector<std::array<int, 2>> edges;
   for (const SurfaceEdge& e : features.edges) edges.push_back(e.vertices);
   add_edges(matter, surface.points, edges, std::vector<EdgeMatter>(edges.size()), 3);
-
-  std::vector<TrianglePart> parts;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const Vec3d& normal = features.triangle_normal[t];
-    if (!(squared_norm(normal) > 0)) continue;
-    std::array<Vec3d, 3> corners;
-    for (std::size_t n = 0; n < 3; ++n) corners[n] = surface.points[at(surface.triangles[t][n])];
-    cut_triangle(corners, {normal, normal, normal}, 0.5 * norm(normal), piece_size, parts);
-  }
   for (const TrianglePart& p : parts) matter.pieces.push_back({p.x, 0, p.area, 3, 2, Mat3d::identity(), 0});
 }
 
@@ -235,33 +278,32 @@ std::function<bool(const Vec3d&)> inside_test(const SolidDomain& domain) {
 
 }  // namespace
 
-void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, bool features, ThreadPool& pool) {
+void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, PieceUse use, ThreadPool& pool) {
   check_pieces(matter, piece_size, 0);
   if (!(domain.volume > 0)) throw InputError("the domain has no volume; its surface must enclose some");
   const VoxelGrid grid(domain, piece_size);
   check_pieces(matter, piece_size, grid.expected() + expected_parts(domain.surface, piece_size));
-  const std::size_t first_surface = matter.pieces.size();
-  if (features || domain.contains) add_faces(matter, domain.surface, piece_size);  // they cut voxels too
+  const bool frames = use == PieceUse::frames;
+  std::vector<TrianglePart> surface;
+  if (frames || domain.contains) surface = surface_parts(domain.surface, piece_size);
+  if (frames) add_faces(matter, domain.surface, surface);
 
-  VoxelPieces& voxels = matter.voxels;
-  const std::size_t first = voxels.size();
+  std::vector<VoxelRow> rows;
   if (domain.contains) {
-    add_voxels(voxels, grid, domain, std::span(matter.pieces).subspan(first_surface), pool);
+    std::vector<Vec3d> places;
+    places.reserve(surface.size());
+    for (const TrianglePart& p : surface) places.push_back(p.x);
+    rows = voxel_rows(grid, domain, places, pool);
   } else {
-    voxels.x.resize(first + grid.size());
-    voxels.volume.resize(first + grid.size(), kParts);
-    grid.for_each_row(pool, [&](int j, int k) {
-      for (int i = 0; i < grid.count()[0]; ++i) voxels.x[first + grid.number(i, j, k)] = grid.place(i, j, k);
-    });
+    rows = voxel_rows(grid, pool);
   }
-
-  double sum = 0;
-  for (std::size_t p = first; p < voxels.size(); ++p) sum += voxels.volume[p];
-  if (!(sum > 0)) throw InputError("no piece of the sampling falls inside the domain; use a smaller spacing");
-  for (std::size_t p = first; p < voxels.size(); ++p) {
-    voxels.volume[p] *= domain.volume / sum;
-    matter.measure[3] += voxels.volume[p];
-  }
+  double tests = 0;
+  for (const VoxelRow& row : rows)
+    for (const VoxelPart& part : row.parts) tests += part.tests;
+  if (!(tests > 0)) throw InputError("no piece of the sampling falls inside the domain; use a smaller spacing");
+  take_voxels(matter, rows, domain.volume / tests, !frames);
+  matter.voxel_edges = grid.cell();
+  matter.measure[3] += domain.volume;
   matter.volume += domain.volume;
   matter.piece_size = std::max(matter.piece_size, piece_size);
   matter.solids.push_back(inside_test(domain));

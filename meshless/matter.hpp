@@ -42,7 +42,10 @@ struct VoxelPieces {
 
 /// Matter of any dimension, and of several, as a cloud of pieces.
 struct Matter {
-  VoxelPieces voxels;               ///< of solids
+  VoxelPieces voxels;  ///< of a solid, whole ones first
+  std::size_t whole_voxels = 0;
+  Vec3d voxel_edges{};              ///< [m]
+  VoxelPieces surface_parts;        ///< what voxels that are not whole consist of; for points only
   std::vector<MatterPiece> pieces;  ///< of sheets and lines; of solids corners and faces
   std::array<double, 4> measure{};  ///< by dimension: length, area and volume of what has a volume [m, m², m³]
   std::vector<FeatureChain> chains;
@@ -64,13 +67,17 @@ struct LinePart {
   double radius = 0;  ///< [m]
 };
 
-/// Cuts a solid into voxels, those at its surface by their fraction inside; their volumes add up to the domain's.
-/// Pieces on faces, corners and sharp edges (more than 40° between the normals) come from its surface.
+/// What pieces of a solid are for: to place frames, on its faces, edges and corners too, or to place points and to tell
+/// what matter belongs to each of them.
+enum class PieceUse { frames, points };
+
+/// Cuts the solid of a matter into voxels, those at its surface by their fraction inside; their volumes add up to the
+/// domain's. For frames pieces on faces, corners and sharp edges (more than 40° between the normals) come from its
+/// surface.
 ///
-/// @param piece_size  width of the pieces [m]; about a sixth of the spacing of the samples wanted
-/// @param features    false: pieces on faces, edges and corners are not asked for, and those of boxes are left out
+/// @param piece_size  width of the pieces [m]; about a third of the spacing of the samples wanted
 /// @throws InputError  a size that is not positive, above 5·10⁷ pieces, a domain in which no piece falls
-void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, bool features, ThreadPool& pool);
+void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, PieceUse use, ThreadPool& pool);
 
 /// Cuts a sheet's triangles; volumes are area × thickness. Normals vary smoothly except across sharp edges.
 /// Edges are open, sharp or branched ones.

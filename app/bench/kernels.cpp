@@ -21,16 +21,13 @@ std::array<int, 3> cells_of(int points, int in_cell, double slenderness) {
   return {whole(cells / across / across), across, across};
 }
 
-/// A scattered beam: spacings go with the cube root of the numbers that known ones give.
+/// A scattered beam: the spacing of frames goes with the cube root of the number that a known one gives.
 std::string scattered(int points, int neighbours) {
-  constexpr double kPoints = 34610, kPointSpacing = 4.8576133, kFrames = 6922, kFrameSpacing = 8.765;  // [mm]
+  constexpr double kFrames = 6922, kSpacing = 8.5834;  // [mm]
   const double frames = points / 5.0;
-  const auto disk = [](double spacing, int seed) {
-    return fmt::format("poisson_disk = \"{:.6g} mm\", seed = {}", spacing, seed);
-  };
-  return scattered_beam(fmt::format("about {} points, {} neighbours", points, neighbours),
-                        disk(kFrameSpacing * std::cbrt(kFrames / frames), 1),
-                        disk(kPointSpacing * std::cbrt(kPoints / points), 3), neighbours, "paper");
+  return scattered_beam(fmt::format("{} points, {} neighbours", points, neighbours),
+                        fmt::format("poisson_disk = \"{:.6g} mm\"", kSpacing * std::cbrt(kFrames / frames)),
+                        fmt::format("count = {}", points), neighbours, "paper");
 }
 
 BenchReport run_kernels(const Benchmark& benchmark, const BenchOptions& options, const Teller& say) {

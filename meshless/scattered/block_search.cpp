@@ -114,9 +114,8 @@ BlockSearch::Sorted BlockSearch::sorted(std::span<const Vec3d> points) const {
 
 /// No place in the block is farther than this from the point nearest to it: the distance of the farthest corner from a
 /// point near the block.
-double BlockSearch::reach_of(const Vec3d& middle, const Sorted& points) const {
+double BlockSearch::reach_of(const Vec3d& middle, double half, const Sorted& points) const {
   const Cell home = points.cells.of(middle);
-  const double half = 0.5 * blocks_.edge;
   double squared = kInfinity;
   const int most = *std::max_element(points.cells.count.begin(), points.cells.count.end());
   for (int ring = 1; ring <= most && squared == kInfinity; ++ring) {
@@ -140,9 +139,10 @@ double BlockSearch::reach_of(const Vec3d& middle, const Sorted& points) const {
   return std::sqrt(squared);
 }
 
-void BlockSearch::list(const Vec3d& middle, const Sorted& points, Candidates& out) const {
+void BlockSearch::list(const Vec3d& middle, double half, const Sorted& points, Candidates& out) const {
   // Rounding, and equals that are so but for kTie, must not hide a point.
-  const double reach = reach_of(middle, points) * (1 + 10 * kTie), half = 0.5 * blocks_.edge * (1 + 10 * kTie);
+  const double reach = reach_of(middle, half, points) * (1 + 10 * kTie);
+  half *= 1 + 10 * kTie;
   const Vec3d around{{reach + half, reach + half, reach + half}};
   const Cell low = points.cells.of(middle - around), high = points.cells.of(middle + around);
   out.count = 0;
@@ -164,38 +164,49 @@ void BlockSearch::list(const Vec3d& middle, const Sorted& points, Candidates& ou
   });
 }
 
-void BlockSearch::search(std::size_t first, std::size_t last, const Candidates& among, std::span<int> nearest) const {
+void BlockSearch::search(std::size_t first, std::size_t last, const Candidates& among, std::span<const Vec3d> around,
+                         std::span<int> nearest) const {
   const std::size_t count = among.count;
   const Lanes infinity(kInfinity);
   for (std::size_t n = first; n < last; n += at(kBatchWidth)) {
-    const Lanes x = Lanes::load(&x_[0][n]), y = Lanes::load(&x_[1][n]), z = Lanes::load(&x_[2][n]);
-    const auto squared = [&](std::size_t c) {
-      const Lanes dx = x - among.x[0][c], dy = y - among.x[1][c], dz = z - among.x[2][c];
-      return dx * dx + dy * dy + dz * dz;
-    };
-    Lanes least = infinity;
-    for (std::size_t c = 0; c < count; ++c) least = smaller(least, squared(c));
-    least *= 1 + kTie;
-    Lanes index = infinity;
-    for (std::size_t c = 0; c < count; ++c)
-      index = smaller(index, where_positive(squared(c) - least, infinity, Lanes(among.index[c])));
-    for (int lane = 0; lane < kBatchWidth; ++lane)
-      if (const int place = place_[n + at(lane)]; place >= 0) nearest[at(place)] = static_cast<int>(index.v[lane]);
+    for (std::size_t o = 0; o < around.size(); ++o) {
+      const Vec3d& off = around[o];
+      const Lanes x = Lanes::load(&x_[0][n]) + Lanes(off[0]), y = Lanes::load(&x_[1][n]) + Lanes(off[1]),
+                  z = Lanes::load(&x_[2][n]) + Lanes(off[2]);
+      const auto squared = [&](std::size_t c) {
+        const Lanes dx = x - among.x[0][c], dy = y - among.x[1][c], dz = z - among.x[2][c];
+        return dx * dx + dy * dy + dz * dz;
+      };
+      Lanes least = infinity;
+      for (std::size_t c = 0; c < count; ++c) least = smaller(least, squared(c));
+      least *= 1 + kTie;
+      Lanes index = infinity;
+      for (std::size_t c = 0; c < count; ++c)
+        index = smaller(index, where_positive(squared(c) - least, infinity, Lanes(among.index[c])));
+      for (int lane = 0; lane < kBatchWidth; ++lane)
+        if (const int place = place_[n + at(lane)]; place >= 0)
+          nearest[at(place) * around.size() + o] = static_cast<int>(index.v[lane]);
+    }
   }
 }
 
-void BlockSearch::nearest(std::span<const Vec3d> points, std::span<int> nearest, ThreadPool& pool) const {
+void BlockSearch::nearest(std::span<const Vec3d> points, std::span<int> nearest, ThreadPool& pool,
+                          std::span<const Vec3d> around) const {
   if (points.empty()) {
     std::fill(nearest.begin(), nearest.end(), -1);
     return;
   }
+  double half = 0.5 * blocks_.edge, farthest = 0;
+  for (const Vec3d& off : around)
+    for (int a = 0; a < 3; ++a) farthest = std::max(farthest, std::abs(off[a]));
+  half += farthest;
   const Sorted by_cell = sorted(points);
   for_throwing_ranges(pool, static_cast<int>(blocks_.size()), kGrain, [&](int begin, int end) {
     Candidates among;
     for (std::size_t b = at(begin); b < at(end); ++b) {
       if (begin_[b] == begin_[b + 1]) continue;
-      list(blocks_.middle(b), by_cell, among);
-      search(begin_[b], begin_[b + 1], among, nearest);
+      list(blocks_.middle(b), half, by_cell, among);
+      search(begin_[b], begin_[b + 1], among, around, nearest);
     }
   });
 }

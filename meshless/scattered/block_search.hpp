@@ -20,11 +20,15 @@ class BlockSearch {
 
   /// Finds the nearest point to each place, as many as there are places, of equals (kTie of point_grid.hpp) the first;
   /// −1 where there is none. The same for any number of threads.
-  void nearest(std::span<const Vec3d> points, std::span<int> nearest, ThreadPool& pool) const;
+  ///
+  /// @param around  offsets from each place at which that is asked; results are by place, then by offset
+  void nearest(std::span<const Vec3d> points, std::span<int> nearest, ThreadPool& pool,
+               std::span<const Vec3d> around = kAtPlaces) const;
 
  private:
   using Cell = std::array<int, 3>;
   static constexpr std::size_t kLanes = 8;  ///< fills the batches of any processor
+  static constexpr std::array<Vec3d, 1> kAtPlaces{};
 
   /// Cells of one size that cover all places.
   struct Cells {
@@ -61,9 +65,11 @@ class BlockSearch {
   };
 
   Sorted sorted(std::span<const Vec3d> points) const;
-  double reach_of(const Vec3d& middle, const Sorted& points) const;
-  void list(const Vec3d& middle, const Sorted& points, Candidates& out) const;
-  void search(std::size_t first, std::size_t last, const Candidates& among, std::span<int> nearest) const;
+  /// @param half  distance of the block's faces from its middle [m]
+  double reach_of(const Vec3d& middle, double half, const Sorted& points) const;
+  void list(const Vec3d& middle, double half, const Sorted& points, Candidates& out) const;
+  void search(std::size_t first, std::size_t last, const Candidates& among, std::span<const Vec3d> around,
+              std::span<int> nearest) const;
 
   Cells blocks_;      ///< of places
   Vec3d low_, high_;  ///< of all places

@@ -60,35 +60,37 @@ double spacing_for_count(const Matter& matter, int count, int seed, bool with_fe
                          std::span<const Vec3d> occupied) {
   if (count < 1) throw InputError("the number of samples is not positive; at least 1 is needed");
   check_spacing(matter, 1);
-  double best = boundless_spacing(matter, count), best_error = INFINITY;
   std::optional<FrameSampler> frames;
   if (with_features) frames.emplace(matter, seed, occupied, pool);
-  const auto excess = [&](double s) {
-    const double n = frames ? static_cast<double>(frames->places(s, false).size()) : expected_points(matter, s);
-    if (std::abs(n - count) < best_error) {
-      best_error = std::abs(n - count);
-      best = s;
-    }
-    return n - count;
+  const auto number = [&](double spacing) {
+    return frames ? static_cast<double>(frames->places(spacing, false).size()) : expected_points(matter, spacing);
   };
 
-  // A pair of spacings around the count, then bisection; the count falls with the spacing but for small steps.
-  constexpr double step = 1.2;
-  constexpr int most_steps = 60;
-  double low = best, high = best;
-  if (excess(best) > 0) {
-    for (int k = 0; k < most_steps; ++k)
-      if (excess(high *= step) <= 0) break;
-    low = high / step;
-  } else {
-    const double least = 0.25 * matter.piece_size;
-    for (int k = 0; k < most_steps && low > least; ++k)
-      if (excess(low /= step) >= 0) break;
-    high = low * step;
-  }
-  for (int k = 0; k < 16 && best_error > 0.004 * count; ++k) {
-    const double middle = std::sqrt(low * high);
-    (excess(middle) > 0 ? low : high) = middle;
+  // The number falls with the spacing but for small steps: a pair of spacings around it, then spacings between them.
+  constexpr int most_trials = 60;
+  constexpr double kExponent = 2.5, kBeyond = 1.05, kNarrow = 1e-9;
+  constexpr double kLeast = 0.2, kMost = 0.8;  // of the way from one spacing to the other
+  const double close_enough = frames ? 0.004 * count : 0.5, least = 0.25 * matter.piece_size;
+  double spacing = boundless_spacing(matter, count), best = spacing, best_error = INFINITY;
+  double low = 0, high = INFINITY, above = 0, below = 0;  // logarithms of how far the numbers there are off
+  for (int trial = 0; trial < most_trials && best_error > close_enough; ++trial) {
+    const double n = number(spacing), off = std::log(std::max(n, 0.5) / count);
+    if (std::abs(n - count) < best_error) {
+      best_error = std::abs(n - count);
+      best = spacing;
+    }
+    if (n > count) {
+      low = spacing;
+      above = off;
+    } else {
+      high = spacing;
+      below = -off;
+    }
+    if (high <= least || high - low <= kNarrow * low) break;
+    if (low > 0 && high < INFINITY)
+      spacing = low * std::pow(high / low, std::clamp(above / (above + below), kLeast, kMost));
+    else
+      spacing *= std::exp(off / kExponent) * (n > count ? kBeyond : 1 / kBeyond);
   }
   return best;
 }

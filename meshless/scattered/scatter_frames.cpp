@@ -53,8 +53,10 @@ class FrameSet {
       const double r = samples_[at(i)].feature == feature ? same : lower;
       return squared < r * r * (1 - kTie);
     };
-    throw_darts(matter_, pieces, darts, pool, grid_, std::max(same, lower), meets,
-                [&](const SamplePlace& place) { add(place); });
+    throw_darts(matter_, pieces, darts, pool, grid_, std::max(same, lower), meets, [&](const SamplePlace& place) {
+      add(place);
+      return true;
+    });
   }
 
   /// Evens out the samples of a feature among all of it and lower ones.

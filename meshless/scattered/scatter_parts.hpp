@@ -90,7 +90,7 @@ Darts random_darts(const PieceList& pieces, std::mt19937& random, ThreadPool& po
 /// @param radius   the largest distance at which samples may meet, below a cell of the grid by kTie [m]
 /// @param meets    whether a dart of a piece meets a sample: meets(piece of the list, sample, squared distance); all
 ///                 threads ask, and it does not throw
-/// @param add      takes a place
+/// @param add      takes a place, and tells whether more are wanted
 template <class Meets, class Add>
 void throw_darts(const Matter& matter, const PieceList& pieces, const Darts& darts, ThreadPool& pool,
                  const PointGrid& grid, double radius, const Meets& meets, Add&& add) {
@@ -146,7 +146,7 @@ void throw_darts(const Matter& matter, const PieceList& pieces, const Darts& dar
         place.x = x;
       else if (place.x != x && met(piece, place.x, -1) >= 0)
         continue;
-      add(place);
+      if (!add(place)) return;
     }
   }
 }

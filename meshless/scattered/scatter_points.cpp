@@ -11,13 +11,16 @@ constexpr int kRounds = 4;  // of relaxation
 
 /// Mean spacing over least distance of a saturated random sample without boundary, by dimension.
 constexpr std::array<double, 4> kSaturated{1, 1.338, 1.198, 1.109};
+/// How many of the samples of a saturated one so many darts for each give, and some to spare.
+double part_that_fits(double darts) { return 0.96 * (1 - 0.7 * std::pow(darts, -0.43)); }
 
 double wanted(double measure, int dimension, double spacing) {
   return measure > 0 ? std::max(1.0, rounded(measure / std::pow(spacing, dimension))) : 0;
 }
 
+/// Random places at least so far from one another, until there are enough or no more fit.
 std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces, const Darts& darts, double least,
-                                  ThreadPool& pool) {
+                                  std::size_t enough, ThreadPool& pool) {
   std::vector<SamplePlace> samples;
   PointGrid grid(least * (1 + kTie));  // what meets but for rounding is in the cells around
   const auto meets = [&](std::size_t n, int i, double) {
@@ -26,27 +29,27 @@ std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces,
   throw_darts(matter, pieces, darts, pool, grid, least, meets, [&](const SamplePlace& place) {
     samples.push_back(place);
     grid.insert(place.x);
+    return samples.size() < enough;
   });
   return samples;
 }
 
-/// Darts about as many as wanted: samples gather at the boundary, so the distance depends on the shape.
-std::vector<SamplePlace> throw_about(const Matter& matter, const PieceList& pieces, const Darts& darts, double spacing,
-                                     double count, ThreadPool& pool) {
-  constexpr int most_trials = 8;
+/// As many places as wanted where they fit. More would fit at most places, since samples gather at the boundary; where
+/// fewer do, they may come nearer to one another.
+std::vector<SamplePlace> throw_count(const Matter& matter, const PieceList& pieces, const Darts& darts, double spacing,
+                                     std::size_t count, ThreadPool& pool) {
+  constexpr double kNearer = 0.98;
+  constexpr int kMostTrials = 8;
   const int dimension = pieces.solid() ? 3 : 2;
-  double least = spacing / kSaturated[at(dimension)];
-  std::vector<SamplePlace> best;
-  double best_error = INFINITY;
-  for (int trial = 0; trial < most_trials && best_error > 0.01 * count; ++trial) {
-    std::vector<SamplePlace> samples = throw_at(matter, pieces, darts, least, pool);
-    const double n = static_cast<double>(samples.size());
-    least *= std::pow(n / count, 1.0 / dimension);
-    if (std::abs(n - count) >= best_error) continue;
-    best_error = std::abs(n - count);
-    best = std::move(samples);
+  const double darts_each = static_cast<double>(darts.size()) / static_cast<double>(count);
+  double least = spacing / kSaturated[at(dimension)] * std::pow(part_that_fits(darts_each), 1.0 / dimension);
+  std::vector<SamplePlace> samples;
+  for (int trial = 0; trial < kMostTrials && samples.size() < count; ++trial) {
+    samples = throw_at(matter, pieces, darts, least, count, pool);
+    const double part = static_cast<double>(samples.size()) / static_cast<double>(count);
+    least *= kNearer * std::pow(part, 1.0 / dimension);
   }
-  return best;
+  return samples;
 }
 
 /// Evens out the distances between samples of some pieces.
@@ -92,8 +95,8 @@ std::vector<SamplePlace> point_places(const Matter& matter, double spacing, int 
     if (pieces.size() == 0) continue;
     const Darts darts = random_darts(pieces, random, pool);
     const int dimension = pieces.solid() ? 3 : 2;
-    const double count = wanted(matter.measure[at(dimension)], dimension, spacing);
-    std::vector<SamplePlace> samples = throw_about(matter, pieces, darts, spacing, count, pool);
+    const auto count = static_cast<std::size_t>(wanted(matter.measure[at(dimension)], dimension, spacing));
+    std::vector<SamplePlace> samples = throw_count(matter, pieces, darts, spacing, count, pool);
     relax(matter, pieces, samples, pool);
     all.insert(all.end(), samples.begin(), samples.end());
   }

@@ -129,9 +129,9 @@ TEST(BenchCases, TheSmallOnesHaveExactlyThePapersNumbers) {
   for (const BenchmarkCase& c : cases) {
     const Benchmark one{"one", "", "", 10000, {c}};
     const BenchmarkResult result = time_benchmark(one, {}, {pretended("cpu", 1, 1)}, [](const std::string&) {});
-    if (c.name.starts_with("table2_792_")) {  // 750 points in 792 frames
+    if (c.name.starts_with("table2_792_")) {  // 750 points in 792 frames, some of which no point needs
       ASSERT_EQ(result.skipped.size(), 1u);
-      EXPECT_EQ(result.skipped[0].reason.rfind("750 integration points cannot hold 792 frames", 0), 0u);
+      EXPECT_EQ(result.skipped[0].reason.rfind("750 integration points cannot hold", 0), 0u);
       continue;
     }
     ASSERT_EQ(result.rows.size(), 1u) << c.name;

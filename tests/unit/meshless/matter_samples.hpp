@@ -61,8 +61,8 @@ inline ThreadPool& one_thread() {
   return pool;
 }
 
-inline void add_solid(Matter& matter, const SolidDomain& domain, double piece_size) {
-  fascia::add_solid(matter, domain, piece_size, true, one_thread());
+inline void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, PieceUse use = PieceUse::frames) {
+  fascia::add_solid(matter, domain, piece_size, use, one_thread());
 }
 
 inline double volume_sum(const Matter& matter) {

@@ -116,6 +116,27 @@ TEST(BlockSearch, FindsTheNearestOfAll) {
     }
 }
 
+TEST(BlockSearch, AsksAroundPlaces) {
+  ThreadPool pool(2);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 6);
+  const auto some = [&](std::size_t count) {
+    std::vector<Vec3d> x(count);
+    for (Vec3d& p : x) p = {{uniform(random), uniform(random), uniform(random)}};
+    return x;
+  };
+  const std::vector<Vec3d> points = some(250), places = some(700);
+  const std::vector<Vec3d> around{{{0.4, 0, 0}}, {{-0.1, 0.2, 0.9}}, {{0, -1.5, 0}}};
+  std::vector<int> nearest(around.size() * places.size(), -1), of_one(places.size());
+  BlockSearch(places, 1, pool).nearest(points, nearest, pool, around);
+  for (std::size_t o = 0; o < around.size(); ++o) {
+    std::vector<Vec3d> moved = places;
+    for (Vec3d& x : moved) x += around[o];
+    BlockSearch(moved, 1, pool).nearest(points, of_one, pool);
+    for (std::size_t p = 0; p < places.size(); ++p) EXPECT_EQ(nearest[around.size() * p + o], of_one[p]);
+  }
+}
+
 /// Of no points, no places, places all at one point, and of places so far apart that blocks must be larger.
 TEST(BlockSearch, TakesAnyPlaces) {
   ThreadPool pool(1);
