@@ -17,7 +17,7 @@ namespace {
 
 /// Blocks of so many places cost least, but no wider than some spacings: larger ones have longer lists of points,
 /// smaller ones more lists.
-constexpr double kPlaces = 40, kNarrowest = 0.7, kWidest = 1.6;
+constexpr double kPlaces = 40, kNarrowest = 0.5, kWidest = 1.6;
 constexpr int kGrain = 64;  // blocks
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -60,14 +60,14 @@ Vec3d BlockSearch::Cells::middle(std::size_t number) const {
   return x;
 }
 
-BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPool& pool)
+BlockSearch::BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPool& pool, double asked)
     : blocks_({}, {}, 1, 1), spacing_(spacing), begin_(2, 0) {
   if (places.empty()) return;
   const Bounds bounds = bounds_of(places);
   const double most = std::max(1e6, 2.0 * static_cast<double>(places.size()));
   double volume = 1;  // of the box, in spacings; thin ones have places side by side
   for (int a = 0; a < 3; ++a) volume *= std::max(1.0, (bounds.high[a] - bounds.low[a]) / spacing);
-  const double edge = std::cbrt(kPlaces * volume / static_cast<double>(places.size()));
+  const double edge = std::cbrt(kPlaces * volume / (asked * static_cast<double>(places.size())));
   blocks_ = Cells(bounds.low, bounds.high, std::clamp(edge, kNarrowest, kWidest) * spacing, most);
   low_ = bounds.low;
   high_ = bounds.high;

@@ -16,7 +16,8 @@ namespace fascia {
 class BlockSearch {
  public:
   /// @param spacing  about the distance between points [m]
-  BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPool& pool);
+  /// @param asked    at how many offsets from each place nearest() is to ask
+  BlockSearch(std::span<const Vec3d> places, double spacing, ThreadPool& pool, double asked = 1);
 
   /// Finds the nearest point to each place, as many as there are places, of equals (kTie of point_grid.hpp) the first;
   /// −1 where there is none. The same for any number of threads.
