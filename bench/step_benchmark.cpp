@@ -46,12 +46,12 @@ PointSet frames_only(PointSet set) {
 
 /// The elements of one body alone.
 PointSet elements_only(PointSet set, const ModelBody& body) {
-  const auto keep = [](auto& blocks, int first, int count) {
-    blocks.erase(blocks.begin() + first + count, blocks.end());
-    blocks.erase(blocks.begin(), blocks.begin() + first);
+  const auto keep = [](auto& blocks, const BodyBlocks::Run& run) {
+    blocks.erase(blocks.begin() + run.end(), blocks.end());
+    blocks.erase(blocks.begin(), blocks.begin() + run.first);
   };
-  keep(set.shells, body.first_shell, body.shell_count);
-  keep(set.blocks, body.first_block, body.block_count);
+  keep(set.shells, body.blocks.shells);
+  keep(set.blocks, body.blocks.elements);
   set.springs.clear();
   set.dependents.clear();
   set.slot_begin = {0};
@@ -130,8 +130,8 @@ void measure_iteration(const Simulation& s, MechanicalSystem& system, const Stat
   fmt::print("bodies alone [ms]          gradient linearize  assemble\n");
   std::string meshless;
   for (const SimulatedBody& b : s.bodies) {
-    if (b.body->group_count > 0) meshless += (meshless.empty() ? "" : ", ") + b.name;
-    if (b.body->shell_count + b.body->block_count > 0)
+    if (b.body->blocks.groups.count > 0) meshless += (meshless.empty() ? "" : ", ") + b.name;
+    if (b.body->blocks.shells.count + b.body->blocks.elements.count > 0)
       print_body(b.name, measure(elements_only(s.model.points, *b.body), pool, state, dt, settings.tangent));
   }
   if (!meshless.empty()) print_body(meshless, measure(frames_only(s.model.points), pool, state, dt, settings.tangent));

@@ -28,11 +28,10 @@ void check_pieces(const Matter& matter, double piece_size, double more) {
 
 namespace {
 
-constexpr int kSubdivisions = 3;  // of a voxel at the surface, in each direction
-constexpr int kParts = kSubdivisions * kSubdivisions * kSubdivisions;
+constexpr int kMostTests = 6;  // of a voxel at the surface, in each direction
 
-/// Where fine test n lies along the x edge of a voxel; n / 3 and n / 9 give the places along y and z.
-constexpr double fine_place(int n) { return (n % kSubdivisions + 0.5) / kSubdivisions; }
+/// Whether tests of a voxel are inside, by x, y and z; of some directions fewer than there is room for.
+using Tests = std::array<char, kMostTests * kMostTests * kMostTests>;
 
 /// A whole number of equal cells a direction, so that a box is filled exactly.
 class VoxelGrid {
@@ -103,44 +102,63 @@ std::vector<char> cut_voxels(const VoxelGrid& grid, const std::vector<char>& ins
   return cut;
 }
 
-/// The part of a voxel inside of a solid, in fine tests: whole numbers, whose sum is exact.
+/// The part of a voxel or of its eighth inside of a solid, in tests: whole numbers, whose sum is exact.
 struct VoxelPart {
-  Vec3d x{};  ///< its centroid, or where that is outside the test next to it
+  Vec3d x{};  ///< its centroid; of a voxel, where that is outside, the test next to it
   int tests = 0;
 };
 
 /// What a row of voxels has inside of a solid.
 struct VoxelRow {
   std::vector<VoxelPart> parts;
-  std::vector<Vec3d> tests;  ///< of the parts of voxels that are not whole, one after the other
+  std::vector<VoxelPart> eighths;  ///< of the voxels that are not whole, one after the other
 };
 
-/// @param inside  of the voxel's fine tests
-void add_part(VoxelRow& row, const VoxelGrid& grid, int i, int j, int k, const std::array<char, kParts>& inside,
+/// Calls act(number, i, j, k) for the tests of a voxel.
+template <class Act>
+void for_tests(int along, const Act& act) {
+  int n = 0;
+  for (int k = 0; k < along; ++k)
+    for (int j = 0; j < along; ++j)
+      for (int i = 0; i < along; ++i) act(at(n++), i, j, k);
+}
+
+/// @param along   tests in each direction
+/// @param inside  of the voxel's tests
+void add_part(VoxelRow& row, const VoxelGrid& grid, const std::array<int, 3>& voxel, int along, const Tests& inside,
               const std::function<bool(const Vec3d&)>& contains) {
-  const std::size_t first = row.tests.size();
-  Vec3d sum{};
-  for (int n = 0; n < kParts; ++n) {
-    if (inside[at(n)] == 0) continue;
-    row.tests.push_back(grid.place(i, j, k, fine_place(n), fine_place(n / kSubdivisions),
-                                   fine_place(n / (kSubdivisions * kSubdivisions))));
-    sum += row.tests.back();
+  const auto place = [&](int i, int j, int k) {
+    const double step = 1.0 / along;
+    return grid.place(voxel[0], voxel[1], voxel[2], (i + 0.5) * step, (j + 0.5) * step, (k + 0.5) * step);
+  };
+  std::array<VoxelPart, 8> eighths;  // sums
+  for_tests(along, [&](std::size_t n, int i, int j, int k) {
+    if (inside[n] == 0) return;
+    VoxelPart& part = eighths[at(2 * i / along + 2 * (2 * j / along) + 4 * (2 * k / along))];
+    part.x += place(i, j, k);
+    ++part.tests;
+  });
+  VoxelPart all;
+  for (const VoxelPart& part : eighths) {
+    all.x += part.x;
+    all.tests += part.tests;
   }
-  const std::size_t count = row.tests.size() - first;
-  if (count == 0) return;
-  const Vec3d centroid = sum * (1.0 / static_cast<double>(count));
-  VoxelPart part{centroid, static_cast<int>(count)};
+  if (all.tests == 0) return;
+  const Vec3d centroid = all.x = all.x * (1.0 / all.tests);
   if (!contains(centroid)) {
     double least = std::numeric_limits<double>::max();
-    for (std::size_t n = first; n < row.tests.size(); ++n) {
-      const double squared = squared_norm(row.tests[n] - centroid);
-      if (squared >= least * (1 - kTie)) continue;
+    for_tests(along, [&](std::size_t n, int i, int j, int k) {
+      const Vec3d x = place(i, j, k);
+      const double squared = squared_norm(x - centroid);
+      if (inside[n] == 0 || squared >= least * (1 - kTie)) return;
       least = squared;
-      part.x = row.tests[n];
-    }
+      all.x = x;
+    });
   }
-  if (part.tests == kParts) row.tests.resize(first);
-  row.parts.push_back(part);
+  row.parts.push_back(all);
+  if (all.tests == along * along * along) return;
+  for (const VoxelPart& part : eighths)
+    if (part.tests > 0) row.eighths.push_back({part.x * (1.0 / part.tests), part.tests});
 }
 
 void contains_on_line(const SolidDomain& domain, double y, double z, std::span<const double> x,
@@ -161,27 +179,26 @@ std::vector<char> inner_voxels(const VoxelGrid& grid, const SolidDomain& domain,
   return inside;
 }
 
-/// The fine tests of some voxels of a row, line by line along x.
-std::vector<std::array<char, kParts>> fine_tests(const VoxelGrid& grid, const SolidDomain& domain,
-                                                 std::span<const int> voxels, int j, int k) {
-  std::vector<std::array<char, kParts>> tests(voxels.size());
+/// The tests of some voxels of a row, line by line along x.
+std::vector<Tests> tests_of(const VoxelGrid& grid, const SolidDomain& domain, std::span<const int> voxels, int along,
+                            int j, int k) {
+  std::vector<Tests> tests(voxels.size());
   if (voxels.empty()) return tests;
   std::vector<double> x;
   for (const int i : voxels)
-    for (int n = 0; n < kSubdivisions; ++n) x.push_back(grid.place(i, j, k, fine_place(n))[0]);
+    for (int n = 0; n < along; ++n) x.push_back(grid.place(i, j, k, (n + 0.5) / along)[0]);
   std::vector<char> inside(x.size());
-  for (int line = 0; line < kSubdivisions * kSubdivisions; ++line) {
-    const Vec3d first = grid.place(0, j, k, 0.5, fine_place(line), fine_place(line / kSubdivisions));
+  for (int line = 0; line < along * along; ++line) {
+    const Vec3d first = grid.place(0, j, k, 0.5, (line % along + 0.5) / along, (line / along + 0.5) / along);
     contains_on_line(domain, first[1], first[2], x, inside);
-    for (std::size_t m = 0; m < x.size(); ++m)
-      tests[m / kSubdivisions][at(line * kSubdivisions) + m % kSubdivisions] = inside[m];
+    for (std::size_t m = 0; m < x.size(); ++m) tests[m / at(along)][at(line * along) + m % at(along)] = inside[m];
   }
   return tests;
 }
 
-/// The voxels of a domain that is not a box, by row.
+/// The voxels of a domain that is not a box, by row. @param along  tests of a voxel at the surface in each direction
 std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, const SolidDomain& domain, std::span<const Vec3d> surface,
-                                 ThreadPool& pool) {
+                                 int along, ThreadPool& pool) {
   const std::vector<char> inside = inner_voxels(grid, domain, pool), cut = cut_voxels(grid, inside, surface, pool);
   const int length = grid.count()[0];
   std::vector<VoxelRow> rows(grid.size() / at(length));
@@ -190,7 +207,7 @@ std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, const SolidDomain& domai
     std::vector<int> at_surface;
     for (int i = 0; i < length; ++i)
       if (cut[begin + at(i)] != 0) at_surface.push_back(i);
-    const std::vector<std::array<char, kParts>> tests = fine_tests(grid, domain, at_surface, j, k);
+    const std::vector<Tests> tests = tests_of(grid, domain, at_surface, along, j, k);
     VoxelRow& row = rows[begin / at(length)];
     std::size_t taken = 0;
     for (int i = 0; i < length; ++i) taken += cut[begin + at(i)] != 0 || inside[begin + at(i)] != 0 ? 1 : 0;
@@ -198,52 +215,53 @@ std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, const SolidDomain& domai
     std::size_t next = 0;
     for (int i = 0; i < length; ++i) {
       if (cut[begin + at(i)] != 0)
-        add_part(row, grid, i, j, k, tests[next++], domain.contains);
+        add_part(row, grid, {i, j, k}, along, tests[next++], domain.contains);
       else if (inside[begin + at(i)] != 0)
-        row.parts.push_back({grid.place(i, j, k), kParts});
+        row.parts.push_back({grid.place(i, j, k), along * along * along});
     }
   });
   return rows;
 }
 
 /// The voxels of a box, by row.
-std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, ThreadPool& pool) {
+std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, int along, ThreadPool& pool) {
   const int length = grid.count()[0];
   std::vector<VoxelRow> rows(grid.size() / at(length));
   grid.for_each_row(pool, [&](int j, int k) {
     VoxelRow& row = rows[grid.number(0, j, k) / at(length)];
     row.parts.reserve(at(length));
-    for (int i = 0; i < length; ++i) row.parts.push_back({grid.place(i, j, k), kParts});
+    for (int i = 0; i < length; ++i) row.parts.push_back({grid.place(i, j, k), along * along * along});
   });
   return rows;
 }
 
-/// @param test_volume  of one fine test
-void take_voxels(Matter& matter, std::span<const VoxelRow> rows, double test_volume, bool with_parts) {
-  std::size_t count = 0, tests = 0;
+/// @param whole        tests of a whole voxel
+/// @param test_volume  of one test [m³]
+void take_voxels(Matter& matter, std::span<const VoxelRow> rows, int whole, double test_volume, bool with_eighths) {
+  std::size_t count = 0, eighths = 0;
   for (const VoxelRow& row : rows) {
     count += row.parts.size();
-    tests += row.tests.size();
+    eighths += row.eighths.size();
   }
-  const auto add = [](VoxelPieces& pieces, const Vec3d& x, double volume) {
-    pieces.x.push_back(x);
-    pieces.volume.push_back(volume);
+  const auto add = [&](VoxelPieces& pieces, const VoxelPart& part) {
+    pieces.x.push_back(part.x);
+    pieces.volume.push_back(part.tests * test_volume);
   };
   const auto reserve = [](VoxelPieces& pieces, std::size_t size) {
     pieces.x.reserve(size);
     pieces.volume.reserve(size);
   };
   reserve(matter.voxels, count);
-  for (const bool whole : {true, false}) {
+  for (const bool wanted : {true, false}) {
     for (const VoxelRow& row : rows)
       for (const VoxelPart& part : row.parts)
-        if ((part.tests == kParts) == whole) add(matter.voxels, part.x, part.tests * test_volume);
-    if (whole) matter.whole_voxels = matter.voxels.size();
+        if ((part.tests == whole) == wanted) add(matter.voxels, part);
+    if (wanted) matter.whole_voxels = matter.voxels.size();
   }
-  if (!with_parts) return;
-  reserve(matter.surface_parts, tests);
+  if (!with_eighths) return;
+  reserve(matter.surface_parts, eighths);
   for (const VoxelRow& row : rows)
-    for (const Vec3d& x : row.tests) add(matter.surface_parts, x, test_volume);
+    for (const VoxelPart& part : row.eighths) add(matter.surface_parts, part);
 }
 
 /// Small parts of a surface.
@@ -288,20 +306,22 @@ void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, Pie
   if (frames || domain.contains) surface = surface_parts(domain.surface, piece_size);
   if (frames) add_faces(matter, domain.surface, surface);
 
+  // Pieces for points are up to twice as wide as those for frames, and shares want to know the surface well.
+  const int along = frames ? kMostTests / 2 : kMostTests;
   std::vector<VoxelRow> rows;
   if (domain.contains) {
     std::vector<Vec3d> places;
     places.reserve(surface.size());
     for (const TrianglePart& p : surface) places.push_back(p.x);
-    rows = voxel_rows(grid, domain, places, pool);
+    rows = voxel_rows(grid, domain, places, along, pool);
   } else {
-    rows = voxel_rows(grid, pool);
+    rows = voxel_rows(grid, along, pool);
   }
   double tests = 0;
   for (const VoxelRow& row : rows)
     for (const VoxelPart& part : row.parts) tests += part.tests;
   if (!(tests > 0)) throw InputError("no piece of the sampling falls inside the domain; use a smaller spacing");
-  take_voxels(matter, rows, domain.volume / tests, !frames);
+  take_voxels(matter, rows, along * along * along, domain.volume / tests, !frames);
   matter.voxel_edges = grid.cell();
   matter.measure[3] += domain.volume;
   matter.volume += domain.volume;

@@ -45,7 +45,7 @@ struct Matter {
   VoxelPieces voxels;  ///< of a solid, whole ones first
   std::size_t whole_voxels = 0;
   Vec3d voxel_edges{};              ///< [m]
-  VoxelPieces surface_parts;        ///< what voxels that are not whole consist of; for points only
+  VoxelPieces surface_parts;        ///< eighths of the voxels that are not whole; for points only
   std::vector<MatterPiece> pieces;  ///< of sheets and lines; of solids corners and faces
   std::array<double, 4> measure{};  ///< by dimension: length, area and volume of what has a volume [m, m², m³]
   std::vector<FeatureChain> chains;

@@ -26,7 +26,7 @@ double percentile(std::vector<double> values, double part) {
 }
 
 /// Its integration points are none of elements or triangles.
-bool has_points_alone(const SimulatedBody& b) { return b.body->group_count > 0; }
+bool has_points_alone(const SimulatedBody& b) { return b.body->blocks.groups.count > 0; }
 
 /// What a measurement says of the model. Points are those of meshless bodies, or of elements where there are none;
 /// neighbours are those of a few hundred points of each body.

@@ -1,6 +1,7 @@
 #include "app/results/coupling_report.hpp"
 
 #include "assembly/simulation/mechanisms.hpp"
+#include "assembly/simulation/places.hpp"
 #include "core/base/index.hpp"
 #include "core/executor/point_executor.hpp"
 #include "core/executor/spring_executor.hpp"
@@ -63,21 +64,13 @@ nlohmann::ordered_json entry(const Wrench& w, double gap, double energy) {
 }
 
 /// The body whose own node it is.
-std::size_t owner_of(const Simulation& s, int node) {
-  return static_cast<std::size_t>(std::find_if(s.bodies.begin(), s.bodies.end(),
-                                               [&](const SimulatedBody& b) {
-                                                 return node >= b.body->first_node() &&
-                                                        node < b.body->first_node() + b.body->node_count();
-                                               }) -
-                                  s.bodies.begin());
-}
+std::size_t owner_of(const Simulation& s, int node) { return at(body_of_node(s, node)); }
 
 /// What a body's points do on a node that it shares, with the weight and the mass damping of its matter there.
 Wrench pull_on(const Simulation& s, const SimulatedBody& tissue, const ReachedForces& acting, const State& state,
                std::size_t shared) {
   const int node = tissue.body->shared_nodes()[shared];
-  const auto f =
-      sum_of_groups(s.model.points, acting.slot_sums, tissue.body->first_group, tissue.body->group_count, node);
+  const auto f = sum_of_groups(s.model.points, acting.slot_sums, tissue.body->blocks.groups, node);
   Wrench w;
   const Mat3d Q = Mat3d::identity() + state.D[at(node)];
   const bool turns = s.model.kind(node) != FrameKind::vertex;
@@ -96,8 +89,7 @@ double gap_at(const Simulation& s, const SimulatedBody& tissue, const State& sta
 nlohmann::ordered_json report_tissue(const Simulation& s, const SimulatedBody& b, const ReachedForces& acting,
                                      const State& state) {
   double energy = 0, gap = 0;
-  for (int g = b.body->first_group; g < b.body->first_group + b.body->group_count; ++g)
-    energy += acting.energies.groups[at(g)];
+  acting.energies.for_each(b.body->blocks, [&](double elastic, double) { energy += elastic; });
   std::map<std::size_t, std::pair<Wrench, int>> partners;
   std::map<std::size_t, double> gaps;
   const std::vector<DependentNode>& dependents = s.model.points.dependents;

@@ -3,6 +3,8 @@
 #include "assembly/simulation/simulation.hpp"
 #include "core/base/index.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -178,6 +180,11 @@ int add_tethers(Simulation& s, PointSetBuilder& points, int body, const Constrai
     for (int k = 0; k < 3 && arm > 0; ++k)
       if (c.fixed[at(3 + k)]) add_direction(s, known.rotation, c.axes.row(k), motion, true, X, c);
     const Attachment field = b.body->attach(X);
+    if (field.nodes.empty())
+      throw SceneError(
+          {{c.place, fmt::format("holds material at ({:.4g}, {:.4g}, {:.4g}) that no frame of body \"{}\" moves, "
+                                 "since no integration point lies there; give the body more points or frames",
+                                 X[0], X[1], X[2], s.scene.bodies[at(body)].name)}});
     if (!axes.empty()) builder.add(X, {}, field, shape, axes);
     if (arm > 0) add_rotation_tethers(builder, c, X, field, arm);
   }

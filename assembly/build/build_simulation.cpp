@@ -174,15 +174,8 @@ Simulation build_simulation(Scene scene, const SampleStore* store) {
   PointSetBuilder points;
   s.bodies.resize(s.scene.bodies.size());
   for (const std::size_t index : build_order(s.scene)) {
-    const int group = points.group_count(), block = points.block_count(), shell = points.shell_count();
     s.bodies[index] = built_body(s, s.scene.bodies[index], points, store);
-    ModelBody& body = *s.bodies[index].body;
-    body.first_group = group;
-    body.group_count = points.group_count() - group;
-    body.first_block = block;
-    body.block_count = points.block_count() - block;
-    body.first_shell = shell;
-    body.shell_count = points.shell_count() - shell;
+    s.bodies[index].body->blocks = points.take_body();
   }
   SceneErrors errors;
   errors.gather([&] { add_constraints(s, points); });

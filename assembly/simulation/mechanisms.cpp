@@ -58,18 +58,13 @@ class Finder {
   void find_pieces(int index) {
     const SimulatedBody& b = s_.bodies[at(index)];
     if (s_.scene.bodies[at(index)].model == BodyModel::surface) return;
-    const PointSet& set = s_.model.points;
     DisjointSets sets(static_cast<int>(b.nodes.size()));
     std::vector<char> turns(b.nodes.size(), b.vertices ? 0 : 1);
     const auto join = [&](const auto& nodes) {
       for (const int node : nodes)
         sets.join(static_cast<int>(b.index_of(nodes[0])), static_cast<int>(b.index_of(node)));
     };
-    for (int g = b.body->first_group; g < b.body->first_group + b.body->group_count; ++g) join(set.nodes(g));
-    for (int k = b.body->first_block; k < b.body->first_block + b.body->block_count; ++k)
-      set.blocks[at(k)].for_each_element(join);
-    for (int k = b.body->first_shell; k < b.body->first_shell + b.body->shell_count; ++k)
-      for (int e = 0; e < set.shells[at(k)].count; ++e) join(set.shells[at(k)].element(e));
+    s_.model.points.for_each_joined(b.body->blocks, join);
     std::map<int, int> piece_of_root;
     for (std::size_t i = 0; i < b.nodes.size(); ++i) {
       const int root = sets.root(static_cast<int>(i));

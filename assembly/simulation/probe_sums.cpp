@@ -85,14 +85,10 @@ Energies energies(const Simulation& s, const ResolvedProbe& probe, const ProbedS
     if (probe.body >= 0 && static_cast<std::size_t>(probe.body) != b) continue;
     const ModelBody& body = *s.bodies[b].body;
     const double part = part_of_energy(body, probe, *snap.state);
-    for (int g = body.first_group; g < body.first_group + body.group_count; ++g) {
-      e.elastic += part * of.groups[at(g)];
-      e.stabilization += part * of.stabilization[at(g)];
-    }
-    for (int block = body.first_block; block < body.first_block + body.block_count; ++block)
-      e.elastic += part * of.blocks[at(block)];
-    for (int shell = body.first_shell; shell < body.first_shell + body.shell_count; ++shell)
-      e.elastic += part * of.shells[at(shell)];
+    of.for_each(body.blocks, [&](double elastic, double stabilization) {
+      e.elastic += part * elastic;
+      e.stabilization += part * stabilization;
+    });
   }
   for (const auto& [group, part] : tether_groups(s, probe)) e.stabilization += part * of.stabilization[at(group)];
   const std::vector<Spring>& springs = s.model.points.springs;

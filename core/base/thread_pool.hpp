@@ -28,10 +28,10 @@ class ThreadPool {
   template <class Work>
   void for_chunks(int chunks, const Work& work) {
     if (chunks <= 1 || size_ == 1) {
-      for (int c = 0; c < chunks; ++c) work(c);
+      for (int c = 0; c < chunks; ++c) call<Work>(&work, c);
       return;
     }
-    run(chunks, &work, [](const void* w, int c) { (*static_cast<const Work*>(w))(c); });
+    run(chunks, &work, call<Work>);
   }
 
   /// Calls work(begin, end) for consecutive ranges of at most `grain` items.
@@ -45,6 +45,14 @@ class ThreadPool {
 
  private:
   using Call = void (*)(const void*, int);
+
+  /// One copy for one thread and for many: of two, the compiler may round one otherwise, as where it chooses which
+  /// product of a b + c d it fuses with the sum.
+  template <class Work>
+  [[gnu::noinline]] static void call(const void* work, int chunk) {
+    (*static_cast<const Work*>(work))(chunk);
+  }
+
   static constexpr int kLine = 64;  ///< bytes that processors pass to one another at once
 
   /// Says which consecutive chunks of the loop under way one thread begins with.

@@ -184,7 +184,7 @@ void ModelBody::find_memories(const PointSet& set) {
 
 void ModelBody::find_lanes_of_points(const PointSet& set) {
   std::vector<std::size_t> since_volumetric;
-  for (std::size_t lane = at(first_group) * kGroupSize; lane < at(first_group + group_count) * kGroupSize; ++lane) {
+  for (std::size_t lane = at(blocks.groups.first) * kGroupSize; lane < at(blocks.groups.end()) * kGroupSize; ++lane) {
     const int source = set.source[lane];
     if (source >= 0) {
       memory_lane_[at(source)] = lane;
@@ -199,18 +199,18 @@ void ModelBody::find_lanes_of_points(const PointSet& set) {
 
 void ModelBody::find_lanes_of_elements(const PointSet& set) {
   const std::vector<std::size_t>& begin = set.memory.begin;  // of the groups of points, of elements, of shells
-  for (int b = first_block; b < first_block + block_count; ++b) {
-    const ElementBlock& block = set.blocks[at(b)];
+  blocks.elements.for_each([&](std::size_t b) {
+    const ElementBlock& block = set.blocks[b];
     for (int e = 0; e < block.count && !block.beside.empty(); ++e)
       for (int q = 0; q < block.points; ++q)
         memory_lane_[at(block.source[at(e)] * block.points + q)] =
-            begin[at(1 + b)] + at((e / kElementLanes * block.points + q) * kElementLanes + e % kElementLanes);
-  }
-  for (int b = first_shell; b < first_shell + shell_count; ++b) {
-    const ShellBlock& shell = set.shells[at(b)];
+            begin[1 + b] + at((e / kElementLanes * block.points + q) * kElementLanes + e % kElementLanes);
+  });
+  blocks.shells.for_each([&](std::size_t b) {
+    const ShellBlock& shell = set.shells[b];
     for (int t = 0; t < shell.count && !shell.viscosity.empty(); ++t)
-      memory_lane_[at(shell.source[at(t)])] = begin[1 + set.blocks.size() + at(b)] + ShellBlock::memory_lane(t);
-  }
+      memory_lane_[at(shell.source[at(t)])] = begin[1 + set.blocks.size() + b] + ShellBlock::memory_lane(t);
+  });
 }
 
 Mat3d ModelBody::strain_at(const Attachment& place, const State& state) const {

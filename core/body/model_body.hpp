@@ -119,10 +119,8 @@ class ModelBody {
   const std::vector<std::array<int, 2>>& segments() const { return segments_; }
   const std::vector<std::string>& messages() const { return messages_; }  ///< what a user should mind
   const std::vector<std::string>& choices() const { return choices_; }    ///< what was chosen for it, and why
-  int first_group = 0, group_count = 0;  ///< in the model's point set; set by who closes the set
-  int first_block = 0, block_count = 0;  ///< of elements, likewise
-  int first_shell = 0, shell_count = 0;  ///< blocks of shells, likewise
-  /// Finds where a state has what its points remember of stresses. Once the set is closed and the ranges are known.
+  BodyBlocks blocks;  ///< in the model's point set; set by who closes the set
+  /// Finds where a state has what its points remember of stresses. Once the set is closed and the blocks are known.
   void find_memories(const PointSet& set);
   const std::vector<BodyGroup>& groups() const { return groups_; }
   const BodyCells& cells() const { return cells_; }

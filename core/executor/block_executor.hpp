@@ -34,6 +34,14 @@ struct InternalEnergy {
 /// stabilisation of groups [J].
 struct BlockEnergies {
   std::vector<double> groups, stabilization, blocks, shells, user_blocks, springs;
+
+  /// Calls act(elastic energy, stabilisation) for each group, block of elements and shell of a body.
+  template <class Act>
+  void for_each(const BodyBlocks& of, const Act& act) const {
+    of.groups.for_each([&](std::size_t g) { act(groups[g], stabilization[g]); });
+    of.elements.for_each([&](std::size_t b) { act(blocks[b], 0.0); });
+    of.shells.for_each([&](std::size_t b) { act(shells[b], 0.0); });
+  }
 };
 
 /// An assembly must fill all entries, or at least those of the diagonal.

@@ -132,8 +132,8 @@ void PointExecutor::store_slot_sums(const BlockState& state, std::vector<double>
   });
 }
 
-NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, int first, int count, int node) {
-  const int begin = set.slot_begin[at(first)], end = set.slot_begin[at(first + count)];
+NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, const BodyBlocks::Run& groups, int node) {
+  const int begin = set.slot_begin[at(groups.first)], end = set.slot_begin[at(groups.end())];
   NodeSum sum;
   for (int k = set.node_slot_begin[at(node)]; k < set.node_slot_begin[at(node + 1)]; ++k) {
     const int slot = set.node_slot[at(k)];

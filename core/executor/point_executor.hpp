@@ -21,7 +21,7 @@ struct PointTie;
 Vec3d tether_stretch(const PointSet& set, std::span<const double> targets, const Tether& tether, const State& state);
 Vec3d tether_force(const PointSet& set, std::span<const double> targets, const Tether& tether, const State& state);
 /// Sums what a range of groups gave a node. @param slot_sums  (slots × 12): Σ v P g (3), Σ v (P Bᵀ + w Y) (9)
-NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, int first, int count, int node);
+NodeSum sum_of_groups(const PointSet& set, std::span<const double> slot_sums, const BodyBlocks::Run& groups, int node);
 
 /// Computes the groups of points of a set at a state, as CpuExecutor asks for it: one pass over groups, whose sums by
 /// frame the nodes gather.

@@ -18,7 +18,9 @@
 namespace fascia {
 
 PointSetBuilder::PointSetBuilder(PointSet&& set)
-    : set_(std::move(set)), group_length_(std::move(set_.group_length)), joints_(std::move(set_.joints)) {}
+    : set_(std::move(set)), group_length_(std::move(set_.group_length)), joints_(std::move(set_.joints)) {
+  take_body();
+}
 
 void PointSetBuilder::add_points(std::span<const int> nodes, std::span<const PointSample> points, double length,
                                  const PointRule& rule) {
@@ -149,6 +151,15 @@ void PointSetBuilder::add_spring(const Spring& spring) { set_.springs.push_back(
 void PointSetBuilder::add_dependent(DependentNode node) { set_.dependents.push_back(std::move(node)); }
 
 void PointSetBuilder::join(std::vector<int> nodes, double length) { joints_.push_back({std::move(nodes), length}); }
+
+BodyBlocks PointSetBuilder::take_body() {
+  const auto since = [](const BodyBlocks::Run& before, std::size_t size) {
+    return BodyBlocks::Run{before.end(), static_cast<int>(size) - before.end()};
+  };
+  taken_ = {since(taken_.groups, static_cast<std::size_t>(set_.group_count())),
+            since(taken_.elements, set_.blocks.size()), since(taken_.shells, set_.shells.size())};
+  return taken_;
+}
 
 void PointSetBuilder::add_user_block(std::shared_ptr<const UserBlock> block) {
   if (!block) throw InputError("a user block is missing; give one");

@@ -55,6 +55,20 @@ struct Joint {
   double length = 0;  ///< converts torques to forces where residuals are judged and nothing else has a length [m]
 };
 
+/// What of a set belongs to one body: runs of groups of points, of blocks of elements and of shells.
+struct BodyBlocks {
+  struct Run {
+    int first = 0, count = 0;
+
+    int end() const { return first + count; }
+    template <class Act>
+    void for_each(const Act& act) const {
+      for (int k = first; k < end(); ++k) act(static_cast<std::size_t>(k));
+    }
+  };
+  Run groups, elements, shells;
+};
+
 /// All integration points of a model: in groups of eight that share their frames (array of structures of arrays), and
 /// in finite elements. Unused lanes repeat the group's last point with volume 0.
 struct PointSet {
@@ -95,6 +109,16 @@ struct PointSet {
   std::vector<double> group_length;  ///< (groups) spacing of the frames [m]
   std::vector<Joint> joints;
   std::vector<DependentNode> dependents;  ///< each behind those of its hosts that depend on others
+
+  /// Calls act(nodes) for each group of points, element and shell of a body.
+  template <class Act>
+  void for_each_joined(const BodyBlocks& of, const Act& act) const {
+    of.groups.for_each([&](std::size_t g) { act(nodes(static_cast<int>(g))); });
+    of.elements.for_each([&](std::size_t b) { blocks[b].for_each_element(act); });
+    of.shells.for_each([&](std::size_t b) {
+      for (int e = 0; e < shells[b].count; ++e) act(shells[b].element(e));
+    });
+  }
 
   int node_count() const { return dofs.node_count(); }
   int group_count() const { return static_cast<int>(slot_begin.size()) - 1; }
@@ -142,11 +166,7 @@ class PointSetBuilder {
 
   void add_elements(ElementBlock block);
 
-  int block_count() const { return static_cast<int>(set_.blocks.size()); }
-
   void add_shell(ShellBlock shell);
-
-  int shell_count() const { return static_cast<int>(set_.shells.size()); }
 
   void add_user_block(std::shared_ptr<const UserBlock> block);
 
@@ -159,6 +179,9 @@ class PointSetBuilder {
 
   void join(std::vector<int> nodes, double length);
 
+  /// What was added since this was asked before: that of a body which was built meanwhile.
+  BodyBlocks take_body();
+
   /// @throws InputError  where a user block names a node that there is not
   PointSet finish(std::vector<FrameKind> frames) &&;
 
@@ -170,6 +193,7 @@ class PointSetBuilder {
   void add_own_constants(std::span<const PointSample> points, GroupRule& group);
   void add_beside(std::span<const PointSample> points, const PointRule& rule);
   PointSet set_;
+  BodyBlocks taken_;                  ///< the last that was taken
   std::vector<double> group_length_;  ///< spacing of the frames [m]
   std::vector<Joint> joints_;
 };

@@ -91,9 +91,10 @@ Darts random_darts(const PieceList& pieces, std::mt19937& random, ThreadPool& po
 /// @param meets    whether a dart of a piece meets a sample: meets(piece of the list, sample, squared distance); all
 ///                 threads ask, and it does not throw
 /// @param add      takes a place, and tells whether more are wanted
+/// @returns        how many darts were thrown
 template <class Meets, class Add>
-void throw_darts(const Matter& matter, const PieceList& pieces, const Darts& darts, ThreadPool& pool,
-                 const PointGrid& grid, double radius, const Meets& meets, Add&& add) {
+std::size_t throw_darts(const Matter& matter, const PieceList& pieces, const Darts& darts, ThreadPool& pool,
+                        const PointGrid& grid, double radius, const Meets& meets, Add&& add) {
   constexpr std::size_t kFirst = 2048;
   constexpr int kGrain = 4096;
   constexpr std::size_t kFew = 32;  // all pieces are looked through where at least one in so many has its turn
@@ -146,9 +147,10 @@ void throw_darts(const Matter& matter, const PieceList& pieces, const Darts& dar
         place.x = x;
       else if (place.x != x && met(piece, place.x, -1) >= 0)
         continue;
-      if (!add(place)) return;
+      if (!add(place)) return at(darts.turn[piece]) + 1;
     }
   }
+  return darts.size();
 }
 
 /// Into how many equal intervals a chain is divided: at least one, three of a closed one.

@@ -12,42 +12,58 @@ constexpr int kRounds = 4;  // of relaxation
 /// Mean spacing over least distance of a saturated random sample without boundary, by dimension.
 constexpr std::array<double, 4> kSaturated{1, 1.338, 1.198, 1.109};
 /// How many of the samples of a saturated one so many darts for each give, and some to spare.
-double part_that_fits(double darts) { return 0.96 * (1 - 0.7 * std::pow(darts, -0.43)); }
+double part_that_fits(double darts) { return 0.96 * (1 - 0.7 * std::pow(std::max(darts, 1.0), -0.43)); }
 
 double wanted(double measure, int dimension, double spacing) {
   return measure > 0 ? std::max(1.0, rounded(measure / std::pow(spacing, dimension))) : 0;
 }
 
-/// Random places at least so far from one another, until there are enough or no more fit.
-std::vector<SamplePlace> throw_at(const Matter& matter, const PieceList& pieces, const Darts& darts, double least,
-                                  std::size_t enough, ThreadPool& pool) {
+struct Throw {
   std::vector<SamplePlace> samples;
+  double darts = 0;  ///< that were thrown
+};
+
+/// Random places at least so far from one another, until there are enough or no more fit.
+Throw throw_at(const Matter& matter, const PieceList& pieces, const Darts& darts, double least, std::size_t enough,
+               ThreadPool& pool) {
+  Throw thrown;
   PointGrid grid(least * (1 + kTie));  // what meets but for rounding is in the cells around
   const auto meets = [&](std::size_t n, int i, double) {
-    return pieces.solid() || alike(samples[at(i)], pieces.thin(n));
+    return pieces.solid() || alike(thrown.samples[at(i)], pieces.thin(n));
   };
-  throw_darts(matter, pieces, darts, pool, grid, least, meets, [&](const SamplePlace& place) {
-    samples.push_back(place);
-    grid.insert(place.x);
-    return samples.size() < enough;
-  });
-  return samples;
+  thrown.darts =
+      static_cast<double>(throw_darts(matter, pieces, darts, pool, grid, least, meets, [&](const SamplePlace& place) {
+        thrown.samples.push_back(place);
+        grid.insert(place.x);
+        return thrown.samples.size() < enough;
+      }));
+  return thrown;
 }
 
-/// As many places as wanted where they fit. More would fit at most places, since samples gather at the boundary; where
-/// fewer do, they may come nearer to one another.
+/// As many places as wanted where they fit. More than the spacing says fit where matter is thin, since samples gather
+/// at the boundary: few darts are needed then, and places are uneven, so they are thrown at a larger distance. Where
+/// fewer fit they may come nearer to one another.
 std::vector<SamplePlace> throw_count(const Matter& matter, const PieceList& pieces, const Darts& darts, double spacing,
                                      std::size_t count, ThreadPool& pool) {
-  constexpr double kNearer = 0.98;
-  constexpr int kMostTrials = 8;
+  constexpr double kNearer = 0.98, kFarther = 1.1, kMuchFarther = 1.4;
+  constexpr double kEarly = 0.25, kVeryEarly = 3;  // of all darts; darts a sample
+  constexpr int kMostTrials = 12;
   const int dimension = pieces.solid() ? 3 : 2;
-  const double darts_each = static_cast<double>(darts.size()) / static_cast<double>(count);
-  double least = spacing / kSaturated[at(dimension)] * std::pow(part_that_fits(darts_each), 1.0 / dimension);
+  const double all = static_cast<double>(darts.size()), each = all / static_cast<double>(count);
+  double least = spacing / kSaturated[at(dimension)] * std::pow(part_that_fits(each), 1.0 / dimension);
   std::vector<SamplePlace> samples;
-  for (int trial = 0; trial < kMostTrials && samples.size() < count; ++trial) {
-    samples = throw_at(matter, pieces, darts, least, count, pool);
-    const double part = static_cast<double>(samples.size()) / static_cast<double>(count);
-    least *= kNearer * std::pow(part, 1.0 / dimension);
+  bool short_of = false;
+  for (int trial = 0; trial < kMostTrials; ++trial) {
+    Throw thrown = throw_at(matter, pieces, darts, least, count, pool);
+    const double found = static_cast<double>(thrown.samples.size());
+    if (thrown.samples.size() >= samples.size()) samples = std::move(thrown.samples);
+    if (found >= static_cast<double>(count)) {
+      if (short_of || thrown.darts > kEarly * all) break;
+      least *= thrown.darts < kVeryEarly * found ? kMuchFarther : kFarther;
+    } else {
+      short_of = true;
+      least *= kNearer * std::pow(found / static_cast<double>(count), 1.0 / dimension);
+    }
   }
   return samples;
 }

@@ -103,7 +103,8 @@ void share_solid(const Matter& matter, std::span<const SamplePlace> samples, std
   const auto share = [&](std::span<const Vec3d> x, std::span<const double> volume, std::span<const Vec3d> around) {
     const std::size_t parts = around.size();
     RawArray<int> owner(parts * x.size());
-    BlockSearch(x, spacing_in_solids(matter, in_solid.size()), pool, static_cast<double>(parts)).nearest(places, owner.span(), pool, around);
+    BlockSearch(x, spacing_in_solids(matter, in_solid.size()), pool, static_cast<double>(parts))
+        .nearest(places, owner.span(), pool, around);
     OwnedPieces(owner.span(), places.size()).for_each(pool, [&](std::size_t n, std::size_t own) {
       const std::size_t p = n / parts;
       give(shares[at(in_solid[own])], x[p] + around[n % parts], volume[p] / static_cast<double>(parts));

@@ -272,7 +272,7 @@ TEST(Viscosity, StressesBetweenPointsAreThoseOfTheLaw) {
     const BuiltModel built = bent(fades ? std::make_shared<const Viscosity>(at_once) : nullptr);
     const State end = solved(built.model, {}).end;
     CloudBody body = built.clouds[0];
-    body.group_count = built.model.points.group_count();
+    body.blocks.groups.count = built.model.points.group_count();
     body.find_memories(built.model.points);
     for (const double z : {-0.01, -0.003, 0.0, 0.01}) {
       const Vec3d X{{0.21, 0.4, z}};
@@ -330,7 +330,7 @@ TEST(Viscosity, ExplicitStepsAndReportedStressesAgree) {
     apart = std::max(apart, norm(a.u[i] - b.u[i]));
   }
   GridBody body = built.bodies[0];
-  body.group_count = built.model.points.group_count();
+  body.blocks.groups.count = built.model.points.group_count();
   body.find_memories(built.model.points);
   const auto of_implicit = body.tensors(a), of_explicit = body.tensors(b);
   for (std::size_t q = 0; q < of_implicit.size(); ++q) {
@@ -365,7 +365,7 @@ TEST(Viscosity, ReportedStressesMakeTheForces) {
   std::copy(S_e.begin(), S_e.end(), state.memory.begin());
   system.look_at(state, 0.01);
   GridBody body = built.bodies[0];
-  body.group_count = built.model.points.group_count();
+  body.blocks.groups.count = built.model.points.group_count();
   body.find_memories(built.model.points);
   const std::vector<PointTensors> tensors = body.tensors(state);
   std::vector<Vec3d> force(state.u.size());

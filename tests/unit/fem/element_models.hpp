@@ -38,7 +38,7 @@ inline ElementModel element_model(ElementBodySpec spec) {
   ElementModel built;
   PointSetBuilder points;
   built.body = std::make_unique<ElementBody>(std::move(spec), built.model, points);
-  built.body->block_count = points.block_count();
+  built.body->blocks = points.take_body();
   built.model.points = std::move(points).finish(built.model.frame_kind);
   return built;
 }

@@ -232,7 +232,7 @@ TEST_P(LaneFramesOf, GiveEachSlotItsSums) {
   executor.gradient(state_, {}, gradient);
   executor.store_slot_sums(state_, {}, sums);
   for (int node = 0; node < set.node_count(); ++node) {
-    const NodeSum sum = sum_of_groups(set, sums, 0, set.group_count(), node);
+    const NodeSum sum = sum_of_groups(set, sums, {0, set.group_count()}, node);
     for (int i = 0; i < 3; ++i)
       EXPECT_NEAR(sum.force[i], gradient[at(set.dofs.begin(node) + i)], 1e-12 * norm(gradient)) << node;
   }
