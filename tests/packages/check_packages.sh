@@ -49,6 +49,10 @@ for level in x86-64 x86-64-v3 x86-64-v4; do
   "$program" run "$work/system/usr/share/fascia/scenes/soft_cantilever.toml" --quiet --output "$work/$level"
   awk -F, -v level="$level" 'END { printf "%-10s tip %s %s\n", level, $2, $3; if ($2 + 1.55 > 0.1 || $2 + 1.55 < -0.1) exit 1 }' \
     "$work/$level/probes.csv" || fail "$level gives another result"
+  for threads in 1 2; do
+    "$program" run "$work/system/usr/share/fascia/scenes/three_beams.toml" --quiet --threads $threads --output "$work/$level-$threads"
+  done
+  cmp "$work/$level-1/probes.csv" "$work/$level-2/probes.csv" || fail "$level rounds otherwise on two threads"
 done
 
 echo "== installed without packages, into a folder with spaces"

@@ -248,6 +248,22 @@ TEST_F(BadScenes, TablesOfFramesAreNamedWithTheirPlace) {
   EXPECT_EQ(snapshot(), before);
 }
 
+/// All integration points lie in the far part of the beam, so the frames of the near part are left out.
+TEST_F(BadScenes, HeldMaterialThatNoFrameMovesIsNamed) {
+  std::string points = "x,y,z\n";
+  for (int n = 0; n < 160; ++n)
+    points += std::to_string(0.62 + 0.04 * (n % 10)) + "," + std::to_string(0.025 + 0.05 * (n / 10 % 4)) + "," +
+              std::to_string(0.025 + 0.05 * (n / 40)) + "\n";
+  write("points.csv", points);
+  const std::string text =
+      with(kCantilever, "grid = [3, 2, 2] }", "poisson_disk = 0.1 }\npoints = { file = \"points.csv\" }");
+  write("scene.toml", text);
+  const ProgramResult result = fascia({"run", "scene.toml"});
+  EXPECT_EQ(result.status, 2);
+  const std::string place = "scene.toml:" + place_of(text, "[[constraints]]") + ": constraints[0]: holds material at (";
+  EXPECT_NE(result.err.find(place), std::string::npos) << result.err;
+}
+
 TEST_F(BadScenes, GridTooLargeIsRefusedAtOnce) {
   write("scene.toml", with(kCantilever, "grid = [3, 2, 2]", "grid = [300, 200, 160]"));
   ProgramOptions options;

@@ -85,6 +85,21 @@ TEST(Matter, FindsWallsThinnerThanAVoxel) {
   EXPECT_NEAR(volume_sum(m) / d.volume, 1, 1e-12);
 }
 
+/// For points, of which pieces are wide, a fifth.
+TEST(Matter, FindsThinnerWallsForPoints) {
+  SolidDomain d = box_domain({{0, 0, 0.98}}, {{2, 2, 1.02}});
+  d.contains = [low = d.min, high = d.max](const Vec3d& x) { return x[2] > low[2] && x[2] < high[2]; };
+  d.min = {{0, 0, 0}};
+  d.max = {{2, 2, 2}};
+  Matter m;
+  add_solid(m, d, 0.2, PieceUse::points);
+  EXPECT_GE(count_feature(m, 3), 90);
+  EXPECT_EQ(m.whole_voxels, 0U);
+  double parts = 0;
+  for (const double v : m.surface_parts.volume) parts += v;
+  EXPECT_NEAR(parts / d.volume, 1, 1e-12);
+}
+
 TEST(Matter, CutsASheetByTriangleThickness) {
   Matter m;
   add_sheet(m, angle_sheet(), 0.1);

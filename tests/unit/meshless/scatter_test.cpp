@@ -216,6 +216,23 @@ TEST(PoissonDisk, GivesPointsEvenShares) {
   EXPECT_LT(std::sqrt(spread), 0.2);
 }
 
+/// Were points thrown at the distance that a bulky body of this volume takes, the first darts would all do.
+TEST(PoissonDisk, SpreadsPointsInANeedle) {
+  constexpr int count = 40;
+  const double spacing = std::cbrt(0.005 * 0.005 / count);
+  for (const int seed : {1, 2, 3, 4}) {
+    Matter needle;
+    add_solid(needle, box_domain({{0, 0, 0}}, {{1, 0.005, 0.005}}), spacing / 6, PieceUse::points);
+    std::vector<double> along;
+    for (const SamplePlace& p : poisson_disk(needle, spacing, seed, false)) along.push_back(p.x[0]);
+    ASSERT_EQ(along.size(), at(count));
+    std::sort(along.begin(), along.end());
+    double widest = 0;
+    for (int k = 1; k < count; ++k) widest = std::max(widest, along[at(k)] - along[at(k - 1)]);
+    EXPECT_LT(widest * count, 1.45) << "seed " << seed;
+  }
+}
+
 /// The voxels of a box, cut for shares, are those of half the width; at a curved surface the parts add up to the
 /// voxels.
 TEST(Shares, AreOfEighthsOfVoxels) {
