@@ -189,7 +189,8 @@ std::vector<Tests> tests_of(const VoxelGrid& grid, const SolidDomain& domain, st
     for (int n = 0; n < along; ++n) x.push_back(grid.place(i, j, k, (n + 0.5) / along)[0]);
   std::vector<char> inside(x.size());
   for (int line = 0; line < along * along; ++line) {
-    const Vec3d first = grid.place(0, j, k, 0.5, (line % along + 0.5) / along, (line / along + 0.5) / along);
+    const int b = line % along, c = line / along;
+    const Vec3d first = grid.place(0, j, k, 0.5, (b + 0.5) / along, (c + 0.5) / along);
     contains_on_line(domain, first[1], first[2], x, inside);
     for (std::size_t m = 0; m < x.size(); ++m) tests[m / at(along)][at(line * along) + m % at(along)] = inside[m];
   }

@@ -1,6 +1,7 @@
 #include "assembly/actions/directions.hpp"
 #include "assembly/simulation/regions.hpp"
 #include "assembly/simulation/simulation.hpp"
+#include "assembly/specification/errors.hpp"
 #include "core/base/index.hpp"
 
 #include <fmt/format.h>

@@ -27,17 +27,19 @@ class ThreadPool {
   /// `work` must not throw and must not call for_chunks itself.
   template <class Work>
   void for_chunks(int chunks, const Work& work) {
-    if (chunks <= 1 || size_ == 1) {
-      for (int c = 0; c < chunks; ++c) call<Work>(&work, c);
-      return;
-    }
-    run(chunks, &work, call<Work>);
+    for_chunks_on(this, chunks, work);
   }
 
   /// Calls work(begin, end) for consecutive ranges of at most `grain` items.
   template <class Work>
   void for_ranges(int items, int grain, const Work& work) {
-    for_chunks((items + grain - 1) / grain, [&](int c) {
+    for_ranges_on(this, items, grain, work);
+  }
+
+  /// Calls work(begin, end) likewise; without a pool the thread that calls does all.
+  template <class Work>
+  static void for_ranges_on(ThreadPool* pool, int items, int grain, const Work& work) {
+    for_chunks_on(pool, (items + grain - 1) / grain, [&](int c) {
       const int begin = c * grain;
       work(begin, begin + grain < items ? begin + grain : items);
     });
@@ -48,6 +50,15 @@ class ThreadPool {
 
   /// One copy for one thread and for many: of two, the compiler may round one otherwise, as where it chooses which
   /// product of a b + c d it fuses with the sum.
+  template <class Work>
+  static void for_chunks_on(ThreadPool* pool, int chunks, const Work& work) {
+    if (chunks <= 1 || pool == nullptr || pool->size_ == 1) {
+      for (int c = 0; c < chunks; ++c) call<Work>(&work, c);
+      return;
+    }
+    pool->run(chunks, &work, call<Work>);
+  }
+
   template <class Work>
   [[gnu::noinline]] static void call(const void* work, int chunk) {
     (*static_cast<const Work*>(work))(chunk);

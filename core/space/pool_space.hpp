@@ -21,10 +21,7 @@ class PoolSpace : public HostMemory {
     const auto range = [&](int begin, int end) __attribute__((flatten)) {
       for (int i = begin; i < end; ++i) body(i);
     };
-    if (pool_ == nullptr)
-      range(0, count);
-    else
-      pool_->for_ranges(count, kGrain, range);
+    ThreadPool::for_ranges_on(pool_, count, kGrain, range);
   }
 
   /// body(i, sums) for i < count, then once end(totals).
@@ -32,7 +29,7 @@ class PoolSpace : public HostMemory {
   void sum(int count, const Body& body, const End& end) const {
     using Total = Sums<K, M>;
     const int chunks = (count + kSumChunk - 1) / kSumChunk;
-    const auto of_chunk = [&](int chunk) __attribute__((flatten)) {
+    const auto of_chunk = [&](int chunk) __attribute__((flatten, noinline)) {  // one copy, as in ThreadPool
       Total part;
       const int first = chunk * kSumChunk;
       for (int i = first; i < std::min(count, first + kSumChunk); ++i) body(i, part);

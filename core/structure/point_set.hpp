@@ -55,7 +55,7 @@ struct Joint {
   double length = 0;  ///< converts torques to forces where residuals are judged and nothing else has a length [m]
 };
 
-/// What of a set belongs to one body: runs of groups of points, of blocks of elements and of shells.
+/// Tells what of a set belongs to one body: runs of groups of points, of blocks of elements and of shells.
 struct BodyBlocks {
   struct Run {
     int first = 0, count = 0;
@@ -179,7 +179,7 @@ class PointSetBuilder {
 
   void join(std::vector<int> nodes, double length);
 
-  /// What was added since this was asked before: that of a body which was built meanwhile.
+  /// Tells what was added since it was asked before: that of a body which was built meanwhile.
   BodyBlocks take_body();
 
   /// @throws InputError  where a user block names a node that there is not

@@ -4,6 +4,7 @@
 #include "core/geometry/inside.hpp"
 #include "core/geometry/primitives.hpp"
 #include "meshless/matter.hpp"
+#include "meshless/scattered/scatter.hpp"
 
 #include <memory>
 #include <numbers>
@@ -63,6 +64,24 @@ inline ThreadPool& one_thread() {
 
 inline void add_solid(Matter& matter, const SolidDomain& domain, double piece_size, PieceUse use = PieceUse::frames) {
   fascia::add_solid(matter, domain, piece_size, use, one_thread());
+}
+
+inline std::vector<SamplePlace> poisson_disk(const Matter& matter, double spacing, int seed, bool with_features) {
+  return fascia::poisson_disk(matter, spacing, seed, with_features, one_thread());
+}
+inline std::vector<Share> voronoi_shares(const Matter& matter, const std::vector<SamplePlace>& samples) {
+  return fascia::voronoi_shares(matter, samples, one_thread());
+}
+inline double volume_of(const std::vector<Share>& shares) {
+  double sum = 0;
+  for (const Share& s : shares) sum += s.volume;
+  return sum;
+}
+
+inline Matter cube(double size, double piece) {
+  Matter m;
+  add_solid(m, box_domain({{0, 0, 0}}, {{size, size, size}}), piece);
+  return m;
 }
 
 inline double volume_sum(const Matter& matter) {
