@@ -236,6 +236,7 @@ std::vector<VoxelRow> voxel_rows(const VoxelGrid& grid, int along, ThreadPool& p
   return rows;
 }
 
+/// Takes the voxels of all rows, whole ones first.
 /// @param whole        tests of a whole voxel
 /// @param test_volume  of one test [m³]
 void take_voxels(Matter& matter, std::span<const VoxelRow> rows, int whole, double test_volume, bool with_eighths) {

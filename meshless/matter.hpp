@@ -67,8 +67,8 @@ struct LinePart {
   double radius = 0;  ///< [m]
 };
 
-/// What pieces of a solid are for: to place frames, on its faces, edges and corners too, or to place points and to tell
-/// what matter belongs to each of them.
+/// Tells what pieces of a solid are for: to place frames, on its faces, edges and corners too, or to place points and
+/// to tell what matter belongs to each of them.
 enum class PieceUse { frames, points };
 
 /// Cuts the solid of a matter into voxels, those at its surface by their fraction inside; their volumes add up to the

@@ -17,7 +17,7 @@ namespace {
 
 /// Blocks of so many places cost least, but no wider than some spacings: larger ones have longer lists of points,
 /// smaller ones more lists.
-constexpr double kPlaces = 40, kNarrowest = 0.5, kWidest = 1.6;
+constexpr double kPlaces = 40, kNarrowest = 0.7, kWidest = 1.6;
 constexpr int kGrain = 64;  // blocks
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

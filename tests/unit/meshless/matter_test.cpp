@@ -73,12 +73,18 @@ TEST(Matter, CutsByLinesAsByPoints) {
   EXPECT_EQ(by_lines.voxels.volume, by_points.voxels.volume);
 }
 
-/// A wall a third as thick as a voxel, in a layer of 100, off their centres: found through its surface.
-TEST(Matter, FindsWallsThinnerThanAVoxel) {
-  SolidDomain d = box_domain({{0, 0, 0.98}}, {{2, 2, 1.05}});
+/// A wall across a cube of edge 2, off the middles of voxels.
+SolidDomain wall_in_a_cube(double thickness) {
+  SolidDomain d = box_domain({{0, 0, 0.98}}, {{2, 2, 0.98 + thickness}});
   d.contains = [low = d.min, high = d.max](const Vec3d& x) { return x[2] > low[2] && x[2] < high[2]; };
   d.min = {{0, 0, 0}};
   d.max = {{2, 2, 2}};
+  return d;
+}
+
+/// A wall a third as thick as a voxel, in a layer of 100, off their centres: found through its surface.
+TEST(Matter, FindsWallsThinnerThanAVoxel) {
+  const SolidDomain d = wall_in_a_cube(0.07);
   Matter m;
   add_solid(m, d, 0.2);
   EXPECT_GE(count_feature(m, 3), 90);
@@ -87,10 +93,7 @@ TEST(Matter, FindsWallsThinnerThanAVoxel) {
 
 /// For points, of which pieces are wide, a fifth.
 TEST(Matter, FindsThinnerWallsForPoints) {
-  SolidDomain d = box_domain({{0, 0, 0.98}}, {{2, 2, 1.02}});
-  d.contains = [low = d.min, high = d.max](const Vec3d& x) { return x[2] > low[2] && x[2] < high[2]; };
-  d.min = {{0, 0, 0}};
-  d.max = {{2, 2, 2}};
+  const SolidDomain d = wall_in_a_cube(0.04);
   Matter m;
   add_solid(m, d, 0.2, PieceUse::points);
   EXPECT_GE(count_feature(m, 3), 90);

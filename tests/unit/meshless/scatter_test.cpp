@@ -76,19 +76,14 @@ TEST(PoissonDisk, DoesNotDependOnThreads) {
   std::vector<Sampled> of;
   for (const int threads : {1, 2, 5}) {
     ThreadPool pool(threads);
-    Matter m;
-    fascia::add_solid(m, ellipsoid_domain({{5, 3, 2}}, 16), 0.2, PieceUse::frames, pool);
-    add_sheet(m, rectangle({{-3, 0, 1.8}}, {{6, 0, 0}}, {{0, 0, 4}}, 0.1), 0.2);
     Sampled& all = of.emplace_back();
-    for (const Vec3d& x : m.voxels.x) all.add(x);
     for (const bool features : {true, false}) {
-      if (!features) {
-        Matter again;  // for points
-        fascia::add_solid(again, ellipsoid_domain({{5, 3, 2}}, 16), 0.2, PieceUse::points, pool);
-        for (const Vec3d& x : again.surface_parts.x) all.add(x);
-        std::swap(m.voxels, again.voxels);
-        std::swap(m.surface_parts, again.surface_parts);
-      }
+      Matter m;
+      fascia::add_solid(m, ellipsoid_domain({{5, 3, 2}}, 16), 0.2, features ? PieceUse::frames : PieceUse::points,
+                        pool);
+      add_sheet(m, rectangle({{-3, 0, 1.8}}, {{6, 0, 0}}, {{0, 0, 4}}, 0.1), 0.2);
+      for (const Vec3d& x : m.voxels.x) all.add(x);
+      for (const Vec3d& x : m.surface_parts.x) all.add(x);
       const double spacing = fascia::spacing_for_count(m, 300, 2, features, pool);
       const std::vector<SamplePlace> places = fascia::poisson_disk(m, spacing, 2, features, pool);
       for (const SamplePlace& p : places) all.add(p.x);
