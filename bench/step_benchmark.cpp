@@ -75,7 +75,7 @@ Stages measure(const PointSet& set, ThreadPool& pool, const State& state, double
   std::vector<double> gradient(static_cast<std::size_t>(set.dofs.total()));
   StrainHistory history;
   if (set.damped) {
-    executor.store_strain(state, history);
+    executor.store_strain(state, history.E);
     history.inverse_step = 1 / time_step;
   }
   Linearization lin;

@@ -205,7 +205,7 @@ class Setup {
 
   /// Newton's method holds this after a step that extrapolates stresses.
   void linearize(double dt) {
-    if (dt > 0 && s_.model.points.damped) system_->executor().store_strain(state_, history_);
+    if (dt > 0 && s_.model.points.damped) system_->executor().store_strain(state_, history_.E);
     if (dt > 0 && s_.model.points.damped) history_.inverse_step = 1 / dt;
     const Tangent tangent = settings_of(s_.scene.solver).tangent;
     if (extrapolates_stresses(s_.model.points, tangent))

@@ -151,11 +151,11 @@ InternalEnergy CpuExecutor::gradient(const State& state, const StrainHistory& hi
   return energy;
 }
 
-void CpuExecutor::store_strain(const State& state, StrainHistory& history) {
-  history.E.resize(strain_begin_.back());
+void CpuExecutor::store_strain(const State& state, AlignedVector<double>& E) {
+  E.resize(strain_begin_.back());
   for_each_block([&](auto& block, std::size_t b) {
     block.store_strain(state_of(state, {}, b),
-                       std::span(history.E).subspan(strain_begin_[b], strain_begin_[b + 1] - strain_begin_[b]));
+                       std::span(E).subspan(strain_begin_[b], strain_begin_[b + 1] - strain_begin_[b]));
   });
 }
 

@@ -100,8 +100,8 @@ class CpuExecutor {
   /// Fills a matrix made from the same point set.
   void assemble(const Linearization& at, BlockMatrix& matrix, Entries entries = Entries::all);
 
-  /// Keeps the strains of a state.
-  void store_strain(const State& state, StrainHistory& history);
+  /// Stores the strains of a state, as StrainHistory has them.
+  void store_strain(const State& state, AlignedVector<double>& E);
   /// Stores what fades of points that remember it: second Piola-Kirchhoff stress, of shells strains.
   /// @param given  with these rows
   /// @param out    (lanes × 6)

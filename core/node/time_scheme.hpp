@@ -78,11 +78,6 @@ struct StepConstants {
   }
 };
 
-/// Constants of a step, and the q and w of each node that it starts from; of implicit Euler's rule none are asked for.
-struct StepForm : StepConstants {
-  std::vector<PoseMotion> q, w;
-};
-
 /// The rate at the end of a step from the increments in it and in the step before, both of the same length; times that
 /// length.
 FASCIA_HD constexpr double end_increment(double last, double before) { return 1.5 * last - 0.5 * before; }

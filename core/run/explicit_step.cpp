@@ -91,7 +91,7 @@ void ExplicitStepper::start_velocities() {
     State before = state_;
     space_.for_each(model_.node_count(), loops::StepBack{view(), before.u.data(), before.D.data()});
     history_.inverse_step = 1 / last_step_;
-    executor_.store_strain(before, history_);
+    executor_.store_strain(before, history_.E);
   }
   place_tethers(model_, factors_, executor_.targets());
   start_energy_ = executor_.gradient(state_, {}, gradient_).total();
@@ -109,7 +109,7 @@ void ExplicitStepper::update_forces(const Fading& fading) {
   memory_.prepare(fading);
   if (!memory_.empty()) history_.given = {memory_.give(state_.memory.data(), factors_.data()), memory_.given_size()};
   add_forces(state_, gradient_, load_);
-  if (model_.points.damped) executor_.store_strain(state_, history_);
+  if (model_.points.damped) executor_.store_strain(state_, history_.E);
   if (fading.of != Fading::Of::reached) keep_memory(fading);
 }
 

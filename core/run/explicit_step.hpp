@@ -40,7 +40,7 @@ class ExplicitStepper {
   void report_velocities(std::span<const double> factors);
 
   /// Accelerations of each constraint's node, at the last call of report_velocities().
-  std::span<const PoseMotion> held_accelerations() const { return held_acceleration_; }
+  const std::vector<PoseMotion>& held_accelerations() const { return held_acceleration_; }
 
   double kinetic_energy() const { return kinetic_; }  ///< of nodes that nothing holds, at the last half step [J]
   /// Energy at the start, and the most that loads, boundaries and tethers have added [J].

@@ -63,7 +63,7 @@ class HighestFrequency {
         factor.solve(column);
       }
     }
-    executor_.store_strain(state, history_);
+    executor_.store_strain(state, history_.E);
     dependents_.turn(state.D.data());
     dependent_forces_.resize(6 * model.points.dependents.size());
   }

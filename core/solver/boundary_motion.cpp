@@ -54,6 +54,16 @@ void start_driven(const Model& model, std::vector<double>& factors) {
     if (m.driven) factors[at(m.schedule)] = 0;
 }
 
+std::vector<double> zero_factors(const Model& model) {
+  int schedules = 0;
+  for (const DeadLoad& l : model.loads) schedules = std::max(schedules, l.schedule + 1);
+  for (const FollowerLoad& l : model.followers) schedules = std::max(schedules, l.schedule + 1);
+  for (const SurfaceLoad& l : model.surfaces) schedules = std::max({schedules, l.schedule + 1, l.weight_schedule + 1});
+  for (const PrescribedMotion& m : model.motions) schedules = std::max(schedules, m.schedule + 1);
+  for (const int active : model.points.memory.schedule) schedules = std::max(schedules, active + 1);
+  return std::vector<double>(at(schedules), 0.0);
+}
+
 void place_tethers(const Model& model, std::span<const double> factors, std::span<double> targets) {
   for (const Tether& t : model.tethers) {
     const Vec3d target = tether_target(t, model.motions.data(), factors.data());
@@ -64,11 +74,10 @@ void place_tethers(const Model& model, std::span<const double> factors, std::spa
 
 void MechanicalSystem::find_prescribed(std::span<const double> factors, std::span<double> local) {
   std::fill(local.begin(), local.end(), 0.0);
-  space_.for_each(static_cast<int>(model_.constraints.size()), loops::FindPrescribed{data_.view(),
-                                                                                     {state_.u.data(), state_.D.data()},
-                                                                                     loops::flat(increment_.turned),
-                                                                                     factors.data(),
-                                                                                     local.data()});
+  space_.for_each(
+      static_cast<int>(model_.constraints.size()),
+      loops::FindPrescribed{
+          data_.view(), {now_.u.data(), now_.D.data()}, loops::flat(increment_.turned), factors.data(), local.data()});
 }
 
 bool MechanicalSystem::has_prescribed_increment() {

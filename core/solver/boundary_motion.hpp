@@ -22,6 +22,9 @@ struct MotionSizes {
 };
 MotionSizes motion_sizes(const Model& model);
 
+/// Fills factors of all schedules at rest (all zero).
+std::vector<double> zero_factors(const Model& model);
+
 /// Largest rotation [rad] by which a boundary motion would turn a frame.
 /// @param turned  as in State, now
 /// @param reached  factors at the end of the last step

@@ -17,7 +17,7 @@ double MechanicalSystem::largest_rotation_in(std::span<const double> vector) con
 PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, std::span<const double> behind,
                                                  double width) {
   PathDirections out;
-  executor_.linearize(state_, history_, settings_.tangent, lin_);
+  executor_.linearize(now_, history_, settings_.tangent, lin_);
   add_node_blocks(lin_);
   const std::optional<int> unstable = tangent_.factorize_as_is(lin_);
   if (!unstable) return out;
@@ -44,13 +44,13 @@ PathDirections MechanicalSystem::path_directions(std::span<const double> ahead, 
       std::any_of(model_.tethers.begin(), model_.tethers.end(), [](const Tether& t) { return t.motion >= 0; });
   if (moving_tethers || memory_.acts()) {
     for (const auto& [factors, sign] : {std::pair{ahead, -1.0}, std::pair{behind, 1.0}}) {
-      place_tethers(model_, factors, executor_.targets());
-      act(factors);
-      executor_.forces(state_, history_, other);
+      fascia::place_tethers(model_, factors, executor_.targets());
+      act(factors.data());
+      executor_.forces(now_, history_, other);
       for (std::size_t i = 0; i < n; ++i) rhs[i] += sign * other[i] / width;
     }
-    place_tethers(model_, factors_, executor_.targets());
-    act(factors_);
+    place_tethers();
+    act(factors_.data());
   }
   dependents_.transfer(data_.view().nodes, rhs.data());
   filter_.to_local(rhs);

@@ -15,6 +15,9 @@ class PoolSpace : public HostMemory {
   PoolSpace() = default;
   explicit PoolSpace(ThreadPool& pool) : pool_(&pool) {}
 
+  /// The pool that it was given.
+  ThreadPool& pool() const { return *pool_; }
+
   /// body(i) for i < count.
   template <class Body>
   void for_each(int count, const Body& body) const {

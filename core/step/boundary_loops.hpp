@@ -3,6 +3,7 @@
 #include "core/node/node_finish.hpp"
 #include "core/node/prescribed.hpp"
 #include "core/node/small_factor.hpp"
+#include "core/space/array.hpp"
 #include "core/step/step_loops.hpp"
 
 #include <array>
@@ -11,10 +12,14 @@
 /// Loops over constraints, and over nodes at the start and the end of a step.
 namespace fascia::loops {
 
-/// State::turned as loops see it: three numbers a constraint, or null.
+/// State::turned as loops see it, of the host or of another space: three numbers a constraint, or null.
 inline double* flat(std::vector<std::array<double, 3>>& turned) { return turned.empty() ? nullptr : turned[0].data(); }
 inline const double* flat(const std::vector<std::array<double, 3>>& turned) {
   return turned.empty() ? nullptr : turned[0].data();
+}
+template <class Space>
+double* flat(Array<Space, double>& turned) {
+  return turned.data();
 }
 
 /// Finds what the prescribed degrees of freedom still lack, in constraint axes. Goes over constraints; of other nodes

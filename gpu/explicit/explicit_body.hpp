@@ -33,11 +33,8 @@ ExplicitSystem<Space>::ExplicitSystem(const Model& model, const State& state, co
   refuse_active_stress(model);
   upload_nodes();
   const auto n = at(model.node_count()), dofs = at(model.dof_count());
-  if (pose_.turned.size() != 3 * model.constraints.size()) {  // a state made before the constraints has none
-    pose_.turned.resize(3 * model.constraints.size());
-    pose_.turned.set_zero();
-  }
-  const bool rested = pose_.begin_memory(memory_.size());
+  begin_turned(model.constraints.size(), pose_);
+  const bool rested = begin_memory(memory_.size(), pose_);
   fading_.resize(memory_.stress_size());
   memory_.prepare({});
   half_v_.resize(n);

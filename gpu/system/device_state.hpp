@@ -5,6 +5,8 @@
 #include "core/structure/model.hpp"
 
 #include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 namespace fascia::gpu {
@@ -64,13 +66,90 @@ struct DeviceState {
     state.factors = factors;
     state.time = time;
   }
-  /// Room for what points remember. @return false where the state had it
-  bool begin_memory(std::size_t size) {
-    if (memory.size() == size) return false;
-    memory.resize(size);
-    memory.set_zero();
-    return true;
+};
+
+// As core/solver/state_copies.hpp has them for states of the host.
+template <class Space>
+void shape_place(const DeviceState<Space>& like, DeviceState<Space>& to) {
+  to.u.resize(like.u.size());
+  to.D.resize(like.D.size());
+}
+template <class Space>
+void copy_place(const Space& /*space*/, const DeviceState<Space>& from, DeviceState<Space>& to) {
+  to.u.copy_from(from.u);
+  to.D.copy_from(from.D);
+}
+template <class Space>
+void copy_turned(const DeviceState<Space>& from, DeviceState<Space>& to) {
+  to.turned.copy_from(from.turned);
+}
+template <class Space>
+void copy_motion(const Space& space, const DeviceState<Space>& from, DeviceState<Space>& to) {
+  copy_place(space, from, to);
+  to.v.copy_from(from.v);
+  to.Q_dot.copy_from(from.Q_dot);
+  copy_turned(from, to);
+  to.factors = from.factors;
+  to.time = from.time;
+  to.step = from.step;
+}
+template <class Space>
+void copy_increment(const Space& space, const DeviceState<Space>& from, DeviceState<Space>& to) {
+  copy_place(space, from, to);
+  copy_turned(from, to);
+}
+template <class Space>
+void begin_increment(const Space& /*space*/, const DeviceState<Space>& start, DeviceState<Space>& to) {
+  shape_place(start, to);
+  to.u.set_zero();
+  to.D.set_zero();
+  copy_turned(start, to);
+}
+template <class Space>
+void begin_turned(std::size_t constraints, DeviceState<Space>& state) {
+  if (state.turned.size() == 3 * constraints) return;
+  state.turned.resize(3 * constraints);
+  state.turned.set_zero();
+}
+template <class Space>
+bool begin_memory(std::size_t size, DeviceState<Space>& state) {
+  if (state.memory.size() == size) return false;
+  state.memory.resize(size);
+  state.memory.set_zero();
+  return true;
+}
+template <class Space>
+void shape_end(const DeviceState<Space>& start, const DeviceState<Space>& increment, DeviceState<Space>& end) {
+  shape_place(start, end);
+  end.v.resize(start.u.size());
+  end.Q_dot.resize(start.D.size());
+  copy_turned(increment, end);
+}
+
+/// Where a step ended, told by the number that its state has since then.
+class StepMark {
+ public:
+  void forget() { known_ = 0; }
+  template <class Space>
+  void take(const Space& /*space*/, DeviceState<Space>& end, bool known) {
+    end.step = ++steps_;
+    known_ = known ? steps_ : 0;
   }
+  template <class Space>
+  bool is_at(const DeviceState<Space>& state) const {
+    return known_ != 0 && state.step == known_;
+  }
+
+ private:
+  long steps_ = 0, known_ = 0;
+};
+
+/// A StrainHistory in a space.
+template <class Space>
+struct DeviceHistory {
+  Array<Space, double> E;
+  double inverse_step = 0;
+  std::span<const double> given{};  ///< in the space
 };
 
 /// A StepMemory in a space.
@@ -93,6 +172,17 @@ struct DeviceMemory {
     E.download(memory.E);
     return memory;
   }
+};
+
+/// Types of a StepSystem in a space.
+template <class S>
+struct DeviceStep {
+  using Space = S;
+  using Pose = DeviceState<S>;
+  using Memory = DeviceMemory<S>;
+  using History = DeviceHistory<S>;
+  using Vector = Array<S, double>;
+  using Mark = StepMark;
 };
 
 }  // namespace fascia::gpu

@@ -13,3 +13,9 @@ template BlocksOf<double> Blocks<HostSpace>::view_of() const;
 template class System<HostSpace>;
 
 }  // namespace fascia::gpu
+
+namespace fascia {
+
+template class StepSystem<gpu::System<HostSpace>, gpu::DeviceStep<HostSpace>>;
+
+}  // namespace fascia

@@ -13,3 +13,9 @@ template BlocksOf<double> Blocks<CudaSpace>::view_of() const;
 template class System<CudaSpace>;
 
 }  // namespace fascia::gpu
+
+namespace fascia {
+
+template class StepSystem<gpu::System<gpu::CudaSpace>, gpu::DeviceStep<gpu::CudaSpace>>;
+
+}  // namespace fascia

@@ -3,13 +3,7 @@
 #include "core/levels/blocks_or_levels.hpp"
 #include "core/levels/kept_levels.hpp"
 #include "core/run/drivers.hpp"
-#include "core/solver/boundary_motion.hpp"
-#include "core/space/part_sums.hpp"
-#include "core/step/dependents.hpp"
-#include "core/step/followers.hpp"
-#include "core/step/model_data.hpp"
-#include "core/step/stress_memory_steps.hpp"
-#include "core/step/surfaces.hpp"
+#include "core/solver/step_system.hpp"
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/system/cg.hpp"
 #include "gpu/system/device_state.hpp"
@@ -28,64 +22,35 @@
 
 namespace fascia::gpu {
 
-/// The equilibrium of a model in a load or time step with everything in the memory of a space: the counterpart of
-/// MechanicalSystem, which says what the functions mean. Only a few numbers of each evaluation and solve come back.
+/// A step with everything in the memory of a space: forces by its blocks, directions by conjugate gradients there. Only
+/// a few numbers of each evaluation and solve come back.
 template <class Space>
-class System {
+class System : public StepSystem<System<Space>, DeviceStep<Space>> {
+  using Base = StepSystem<System<Space>, DeviceStep<Space>>;
+
  public:
   /// Unknowns of a model that the host factorises in seconds at most.
   static constexpr int kMostOfFactor = 15000;
 
-  using Pose = DeviceState<Space>;
-  using Memory = DeviceMemory<Space>;
+  using typename Base::Memory;
+  using typename Base::Pose;
 
   /// Direct solves are those of conjugate gradients here, and a Cholesky preconditioner is block-Jacobi. Levels of
   /// rigid frames are made by the host; where precision is single there are none.
   System(const Model& model, const SolverSettings& settings);
 
-  void begin_step(const Pose& start, double dt) { begin_step(start, dt, TimeScheme::implicit_euler, {}); }
-  void begin_step(const Pose& start, double dt, TimeScheme scheme, const Memory& memory);
-  void set_factors(std::span<const double> factors);
-  void set_rest();
-  void start_from_prediction();
-  void restart_motions();
+  /// As StepSystem's, and forgets what linear solvers have learned too.
   void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
-  void forget_steps(std::span<const double> factors, const std::vector<double>& pressures);
-  const std::vector<double>& reached_factors() const { return reached_factors_; }
-  std::vector<double> reached_pressures() const {
-    return surfaces_.empty() ? std::vector<double>{} : surfaces_.reached();
-  }
-  void finish_step(double end_time, Memory& memory, Pose& end);
-  void finish_step(double end_time, Pose& end) {
-    Memory unused;
-    finish_step(end_time, unused, end);
-  }
-  void start_acceleration(const Pose& start, double dt, Memory& memory);
-  void look_at(const Pose& state, double h);
-  /// Adds what supports carry of their own mass, see MechanicalSystem.
-  void add_held_inertia(const Array<Space, PoseMotion>& acceleration);
-  void look_back(const Pose& state, const Pose& before, const Pose& earlier, double dt);
 
-  Evaluation evaluate();
   /// @param most_iterations  of conjugate gradients, where the settings allow as many
   DirectionReport direction(int most_iterations = kAsManyAsNeeded);
   static double largest_step(double wanted) { return wanted; }  // user blocks are not here
-  void apply(double step);
-  void save();
-  void restore();
   bool has_prescribed_increment() const { return prescribed_left_; }
-  bool conservative() const { return conservative_; }
   bool compares_energies() const { return conservative_; }
   double prescribed_rotation();
-  bool solves_for_middle() const { return step_.scheme == TimeScheme::midpoint; }
 
-  const Model& model() const { return model_; }
-  const SolverSettings& settings() const { return settings_; }
-  const DofFilter& filter() const { return filter_; }
-  std::span<const double> factors() const { return factors_; }
   /// The present one, of Newton's method; its velocities are those of the step's start.
   State state() const;
-  InternalEnergy internal_energy() const { return internal_; }
   /// By degrees of freedom, as MechanicalSystem::gradient().
   std::vector<double> gradient() const { return gradient_.downloaded(); }
   /// Forces on dependent nodes, as MechanicalSystem::dependent_forces().
@@ -104,12 +69,37 @@ class System {
   }
 
  private:
+  friend Base;
+  using Base::conservative_, Base::damped_, Base::data_, Base::dependent_forces_, Base::dependents_, Base::direction_,
+      Base::driven_, Base::factors_, Base::filter_, Base::followers_, Base::gradient_, Base::history_, Base::increment_,
+      Base::inertia_, Base::inertia_energy_, Base::internal_, Base::known_, Base::load_, Base::load_energy_,
+      Base::masses_, Base::memory_, Base::middles_, Base::model_, Base::motions_, Base::node_energy_, Base::node_parts_,
+      Base::now_, Base::q_, Base::reached_factors_, Base::settings_, Base::start_, Base::step_, Base::surfaces_,
+      Base::turning_, Base::w_;
+  using Base::force_view, Base::pose, Base::step_view;
+
+  // What StepSystem calls.
+  void step_began();
+  void place_tethers();
+  void release_tethers();
+  void store_strain(const Pose& pose, Array<Space, double>& E);
+  void store_stress(const Pose& pose, std::span<const double> given, Array<Space, double>& out) {
+    blocks_.store_stress({pose.u.data(), pose.D.data()}, given.data(), out.data());
+  }
+  void store_stretches(Vec3d* stretch);
+  void stretch_tethers(const std::array<double, 3>& weights);
+  Evaluation evaluate_anew();
+  void evaluate_unjudged() { evaluate_forces(); }
+  void evaluate_loads();
+  double* scratch() { return world_y_.data(); }
+  void note_step(double step);
+  void step_saved() {}
+  void step_restored() { taken_length_ = 0; }
+
   /// Times the usual limit of conjugate gradients that a slender body may take.
   static constexpr int kPatience = 20;
   BlocksOrLevels::Costs costs_of_levels() const;
 
-  StepView step_view();
-  ForceView force_view();
   /// Calls act.operator()<T, V>() with the scalars of products and of the vectors of solves.
   template <class Act>
   decltype(auto) with_scalars(const Act& act) {
@@ -120,13 +110,11 @@ class System {
   template <class T, class V>
   kernels::ProductView<T, V> product_view();
   HistoryView history() const {
-    return {.E = damped_ ? E_.data() : nullptr, .inverse_step = damped_ ? inverse_step_ : 0.0, .given = given_};
+    return {.E = damped_ ? history_.E.data() : nullptr,
+            .inverse_step = damped_ ? history_.inverse_step : 0.0,
+            .given = history_.given.data()};
   }
-  PoseView pose() const { return {u_.data(), D_.data()}; }
-  void rebuild_state();
-  void place_dependents();
   void evaluate_forces(bool quantities = true);
-  void evaluate_loads();
   void add_other_loads();
   /// The surfaces' figures in the report.
   std::span<const double> figures() const {
@@ -134,15 +122,6 @@ class System {
         .subspan(report_values_.size() - 3 - surfaces_.figure_count(), surfaces_.figure_count());
   }
   Evaluation judge();
-  double energy_at_start();
-  void predict_strain(const Memory& memory);
-  void give_memory(const Fading& fading);
-  void keep_memory(Pose& state);
-  void store_strain_along_velocity(double h);
-  void follow_strain(const Pose& before, const Pose& earlier, double dt);
-  void note_stretches();
-  void stretch_tethers(double time);
-  void store_strain_at(const Pose& pose, Array<Space, double>& E);
   void find_prescribed();
   void linearize(Tangent tangent, bool tethers_turn, const TakenStepView& taken = {});
   TakenStepView taken_step() const;
@@ -162,7 +141,7 @@ class System {
   /// Levels take their place: a fallback from levels finds no other tangent than theirs.
   bool use_tiles() const {
     return tiles_ != nullptr && !blocks_or_levels_.levels() &&
-           (inverse_step_ == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
+           (history_.inverse_step == 0 || !damped_ || step_.scheme == TimeScheme::implicit_euler);
   }
   std::uint64_t operator_key();
   template <class V>
@@ -197,56 +176,27 @@ class System {
   DirectionReport direction_of_host();
   SoftestDirection softest();
   CgReport solve_in_tiles(const CgOptions& options);
-  void place_tethers();
 
-  const Model& model_;
-  SolverSettings settings_;
-  DofFilter filter_;
-  ModelData<Space> data_;
   Blocks<Space> blocks_;
-  Dependents<Space> dependents_;
-  Followers<Space> followers_;
-  Surfaces<Space> surfaces_;
   SurfaceTangent<Space> surface_tangent_;
-  PartSums<Space> node_parts_;
   ConjugateGradients<Space, double> cg_;
   ConjugateGradients<Space, float> narrow_cg_;
   std::vector<std::uint8_t> held_;     ///< degrees of freedom that tiles hold, by node
   std::unique_ptr<TileSolver> tiles_;  ///< of meshless solids alone; none where they cannot hold them
-  bool conservative_, extrapolates_, turning_, damped_;
-  MotionSizes motions_;
-  std::vector<double> masses_;  ///< part_masses()
-  std::vector<char> driven_;    ///< driven_parts()
+  bool extrapolates_;
 
-  Pose start_;
-  StepConstants step_;
-  double inverse_step_ = 0;  ///< of the viscous stress
-  Array<Space, double> E_, start_E_, ahead_E_, behind_E_;
-  StressMemory<Space> memory_;
-  Array<Space, double> fading_;    ///< what fades at the end of a step
-  const double* given_ = nullptr;  ///< by memory_; null where nothing fades
-  Array<Space, Vec3d> du_, saved_du_, u_, moved_u_;
-  Array<Space, Mat3d> Ds_, saved_Ds_, D_, moved_D_;
-  Array<Space, double> turned_, saved_turned_;
-  Array<Space, Vec3d> taken_u_;  ///< where the last step of Newton's method started
-  Array<Space, Mat3d> taken_D_;
+  Pose taken_;               ///< where the last step of Newton's method started: u and D
   double taken_length_ = 0;  ///< 0: none led to the present state
-  Array<Space, PoseMotion> q_, w_;
-  Array<Space, PoseMotion> before_;  ///< motion in the step before
   Array<Space, Tether> tethers_;
-  MiddleStretches<Array<Space, Vec3d>> middles_;
-  std::vector<double> factors_, reached_factors_;
-  bool factors_are_placed_ = false;
 
-  Array<Space, double> gradient_, load_, inertia_, node_energy_, report_, part_motion_, start_motion_;
-  Array<Space, double> dependent_forces_;
+  Array<Space, double> report_, part_motion_, start_motion_;
   Array<Space, Mat3d> L_, tether_L_, extrapolated_L_;
   Array<Space, double> prescribed_;  ///< what is still to go, in constraint axes
   std::vector<double> report_values_;
 
   Array<Space, Mat3d> Q_, dA_;
   Array<Space, Vec3d> dx_;
-  Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, direction_, asked_, still_, still_Ap_, slope_, spin_;
+  Array<Space, double> node_blocks_, inverse_, world_d_, world_y_, asked_, still_, still_Ap_, slope_, spin_;
   Array<Space, float> narrow_blocks_, narrow_inverse_, narrow_d_;
   Array<Space, Vec3<float>> narrow_dx_;
   Array<Space, Mat3<float>> narrow_dA_;
@@ -262,12 +212,7 @@ class System {
   } operator_;
   std::uint64_t operator_count_ = 0;  ///< operators that differed from the one before
 
-  std::optional<Evaluation> known_;
-  std::optional<std::pair<long, double>> reached_;  ///< a state reached, and the energy of what does not fade
-  InternalEnergy internal_;
-  double load_energy_ = 0, inertia_energy_ = 0;
   bool prescribed_left_ = false;
-  long steps_ = 0;
   int most_iterations_ = kAsManyAsNeeded;  ///< of conjugate gradients in a direction
 
   /// It solves where conjugate gradients meet an indefinite tangent, or take longer than it does.

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/solver/part_forces.hpp"
-#include "core/step/boundary_loops.hpp"
+#include "core/solver/step_system_body.hpp"
+#include "core/solver/step_system_reached.hpp"
 #include "core/tangent/extrapolation.hpp"
 #include "gpu/space/device.hpp"
 #include "gpu/system/system.hpp"
@@ -10,46 +10,26 @@
 #include <cmath>
 #include <limits>
 
-/// The bodies of System, for the files that instantiate it: a step as Newton's method sees it. Its start and end are in
+/// The bodies of System, for the files that instantiate it: a step as Newton's method sees it. Its start is in
 /// system_step.hpp, its linear solves in system_solve.hpp.
 namespace fascia::gpu {
 
 template <class Space>
 System<Space>::System(const Model& model, const SolverSettings& settings)
-    : model_(model),
-      settings_(settings),
-      filter_(model),
-      data_(model, filter_, zero_factors(model).size()),
+    : Base(model, settings),
       blocks_(model.points, settings.precision),
-      dependents_(model.points),
-      followers_(model),
-      surfaces_(model),
-      node_parts_(model.points.node_part, model.points.part_count()),
       cg_(settings.precision == Precision::single ? 0 : at(model.dof_count())),
       narrow_cg_(settings.precision == Precision::single ? at(model.dof_count()) : 0),
-      conservative_(model.loads_are_conservative()),
-      extrapolates_(extrapolates_stresses(model.points, settings.tangent)),
-      turning_(model.has_frames()),
-      damped_(model.points.damped),
-      motions_(motion_sizes(model)),
-      masses_(part_masses(model)),
-      driven_(driven_parts(model)),
-      memory_(model.points.memory) {
+      extrapolates_(extrapolates_stresses(model.points, settings.tangent)) {
   const auto n = at(model.node_count()), dofs = at(model.dof_count()), parts = at(model.points.part_count());
   const std::size_t frames = turning_ ? n : 0;
-  for (auto* array : {&du_, &saved_du_, &u_}) array->resize(n);
-  for (auto* array : {&Ds_, &saved_Ds_, &D_, &L_, &dA_}) array->resize(frames);
+  for (auto* array : {&L_, &dA_}) array->resize(frames);
   Q_.resize(n);
   dx_.resize(n);
-  q_.resize(n);
-  w_.resize(n);
-  for (auto* array : {&turned_, &saved_turned_}) array->resize(3 * model.constraints.size());
-  for (auto* array : {&gradient_, &load_, &inertia_, &world_d_, &world_y_, &direction_, &prescribed_}) {
+  for (auto* array : {&world_d_, &world_y_, &prescribed_}) {
     array->resize(dofs);
     array->set_zero();
   }
-  node_energy_.resize(3 * n);
-  dependent_forces_.resize(6 * model.points.dependents.size());
   for (auto* array : {&part_motion_, &start_motion_}) {
     array->resize(parts);
     array->set_zero();
@@ -72,8 +52,6 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   spin_.resize(1);
   spin_.set_zero();
   idle_.resize(1);
-  factors_ = reached_factors_ = zero_factors(model);
-  data_.set_factors(factors_);
   if constexpr (Space::kHasTiles) make_tiles();
 }
 
@@ -122,33 +100,6 @@ void System<Space>::make_tiles() {
   if (settings_.preconditioner == PreconditionerKind::none) tiles_->clear_preconditioner();
 }
 
-template <class Space>
-StepView System<Space>::step_view() {
-  return {data_.view(), step_,      start_.u.data(), start_.v.data(), start_.D.data(), start_.Q_dot.data(), du_.data(),
-          u_.data(),    Ds_.data(), D_.data(),       q_.data(),       w_.data(),       turned_.data(),      turning_};
-}
-
-template <class Space>
-ForceView System<Space>::force_view() {
-  return {gradient_.data(), load_.data(), inertia_.data(), node_energy_.data()};
-}
-
-template <class Space>
-void System<Space>::rebuild_state() {
-  known_.reset();
-  Space::for_each(model_.node_count(), loops::RebuildState{step_view()});
-  place_dependents();
-}
-
-/// In the present state, and their increments by those of their hosts, which keep the digits of small steps.
-template <class Space>
-void System<Space>::place_dependents() {
-  if (dependents_.empty()) return;
-  dependents_.place_increments(du_.data(), Ds_.data(), start_.D.data());
-  dependents_.place(u_.data(), D_.data());
-  dependents_.turn(D_.data());
-}
-
 /// Everything that acts on the nodes, into gradient_, load_ and inertia_.
 /// @param quantities  energies of blocks too, and what else is judged
 template <class Space>
@@ -182,14 +133,13 @@ void System<Space>::find_prescribed() {
   const ModelView& m = data_.view();
   double* out = report_.data() + report_.size() - 3;
   Space::for_each(static_cast<int>(model_.constraints.size()),
-                  loops::FindPrescribed{m, pose(), turned_.data(), m.factors, prescribed_.data()});
+                  loops::FindPrescribed{m, pose(), increment_.turned.data(), m.factors, prescribed_.data()});
   Space::template sum<0, 3>(model_.node_count(), loops::PrescribedLeft{step_view(), prescribed_.data()},
                             loops::StoreSums<0, 3>{out});
 }
 
 template <class Space>
-Evaluation System<Space>::evaluate() {
-  if (known_) return *std::exchange(known_, std::nullopt);
+Evaluation System<Space>::evaluate_anew() {
   evaluate_forces();
   node_parts_.template sum<kNodeQuantities>(loops::NodeReport{data_.view(), force_view()}, report_.data());
   blocks_.sum_quantities(report_.data() + at(model_.points.part_count()) * kNodeQuantities);
@@ -198,14 +148,13 @@ Evaluation System<Space>::evaluate() {
   return judge();
 }
 
-/// From the numbers of an evaluation, as MechanicalSystem::evaluate().
+/// From the numbers of an evaluation.
 template <class Space>
 Evaluation System<Space>::judge() {
   const std::size_t parts = at(model_.points.part_count());
   const double* nodes = report_values_.data();
   const double* blocks = nodes + parts * kNodeQuantities;
   const std::size_t block_kinds = blocks_.report_size() / (parts * kQuantities);
-  Evaluation e;
   internal_ = {};
   load_energy_ = inertia_energy_ = 0;
   std::vector<PartForces> forces(parts);
@@ -232,11 +181,8 @@ Evaluation System<Space>::judge() {
     });
   }
   if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
-  e.energy = internal_.total() + load_energy_ + inertia_energy_;
-  e.energy_scale = internal_.size() + std::abs(load_energy_) + inertia_energy_;
-  fascia::judge(forces, model_.points.part_whole, settings_.tolerance, e);
   prescribed_left_ = !model_.constraints.empty() && motions_.lacks(report_values_.data() + report_values_.size() - 3);
-  return e;
+  return this->judged(forces);
 }
 
 /// Potentials of loads and inertia at the present state, where the internal energy is known.
@@ -256,34 +202,10 @@ void System<Space>::evaluate_loads() {
 }
 
 template <class Space>
-void System<Space>::apply(double step) {
-  known_.reset();
-  if (extrapolates_ && !use_tiles()) {
-    taken_u_.copy_from(u_);
-    taken_D_.copy_from(D_);
-    taken_length_ = step;
-  }
-  if (!surfaces_.empty()) surfaces_.approach(step);
-  Space::for_each(model_.node_count(), loops::Advance{step_view(), direction_.data(), step});
-  place_dependents();
-}
-
-template <class Space>
-void System<Space>::save() {
-  saved_du_.copy_from(du_);
-  saved_Ds_.copy_from(Ds_);
-  saved_turned_.copy_from(turned_);
-  if (!surfaces_.empty()) surfaces_.save();
-}
-
-template <class Space>
-void System<Space>::restore() {
-  taken_length_ = 0;
-  du_.copy_from(saved_du_);
-  Ds_.copy_from(saved_Ds_);
-  turned_.copy_from(saved_turned_);
-  if (!surfaces_.empty()) surfaces_.restore();
-  rebuild_state();
+void System<Space>::note_step(double step) {
+  if (!extrapolates_ || use_tiles()) return;
+  copy_place(Space(), now_, taken_);
+  taken_length_ = step;
 }
 
 }  // namespace fascia::gpu

@@ -107,25 +107,21 @@ MechanicalSystem& System<Space>::host() {
 template <class Space>
 StepInProgress System<Space>::step_in_progress() const {
   StepInProgress out;
-  State& start = out.start = State::at_rest(model_);
-  start_.download(start);
-  State& increment = out.increment = State::at_rest(model_);
-  du_.download(increment.u);
-  if (turning_) Ds_.download(std::span(&*increment.D.begin(), Ds_.size()));
-  increment.turned.resize(model_.constraints.size());
-  if (!increment.turned.empty()) turned_.download(std::span(increment.turned[0].data(), turned_.size()));
-  static_cast<StepConstants&>(out.form) = step_;
+  out.start = out.increment = State::at_rest(model_);
+  start_.download(out.start);
+  increment_.download(out.increment);
+  out.step = step_;
   if (step_.scheme != TimeScheme::implicit_euler) {
-    out.form.q = q_.downloaded();
-    out.form.w = w_.downloaded();
+    out.q = q_.downloaded();
+    out.w = w_.downloaded();
   }
   out.history = strain_history();
   out.factors = factors_;
   if (!surfaces_.empty()) out.pressures = surfaces_.followed();
   if (taken_length_ == 0) return out;
-  out.taken.u = taken_u_.downloaded();
-  out.taken.D = start.D;
-  if (turning_) taken_D_.download(std::span(&*out.taken.D.begin(), taken_D_.size()));
+  out.taken.u = taken_.u.downloaded();
+  out.taken.D = out.start.D;
+  if (turning_) taken_.D.download(std::span(&*out.taken.D.begin(), taken_.D.size()));
   out.taken.d = direction_.downloaded();
   for (double& d : out.taken.d) d *= taken_length_;
   return out;
@@ -136,8 +132,8 @@ State System<Space>::state() const {
   State present = State::at_rest(model_);
   start_.download(present);
   if (memory_.acts()) present.factors = factors_;
-  u_.download(present.u);
-  if (turning_) D_.download(std::span(&*present.D.begin(), D_.size()));
+  now_.u.download(present.u);
+  if (turning_) now_.D.download(std::span(&*present.D.begin(), now_.D.size()));
   return present;
 }
 

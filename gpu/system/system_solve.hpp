@@ -70,7 +70,7 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn, const TakenSte
 template <class Space>
 TakenStepView System<Space>::taken_step() const {
   if (taken_length_ == 0) return {};
-  return {{taken_u_.data(), taken_D_.data()}, {world_d_.data(), dx_.data(), dA_.data()}, taken_length_};
+  return {{taken_.u.data(), taken_.D.data()}, {world_d_.data(), dx_.data(), dA_.data()}, taken_length_};
 }
 
 /// All but springs. Tiles take the stresses of the state. @return  N Qᵀ of frames with the tangent's stresses
@@ -88,7 +88,7 @@ const Mat3d* System<Space>::linearize_blocks(Tangent tangent, const TakenStepVie
 template <class Space>
 void System<Space>::linearize_tiles(Tangent tangent) {
   blocks_.add_spring_blocks(data_.view().nodes, pose(), tangent, node_blocks_.data());
-  tiles_->linearize(u_.data()->v, &(*D_.data())(0, 0), tangent, damped_ ? inverse_step_ : 0.0);
+  tiles_->linearize(now_.u.data()->v, &(*now_.D.data())(0, 0), tangent, history().inverse_step);
   tiles_->set_node_blocks(node_blocks_.data());
   if (settings_.preconditioner != PreconditionerKind::none) tiles_->build_preconditioner();
 }
@@ -136,7 +136,7 @@ void System<Space>::gather_product(const kernels::ProductView<T, V>& w) {
 /// Another one wherever the loops of a product must be recorded anew.
 template <class Space>
 std::uint64_t System<Space>::operator_key() {
-  const Operator now{inverse_step_, tangent_, blocks_.elements().extrapolated(), levels_.key()};
+  const Operator now{history_.inverse_step, tangent_, blocks_.elements().extrapolated(), levels_.key()};
   if (now != operator_) ++operator_count_;
   operator_ = now;
   return operator_count_;

@@ -32,7 +32,7 @@ class DerivativeTest : public testing::TestWithParam<Case> {
     history_.given = memory_.given();
     if (tested().dt <= 0) return;
     history_.inverse_step = 1 / tested().dt;
-    executor_.store_strain(random_state(built_.model, 0.01, 0.5 * rotation, 7), history_);
+    executor_.store_strain(random_state(built_.model, 0.01, 0.5 * rotation, 7), history_.E);
   }
   std::size_t size() const { return static_cast<std::size_t>(built_.model.dof_count()); }
   double energy(const State& state) {

@@ -101,7 +101,7 @@ class TileSolverTest : public testing::TestWithParam<TileCase> {
 
 TEST_P(TileSolverTest, AgreesWithTheProcessor) {
   StrainHistory history;
-  executor_->store_strain(old_, history);
+  executor_->store_strain(old_, history.E);
   history.inverse_step = 50;
   const std::size_t n = direction_.size();
   std::vector<double> gradient(n);

@@ -131,7 +131,7 @@ class LaneFramesOf : public testing::TestWithParam<Case> {
     f.gradient.resize(at(set.dofs.total()));
     f.product = f.assembled = f.gradient;
     StrainHistory history;
-    executor.store_strain(random_state(built_.model, 0.01, 0.1, 5), history);
+    executor.store_strain(random_state(built_.model, 0.01, 0.1, 5), history.E);
     f.strain.assign(history.E.begin(), history.E.end());
     history.inverse_step = 20;
     if (!set.damped) history = {};
