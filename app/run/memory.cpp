@@ -182,7 +182,8 @@ class Setup {
     system_.emplace(s_.model, pool_, settings_of(solver));
     state_ = s_.initial;
     if (solver.kind == SolverKind::central_differences) {
-      stepper_.emplace(*system_, state_, solver.time_step, s_.factors(0));
+      const ExplicitPlan plan({.time_step = solver.time_step, .steps = 1}, 0);
+      stepper_.emplace(*system_, state_, plan, [this](double time) { return s_.factors(time); });
       if (solver.time_step_automatic) stepper_->save();
       to_come_.keep(2 * state_bytes(s_.model));
       return;

@@ -1,23 +1,11 @@
 #include "core/run/explicit_dynamics.hpp"
 
-#include "core/base/clock.hpp"
+#include "core/run/explicit_run.hpp"
 #include "core/run/explicit_step.hpp"
 
-#include <cmath>
 #include <sstream>
 
 namespace fascia {
-
-namespace {
-
-bool is_finite(const State& state) {
-  double sum = 0;
-  for (std::size_t i = 0; i < state.u.size(); ++i)
-    sum += squared_norm(state.v[i]) + contract(state.Q_dot[i], state.Q_dot[i]);
-  return std::isfinite(sum);
-}
-
-}  // namespace
 
 std::string explicit_divergence(MechanicalSystem& system, const State& good, int step, double time,
                                 const ExplicitPlan& plan) {
@@ -48,77 +36,19 @@ std::string explicit_divergence(MechanicalSystem& system, const State& good, int
 
 RunReport run_explicit(MechanicalSystem& system, State& state, const FactorFunction& factors,
                        const ExplicitSettings& settings, const StepObserver& observe) {
-  ExplicitPlan plan(settings, state.time), kept_plan = plan;
-  RunReport run;
-  ExplicitStepper stepper(system, state, plan.step(), factors(state.time));
-  if (plan.automatic()) stepper.save();
-  State good = state;
-  int good_step = 0, retries = 0;
-  Clock::time_point start = Clock::now();
-  std::vector<double> next = factors(plan.end());
-  while (!plan.done()) {
-    const double dt = plan.step();
-    stepper.advance(next);
-    plan.take();
-    const int step = plan.taken();
-    state.time = plan.time();
-    const bool last = plan.done();
-    const StepInfo info{step, state.time, plan.progress(), {}, seconds_since(start), dt};
-    start = Clock::now();
-    bool sound = stepper.is_sound() && !plan.collapsed();
-    const bool seen = sound && (last || (observe && (!settings.observed || settings.observed(info))));
-    const bool looks = plan.asks() || (seen && plan.automatic());
-    const double stable = sound && looks ? stepper.stable_step(plan.limit()) : plan.limit();
-    const bool overrun = !sound || (looks && plan.overruns(stable));
-    if (overrun && plan.automatic() && !plan.collapsed() && retries < kExplicitRetries) {
-      stepper.restore();
-      plan = kept_plan;
-      plan.shorten(sound && stable > 0 ? kStableMargin * stable : 0.5 * plan.limit());
-      stepper.set_step(plan.step());
-      next = factors(plan.end());
-      ++retries;
-      continue;
-    }
-    if (looks) plan.adopt(stable);
-    stepper.set_step(plan.step());
-    const std::vector<double> present = std::move(next);
-    next = factors(plan.end());
-    const bool kept = seen || (sound && (plan.automatic() ? looks : step % kExplicitKeepEvery == 0));
-    if (kept) {
-      stepper.report_velocities(next);
-      sound = is_finite(state);
-    }
-    if (!sound) {
-      run.status = RunStatus::diverged;
-      run.message = explicit_divergence(system, good, step, state.time, plan);
-      run.failed = std::make_shared<FailedState>(FailedState{state, {}, step});
-      state = good;
-      run.time = state.time;
-      run.steps = good_step;
-      return run;
-    }
-    run.steps = step;
-    run.time = state.time;
-    if (kept) {
-      good = state;
-      good_step = step;
-    }
-    if (kept && plan.automatic()) {
-      stepper.save();
-      kept_plan = plan;
-      retries = 0;
-    }
-    if (!seen || !observe) continue;
-    system.set_factors(present);
-    system.look_at(state, dt);
-    system.add_held_inertia(stepper.held_accelerations());
-    if (!observe(info, state, system)) {
-      if (!last) run.status = RunStatus::interrupted;
-      return run;
-    }
-    start = Clock::now();  // what the observer took is not the step's
-  }
-  return run;
+  ExplicitStepper steps(system, state, ExplicitPlan(settings, state.time), factors);
+  return run_explicit_steps(
+      steps, state, settings, observe != nullptr,
+      [&](const StepInfo& info) {
+        const State& seen = steps.pose();
+        system.set_factors(factors(seen.time));
+        system.look_at(seen, info.time_step);
+        system.add_held_inertia(steps.held_accelerations());
+        return observe(info, seen, system);
+      },
+      [&](const State& good, int step, double time, const ExplicitPlan& plan) {
+        return explicit_divergence(system, good, step, time, plan);
+      });
 }
 
 }  // namespace fascia

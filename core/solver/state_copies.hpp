@@ -92,6 +92,9 @@ inline void shape_end(const State& start, const State& increment, State& end) {
 }
 inline void copy_turned(const State& from, State& to) { to.turned = from.turned; }
 
+/// Brings a state to the host.
+inline void fetch_state(const State& from, State& to) { to = from; }
+
 /// Where a step ended, told by what is there: callers may give another state.
 class EndMark {
  public:

@@ -118,4 +118,36 @@ struct GatherActing {
   }
 };
 
+/// @param last  tethers have no work to add
+struct EndNodes {
+  ExplicitProgress* progress;
+  bool last;
+  FASCIA_HD void operator()(const Sums<2>& total) const {
+    progress->kinetic = total.v[0];
+    progress->work += total.v[1];
+    if (last) progress->end_step();
+  }
+};
+
+/// The factors of the next step.
+struct TakeFactors {
+  const ExplicitProgress* progress;
+  const double* table;  ///< (steps × schedules)
+  int schedules;
+  double *present, *next;
+  FASCIA_HD void operator()(int i) const {
+    present[i] = next[i];
+    next[i] = table[progress->row * schedules + i];
+  }
+};
+
+/// Σ v² + Q̇²: finite where all of them are.
+struct SizeOfMotion {
+  ExplicitView s;
+  FASCIA_HD void operator()(int i, Sums<1>& sums) const {
+    sums.v[0] += squared_norm(s.v[i]);
+    if (s.Q_dot != nullptr) sums.v[0] += contract(s.Q_dot[i], s.Q_dot[i]);
+  }
+};
+
 }  // namespace fascia::loops

@@ -100,4 +100,21 @@ struct ExplicitView {
   FASCIA_HD static Vec3d vector_at(const double* v) { return {{v[0], v[1], v[2]}}; }
 };
 
+/// How far a run has come, and its energies; in the space.
+struct ExplicitProgress {
+  int unsound = 0;  ///< the first step with more kinetic energy than was given; 0: none
+  int row = 0;      ///< of the table of factors, of the next step
+  int step = 0;
+  double kinetic = 0, work = 0, largest_work = 0;  ///< [J]
+  double given = 0;                                ///< at the start, with what rounding may show [J]
+  double motion = 0;                               ///< Σ v² + Q̇², where it was asked for
+
+  FASCIA_HD void end_step() {
+    if (largest_work < work) largest_work = work;
+    ++row;
+    ++step;
+    if (unsound == 0 && !is_sound_energy(kinetic, given + largest_work)) unsound = step;
+  }
+};
+
 }  // namespace fascia

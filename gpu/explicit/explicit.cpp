@@ -6,3 +6,9 @@ namespace fascia::gpu {
 template class ExplicitSystem<HostSpace>;
 
 }  // namespace fascia::gpu
+
+namespace fascia {
+
+template class ExplicitSteps<gpu::ExplicitSystem<HostSpace>, gpu::DeviceStep<HostSpace>>;
+
+}  // namespace fascia

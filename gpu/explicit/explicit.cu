@@ -6,3 +6,9 @@ namespace fascia::gpu {
 template class ExplicitSystem<CudaSpace>;
 
 }  // namespace fascia::gpu
+
+namespace fascia {
+
+template class ExplicitSteps<gpu::ExplicitSystem<gpu::CudaSpace>, gpu::DeviceStep<gpu::CudaSpace>>;
+
+}  // namespace fascia

@@ -4,25 +4,8 @@
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/system/tether_kernels.hpp"
 
-/// Loops of a step of central differences that see blocks or tethers, and what is counted in the space.
+/// Loops of a step of central differences that see blocks or tethers.
 namespace fascia::gpu::kernels {
-
-/// How far a run has come, and its energies; in the space.
-struct ExplicitProgress {
-  int unsound = 0;  ///< the first step with more kinetic energy than was given; 0: none
-  int row = 0;      ///< of the table of factors, of the next step
-  int step = 0;
-  double kinetic = 0, work = 0, largest_work = 0;  ///< [J]
-  double given = 0;                                ///< at the start, with what rounding may show [J]
-  double motion = 0;                               ///< Σ v² + Q̇², where it was asked for
-
-  FASCIA_HD void end_step() {
-    if (largest_work < work) largest_work = work;
-    ++row;
-    ++step;
-    if (unsound == 0 && !is_sound_energy(kinetic, given + largest_work)) unsound = step;
-  }
-};
 
 /// Nodes between two steps, with the blocks about them. Where there is no gradient, blocks have it.
 struct ExplicitBlocksView : ExplicitView {
@@ -69,17 +52,6 @@ struct GatherLoads {
   }
 };
 
-/// @param last  tethers have no work to add
-struct EndNodes {
-  ExplicitProgress* progress;
-  bool last;
-  FASCIA_HD void operator()(const Sums<2>& total) const {
-    progress->kinetic = total.v[0];
-    progress->work += total.v[1];
-    if (last) progress->end_step();
-  }
-};
-
 /// Moves what tethers pull to; the work that this takes.
 struct MoveTethers {
   const Tether* tethers;
@@ -119,27 +91,6 @@ struct EndTethers {
   FASCIA_HD void operator()(const Sums<1>& total) const {
     progress->work += total.v[0];
     progress->end_step();
-  }
-};
-
-/// The factors of the next step.
-struct TakeFactors {
-  const ExplicitProgress* progress;
-  const double* table;  ///< (steps × schedules)
-  int schedules;
-  double *present, *next;
-  FASCIA_HD void operator()(int i) const {
-    present[i] = next[i];
-    next[i] = table[progress->row * schedules + i];
-  }
-};
-
-/// Σ v² + Q̇²: finite where all of them are.
-struct SizeOfMotion {
-  ExplicitView s;
-  FASCIA_HD void operator()(int i, Sums<1>& sums) const {
-    sums.v[0] += squared_norm(s.v[i]);
-    if (s.Q_dot != nullptr) sums.v[0] += contract(s.Q_dot[i], s.Q_dot[i]);
   }
 };
 

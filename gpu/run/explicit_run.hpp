@@ -1,17 +1,14 @@
 #pragma once
 
-#include "core/base/clock.hpp"
-#include "core/run/explicit_dynamics.hpp"
+#include "core/run/explicit_run.hpp"
 #include "gpu/explicit/explicit.hpp"
 #include "gpu/run/run.hpp"
 #include "gpu/space/device.hpp"
 #include "gpu/system/host_system.hpp"
 #include "gpu/system/system.hpp"
 
-#include <cmath>
 #include <optional>
 #include <utility>
-#include <vector>
 
 /// The body of explicit runs, for the files that instantiate it.
 namespace fascia::gpu {
@@ -91,84 +88,23 @@ class ReachedExplicitStep final : public ReachedStep {
   bool fetched_ = false;
 };
 
-/// Explicit dynamics in a space, like run_explicit() of the host. Whether the motion is sound is looked at every so
-/// many steps, and where the state is seen or kept; the space remembers the step at which it was not.
+/// run_explicit() in a space.
 template <class Space>
 RunReport run_explicit_in(const Model& model, State& state, const FactorFunction& factors, const SolverSettings& solver,
                           const ExplicitSettings& settings, const DeviceObserver& observe) {
-  constexpr int kLookEvery = 50;
-  static_assert(kExplicitKeepEvery % kLookEvery == 0);
   ExplicitSystem<Space> system(model, state, ExplicitPlan(settings, state.time), factors);
-  const ExplicitPlan& plan = system.plan();
-  RunReport run;
-  if (plan.automatic()) system.save();
-  DeviceState<Space> good = system.pose();
-  int good_step = 0, retries = 0;
   ExplicitLooker<Space> looker(model, factors, solver);
-  std::vector<double> ends;  // of the steps since the motion was looked at
-  Clock::time_point start = Clock::now();
-  while (!plan.done()) {
-    const double dt = plan.step();
-    system.advance();
-    const int step = plan.taken();
-    const double time = plan.time();
-    ends.push_back(time);
-    const StepInfo info{step, time, plan.progress(), {}, seconds_since(start), dt};
-    start = Clock::now();
-    const bool last = plan.done();
-    const bool seen = last || (observe && (!settings.observed || settings.observed(info)));
-    const bool looks = plan.asks() || (seen && plan.automatic());
-    if (looks) {
-      const double stable = system.progress().unsound == 0 ? system.stable_step() : 0;
-      if (plan.overruns(stable) && !plan.collapsed() && retries < kExplicitRetries) {
-        system.restore(stable > 0 ? kStableMargin * stable : 0.5 * plan.limit());
-        ends.clear();
-        ++retries;
-        continue;
-      }
-      if (stable > 0) system.adopt(stable);
-    }
-    run.steps = step;
-    run.time = time;
-    const bool kept = plan.automatic() ? looks : seen || step % kExplicitKeepEvery == 0;
-    if (kept) system.report_velocities();
-    if (!kept && step % kLookEvery != 0 && !plan.collapsed()) continue;
-    const auto progress = system.progress();
-    const bool sound = progress.unsound == 0 && !(kept && !std::isfinite(progress.motion));
-    if (!sound && plan.automatic() && retries < kExplicitRetries) {
-      system.restore(0.5 * plan.limit());
-      ends.clear();
-      ++retries;
-      continue;
-    }
-    if (!sound || plan.collapsed()) {
-      const int failed = progress.unsound > 0 ? progress.unsound : step;
-      system.pose().download(state);
-      run.failed = std::make_shared<FailedState>(FailedState{state, {}, step});
-      good.download(state);
-      run.status = RunStatus::diverged;
-      HostSystem host(model, solver);
-      host.system.set_factors(factors(state.time));
-      run.message = explicit_divergence(host.system, state, failed, ends[ends.size() - 1 - at(step - failed)], plan);
-      run.time = state.time;
-      run.steps = good_step;
-      return run;
-    }
-    ends.clear();
-    if (kept) good = system.pose();
-    if (kept) good_step = step;
-    if (kept && plan.automatic()) system.save();
-    if (kept) retries = 0;
-    if (!seen || !observe) continue;
-    ReachedExplicitStep<Space> reached(system, looker, state, dt);
-    if (!observe(info, reached)) {
-      if (!last) run.status = RunStatus::interrupted;
-      break;
-    }
-    start = Clock::now();  // what the observer took is not the step's
-  }
-  system.pose().download(state);
-  return run;
+  return run_explicit_steps(
+      system, state, settings, observe != nullptr,
+      [&](const StepInfo& info) {
+        ReachedExplicitStep<Space> reached(system, looker, state, info.time_step);
+        return observe(info, reached);
+      },
+      [&](const State& good, int step, double time, const ExplicitPlan& plan) {
+        HostSystem host(model, solver);
+        host.system.set_factors(factors(good.time));
+        return explicit_divergence(host.system, good, step, time, plan);
+      });
 }
 
 }  // namespace fascia::gpu

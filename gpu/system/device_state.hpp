@@ -126,6 +126,11 @@ void shape_end(const DeviceState<Space>& start, const DeviceState<Space>& increm
   copy_turned(increment, end);
 }
 
+template <class Space>
+void fetch_state(const DeviceState<Space>& from, State& to) {
+  from.download(to);
+}
+
 /// Where a step ended, told by the number that its state has since then.
 class StepMark {
  public:

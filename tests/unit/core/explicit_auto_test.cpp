@@ -142,10 +142,10 @@ TEST(ExplicitAuto, TheStableStepIsThatOfTheState) {
     State state = random_state(model, 0.05, name == "held" ? 0.0 : 0.1);
     if (name == "held") state = State::at_rest(model);
     const double expected = stable_time_step(system, state) / kStableMargin;
-    ExplicitStepper stepper(system, state, 1e-9 * expected, std::vector<double>{1.0});
-    stepper.advance(std::vector<double>{1.0});
+    ExplicitStepper stepper(system, state, ExplicitPlan({1e-9 * expected, 2, {}}, 0), kAlways);
+    stepper.advance();
     double found = expected;
-    for (int look = 0; look < 3; ++look) found = stepper.stable_step(found);
+    for (int look = 0; look < 3; ++look) found = stepper.stable_step();
     std::printf("%-20s %12.4e %12.4e %8.4f\n", kind, found, expected, found / expected);
     EXPECT_GT(found, 0.99 * expected) << kind;
     EXPECT_LT(found, 1.02 * expected) << kind;
@@ -162,19 +162,20 @@ TEST(ExplicitAuto, FreeFallIsExactInUnequalSteps) {
     MechanicalSystem system(model, pool, {});
     State state = State::at_rest(model);
     const double limit = stable_time_step(system);
-    ExplicitStepper stepper(system, state, limit, std::vector<double>{1.0});
-    double time = 0;
+    ExplicitStepper stepper(system, state, ExplicitPlan({limit, 0, {}, 40 * limit, true, 0}, 0), kAlways);
+    double shortest = limit;
     for (int k = 0; k < 40; ++k) {
-      const double dt = limit * (1 - 0.7 * (k * 7 % 10) / 10.0);
-      stepper.set_step(k == 0 ? limit : dt);
-      time += k == 0 ? limit : dt;
-      stepper.advance(std::vector<double>{1.0});
+      stepper.adopt((k % 8 < 4 ? 1 - 0.2 * (k % 4) : 1) * limit);  // shorter at once, longer by and by
+      shortest = std::min(shortest, stepper.plan().step());
+      stepper.advance();
     }
-    stepper.set_step(0.3 * limit);
-    stepper.report_velocities(std::vector<double>{1.0});
+    EXPECT_LT(shortest, 0.5 * limit);
+    stepper.report_velocities();
+    const double time = stepper.plan().time();
+    EXPECT_GT(time, 10 * limit);
     for (std::size_t i = 0; i < state.u.size(); ++i) {
-      EXPECT_NEAR(state.u[i][2], -9.81 * time * time / 2, 1e-12);
-      EXPECT_NEAR(state.v[i][2], -9.81 * time, 1e-11);
+      EXPECT_NEAR(stepper.pose().u[i][2], -9.81 * time * time / 2, 1e-12);
+      EXPECT_NEAR(stepper.pose().v[i][2], -9.81 * time, 1e-11);
     }
   }
 }
