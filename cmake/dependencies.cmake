@@ -4,7 +4,7 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 if(NOT mechanics_alone)
   find_package(VTK 9.1 REQUIRED
-    COMPONENTS CommonCore CommonDataModel IOCore IOXML IOLegacy IOPLY
+    COMPONENTS CommonCore CommonDataModel IOCore IOXML IOLegacy
     OPTIONAL_COMPONENTS FiltersCore FiltersGeometry FiltersSources IOImage RenderingFreeType RenderingOpenGL2)
 endif()
 

@@ -27,7 +27,8 @@ class FirstErrorWindow : public vtkOutputWindow {
  private:
   void keep(const char* text) {
     const std::string_view message(text);
-    if (first_.empty() && !message.starts_with("Generic Warning")) first_ = message;
+    const bool generic = message.starts_with("Generic Warning");  // most of these are of no harm
+    if (first_.empty() && (!generic || message.find("Error reading") != message.npos)) first_ = message;
   }
 
   std::string first_;
@@ -46,9 +47,12 @@ VtkErrors::~VtkErrors() { vtkOutputWindow::SetInstance(former_); }
 
 std::string VtkErrors::first() const {
   const std::string& text = static_cast<const FirstErrorWindow*>(window_.Get())->first();
-  // "ERROR: In FILE, line N\nCLASS (ADDRESS): what happened"
+  // "ERROR: In FILE, line N\nCLASS (ADDRESS): what happened"; a generic warning names no class
   std::size_t begin = text.find("): ");
-  begin = begin == std::string::npos ? 0 : begin + 3;
+  if (begin != std::string::npos)
+    begin += 3;
+  else
+    begin = text.starts_with("Generic Warning") ? text.find('\n') + 1 : 0;
   std::string line;
   for (const char c : text.substr(begin)) {
     const bool blank = std::isspace(static_cast<unsigned char>(c)) != 0;

@@ -5,13 +5,13 @@
 #include "io/mesh/isolated.hpp"
 #include "io/mesh/obj_reader.hpp"
 #include "io/mesh/off_reader.hpp"
+#include "io/mesh/ply_reader.hpp"
 #include "io/mesh/stl_reader.hpp"
 #include "io/mesh/vtk_cells.hpp"
 #include "io/vtk_errors.hpp"
 
 #include <vtkDataSetReader.h>
 #include <vtkErrorCode.h>
-#include <vtkPLYReader.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
@@ -19,10 +19,8 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <exception>
 #include <fstream>
-#include <sstream>
 #include <string_view>
 
 namespace fascia::io {
@@ -53,8 +51,7 @@ vtkSmartPointer<vtkDataSet> read_with(const std::string& file) {
 vtkSmartPointer<vtkDataSet> read_data(const std::string& file, const std::string& ending) {
   if (ending == ".vtk") return read_with<vtkDataSetReader>(file);
   if (ending == ".vtu") return read_with<vtkXMLUnstructuredGridReader>(file);
-  if (ending == ".vtp") return read_with<vtkXMLPolyDataReader>(file);
-  return read_with<vtkPLYReader>(file);
+  return read_with<vtkXMLPolyDataReader>(file);
 }
 
 /// The value of an attribute of an XML element's start; empty where it has none.
@@ -88,23 +85,6 @@ std::string true_ending(const std::filesystem::path& path, const std::string& en
   return type == "PolyData" ? ".vtp" : ending;
 }
 
-/// A header may promise more than memory holds, which VTK asks for before it looks for the first number: each vertex
-/// and face takes a byte at least.
-void check_ply_counts(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::uintmax_t size = std::filesystem::file_size(file);
-  std::string line, word, name;
-  constexpr int most_lines = 10'000;
-  for (int number = 1; number < most_lines && std::getline(stream, line) && !line.starts_with("end_header"); ++number) {
-    double count = 0;
-    std::istringstream words(line);
-    if (words >> word >> name >> count && word == "element" && count > static_cast<double>(size))
-      throw InputError(file + ":" + std::to_string(number) + ": the number of " +
-                       (name == "vertex" ? "vertices" : name + "s") + " is above the " + std::to_string(size) +
-                       " bytes of the file; correct it, or write the file again: it may be cut off");
-  }
-}
-
 Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mid_nodes) {
   VtkErrors errors;
   try {
@@ -124,17 +104,19 @@ Mesh read_by_vtk(const std::string& file, const std::string& ending, MidNodes mi
 
 Mesh read_vtk_mesh(const std::filesystem::path& path, const std::string& ending, MidNodes mid_nodes) {
   const std::string file = path.string();
-  if (ending == ".obj" || ending == ".stl" || ending == ".off") {
+  const auto parsed = [&](const auto& parse, const std::string& text, int first) {
     VtkErrors silence;
-    const auto parse = ending == ".obj" ? parse_obj : ending == ".stl" ? parse_stl : parse_off;
-    const int first = ending == ".off" ? 0 : 1;  // the number that the format gives its first vertex
     std::vector<std::string> messages;
-    Mesh mesh = mesh_of_vtk(*parse(read_file(path), file, messages), file, first, first, mid_nodes);
+    Mesh mesh = mesh_of_vtk(*parse(text, file, messages), file, first, first, mid_nodes);
     mesh.messages = std::move(messages);
     return mesh;
-  }
+  };
+  constexpr int from_one = 1;  // the number that the format gives its first vertex
+  if (ending == ".obj") return parsed(parse_obj, read_file(path), from_one);
+  if (ending == ".stl") return parsed(parse_stl, read_file(path), from_one);
+  if (ending == ".off") return parsed(parse_off, read_file(path), 0);
+  if (ending == ".ply") return parsed(parse_ply, read_file(path), 0);
   const std::string kind = true_ending(path, ending);
-  if (kind == ".ply") check_ply_counts(file);
   Mesh mesh = read_isolated(file, [&] { return read_by_vtk(file, kind, mid_nodes); });
   if (kind != ending) mesh.messages.push_back(file + ": holds XML, which is a " + kind + " file, and was read as one");
   return mesh;

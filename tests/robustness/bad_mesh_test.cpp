@@ -246,8 +246,10 @@ TEST_F(BadMesh, HeadersThatPromiseMoreThanTheFileHolds) {
            "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
            "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   };
-  expect_refused("vertices.ply", ply("99999999999", "1"), "vertices.ply:3: the number of vertices is above the ");
-  expect_refused("faces.ply", ply("3", "1000000"), "faces.ply:7: the number of faces is above the ");
+  expect_refused("vertices.ply", ply("99999999999", "1"),
+                 "vertices.ply:3: the number of vertices is 99999999999, but the file has only ");
+  expect_refused("faces.ply", ply("3", "1000000"),
+                 "faces.ply:7: the number of faces is 1000000, but the file has only ");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "core/geometry/surface.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/mesh/off_reader.hpp"
+#include "io/mesh/ply_reader.hpp"
 #include "io/mesh/vtk_cells.hpp"
 
 #include <vtkDataSet.h>
@@ -17,8 +18,10 @@ namespace {
 /// The formats of own parsing are told apart by their first byte.
 fascia::Mesh parse(std::string_view text) {
   using namespace fascia::io;
-  if (!text.starts_with('O')) return parse_gmsh(text, "fuzz.msh");
   std::vector<std::string> messages;
+  if (text.starts_with('p'))
+    return mesh_of_vtk(*parse_ply(text, "fuzz.ply", messages), "fuzz.ply", 0, 0, fascia::MidNodes::drop);
+  if (!text.starts_with('O')) return parse_gmsh(text, "fuzz.msh");
   return mesh_of_vtk(*parse_off(text, "fuzz.off", messages), "fuzz.off", 0, 0, fascia::MidNodes::drop);
 }
 

@@ -152,6 +152,26 @@ OFF # a comment
 3 0 3 2
 TEXT
 
+cat >"$gmsh/tetrahedron.ply" <<'TEXT'
+ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+element face 4
+property list uchar int vertex_indices
+end_header
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 0 2 1
+3 0 1 3
+3 1 2 3
+3 0 3 2
+TEXT
+
 cat >"$gmsh/tetrahedron_41.msh" <<'TEXT'
 $MeshFormat
 4.1 0 8

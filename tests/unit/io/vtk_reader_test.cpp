@@ -163,6 +163,16 @@ TEST(VtkReader, xml_in_a_legacy_file_is_read_as_what_it_is) {
   }
 }
 
+/// VTK goes on with zeros where numbers are missing, and warns of it alone.
+TEST(VtkReader, MissingNumbersAreNoZeros) {
+  const TemporaryDirectory directory;
+  const auto file = directory.write("a.vtk",
+                                    "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n"
+                                    "0 0 0\n1 0 0\n1 1 0\n0 1\nPOLYGONS 2 8\n3 0 1 2\n3 0 2 3\n");
+  EXPECT_NE(input_error([&] { read_mesh(file); }).find("is no readable .vtk mesh (Error reading ascii data"),
+            std::string::npos);
+}
+
 TEST(ObjReader, errors_name_the_line) {
   const TemporaryDirectory directory;
   const auto error = [&](const std::string& text) {
