@@ -1,6 +1,6 @@
 #include "core/run/explicit_step.hpp"
 
-#include "core/run/explicit_system_body.hpp"
+#include "core/run/explicit_steps_body.hpp"
 
 #include <algorithm>
 #include <utility>

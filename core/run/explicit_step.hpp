@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/run/explicit_system.hpp"
+#include "core/run/explicit_steps.hpp"
 #include "core/solver/mechanical_system.hpp"
 
 #include <span>

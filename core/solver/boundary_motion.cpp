@@ -1,8 +1,8 @@
 #include "core/solver/boundary_motion.hpp"
 
+#include "core/base/index.hpp"
 #include "core/math/rotation.hpp"
-#include "core/solver/mechanical_system.hpp"
-#include "core/step/boundary_loops.hpp"
+#include "core/node/node_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,27 +70,6 @@ void place_tethers(const Model& model, std::span<const double> factors, std::spa
     const auto first = at(model.points.rule[at(t.group)].axes) * 3 * kGroupSize + at(t.lane);
     for (int k = 0; k < 3; ++k) targets[first + at(k) * kGroupSize] = target[k];
   }
-}
-
-void MechanicalSystem::find_prescribed(std::span<const double> factors, std::span<double> local) {
-  std::fill(local.begin(), local.end(), 0.0);
-  space_.for_each(
-      static_cast<int>(model_.constraints.size()),
-      loops::FindPrescribed{
-          data_.view(), {now_.u.data(), now_.D.data()}, loops::flat(increment_.turned), factors.data(), local.data()});
-}
-
-bool MechanicalSystem::has_prescribed_increment() {
-  if (model_.constraints.empty()) return false;
-  find_prescribed(factors_, prescribed_);
-  double left[3];
-  space_.sum<0, 3>(model_.node_count(), loops::PrescribedLeft{step_view(), prescribed_.data()},
-                   loops::StoreSums<0, 3>{left});
-  return motions_.lacks(left);
-}
-
-double MechanicalSystem::prescribed_rotation() const {
-  return fascia::prescribed_rotation(model_, increment_.turned, factors_, reached_factors_);
 }
 
 void stop_held(const Model& model, State& state) {

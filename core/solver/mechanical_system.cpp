@@ -256,6 +256,27 @@ std::vector<double> MechanicalSystem::product(std::span<const double> d) {
   return y;
 }
 
+void MechanicalSystem::find_prescribed(std::span<const double> factors, std::span<double> local) {
+  std::fill(local.begin(), local.end(), 0.0);
+  space_.for_each(
+      static_cast<int>(model_.constraints.size()),
+      loops::FindPrescribed{
+          data_.view(), {now_.u.data(), now_.D.data()}, loops::flat(increment_.turned), factors.data(), local.data()});
+}
+
+bool MechanicalSystem::has_prescribed_increment() {
+  if (model_.constraints.empty()) return false;
+  find_prescribed(factors_, prescribed_);
+  double left[3];
+  space_.sum<0, 3>(model_.node_count(), loops::PrescribedLeft{step_view(), prescribed_.data()},
+                   loops::StoreSums<0, 3>{left});
+  return motions_.lacks(left);
+}
+
+double MechanicalSystem::prescribed_rotation() const {
+  return fascia::prescribed_rotation(model_, increment_.turned, factors_, reached_factors_);
+}
+
 /// Keeps where a step starts, and along what it goes.
 void MechanicalSystem::note_step(double step) {
   if (!conservative_) applied_ = step;

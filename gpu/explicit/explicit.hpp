@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/run/explicit_system.hpp"
+#include "core/run/explicit_steps.hpp"
 #include "gpu/blocks/blocks.hpp"
 #include "gpu/explicit/explicit_kernels.hpp"
 #include "gpu/system/device_state.hpp"

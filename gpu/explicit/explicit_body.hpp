@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/run/explicit_system_body.hpp"
+#include "core/run/explicit_steps_body.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "gpu/explicit/explicit.hpp"
 

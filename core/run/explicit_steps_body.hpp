@@ -2,7 +2,7 @@
 
 #include "core/base/index.hpp"
 #include "core/run/explicit_dynamics.hpp"
-#include "core/run/explicit_system.hpp"
+#include "core/run/explicit_steps.hpp"
 #include "core/solver/boundary_motion.hpp"
 #include "core/solver/state_copies.hpp"
 #include "core/step/boundary_loops.hpp"

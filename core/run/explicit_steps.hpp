@@ -25,7 +25,7 @@ namespace fascia {
 /// A step is written here once for all spaces. What derives from this evaluates forces and strains: an ExplicitStepper
 /// on the processor, a gpu::ExplicitSystem on a device.
 ///
-/// @tparam Own    that derives from this, and has the functions that explicit_system_body.hpp calls by own()
+/// @tparam Own    that derives from this, and has the functions that explicit_steps_body.hpp calls by own()
 /// @tparam Types  as of a StepSystem
 template <class Own, class Types>
 class ExplicitSteps {
