@@ -1,11 +1,11 @@
 #include "coupling/gap_patch.hpp"
 
+#include "core/base/disjoint_sets.hpp"
 #include "core/base/index.hpp"
 #include "core/geometry/surface_edges.hpp"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 namespace fascia::gap_parts {
 
@@ -13,6 +13,7 @@ namespace {
 
 using surface_parts::Components;
 using surface_parts::Edge;
+using surface_parts::for_each_edge;
 using surface_parts::Neighbours;
 using surface_parts::sorted_edges;
 
@@ -20,15 +21,6 @@ std::vector<Edge> edges_of(const GapPatch& patch) {
   std::vector<surface_parts::Triangle> triangles;
   for (const auto& t : patch.triangles) triangles.push_back({t, 0});
   return sorted_edges(triangles);
-}
-
-/// Calls act(edges) for each run of edges that are the same.
-template <class Act>
-void for_each_edge(const std::vector<Edge>& edges, const Act& act) {
-  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
-    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
-    act(std::span(edges).subspan(e, end - e));
-  }
 }
 
 void add_point(GapPatch& patch, const Vec3d& X, const TriangleTree& tree) {
@@ -178,29 +170,23 @@ std::vector<std::array<int, 2>> rim(const GapPatch& patch) {
 
 void separate(GapPatch& patch, const CheckedSides& sides) {
   // Corners of triangles that hang together across edges are one vertex.
-  std::vector<int> parent(3 * patch.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
+  const std::size_t count = 3 * patch.triangles.size();
+  DisjointSets corners(static_cast<int>(count));
   const auto corner = [&](int t, int node) {
     const auto& nodes = patch.triangles[at(t)];
     return 3 * t + static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
   };
   for_each_edge(edges_of(patch), [&](std::span<const Edge> same) {
     if (same.size() != 2) return;
-    for (const int node : {same[0].low, same[0].high}) {
-      const int a = root(corner(same[0].triangle, node)), b = root(corner(same[1].triangle, node));
-      parent[at(std::max(a, b))] = std::min(a, b);
-    }
+    for (const int node : {same[0].low, same[0].high})
+      corners.join(corner(same[0].triangle, node), corner(same[1].triangle, node));
   });
   GapPatch own;
-  std::vector<int> number(parent.size(), -1);
+  std::vector<int> number(count, -1);
   own.triangles = patch.triangles;
   for (std::size_t t = 0; t < patch.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      int& n = number[at(root(static_cast<int>(3 * t + k)))];
+      int& n = number[at(corners.root(static_cast<int>(3 * t + k)))];
       if (n < 0) {
         n = static_cast<int>(own.points.size());
         own.points.push_back(patch.points[at(patch.triangles[t][k])]);

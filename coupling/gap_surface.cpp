@@ -1,10 +1,10 @@
 #include "coupling/gap_surface.hpp"
 
+#include "core/base/disjoint_sets.hpp"
 #include "core/base/index.hpp"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 namespace fascia::gap_parts {
 
@@ -18,26 +18,17 @@ constexpr double kSame = 1e-9;
 /// Numbers of the points over the patch: top + i where the top has a point of its own.
 std::vector<int> numbers_of_feet(const GapPatch& patch, const CheckedSides& sides) {
   const int top = static_cast<int>(patch.points.size());
-  std::vector<int> parent(2 * patch.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
-  const auto join = [&](int i, int j) {
-    const int a = root(i), b = root(j);
-    parent[at(std::max(a, b))] = std::min(a, b);
-  };
+  DisjointSets same(2 * top);
   for (const auto& edge : rim(patch))
     for (const int i : edge)
-      if (patch.gap(i) < sides.touching) join(i, top + i);
+      if (patch.gap(i) < sides.touching) same.join(i, top + i);
   for (const auto& t : patch.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
-      if (norm(patch.feet[at(b)] - patch.feet[at(a)]) < kSame * sides.size) join(top + a, top + b);
+      if (norm(patch.feet[at(b)] - patch.feet[at(a)]) < kSame * sides.size) same.join(top + a, top + b);
     }
   std::vector<int> number(patch.points.size());
-  for (std::size_t i = 0; i < number.size(); ++i) number[i] = root(top + static_cast<int>(i));
+  for (std::size_t i = 0; i < number.size(); ++i) number[i] = same.root(top + static_cast<int>(i));
   return number;
 }
 

@@ -1,8 +1,8 @@
+#include "core/base/disjoint_sets.hpp"
 #include "core/base/errors.hpp"
 #include "fem/from_mesh_parts.hpp"
 
 #include <cmath>
-#include <numeric>
 
 namespace fascia::from_mesh_parts {
 namespace {
@@ -72,38 +72,15 @@ ElementMesh corners_only(const ElementMesh& mesh) {
   return linear;
 }
 
-/// Parts of a whole that are joined pair by pair.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void join(int i, int j) {
-    const auto [low, high] = std::minmax({root(i), root(j)});
-    parent_[at(high)] = low;
-  }
-  std::size_t parts() {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < parent_.size(); ++i)
-      count += root(static_cast<int>(i)) == static_cast<int>(i) ? 1u : 0u;
-    return count;
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-std::size_t parts_by_nodes(const ElementMesh& mesh) {
-  Joined elements(mesh.size());
+int parts_by_nodes(const ElementMesh& mesh) {
+  DisjointSets elements(static_cast<int>(mesh.size()));
   std::vector<int> owner(mesh.nodes.size(), -1);
   for (std::size_t e = 0; e < mesh.size(); ++e)
     for (const int n : mesh.element(e)) {
       if (owner[at(n)] < 0) owner[at(n)] = static_cast<int>(e);
       elements.join(owner[at(n)], static_cast<int>(e));
     }
-  return elements.parts();
+  return elements.sets();
 }
 
 /// The same corners in opposite order around the face: elements on either side of it.
@@ -191,7 +168,7 @@ void check_folds(const ElementMesh& mesh) {
 }
 
 void check_faces(ElementMesh& mesh) {
-  Joined elements(mesh.size());
+  DisjointSets elements(static_cast<int>(mesh.size()));
   const std::vector<ElementFace> faces = sorted_faces(mesh);
   for_each_face(faces, [&](std::span<const ElementFace> same) {
     if (same.size() > 2)
@@ -204,7 +181,7 @@ void check_faces(ElementMesh& mesh) {
                           " overlap: they lie on the same side of a common face; mesh again");
     elements.join(same[0].element, same[1].element);
   });
-  const std::size_t by_faces = elements.parts(), by_nodes = by_faces > 1 ? parts_by_nodes(mesh) : 1;
+  const int by_faces = elements.sets(), by_nodes = by_faces > 1 ? parts_by_nodes(mesh) : 1;
   if (by_nodes > 1)
     mesh.messages.push_back(mesh.file + ": falls into " + std::to_string(by_nodes) + " parts that share no node");
   if (by_faces > by_nodes)

@@ -62,22 +62,21 @@ std::string numbers_of(const std::vector<Triangle>& triangles, std::span<const E
 /// @throws InputError  an edge of three triangles or more, where no surfaces that bound something just touch
 void check_edges(const Solid& sheet, const std::vector<Triangle>& triangles) {
   const std::vector<Edge> edges = sorted_edges(triangles);
-  std::size_t first = 0, most = 0, count = 0;
+  std::span<const Edge> most;  // triangles of the first that has too many
+  std::size_t count = 0;
   std::vector<bool> bounds;  // of each triangle; once it is asked
   const auto bounding = [&](const Edge& edge) -> bool {
     if (bounds.empty()) bounds = bounding_triangles(triangles);
     return bounds[at(edge.triangle)];
   };
-  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
-    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
-    const auto meeting = std::span(edges).subspan(e, end - e);
-    if (end - e <= 2 || (balanced(meeting) && std::ranges::all_of(meeting, bounding))) continue;
-    if (count++ == 0) first = e, most = end - e;
-  }
+  surface_parts::for_each_edge(edges, [&](std::span<const Edge> meeting) {
+    if (meeting.size() <= 2 || (balanced(meeting) && std::ranges::all_of(meeting, bounding))) return;
+    if (count++ == 0) most = meeting;
+  });
   if (count == 0) return;
   const auto node = [&](int n) { return std::to_string(sheet.point_file_number[at(n)]); };
-  const std::string numbers = numbers_of(triangles, std::span(edges).subspan(first, most));
-  const Edge& edge = edges[first];
+  const std::string numbers = numbers_of(triangles, most);
+  const Edge& edge = most[0];
   fail(sheet, "triangles " + numbers + " share the edge between nodes " + node(edge.low) + " and " + node(edge.high) +
                   ", at " + text((sheet.points[at(edge.low)] + sheet.points[at(edge.high)]) * 0.5) +
                   (count > 1 ? " (" + std::to_string(count) + " such edges)" : "") +

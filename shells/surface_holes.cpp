@@ -1,10 +1,10 @@
+#include "core/base/disjoint_sets.hpp"
 #include "core/base/index.hpp"
 #include "core/geometry/surface_edges.hpp"
 #include "core/geometry/text.hpp"
 #include "shells/surface_checks.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace fascia {
 namespace {
@@ -22,37 +22,22 @@ std::vector<surface_parts::Triangle> triangles_of(const ShellMesh& mesh) {
 std::vector<Edge> free_edges(const ShellMesh& mesh) {
   const std::vector<Edge> edges = surface_parts::sorted_edges(triangles_of(mesh));
   std::vector<Edge> result;
-  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
-    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
-    if (end - e == 1) result.push_back(edges[e]);
-  }
+  surface_parts::for_each_edge(edges, [&](std::span<const Edge> same) {
+    if (same.size() == 1) result.push_back(same[0]);
+  });
   return result;
 }
-
-/// Things that are joined, by a representative.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void join(int a, int b) { parent_[at(find(a))] = find(b); }
-
- private:
-  std::vector<int> parent_;
-};
 
 }  // namespace
 
 std::vector<ShellHole> holes(const ShellMesh& mesh) {
   const std::vector<Edge> edges = free_edges(mesh);
-  Joined nodes(mesh.nodes.size());
+  DisjointSets nodes(static_cast<int>(mesh.nodes.size()));
   for (const Edge& edge : edges) nodes.join(edge.low, edge.high);
   std::vector<int> hole_of(mesh.nodes.size(), -1);
   std::vector<ShellHole> result;
   for (const Edge& edge : edges) {
-    int& index = hole_of[at(nodes.find(edge.low))];
+    int& index = hole_of[at(nodes.root(edge.low))];
     if (index < 0) {
       index = static_cast<int>(result.size());
       result.emplace_back().triangle = at(edge.triangle);
@@ -86,7 +71,7 @@ std::string openness(const ShellMesh& mesh) {
 }
 
 ShellParts parts_of(const ShellMesh& mesh) {
-  Joined nodes(mesh.nodes.size()), corners(3 * mesh.triangles.size());
+  DisjointSets nodes(static_cast<int>(mesh.nodes.size())), corners(static_cast<int>(3 * mesh.triangles.size()));
   for (const auto& t : mesh.triangles) {
     nodes.join(t[0], t[1]);
     nodes.join(t[0], t[2]);
@@ -102,11 +87,11 @@ ShellParts parts_of(const ShellMesh& mesh) {
       corners.join(corner(edges[e].triangle, node), corner(edges[e + 1].triangle, node));
   }
   ShellParts parts;
+  parts.count = nodes.sets();
   std::vector<int> fans(mesh.nodes.size(), 0);  // triangles about a node that hang together by edges
   for (std::size_t c = 0; c < 3 * mesh.triangles.size(); ++c)
-    if (corners.find(static_cast<int>(c)) == static_cast<int>(c)) ++fans[at(mesh.triangles[c / 3][c % 3])];
+    if (corners.root(static_cast<int>(c)) == static_cast<int>(c)) ++fans[at(mesh.triangles[c / 3][c % 3])];
   for (std::size_t i = 0; i < fans.size(); ++i) {
-    if (nodes.find(static_cast<int>(i)) == static_cast<int>(i)) ++parts.count;
     if (fans[i] > 1) parts.pinched.push_back(static_cast<int>(i));
   }
   return parts;

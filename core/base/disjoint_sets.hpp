@@ -26,6 +26,13 @@ class DisjointSets {
     parent_[at(std::max(a, b))] = std::min(a, b);
   }
 
+  /// How many sets there are.
+  int sets() const {
+    int roots = 0;
+    for (std::size_t i = 0; i < parent_.size(); ++i) roots += parent_[i] == static_cast<int>(i) ? 1 : 0;
+    return roots;
+  }
+
  private:
   std::vector<int> parent_;
 };

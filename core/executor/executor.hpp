@@ -2,17 +2,14 @@
 
 #include "core/base/thread_pool.hpp"
 #include "core/executor/element_executor.hpp"
-#include "core/executor/follower_tangent.hpp"
+#include "core/executor/load_tangent.hpp"
 #include "core/executor/point_executor.hpp"
 #include "core/executor/shell_executor.hpp"
 #include "core/executor/spring_executor.hpp"
-#include "core/executor/surface_blocks.hpp"
 #include "core/executor/user_executor.hpp"
 #include "core/linear/block_matrix.hpp"
-#include "core/linear/rank_one.hpp"
 #include "core/space/part_sums.hpp"
 #include "core/space/pool_space.hpp"
-#include "core/step/surfaces.hpp"
 
 #include <span>
 #include <tuple>
@@ -47,15 +44,8 @@ struct Linearization {
   AlignedVector<double> E;          ///< StrainHistory::E, where blocks look at the state again
   AlignedVector<double> given;      ///< StrainHistory::given
   AlignedVector<double> kept;       ///< what blocks keep of the state, in their order
-  std::vector<std::size_t> kept_begin;        ///< (blocks + 1)
-  Surfaces<PoolSpace>* surfaces = nullptr;    ///< none: no surface loads; added by who knows them, as to node_blocks
-  SurfaceTangent<PoolSpace> surface_tangent;  ///< of these
-  std::vector<RankOne> low_rank;              ///< terms that no matrix holds; products have them
-  std::vector<FollowerTangent> followers;     ///< as those of surfaces
-  std::vector<TorqueTangent> torques;
-
-  /// Loads have a potential: nothing is beside the symmetric part, which matrices and products hold.
-  bool symmetric() const;
+  std::vector<std::size_t> kept_begin;  ///< (blocks + 1)
+  LoadTangent loads;                    ///< added by who knows them, as to node_blocks
 };
 
 /// Executes a point set on the processor: one pass over its blocks, one gather over nodes. No atomics, sums in fixed

@@ -22,11 +22,6 @@ void turn(ThreadPool& pool, const FrameMatrices& D, std::vector<Mat3d>& Q) {
 
 }  // namespace
 
-bool Linearization::symmetric() const {
-  return followers.empty() && torques.empty() &&
-         (surfaces == nullptr || !surface_tangent.curved || surfaces->conservative());
-}
-
 std::span<const Vec3d> CpuExecutor::translations_of(std::span<const double> d) {
   translations_.resize(see_translations_ ? at(set_.node_count()) : 0);
   pool_.for_ranges(static_cast<int>(translations_.size()), kNodeGrain, [&](int begin, int end) {
@@ -57,10 +52,7 @@ void CpuExecutor::linearize(const State& state, const StrainHistory& history, Ta
                             bool tethers_turn, const TakenStep* taken) {
   out.tangent = tangent;
   out.inverse_step = history.inverse_step;
-  out.surfaces = nullptr;
-  out.low_rank.clear();
-  out.followers.clear();
-  out.torques.clear();
+  out.loads.clear();
   if (tangent == Tangent::material) taken = nullptr;
   linearize_blocks(state, history, taken, out);
   const std::vector<Mat3d>& turning = taken != nullptr && see_motions_ ? extrapolated_L_ : node_L_;
@@ -155,9 +147,7 @@ void CpuExecutor::multiply(const Linearization& lin, std::span<const double> x, 
         for (int i = 0; i < 3; ++i) yn[3 + i] += sum.torque[i];
     }
   });
-  if (lin.surfaces != nullptr)
-    lin.surfaces->add_product(lin.surface_tangent, nodes_of(set_), lin.Q.data(), x.data(), y.data());
-  for (const RankOne& term : lin.low_rank) add_product(term, x, y);
+  lin.loads.add_product(set_, lin.Q, x, y);
 }
 
 void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out, Entries entries) {
@@ -170,7 +160,7 @@ void CpuExecutor::assemble(const Linearization& lin, BlockMatrix& matrix_out, En
       for (int k = 0; k < set_.dofs.size(node) * set_.dofs.size(node); ++k) diagonal[k] += own[k];
     }
   });
-  if (lin.surfaces != nullptr) add_blocks(lin.surfaces->loads(), lin.surface_tangent, lin.Q, matrix_out);
+  lin.loads.add_to(matrix_out, lin.Q);
   matrix_out.mirror_lower(pool_);
 }
 

@@ -36,13 +36,12 @@ void fill(std::array<Neighbours::Link, 3>& links, const Neighbours::Link& link) 
 }  // namespace
 
 Neighbours::Neighbours(std::size_t triangle_count, const std::vector<Edge>& edges) : of(triangle_count) {
-  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
-    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
-    if (end - e != 2) continue;
-    const Edge &a = edges[e], &b = edges[e + 1];
+  for_each_edge(edges, [&](std::span<const Edge> same) {
+    if (same.size() != 2) return;
+    const Edge &a = same[0], &b = same[1];
     fill(of[at(a.triangle)], {b.triangle, a.forward == b.forward});
     fill(of[at(b.triangle)], {a.triangle, a.forward == b.forward});
-  }
+  });
 }
 
 void Neighbours::link(int a, int b) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 /// Edges, neighbours and connected parts of triangulated surfaces; for the files of surface_parts.hpp only.
@@ -19,6 +20,15 @@ struct Edge {
 
 /// All edges of all triangles; those that are the same lie side by side, by triangle.
 std::vector<Edge> sorted_edges(const std::vector<Triangle>& triangles);
+
+/// Calls act(std::span<const Edge>) for each edge, with those that are the same. @param edges  sorted
+template <class Act>
+void for_each_edge(const std::vector<Edge>& edges, const Act& act) {
+  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
+    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
+    act(std::span(edges).subspan(e, end - e));
+  }
+}
 
 /// For each triangle its neighbours across edges that exactly two triangles have, and whether both run along the edge
 /// in the same direction.

@@ -82,19 +82,20 @@ bool are_walls(const std::vector<Triangle>& triangles, const std::vector<Copies>
   constexpr std::size_t kLarge = 20;  // a part of 1 / kLarge of all triangles
   std::vector<std::size_t> sizes(at(components.count), 0);
   for (const int c : components.of) ++sizes[at(c)];
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+  bool found = false;
+  for_each_edge(edges, [&](std::span<const Edge> same) {
     int beside = -1;
     bool copies = false, differ = false;
-    for (end = begin; end < edges.size() && edges[end].same_as(edges[begin]); ++end) {
-      const std::size_t t = at(edges[end].triangle);
+    for (const Edge& edge : same) {
+      const std::size_t t = at(edge.triangle);
       copies = copies || is_copy[t];
       if (is_copy[t] || kLarge * sizes[at(components.of[t])] < triangles.size()) continue;
       differ = differ || (beside >= 0 && components.of[t] != beside);
       beside = components.of[t];
     }
-    if (copies && differ) return true;
-  }
-  return false;
+    found = found || (copies && differ);
+  });
+  return found;
 }
 
 }  // namespace

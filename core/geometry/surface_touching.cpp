@@ -1,11 +1,11 @@
 #include "core/geometry/surface_touching.hpp"
 
+#include "core/base/disjoint_sets.hpp"
 #include "core/base/index.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -67,37 +67,11 @@ std::vector<std::array<int, 2>> pair_up(const std::vector<Side>& sides) {
   return pairs;
 }
 
-/// Calls act(edges of one name).
-template <class Act>
-void for_each_run(const std::vector<Edge>& edges, const Act& act) {
-  for (std::size_t e = 0, end = 0; e < edges.size(); e = end) {
-    for (end = e; end < edges.size() && edges[end].same_as(edges[e]);) ++end;
-    act(std::span(edges).subspan(e, end - e));
-  }
-}
-
-/// Things that are joined, by a representative.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void join(int a, int b) {
-    const auto [low, high] = std::minmax({root(a), root(b)});
-    parent_[at(high)] = low;
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 /// Corners of triangles (three a triangle) that stay joined.
 class JoinedCorners {
  public:
   explicit JoinedCorners(const std::vector<Triangle>& triangles)
-      : triangles_(triangles), joined_(3 * triangles.size()) {}
+      : triangles_(triangles), joined_(static_cast<int>(3 * triangles.size())) {}
   int root(int triangle, int node) { return joined_.root(corner(triangle, node)); }
   void join(int a, int b, int node) { joined_.join(corner(a, node), corner(b, node)); }
 
@@ -107,14 +81,14 @@ class JoinedCorners {
     return 3 * triangle + static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
   }
   const std::vector<Triangle>& triangles_;
-  Joined joined_;
+  DisjointSets joined_;
 };
 
 /// Joins the corners at one end of an edge where the wedges that met there would be parts of their own. Returns how
 /// often.
 std::size_t keep_parts_joined(const std::vector<TouchingEdge>& touching, const std::vector<Triangle>& triangles,
                               const std::vector<bool>& touched, JoinedCorners& corners) {
-  Joined parts(triangles.size());
+  DisjointSets parts(static_cast<int>(triangles.size()));
   std::map<int, int> of_node, of_corner;  // a triangle
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (const int node : triangles[t].nodes) {
@@ -144,14 +118,14 @@ bool balanced(std::span<const Edge> edges) {
 
 bool encloses(const std::vector<Triangle>& triangles) {
   bool all = true;
-  for_each_run(sorted_edges(triangles), [&](std::span<const Edge> run) { all = all && balanced(run); });
+  for_each_edge(sorted_edges(triangles), [&](std::span<const Edge> run) { all = all && balanced(run); });
   return all;
 }
 
 bool branches(const std::vector<Triangle>& triangles) {
   bool any = false;
-  for_each_run(sorted_edges(triangles),
-               [&](std::span<const Edge> run) { any = any || (run.size() > 2 && !balanced(run)); });
+  for_each_edge(sorted_edges(triangles),
+                [&](std::span<const Edge> run) { any = any || (run.size() > 2 && !balanced(run)); });
   return any;
 }
 
@@ -161,8 +135,8 @@ std::vector<bool> bounding_triangles(const std::vector<Triangle>& triangles) {
   const auto patch_of = [&](const Edge& edge) { return patches.of[at(edge.triangle)]; };
   std::vector<int> net(at(patches.count), 0);  // of a patch at one edge: triangles forward less those backward
   std::vector<bool> open(net.size(), false), cluster_open(net.size(), false);
-  Joined clusters(net.size());
-  for_each_run(edges, [&](std::span<const Edge> run) {
+  DisjointSets clusters(static_cast<int>(net.size()));
+  for_each_edge(edges, [&](std::span<const Edge> run) {
     for (const Edge& edge : run) {
       clusters.join(patch_of(run[0]), patch_of(edge));
       net[at(patch_of(edge))] += edge.forward ? 1 : -1;
@@ -172,7 +146,7 @@ std::vector<bool> bounding_triangles(const std::vector<Triangle>& triangles) {
       net[at(patch_of(edge))] = 0;
     }
   });
-  for_each_run(edges, [&](std::span<const Edge> run) {
+  for_each_edge(edges, [&](std::span<const Edge> run) {
     if (!balanced(run)) cluster_open[at(clusters.root(patch_of(run[0])))] = true;
   });
   std::vector<bool> result;
@@ -182,7 +156,7 @@ std::vector<bool> bounding_triangles(const std::vector<Triangle>& triangles) {
 
 std::vector<TouchingEdge> touching_edges(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles) {
   std::vector<TouchingEdge> touching;
-  for_each_run(sorted_edges(triangles), [&](std::span<const Edge> run) {
+  for_each_edge(sorted_edges(triangles), [&](std::span<const Edge> run) {
     if (run.size() > 2 && balanced(run))
       touching.push_back({run[0].low, run[0].high, pair_up(sides_of(points, triangles, run))});
   });
@@ -195,7 +169,7 @@ PartedSurface part_at(const std::vector<TouchingEdge>& touching, std::size_t poi
   const std::size_t former = triangles.size();
   const std::vector<Triangle> before = triangles;
   JoinedCorners corners(before);
-  for_each_run(sorted_edges(before), [&](std::span<const Edge> run) {
+  for_each_edge(sorted_edges(before), [&](std::span<const Edge> run) {
     if (run.size() != 2) return;
     for (const int node : {run[0].low, run[0].high}) corners.join(run[0].triangle, run[1].triangle, node);
   });

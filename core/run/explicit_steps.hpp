@@ -7,10 +7,9 @@
 #include "core/run/explicit_plan.hpp"
 #include "core/step/dependents.hpp"
 #include "core/step/explicit_loops.hpp"
-#include "core/step/followers.hpp"
 #include "core/step/model_data.hpp"
+#include "core/step/moving_loads.hpp"
 #include "core/step/stress_memory_steps.hpp"
-#include "core/step/surfaces.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -104,8 +103,7 @@ class ExplicitSteps {
   Space space_;
   ModelData<Space> data_;
   Dependents<Space> dependents_;
-  Followers<Space> followers_;
-  Surfaces<Space> surfaces_;
+  MovingLoads<Space> moving_;
   StressMemory<Space> memory_;
   bool turning_, damped_;
   Pose pose_;

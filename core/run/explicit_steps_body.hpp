@@ -25,8 +25,7 @@ ExplicitSteps<Own, Types>::ExplicitSteps(const Model& model, const State& state,
       space_(space),
       data_(model, filter_, zero_factors(model).size()),
       dependents_(model.points, space_),
-      followers_(model, space_),
-      surfaces_(model, space_),
+      moving_(model, space_),
       memory_(model.points.memory, space_),
       turning_(model.has_frames()),
       damped_(model.points.damped),
@@ -43,7 +42,7 @@ ExplicitSteps<Own, Types>::ExplicitSteps(const Model& model, const State& state,
   half_spin_.resize(frames);
   half_rate_.resize(frames);
   if (!dependents_.empty()) gradient_.resize(dofs);
-  if (!dependents_.empty() || !followers_.empty() || !surfaces_.empty()) load_.resize(dofs);
+  if (!dependents_.empty() || !moving_.empty()) load_.resize(dofs);
   for (auto* array : {&increments_, &last_increments_}) {
     array->resize(model.constraints.empty() ? 0 : dofs);
     array->set_zero();
@@ -180,9 +179,7 @@ void ExplicitSteps<Own, Types>::update_forces(const View& s, const Pose& pose, c
   own().block_forces(pose, history);
   if (load_.empty()) return;
   for_nodes([&]<bool Frames>() { own().template store_loads<Frames>(s); });
-  const PoseView seen{s.u, s.D};
-  if (!followers_.empty()) followers_.add_forces(nodes, seen, s.m.factors, load_.data());
-  if (!surfaces_.empty()) surfaces_.add_forces(nodes, seen, s.m.factors, load_.data());
+  moving_.add_forces(nodes, {s.u, s.D}, s.m.factors, load_.data());
   if (dependents_.empty()) return;
   dependents_.turn(s.D);
   dependents_.transfer(nodes, gradient_.data());

@@ -74,7 +74,7 @@ class HighestFrequency {
     std::vector<double> w(at(dofs_.total()));
     executor_.gradient(state_, history_, w);
     executor_.linearize(state_, history_, Tangent::full, lin_);
-    lin_.low_rank = fluids_;
+    lin_.loads.volumes = fluids_;
     dependents_.transfer(nodes_, w.data(), dependent_forces_.data());
     dependents_.add_turning(nodes_, dependent_forces_.data(), lin_.node_blocks.data());
     found_ = iterate({});

@@ -68,25 +68,18 @@ void MechanicalSystem::add_loads_and_inertia() {
   inertia_energy_ = energies[1];
   const NodesView& nodes = data_.view().nodes;
   const PoseView pose{now_.u.data(), now_.D.data()};
-  if (!followers_.empty()) followers_.add_forces(nodes, pose, factors_.data(), load_.data());
-  if (surfaces_.empty()) return;
-  surfaces_.add_forces(nodes, pose, factors_.data(), load_.data());
-  load_energy_ += surfaces_.potential(surface_figures());
+  moving_.add_forces(nodes, pose, factors_.data(), load_.data());
+  if (!moving_.surfaces.empty()) load_energy_ += moving_.surfaces.potential(surface_figures());
 }
 
 /// @param turning  false leaves out how forces on dependent nodes turn their hosts, tethers' pull among them
 void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) {
   const bool full = lin.tangent == Tangent::full;
   if (full) {
-    for (const DeadLoad& load : model_.loads)
-      for (const NodeLoad& n : load.nodes)
-        if (model_.kind(n.node) == FrameKind::rigid && squared_norm(n.torque) > 0)
-          lin.torques.push_back({n.node, n.torque * factors_[at(load.schedule)]});
-    for (const FollowerLoad& load : model_.followers)
-      lin.followers.emplace_back(load, now_, factors_[at(load.schedule)]);
+    lin.loads.take(model_, now_, factors_);
     if (turning) dependents_.add_turning(data_.view().nodes, dependent_forces_.data(), lin.node_blocks.data());
   }
-  if (!surfaces_.empty()) add_surface_tangent(lin);
+  if (!moving_.surfaces.empty()) add_surface_tangent(lin);
   if (step_.h > 0 || (full && !model_.loads.empty()))
     space_.for_each(model_.node_count(),
                     loops::AddLoadAndInertiaBlocks{step_view(), lin.Q.data(), lin.node_blocks.data(), full});
@@ -95,14 +88,14 @@ void MechanicalSystem::add_node_blocks(Linearization& lin, bool turning) {
 /// What the surface loads of the last evaluation are in a tangent there; volumes stand beside the matrix.
 void MechanicalSystem::add_surface_tangent(Linearization& lin) {
   const NodesView& nodes = data_.view().nodes;
-  SurfaceTangent<PoolSpace>& tangent = lin.surface_tangent;
-  lin.surfaces = &surfaces_;
-  surfaces_.linearize(nodes, lin.Q.data(), factors_.data(), lin.tangent, tangent, lin.node_blocks.data());
-  for (int t = 0; t < surfaces_.terms(); ++t) {
+  SurfaceTangent<PoolSpace>& tangent = lin.loads.surface;
+  lin.loads.surfaces = &moving_.surfaces;
+  moving_.surfaces.linearize(nodes, lin.Q.data(), factors_.data(), lin.tangent, tangent, lin.node_blocks.data());
+  for (int t = 0; t < moving_.surfaces.terms(); ++t) {
     double* g = tangent.volume_gradient(t);
     dependents_.transfer(nodes, g);
     const double stiffness = tangent.stiffness.data()[t];
-    if (stiffness > 0) lin.low_rank.push_back({stiffness, std::vector<double>(g, g + model_.dof_count())});
+    if (stiffness > 0) lin.loads.volumes.push_back({stiffness, std::vector<double>(g, g + model_.dof_count())});
   }
 }
 
@@ -131,12 +124,13 @@ std::vector<PartForces> MechanicalSystem::forces_of_parts() {
   parts.reserve(masses_.size());
   for (std::size_t p = 0; p < masses_.size(); ++p) {
     const int part = static_cast<int>(p);
-    const PartSizes sizes{.rounding = executor_.rounding(part),
-                          .of_surfaces = surfaces_.empty() ? 0.0 : surfaces_.rounding(part, surface_figures()),
-                          .tether = executor_.points().squared_tether_force(part),
-                          .leverage = dependents_.leverage()[p],
-                          .mass = masses_[p],
-                          .driven = driven_[p] != 0};
+    const PartSizes sizes{
+        .rounding = executor_.rounding(part),
+        .of_surfaces = moving_.surfaces.empty() ? 0.0 : moving_.surfaces.rounding(part, surface_figures()),
+        .tether = executor_.points().squared_tether_force(part),
+        .leverage = dependents_.leverage()[p],
+        .mass = masses_[p],
+        .driven = driven_[p] != 0};
     parts.push_back(
         part_forces(node_sums_.data() + p * kNodeQuantities, sizes, step_.h, [&] { return executor_.motion(part); }));
     if (!kept_loads_.empty()) parts.back().load = std::max(parts.back().load, kept_loads_[p]);
@@ -191,7 +185,7 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
   space_.sum<1, 2>(model_.node_count(), loops::TakeDirection<double>{data_.view(), d, nullptr, gradient_.data(), d},
                    loops::StoreSums<1, 2>{sums});
   dependents_.expand(data_.view().nodes, direction_.data());
-  if (!surfaces_.empty()) surfaces_.aim(lin_.surface_tangent, direction_.data());
+  if (!moving_.surfaces.empty()) moving_.surfaces.aim(lin_.loads.surface, direction_.data());
   report.slope = sums[0];
   report.largest_rotation = std::max(sums[1], executor_.largest_spin(direction_));
   if (!conservative_) {
@@ -203,10 +197,7 @@ DirectionReport MechanicalSystem::direction(int most_iterations) {
 
 void MechanicalSystem::linearize_loads() {
   lin_.tangent = settings_.tangent;
-  lin_.surfaces = nullptr;
-  lin_.low_rank.clear();
-  lin_.followers.clear();
-  lin_.torques.clear();
+  lin_.loads.clear();
   lin_.node_blocks.assign(model_.points.dofs.block_total(), 0.0);
   lin_.Q.resize(now_.D.size());
   for (std::size_t i = 0; i < lin_.Q.size(); ++i) lin_.Q[i] = Mat3d::identity() + now_.D[i];
@@ -240,7 +231,7 @@ void MechanicalSystem::add_unsymmetric(std::span<const double> x, std::span<doub
   std::vector<double> all(x.begin(), x.end()), product(x.size());
   filter_.to_global(all);
   dependents_.expand(data_.view().nodes, all.data());
-  add_unsymmetric_product(lin_, model_.points, all, product);
+  lin_.loads.add_unsymmetric_product(model_.points, lin_.Q, all, product);
   dependents_.transfer(data_.view().nodes, product.data());
   filter_.to_local(product);
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += product[i];

@@ -120,7 +120,7 @@ class MechanicalSystem : public StepSystem<MechanicalSystem, PoolStep> {
   const CpuExecutor& executor() const { return executor_; }
   CpuExecutor& executor() { return executor_; }
   /// At the state of the last evaluation.
-  const Surfaces<PoolSpace>& surfaces() const { return surfaces_; }
+  const Surfaces<PoolSpace>& surfaces() const { return moving_.surfaces; }
   TangentSolver& linear() { return tangent_; }
 
  private:
@@ -145,7 +145,9 @@ class MechanicalSystem : public StepSystem<MechanicalSystem, PoolStep> {
 
   std::vector<PartForces> forces_of_parts();
   double load_power() const;
-  std::span<const double> surface_figures() const { return {surfaces_.figures(), surfaces_.figure_count()}; }
+  std::span<const double> surface_figures() const {
+    return {moving_.surfaces.figures(), moving_.surfaces.figure_count()};
+  }
   void add_surface_tangent(Linearization& lin);
   void add_loads_and_inertia();
   void find_prescribed(std::span<const double> factors, std::span<double> local);

@@ -35,7 +35,7 @@ void MechanicalSystem::stand_in(const StepInProgress& step) {
   rebuild_state();
   has_taken_ = extrapolates_ && !step.taken.d.empty();
   if (has_taken_) taken_ = step.taken;
-  if (!step.pressures.empty()) surfaces_.follow(step.pressures);
+  if (!step.pressures.empty()) moving_.surfaces.follow(step.pressures);
   evaluate();
 }
 

@@ -8,11 +8,10 @@
 #include "core/solver/settings.hpp"
 #include "core/space/part_sums.hpp"
 #include "core/step/dependents.hpp"
-#include "core/step/followers.hpp"
 #include "core/step/model_data.hpp"
+#include "core/step/moving_loads.hpp"
 #include "core/step/step_view.hpp"
 #include "core/step/stress_memory_steps.hpp"
-#include "core/step/surfaces.hpp"
 #include "core/structure/model.hpp"
 
 #include <optional>
@@ -111,7 +110,7 @@ class StepSystem {
   const std::vector<double>& reached_factors() const { return reached_factors_; }
   /// Newton's pressures of enclosed volumes at the end of the last step [Pa].
   std::vector<double> reached_pressures() const {
-    return surfaces_.empty() ? std::vector<double>{} : surfaces_.reached();
+    return moving_.surfaces.empty() ? std::vector<double>{} : moving_.surfaces.reached();
   }
   /// At the last evaluation.
   InternalEnergy internal_energy() const { return internal_; }
@@ -142,8 +141,7 @@ class StepSystem {
   ModelData<Space> data_;
   PartSums<Space> node_parts_;
   Dependents<Space> dependents_;  ///< at the present state
-  Followers<Space> followers_;
-  Surfaces<Space> surfaces_;  ///< at the state of the last evaluation
+  MovingLoads<Space> moving_;     ///< at the state of the last evaluation
   StressMemory<Space> memory_;
   bool conservative_, turning_, damped_;
   MotionSizes motions_;

@@ -21,8 +21,7 @@ StepSystem<Own, Types>::StepSystem(const Model& model, const SolverSettings& set
       data_(model, filter_, zero_factors(model).size()),
       node_parts_(model.points.node_part, model.points.part_count(), space_),
       dependents_(model.points, space_),
-      followers_(model, space_),
-      surfaces_(model, space_),
+      moving_(model, space_),
       memory_(model.points.memory, space_),
       conservative_(model.loads_are_conservative()),
       turning_(model.has_frames()),
@@ -71,7 +70,7 @@ void StepSystem<Own, Types>::begin_step(const Pose& start, double dt, TimeScheme
   begin_increment(space_, start_, increment_);
   shape_place(start_, now_);
   load_work_ = 0;
-  if (!surfaces_.empty()) surfaces_.begin_step();
+  if (!moving_.surfaces.empty()) moving_.surfaces.begin_step();
   step_ = StepConstants::of(scheme, dt, memory.step);
   history_.inverse_step = 0;
   if (scheme != TimeScheme::implicit_euler) {
@@ -224,7 +223,7 @@ void StepSystem<Own, Types>::forget_steps(std::span<const double> factors, const
   step_ = {};
   data_.show_motions(model_.motions);
   factors_are_placed_ = false;
-  if (!surfaces_.empty()) surfaces_.begin_afresh(pressures);
+  if (!moving_.surfaces.empty()) moving_.surfaces.begin_afresh(pressures);
 }
 
 // In a step.
@@ -242,7 +241,7 @@ template <class Own, class Types>
 void StepSystem<Own, Types>::apply(double step) {
   own().note_step(step);
   known_.reset();
-  if (!surfaces_.empty()) surfaces_.approach(step);
+  if (!moving_.surfaces.empty()) moving_.surfaces.approach(step);
   space_.for_each(model_.node_count(), loops::Advance{step_view(), direction_.data(), step});
   place_dependents();
 }
@@ -251,14 +250,14 @@ template <class Own, class Types>
 void StepSystem<Own, Types>::save() {
   copy_increment(space_, increment_, saved_);
   own().step_saved();
-  if (!surfaces_.empty()) surfaces_.save();
+  if (!moving_.surfaces.empty()) moving_.surfaces.save();
 }
 
 template <class Own, class Types>
 void StepSystem<Own, Types>::restore() {
   copy_increment(space_, saved_, increment_);
   own().step_restored();
-  if (!surfaces_.empty()) surfaces_.restore();
+  if (!moving_.surfaces.empty()) moving_.surfaces.restore();
   rebuild_state();
 }
 
@@ -267,7 +266,7 @@ void StepSystem<Own, Types>::restore() {
 template <class Own, class Types>
 void StepSystem<Own, Types>::finish_step(double end_time, Memory& memory, Pose& end) {
   reached_factors_ = factors_;
-  if (!surfaces_.empty()) surfaces_.finish_step();
+  if (!moving_.surfaces.empty()) moving_.surfaces.finish_step();
   const std::size_t n = start_.u.size();
   const bool remembers = step_.h > 0 && step_.scheme != TimeScheme::implicit_euler,
              newmark = step_.scheme == TimeScheme::newmark;

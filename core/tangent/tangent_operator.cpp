@@ -38,7 +38,7 @@ void TangentOperator::take(const Linearization& lin, const Relinearize* tamer) {
     material_.reset();
     material_rounded_ = false;
   }
-  beside_.set(lin.low_rank, filter_);
+  beside_.set(lin.loads.volumes, filter_);
   dependents_.turn_to(lin.Q.data());
 }
 
@@ -147,7 +147,7 @@ void TangentOperator::apply_by_blocks(std::span<const double> x, std::span<doubl
   filter_.to_global(work_);
   dependents_.expand(nodes_, work_.data());
   executor_.multiply(*at_, work_, y);
-  if (whole) add_unsymmetric_product(*at_, model_.points, work_, y);
+  if (whole) at_->loads.add_unsymmetric_product(model_.points, at_->Q, work_, y);
   dependents_.transfer(nodes_, y.data());
   filter_.to_local(y);
 }

@@ -44,7 +44,7 @@ class TangentOperator {
     tamer_ = nullptr;
     at_ = nullptr;
   }
-  bool symmetric() const { return at_->symmetric(); }
+  bool symmetric() const { return at_->loads.symmetric(); }
 
   const Model& model() const { return model_; }
   const DofFilter& filter() const { return filter_; }

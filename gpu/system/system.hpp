@@ -71,20 +71,20 @@ class System : public StepSystem<System<Space>, DeviceStep<Space>> {
  private:
   friend Base;
   using Base::conservative_, Base::damped_, Base::data_, Base::dependent_forces_, Base::dependents_, Base::direction_,
-      Base::driven_, Base::factors_, Base::filter_, Base::followers_, Base::gradient_, Base::history_, Base::increment_,
-      Base::inertia_, Base::inertia_energy_, Base::internal_, Base::known_, Base::load_, Base::load_energy_,
-      Base::masses_, Base::memory_, Base::middles_, Base::model_, Base::motions_, Base::node_energy_, Base::node_parts_,
-      Base::now_, Base::q_, Base::reached_factors_, Base::settings_, Base::start_, Base::step_, Base::surfaces_,
-      Base::turning_, Base::w_;
+      Base::driven_, Base::factors_, Base::filter_, Base::gradient_, Base::history_, Base::increment_, Base::inertia_,
+      Base::inertia_energy_, Base::internal_, Base::known_, Base::load_, Base::load_energy_, Base::masses_,
+      Base::memory_, Base::middles_, Base::model_, Base::motions_, Base::node_energy_, Base::node_parts_, Base::now_,
+      Base::q_, Base::reached_factors_, Base::settings_, Base::start_, Base::step_, Base::moving_, Base::turning_,
+      Base::w_;
   using Base::force_view, Base::pose, Base::step_view;
 
   // What StepSystem calls.
   void step_began();
   void place_tethers();
   void release_tethers();
-  void store_strain(const Pose& pose, Array<Space, double>& E);
-  void store_stress(const Pose& pose, std::span<const double> given, Array<Space, double>& out) {
-    blocks_.store_stress({pose.u.data(), pose.D.data()}, given.data(), out.data());
+  void store_strain(const Pose& state, Array<Space, double>& E);
+  void store_stress(const Pose& state, std::span<const double> given, Array<Space, double>& out) {
+    blocks_.store_stress({state.u.data(), state.D.data()}, given.data(), out.data());
   }
   void store_stretches(Vec3d* stretch);
   void stretch_tethers(const std::array<double, 3>& weights);
@@ -119,7 +119,7 @@ class System : public StepSystem<System<Space>, DeviceStep<Space>> {
   /// The surfaces' figures in the report.
   std::span<const double> figures() const {
     return std::span(report_values_)
-        .subspan(report_values_.size() - 3 - surfaces_.figure_count(), surfaces_.figure_count());
+        .subspan(report_values_.size() - 3 - moving_.surfaces.figure_count(), moving_.surfaces.figure_count());
   }
   Evaluation judge();
   void find_prescribed();

@@ -36,7 +36,7 @@ System<Space>::System(const Model& model, const SolverSettings& settings)
   }
   if (!model.tethers.empty()) tether_L_.resize(n);
   tethers_.upload(model.tethers);
-  report_.resize(parts * kNodeQuantities + blocks_.report_size() + surfaces_.figure_count() + 3);
+  report_.resize(parts * kNodeQuantities + blocks_.report_size() + moving_.surfaces.figure_count() + 3);
   report_.set_zero();
   report_values_.resize(report_.size());
   node_blocks_.resize(model.points.dofs.block_total());
@@ -67,7 +67,7 @@ std::string System<Space>::not_in_tiles() const {
     return "the preconditioner is not block-Jacobi";
   if (filter_.turns()) return "a constraint has axes of its own";
   if (!dependents_.empty()) return "the model has nodes that depend on others";
-  if (!surfaces_.empty()) return "a load acts on a surface that moves";
+  if (!moving_.surfaces.empty()) return "a load acts on a surface that moves";
   if (!model_.tethers.empty()) return "a boundary is held by springs";
   return "";
 }
@@ -120,11 +120,10 @@ void System<Space>::evaluate_forces(bool quantities) {
 template <class Space>
 void System<Space>::add_other_loads() {
   const ModelView& m = data_.view();
-  if (!followers_.empty()) followers_.add_forces(m.nodes, pose(), m.factors, load_.data());
-  if (surfaces_.empty()) return;
-  surfaces_.add_forces(m.nodes, pose(), m.factors, load_.data());
-  Space::copy(report_.data() + report_.size() - 3 - surfaces_.figure_count(), surfaces_.figures(),
-              surfaces_.figure_count() * sizeof(double));
+  moving_.add_forces(m.nodes, pose(), m.factors, load_.data());
+  if (moving_.surfaces.empty()) return;
+  Space::copy(report_.data() + report_.size() - 3 - moving_.surfaces.figure_count(), moving_.surfaces.figures(),
+              moving_.surfaces.figure_count() * sizeof(double));
 }
 
 /// Finds what the prescribed degrees of freedom still lack, and how much of it is left (3 numbers at the report's end).
@@ -173,14 +172,14 @@ Evaluation System<Space>::judge() {
     load_energy_ += q[kLoadEnergy];
     inertia_energy_ += q[kInertiaEnergy];
     sizes.rounding = std::numeric_limits<double>::epsilon() * std::sqrt(rounding);
-    if (!surfaces_.empty()) sizes.of_surfaces = surfaces_.rounding(static_cast<int>(p), figures());
+    if (!moving_.surfaces.empty()) sizes.of_surfaces = moving_.surfaces.rounding(static_cast<int>(p), figures());
     forces[p] = part_forces(q, sizes, step_.h, [&] {
       double motion = 0;
       Space::copy_out(&motion, part_motion_.data() + p, sizeof motion);
       return motion;
     });
   }
-  if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
+  if (!moving_.surfaces.empty()) load_energy_ += moving_.surfaces.potential(figures());
   prescribed_left_ = !model_.constraints.empty() && motions_.lacks(report_values_.data() + report_values_.size() - 3);
   return this->judged(forces);
 }
@@ -198,7 +197,7 @@ void System<Space>::evaluate_loads() {
     load_energy_ += report_values_[p * kNodeQuantities + kLoadEnergy];
     inertia_energy_ += report_values_[p * kNodeQuantities + kInertiaEnergy];
   }
-  if (!surfaces_.empty()) load_energy_ += surfaces_.potential(figures());
+  if (!moving_.surfaces.empty()) load_energy_ += moving_.surfaces.potential(figures());
 }
 
 template <class Space>

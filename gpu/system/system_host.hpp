@@ -117,7 +117,7 @@ StepInProgress System<Space>::step_in_progress() const {
   }
   out.history = strain_history();
   out.factors = factors_;
-  if (!surfaces_.empty()) out.pressures = surfaces_.followed();
+  if (!moving_.surfaces.empty()) out.pressures = moving_.surfaces.followed();
   if (taken_length_ == 0) return out;
   out.taken.u = taken_.u.downloaded();
   out.taken.D = out.start.D;

@@ -49,9 +49,9 @@ void System<Space>::linearize(Tangent tangent, bool tethers_turn, const TakenSte
   blocks_.add_spring_blocks(nodes, pose(), tangent, node_blocks_.data());
   if (!dependents_.empty() && tangent == Tangent::full && tethers_turn)
     dependents_.add_turning(nodes, dependent_forces_.data(), node_blocks_.data());
-  if (!surfaces_.empty()) {
-    surfaces_.linearize(nodes, Q_.data(), data_.view().factors, tangent, surface_tangent_, node_blocks_.data());
-    for (int t = 0; t < surfaces_.terms() && !dependents_.empty(); ++t)
+  if (!moving_.surfaces.empty()) {
+    moving_.surfaces.linearize(nodes, Q_.data(), data_.view().factors, tangent, surface_tangent_, node_blocks_.data());
+    for (int t = 0; t < moving_.surfaces.terms() && !dependents_.empty(); ++t)
       dependents_.transfer(nodes, surface_tangent_.volume_gradient(t));
   }
   inverse_.copy_from(node_blocks_);
@@ -100,7 +100,7 @@ void System<Space>::apply_tangent(const CgView<V>& v) {
   const kernels::ProductView<T, V> w = product_view<T, V>();
   const int n = w.m.nodes.count;
   const kernels::FinishProduct<V> finish{w.m, v, w.y};
-  if (dependents_.empty() && surfaces_.empty()) {
+  if (dependents_.empty() && moving_.surfaces.empty()) {
     Space::for_each(n, kernels::NextDirection<T, V, V>{w, v});
     blocks_.template product<T, V>(w.direction());
     const kernels::GatherProduct<T, V> gather{w, blocks_.template view_of<T>()};
@@ -128,9 +128,9 @@ template <class T, class V>
 void System<Space>::gather_product(const kernels::ProductView<T, V>& w) {
   const DirectionView direction = product_view<double, double>().direction();
   Space::for_each(w.m.nodes.count, kernels::GatherProduct<T, V>{w, blocks_.template view_of<T>()});
-  if (!surfaces_.empty()) surfaces_.add_product(surface_tangent_, w.m.nodes, w.Q, direction.d, w.y);
+  if (!moving_.surfaces.empty()) moving_.surfaces.add_product(surface_tangent_, w.m.nodes, w.Q, direction.d, w.y);
   if (!dependents_.empty()) dependents_.transfer(w.m.nodes, w.y, nullptr);
-  if (!surfaces_.empty()) surfaces_.add_volume_product(surface_tangent_, direction.d, w.y);
+  if (!moving_.surfaces.empty()) moving_.surfaces.add_volume_product(surface_tangent_, direction.d, w.y);
 }
 
 /// Another one wherever the loops of a product must be recorded anew.
@@ -300,7 +300,7 @@ DirectionReport System<Space>::direction(int most_iterations) {
         loops::StoreSums<1, 2>{slope_.data()});
   });
   if (!dependents_.empty()) dependents_.expand(data_.view().nodes, direction_.data(), nullptr, nullptr, Q_.data());
-  if (!surfaces_.empty()) surfaces_.aim(surface_tangent_, direction_.data());
+  if (!moving_.surfaces.empty()) moving_.surfaces.aim(surface_tangent_, direction_.data());
   double values[3];
   slope_.download(values);
   report.slope = values[0];

@@ -19,9 +19,9 @@ void System<Space>::step_began() {
 }
 
 template <class Space>
-void System<Space>::store_strain(const Pose& pose, Array<Space, double>& E) {
+void System<Space>::store_strain(const Pose& state, Array<Space, double>& E) {
   E.resize(blocks_.strain_size());
-  blocks_.store_strain({pose.u.data(), pose.D.data()}, E.data());
+  blocks_.store_strain({state.u.data(), state.D.data()}, E.data());
 }
 
 template <class Space>

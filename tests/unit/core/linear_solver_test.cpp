@@ -184,7 +184,7 @@ TEST(LinearSolver, LoopsThatDoSeveralThingsSolveAsLoopsOfTheirOwn) {
     executor.linearize(random_state(built.model, 1e-3, 0.01), {}, Tangent::material, tangent);
     filter.clear_fixed(b);
     for (const bool beside : {false, true}) {
-      if (beside) tangent.low_rank.push_back({10 / dot(b, b), b});
+      if (beside) tangent.loads.volumes.push_back({10 / dot(b, b), b});
       TangentOperator K(built.model, executor, filter);
       FactorSolver factor(K);
       K.take(tangent);

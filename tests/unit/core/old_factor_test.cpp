@@ -50,7 +50,7 @@ struct Tangents {
     executor.gradient(state, {}, g);
     executor.linearize(state, {}, Tangent::material, lin);
     RankOne beside{term, random_direction(model, 7)};
-    lin.low_rank.push_back(beside);
+    lin.loads.volumes.push_back(beside);
     K.take(lin);
     return lin;
   }

@@ -133,7 +133,7 @@ TEST_P(SurfaceLoadTest, ProductIsTheDerivativeOfTheForcesAndSymmetric) {
 
 TEST_P(SurfaceLoadTest, AssembledEqualsTheProductWithoutTheRankOneTerm) {
   Linearization lin = linearization();
-  lin.low_rank.clear();
+  lin.loads.volumes.clear();
   BlockMatrix matrix(built_.model.points, built_.model.surfaces);
   executor_.assemble(lin, matrix);
   const std::vector<double> d = random_direction(built_.model);

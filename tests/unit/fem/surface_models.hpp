@@ -65,12 +65,12 @@ inline double add_surface_forces(Surfaces<PoolSpace>& loads, const Model& model,
 /// Adds the tangent of surface loads at their last forces, in a model without dependent nodes.
 inline void add_surface_tangent(Surfaces<PoolSpace>& loads, const Model& model, const std::vector<double>& factors,
                                 Linearization& lin) {
-  SurfaceTangent<PoolSpace>& tangent = lin.surface_tangent;
-  lin.surfaces = &loads;
+  SurfaceTangent<PoolSpace>& tangent = lin.loads.surface;
+  lin.loads.surfaces = &loads;
   loads.linearize(nodes_of(model.points), lin.Q.data(), factors.data(), lin.tangent, tangent, lin.node_blocks.data());
   for (int t = 0; t < loads.terms(); ++t) {
     const double* g = tangent.volume_gradient(t);
-    lin.low_rank.push_back({tangent.stiffness.data()[t], std::vector<double>(g, g + model.dof_count())});
+    lin.loads.volumes.push_back({tangent.stiffness.data()[t], std::vector<double>(g, g + model.dof_count())});
   }
 }
 

@@ -103,12 +103,12 @@ class UnsymmetricLoads : public testing::TestWithParam<Case> {
     executor_.multiply(lin, d, without);
     add_surface_forces(loads_, model, state_, factors_, unused);
     add_surface_tangent(loads_, model, factors_, lin);
-    for (const FollowerLoad& load : model.followers) lin.followers.emplace_back(load, state_, 0.7);
+    for (const FollowerLoad& load : model.followers) lin.loads.followers.emplace_back(load, state_, 0.7);
     for (const DeadLoad& load : model.loads)
-      for (const NodeLoad& n : load.nodes) lin.torques.push_back({n.node, n.torque * 0.7});
-    EXPECT_FALSE(lin.symmetric());
+      for (const NodeLoad& n : load.nodes) lin.loads.torques.push_back({n.node, n.torque * 0.7});
+    EXPECT_FALSE(lin.loads.symmetric());
     executor_.multiply(lin, d, with);
-    add_unsymmetric_product(lin, model.points, d, with);
+    lin.loads.add_unsymmetric_product(model.points, lin.Q, d, with);
     for (std::size_t i = 0; i < size(); ++i) with[i] -= without[i];
     return with;
   }
@@ -215,7 +215,7 @@ int negative_eigenvalues(const Model& model, ThreadPool& pool, const State& stat
     std::fill(d.begin(), d.end(), 0.0);
     d[free[at(c)]] = 1;
     executor.multiply(lin, d, Kd);
-    add_unsymmetric_product(lin, model.points, d, Kd);
+    lin.loads.add_unsymmetric_product(model.points, lin.Q, d, Kd);
     for (int r = 0; r < size; ++r) K(r, c) = Kd[free[at(r)]];
   }
   const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(K, false).eigenvalues();

@@ -1,7 +1,7 @@
-#include "core/executor/follower_tangent.hpp"
+#include "core/executor/load_tangent.hpp"
 
 #include "core/base/index.hpp"
-#include "core/executor/executor.hpp"
+#include "core/executor/surface_blocks.hpp"
 #include "core/math/rotation.hpp"
 
 #include <cmath>
@@ -21,8 +21,8 @@ struct TorqueCouple {
   }
 };
 
-void add_product(const FollowerTangent& f, const DofLayout& dofs, const std::vector<Mat3d>& Q,
-                 std::span<const double> x, std::span<double> y) {
+void add_follower_product(const FollowerTangent& f, const DofLayout& dofs, const std::vector<Mat3d>& Q,
+                          std::span<const double> x, std::span<double> y) {
   const FollowerLoad& load = *f.load;
   const bool vertices = !load.g.empty(), twists = squared_norm(f.torque) > 0;
   const auto increment = [&](std::size_t k) { return x.data() + dofs.begin(load.nodes[k]); };
@@ -82,14 +82,42 @@ FollowerTangent::FollowerTangent(const FollowerLoad& follower, const State& stat
   if (std::abs(determinant(turning)) > kLeast) spin_of_change = inverse(turning);
 }
 
-void add_unsymmetric_product(const Linearization& lin, const PointSet& set, std::span<const double> x,
-                             std::span<double> y) {
+void LoadTangent::clear() {
+  surfaces = nullptr;
+  volumes.clear();
+  followers.clear();
+  torques.clear();
+}
+
+void LoadTangent::take(const Model& model, const State& state, std::span<const double> factors) {
+  for (const DeadLoad& load : model.loads)
+    for (const NodeLoad& n : load.nodes)
+      if (model.kind(n.node) == FrameKind::rigid && squared_norm(n.torque) > 0)
+        torques.push_back({n.node, n.torque * factors[at(load.schedule)]});
+  for (const FollowerLoad& load : model.followers) followers.emplace_back(load, state, factors[at(load.schedule)]);
+}
+
+bool LoadTangent::symmetric() const {
+  return followers.empty() && torques.empty() && (surfaces == nullptr || !surface.curved || surfaces->conservative());
+}
+
+void LoadTangent::add_product(const PointSet& set, const std::vector<Mat3d>& Q, std::span<const double> x,
+                              std::span<double> y) const {
+  if (surfaces != nullptr) surfaces->add_product(surface, nodes_of(set), Q.data(), x.data(), y.data());
+  for (const RankOne& term : volumes) fascia::add_product(term, x, y);
+}
+
+void LoadTangent::add_to(BlockMatrix& matrix, const std::vector<Mat3d>& Q) const {
+  if (surfaces != nullptr) add_blocks(surfaces->loads(), surface, Q, matrix);
+}
+
+void LoadTangent::add_unsymmetric_product(const PointSet& set, const std::vector<Mat3d>& Q, std::span<const double> x,
+                                          std::span<double> y) const {
   const DofLayout& dofs = set.dofs;
-  if (lin.surfaces != nullptr && !lin.surfaces->conservative())
-    lin.surfaces->add_product(lin.surface_tangent, nodes_of(set), lin.Q.data(), x.data(), y.data(),
-                              TangentPart::antisymmetric);
-  for (const FollowerTangent& follower : lin.followers) add_product(follower, dofs, lin.Q, x, y);
-  for (const TorqueTangent& t : lin.torques) {
+  if (surfaces != nullptr && !surfaces->conservative())
+    surfaces->add_product(surface, nodes_of(set), Q.data(), x.data(), y.data(), TangentPart::antisymmetric);
+  for (const FollowerTangent& follower : followers) add_follower_product(follower, dofs, Q, x, y);
+  for (const TorqueTangent& t : torques) {
     const auto i = at(dofs.begin(t.node) + 3);
     const Vec3d half = cross(t.torque, Vec3d{{x[i], x[i + 1], x[i + 2]}}) * 0.5;
     for (int k = 0; k < 3; ++k) y[i + at(k)] -= half[k];
