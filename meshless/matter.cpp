@@ -30,7 +30,7 @@ namespace {
 
 constexpr int kMostTests = 6;  // of a voxel at the surface, in each direction
 
-/// Whether tests of a voxel are inside, by x, y and z; of some directions fewer than there is room for.
+/// Tests of a voxel, by x, y and z, are inside where this is true; some directions have fewer than there is room for.
 using Tests = std::array<char, kMostTests * kMostTests * kMostTests>;
 
 /// A whole number of equal cells a direction, so that a box is filled exactly.

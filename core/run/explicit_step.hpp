@@ -24,7 +24,7 @@ class ExplicitStepper : public ExplicitSteps<ExplicitStepper, PoolStep> {
 
  private:
   friend class ExplicitSteps<ExplicitStepper, PoolStep>;
-  // What ExplicitSteps calls.
+  // ExplicitSteps calls these.
   static constexpr int kQueue = 16;           ///< steps whose factors are found together
   static constexpr bool kKeepsForces = true;  ///< forces are not found again where they are known
   static ExplicitView with_blocks(const ExplicitView& nodes) { return nodes; }

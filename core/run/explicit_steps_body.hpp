@@ -220,7 +220,7 @@ void ExplicitSteps<Own, Types>::find_prescribed(const double* factors, Array<Spa
 template <class Own, class Types>
 void ExplicitSteps<Own, Types>::advance() {
   queue_factors();
-  // As if the boundary had moved on like that before.
+  // The boundary counts as having moved on like that before.
   if (plan_.taken() == 0) find_prescribed(table_.data(), last_increments_);
   const LeapTimes times = LeapTimes::between(last_step_, plan_.step());
   if (times.kick != times_.kick || times.drift != times_.drift) ++record_;

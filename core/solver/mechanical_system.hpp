@@ -52,11 +52,11 @@ class MechanicalSystem : public StepSystem<MechanicalSystem, PoolStep> {
  public:
   MechanicalSystem(const Model& model, ThreadPool& pool, const SolverSettings& settings);
 
-  /// As StepSystem's, and forgets what linear solvers have learned too.
+  /// StepSystem forgets its steps, and linear solvers forget what they have learned.
   void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
   void forget_steps(std::span<const double> factors, const std::vector<double>& pressures);
 
-  // What Newton asks for beside StepSystem.
+  // Newton asks for these beside StepSystem.
   /// @param most_iterations  of conjugate gradients, where the settings allow as many
   DirectionReport direction(int most_iterations = kAsManyAsNeeded);
   /// The part of a step along the direction that may be taken, at most the one that is wanted: user blocks may have no
@@ -125,7 +125,7 @@ class MechanicalSystem : public StepSystem<MechanicalSystem, PoolStep> {
 
  private:
   friend class StepSystem<MechanicalSystem, PoolStep>;
-  // What StepSystem calls.
+  // StepSystem calls these.
   void step_began();
   void place_tethers() { fascia::place_tethers(model_, factors_, executor_.targets()); }
   void release_tethers();

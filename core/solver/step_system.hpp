@@ -89,7 +89,7 @@ class StepSystem {
   /// @param acceleration  of each constraint: of its node's origin and Q or A
   void add_held_inertia(const Motions& acceleration);
 
-  // What Newton asks for; the direction, which leads on, is the derived class's.
+  // Newton asks for these; the direction, which leads on, is the derived class's.
   Evaluation evaluate() { return known_ ? *std::exchange(known_, std::nullopt) : own().evaluate_anew(); }
   void apply(double step);
   void save();

@@ -32,10 +32,9 @@ class ExplicitSystem : public ExplicitSteps<ExplicitSystem<MemorySpace>, DeviceS
 
  private:
   friend Base;
-  using Base::data_, Base::dependents_, Base::gradient_, Base::load_, Base::memory_, Base::model_, Base::pose_,
-      Base::progress_;
+  using Base::data_, Base::memory_, Base::model_, Base::pose_, Base::progress_;
 
-  // What ExplicitSteps calls.
+  // ExplicitSteps calls these.
   static constexpr int kQueue = 128;           ///< steps whose factors are uploaded together
   static constexpr bool kKeepsForces = false;  ///< a recorded step finds them
   kernels::ExplicitBlocksView with_blocks(const ExplicitView& nodes) { return {nodes, blocks_.view()}; }

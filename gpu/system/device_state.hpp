@@ -68,7 +68,7 @@ struct DeviceState {
   }
 };
 
-// As core/solver/state_copies.hpp has them for states of the host.
+// core/solver/state_copies.hpp has these for states of the host.
 template <class Space>
 void shape_place(const DeviceState<Space>& like, DeviceState<Space>& to) {
   to.u.resize(like.u.size());

@@ -39,7 +39,7 @@ class System : public StepSystem<System<Space>, DeviceStep<Space>> {
   /// rigid frames are made by the host; where precision is single there are none.
   System(const Model& model, const SolverSettings& settings);
 
-  /// As StepSystem's, and forgets what linear solvers have learned too.
+  /// StepSystem forgets its steps, and linear solvers forget what they have learned.
   void begin_afresh(std::span<const double> factors, const std::vector<double>& pressures);
 
   /// @param most_iterations  of conjugate gradients, where the settings allow as many
@@ -72,13 +72,12 @@ class System : public StepSystem<System<Space>, DeviceStep<Space>> {
   friend Base;
   using Base::conservative_, Base::damped_, Base::data_, Base::dependent_forces_, Base::dependents_, Base::direction_,
       Base::driven_, Base::factors_, Base::filter_, Base::gradient_, Base::history_, Base::increment_, Base::inertia_,
-      Base::inertia_energy_, Base::internal_, Base::known_, Base::load_, Base::load_energy_, Base::masses_,
-      Base::memory_, Base::middles_, Base::model_, Base::motions_, Base::node_energy_, Base::node_parts_, Base::now_,
-      Base::q_, Base::reached_factors_, Base::settings_, Base::start_, Base::step_, Base::moving_, Base::turning_,
-      Base::w_;
+      Base::inertia_energy_, Base::internal_, Base::load_, Base::load_energy_, Base::masses_, Base::memory_,
+      Base::middles_, Base::model_, Base::motions_, Base::node_parts_, Base::now_, Base::q_, Base::reached_factors_,
+      Base::settings_, Base::start_, Base::step_, Base::moving_, Base::turning_, Base::w_;
   using Base::force_view, Base::pose, Base::step_view;
 
-  // What StepSystem calls.
+  // StepSystem calls these.
   void step_began();
   void place_tethers();
   void release_tethers();

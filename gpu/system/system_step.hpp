@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-/// What the steps of a StepSystem ask of System, and what others read of them.
+/// The steps of a StepSystem ask System for these; others read the rest.
 namespace fascia::gpu {
 
 template <class Space>

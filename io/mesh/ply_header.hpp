@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// What a PLY file says of itself before its numbers begin.
+/// A PLY file says this of itself before its numbers begin.
 namespace fascia::io {
 
 enum class PlyKind { text, little_endian, big_endian };

@@ -96,7 +96,7 @@ class PlyParser {
     for (const PlyProperty& p : element.properties) {
       double size = 1;
       if (p.length) size = bytes_->take(*p.length, name);
-      if (!(size >= 0) || size > static_cast<double>(bytes_->left()))
+      if (!(size >= 0) || size != std::floor(size) || size > static_cast<double>(bytes_->left()))
         fail(p.name + " of " + name + " has a length that the file does not hold; it is damaged: write it again");
       for (double k = 0; k < size; ++k) values_.push_back(bytes_->take(p.type, name));
       begin_.push_back(values_.size());

@@ -18,7 +18,7 @@ class TextLines {
   bool next();
   std::vector<std::string_view>& words() { return words_; }
   const std::vector<std::string_view>& words() const { return words_; }
-  /// What follows the line.
+  /// Gives the text behind the line.
   std::string_view rest() const { return text_.substr(place_); }
 
   /// Word of the line as messages name it, or that there is none.

@@ -41,9 +41,9 @@ Throw throw_at(const Matter& matter, const PieceList& pieces, const Darts& darts
   return thrown;
 }
 
-/// As many places as wanted where they fit. More than the spacing says fit where matter is thin, since samples gather
-/// at the boundary: few darts are needed then, and places are uneven, so they are thrown at a larger distance. Where
-/// fewer fit they may come nearer to one another.
+/// Throws as many places as wanted where they fit. More than the spacing says fit where matter is thin, since samples
+/// gather at the boundary: few darts are needed then, and places are uneven, so they are thrown at a larger distance.
+/// Where fewer fit they may come nearer to one another.
 std::vector<SamplePlace> throw_count(const Matter& matter, const PieceList& pieces, const Darts& darts, double spacing,
                                      std::size_t count, ThreadPool& pool) {
   constexpr double kNearer = 0.98, kFarther = 1.1, kMuchFarther = 1.4;

@@ -114,6 +114,17 @@ TEST(PlyReader, BinaryOfBothKindsOfBytes) {
   }
 }
 
+TEST(PlyReader, LengthsOfListsAreWhole) {
+  const TemporaryDirectory directory;
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list float uchar vertex_index\nend_header\n";
+  put(text, 2.5F, true);
+  const auto file = directory.write("a.ply", text + std::string(8, '\0'));
+  EXPECT_EQ(input_error([&] { read_mesh(file); }),
+            file.string() +
+                ": vertex_index of face 0 has a length that the file does not hold; it is damaged: write it again");
+}
+
 /// A last number that is cut off is not another vertex.
 TEST(PlyReader, EveryTruncationOfABinaryFileIsAnError) {
   const TemporaryDirectory directory;
